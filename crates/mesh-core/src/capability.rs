@@ -1,0 +1,206 @@
+//! What a structure can hold, as data, and the one place that says why not.
+
+use rustc_hash::FxHashMap;
+use serde::Serialize;
+
+use crate::Point;
+use crate::error::BuildError;
+use crate::incidence::Incidence;
+use crate::pairing::{MAX_CORNERS, MAX_EDGES};
+use crate::polygon_mesh::PolygonMesh;
+use crate::row_id::{FaceId, VertexId};
+
+/// What a structure can hold beyond closed, oriented triangle manifolds.
+///
+/// The table is data: the command line prints it, constructors answer by it, and the conformance
+/// suite holds every structure to its row. All six hold boundaries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Capabilities {
+    /// Faces of any degree, not only triangles.
+    pub polygons: bool,
+    /// Edges with three or more faces.
+    pub non_manifold_edges: bool,
+    /// Vertices whose faces form more than one fan.
+    pub non_manifold_vertices: bool,
+    /// Two faces that run along an edge in the same direction.
+    pub inconsistent_orientation: bool,
+    /// Vertices without a face.
+    pub isolated_vertices: bool,
+    /// Vertices that share their coordinates stay apart. Where they do not, such vertices are one
+    /// vertex afterwards, and a face with two corners at one point cannot be held.
+    pub coincident_vertices: bool,
+}
+
+impl Capabilities {
+    /// Everything: a polygon mesh as it is.
+    pub const ALL: Self = Self {
+        polygons: true,
+        non_manifold_edges: true,
+        non_manifold_vertices: true,
+        inconsistent_orientation: true,
+        isolated_vertices: true,
+        coincident_vertices: true,
+    };
+
+    /// Oriented manifolds of polygons, isolated vertices allowed.
+    pub const ORIENTED_MANIFOLDS: Self = Self {
+        non_manifold_edges: false,
+        non_manifold_vertices: false,
+        inconsistent_orientation: false,
+        ..Self::ALL
+    };
+
+    /// Whether a structure with these capabilities holds `polygons`; O(corners) expected.
+    ///
+    /// Constructors that come upon a fault ask here for its name, so that a verdict and a refusal
+    /// can never differ.
+    ///
+    /// # Errors
+    ///
+    /// The first fault, in the order that [`BuildError`] fixes.
+    pub fn check(&self, polygons: &PolygonMesh) -> Result<(), BuildError> {
+        if !self.polygons {
+            check_triangles(polygons)?;
+        }
+        let oriented = !self.inconsistent_orientation;
+        if oriented || !self.non_manifold_edges || !self.non_manifold_vertices {
+            if polygons.corner_count() > MAX_CORNERS {
+                return Err(BuildError::TooMany {
+                    elements: "corners",
+                    limit: MAX_CORNERS,
+                });
+            }
+            let faces = polygons.faces();
+            let incidence = Incidence::of(polygons.vertex_count(), faces, |_| true);
+            if incidence.edges().nth(MAX_EDGES).is_some() {
+                return Err(BuildError::TooMany {
+                    elements: "edges",
+                    limit: MAX_EDGES,
+                });
+            }
+            if !self.non_manifold_edges {
+                check_edges(&incidence)?;
+            }
+            if oriented {
+                check_orientation(&incidence)?;
+            }
+            if !self.non_manifold_vertices {
+                check_vertices(polygons, &incidence)?;
+            }
+        }
+        if !self.isolated_vertices {
+            check_isolated(polygons)?;
+        }
+        if !self.coincident_vertices {
+            check_coincident_corners(polygons)?;
+        }
+        Ok(())
+    }
+}
+
+fn check_triangles(polygons: &PolygonMesh) -> Result<(), BuildError> {
+    match polygons.faces().iter().find(|(_, face)| face.len() != 3) {
+        Some((face, corners)) => Err(BuildError::NotATriangle {
+            face,
+            degree: corners.len(),
+        }),
+        None => Ok(()),
+    }
+}
+
+fn check_edges(incidence: &Incidence) -> Result<(), BuildError> {
+    match incidence.edges().find(|edge| edge.sides.len() > 2) {
+        Some(edge) => Err(BuildError::NonManifoldEdge {
+            vertices: edge.ends,
+            faces: edge.sides.iter().map(|side| side.face).collect(),
+        }),
+        None => Ok(()),
+    }
+}
+
+fn check_orientation(incidence: &Incidence) -> Result<(), BuildError> {
+    for edge in incidence.edges() {
+        for (i, later) in edge.sides.iter().enumerate() {
+            let earlier = edge.sides[..i]
+                .iter()
+                .find(|s| s.downward == later.downward);
+            if let Some(earlier) = earlier {
+                let [low, high] = edge.ends;
+                let (from, to) = if later.downward {
+                    (high, low)
+                } else {
+                    (low, high)
+                };
+                let (first, second) = (earlier.face, later.face);
+                return Err(BuildError::RepeatedSide {
+                    from,
+                    to,
+                    first,
+                    second,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_vertices(polygons: &PolygonMesh, incidence: &Incidence) -> Result<(), BuildError> {
+    let faces = polygons.faces();
+    let mut fans = incidence.fans(faces);
+    // By vertex: the first face there and its fan; and the lowest vertex with a second fan.
+    let mut first: Vec<Option<(FaceId, usize)>> = vec![None; polygons.vertex_count()];
+    let mut fault: Option<(VertexId, FaceId, FaceId)> = None;
+    for (f, face) in faces.iter() {
+        for (corner, &v) in faces.range(f).zip(face) {
+            let (fan, _) = fans.root(corner);
+            let (first, first_fan) = *first[v.index()].get_or_insert((f, fan));
+            if fan != first_fan && fault.is_none_or(|(lowest, ..)| v < lowest) {
+                fault = Some((v, first, f));
+            }
+        }
+    }
+    match fault {
+        Some((vertex, first, second)) => Err(BuildError::NonManifoldVertex {
+            vertex,
+            first,
+            second,
+        }),
+        None => Ok(()),
+    }
+}
+
+fn check_isolated(polygons: &PolygonMesh) -> Result<(), BuildError> {
+    let mut used = vec![false; polygons.vertex_count()];
+    for v in polygons.faces().corners() {
+        used[v.index()] = true;
+    }
+    let mut isolated = polygons.vertices().filter(|v| !used[v.index()]);
+    match isolated.next() {
+        Some(vertex) => Err(BuildError::IsolatedVertex {
+            vertex,
+            count: 1 + isolated.count(),
+        }),
+        None => Ok(()),
+    }
+}
+
+fn check_coincident_corners(polygons: &PolygonMesh) -> Result<(), BuildError> {
+    let mut at = FxHashMap::default();
+    for (face, corners) in polygons.faces().iter() {
+        at.clear();
+        for &v in corners {
+            if let Some(first) = at.insert(coordinates(polygons.position(v)), v) {
+                return Err(BuildError::CoincidentCorners {
+                    face,
+                    vertices: [first, v],
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The bits of a point's coordinates, with −0 as 0: what a vertex is where nothing else names it.
+fn coordinates(point: Point) -> [u32; 3] {
+    point.to_array().map(|x| (x + 0.0).to_bits())
+}

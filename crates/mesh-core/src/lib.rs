@@ -1,0 +1,44 @@
+//! The vocabulary of Sixfold: what every representation, algorithm and tool says the same way.
+//!
+//! - [`PolygonMesh`]: the neutral input and output, positions and faces as index lists.
+//! - [`MeshQuery`]: the nine relations of Weiler (1985) and their contract.
+//! - [`Representation`]: one data structure; what it can hold, how it is built, what it weighs.
+//! - [`Handle`] and [`HandleMap`]: how a structure names its elements, and data kept by name.
+//! - [`BuildError`]: why a structure refuses a mesh; [`Capabilities`] decides it in one place.
+//! - [`Table`] and [`Probe`]: storage whose reads and writes can be watched.
+//! - [`Facts`]: the topology of a face list, exact and independent of any structure.
+//!
+//! Nothing here knows any one of the six structures.
+
+mod capability;
+mod distinct;
+mod error;
+mod face_list;
+mod facts;
+mod handle;
+mod incidence;
+mod memory;
+mod pairing;
+mod partition;
+mod polygon_mesh;
+mod probe;
+mod query;
+mod representation;
+mod row_id;
+mod table;
+
+pub use capability::Capabilities;
+pub use distinct::{Distinct, IteratorExt};
+pub use error::{BuildError, InvariantError, PolygonError};
+pub use face_list::{FaceList, FaceSpans};
+pub use facts::{Facts, Spread};
+pub use glam::Vec3 as Point;
+pub use handle::{Handle, HandleMap, HashHandleMap, Pair, RowMap};
+pub use memory::{MemoryFootprint, TableBytes};
+pub use pairing::TwinPairs;
+pub use polygon_mesh::PolygonMesh;
+pub use probe::{Access, AccessKind, Probe, Traced, Untraced};
+pub use query::{EdgeMap, FaceMap, MeshQuery, VertexMap};
+pub use representation::{Counts, QueryCost, Relation, Representation};
+pub use row_id::{EdgeId, FaceId, MAX_ROWS, RowId, Slot, VertexId, row};
+pub use table::Table;

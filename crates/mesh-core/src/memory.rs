@@ -1,0 +1,36 @@
+//! What a structure weighs, table by table.
+
+use serde::Serialize;
+
+/// The bytes that one table holds.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct TableBytes {
+    /// The name of the table.
+    pub table: &'static str,
+    /// How many rows it has.
+    pub rows: usize,
+    /// Bytes allocated for them, capacity included.
+    pub bytes: usize,
+}
+
+/// The bytes that a structure really holds on the heap, table by table, positions included.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct MemoryFootprint {
+    /// Each table.
+    pub tables: Vec<TableBytes>,
+}
+
+impl MemoryFootprint {
+    /// The sum over all tables, in bytes.
+    pub fn total(&self) -> usize {
+        self.tables.iter().map(|table| table.bytes).sum()
+    }
+}
+
+impl FromIterator<TableBytes> for MemoryFootprint {
+    fn from_iter<I: IntoIterator<Item = TableBytes>>(tables: I) -> Self {
+        Self {
+            tables: tables.into_iter().collect(),
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! Rows of one kind, watched by a probe.
+
+use std::fmt;
+use std::ops::Range;
+
+use crate::memory::TableBytes;
+use crate::probe::{Probe, Untraced};
+
+/// The rows of one column of a structure; every access in query and edit code goes through it.
+///
+/// With the probe [`Untraced`] a read is a bounds-checked index and nothing else (the benchmark
+/// group `zero_cost` compares with bare slices). Each table knows its name, and what its rows are,
+/// for traces, memory reports and the panic of a handle that has no row.
+#[derive(Clone)]
+pub struct Table<T, P: Probe = Untraced> {
+    rows: Vec<T>,
+    name: &'static str,
+    element: &'static str,
+    probe: P,
+}
+
+impl<T> Table<T> {
+    /// A table called `name` whose rows are by `element` (`"vertex"`, `"half-edge"`).
+    pub fn new(name: &'static str, element: &'static str, rows: Vec<T>) -> Self {
+        Self {
+            rows,
+            name,
+            element,
+            probe: Untraced,
+        }
+    }
+}
+
+impl<T, P: Probe> Table<T, P> {
+    /// The same rows watched by `probe`.
+    pub fn probed<Q: Probe>(self, probe: Q) -> Table<T, Q> {
+        let Self {
+            rows,
+            name,
+            element,
+            ..
+        } = self;
+        Table {
+            rows,
+            name,
+            element,
+            probe,
+        }
+    }
+
+    /// How many rows there are.
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there is no row.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Reads row `row`.
+    ///
+    /// # Panics
+    ///
+    /// If the table has no such row; the message names the table, the element and the row.
+    #[inline]
+    pub fn read(&self, row: usize) -> &T {
+        self.probe.read(self.name, row, size_of::<T>());
+        match self.rows.get(row) {
+            Some(value) => value,
+            None => self.no_such_row(row),
+        }
+    }
+
+    /// Reads the rows of `range`.
+    ///
+    /// # Panics
+    ///
+    /// If the table lacks one of them.
+    #[inline]
+    pub fn read_range(&self, range: Range<usize>) -> &[T] {
+        for row in range.clone() {
+            self.probe.read(self.name, row, size_of::<T>());
+        }
+        match self.rows.get(range.clone()) {
+            Some(values) => values,
+            None => self.no_such_row(range.end.max(range.start)),
+        }
+    }
+
+    /// Row `row`, to be written.
+    ///
+    /// # Panics
+    ///
+    /// If the table has no such row; the message names the table, the element and the row.
+    #[inline]
+    pub fn write(&mut self, row: usize) -> &mut T {
+        self.probe.write(self.name, row, size_of::<T>());
+        if row >= self.rows.len() {
+            self.no_such_row(row);
+        }
+        &mut self.rows[row]
+    }
+
+    /// All rows as they lie in memory, unwatched: for whole-table passes and for raw access.
+    #[inline]
+    pub fn rows(&self) -> &[T] {
+        &self.rows
+    }
+
+    /// All rows to be overwritten in place, unwatched.
+    #[inline]
+    pub fn rows_mut(&mut self) -> &mut [T] {
+        &mut self.rows
+    }
+
+    /// The name and the bytes really held, capacity included.
+    pub fn bytes(&self) -> TableBytes {
+        TableBytes {
+            table: self.name,
+            rows: self.rows.len(),
+            bytes: self.rows.capacity() * size_of::<T>(),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn no_such_row(&self, row: usize) -> ! {
+        let Self { name, element, .. } = self;
+        panic!(
+            "no {element} {row}: table `{name}` has {} rows",
+            self.rows.len()
+        )
+    }
+}
+
+impl<T: fmt::Debug, P: Probe> fmt::Debug for Table<T, P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: ", self.name)?;
+        f.debug_list().entries(&self.rows).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::probe::{Access, AccessKind, Traced};
+
+    #[test]
+    fn a_traced_table_logs_each_row_it_gives() {
+        let probe = Traced::default();
+        let mut table = Table::new("next", "half-edge", vec![5_u32, 6, 7]).probed(probe.clone());
+        assert_eq!(*table.read(2), 7);
+        assert_eq!(table.read_range(0..2), [5, 6]);
+        *table.write(1) = 9;
+        let touched = |kind, row| Access {
+            kind,
+            table: "next",
+            row,
+            bytes: 4,
+        };
+        let reads = [2, 0, 1].map(|row| touched(AccessKind::Read, row));
+        let log = probe.take();
+        assert_eq!(log[..3], reads);
+        assert_eq!(log[3..], [touched(AccessKind::Write, 1)]);
+        assert!(probe.take().is_empty());
+    }
+
+    #[test]
+    #[should_panic(expected = "no half-edge 3: table `next` has 3 rows")]
+    fn a_missing_row_panics_by_name() {
+        Table::new("next", "half-edge", vec![5_u32, 6, 7]).read(3);
+    }
+}
