@@ -10,12 +10,13 @@ const FEW: usize = 16;
 /// The items of an iterator, each at its first occurrence.
 ///
 /// Neighbourhoods are small, so the items seen are kept in place and compared one by one; from the
-/// 17th distinct one on a hash set takes over, and a vertex of valence 100,000 stays linear.
+/// 17th distinct one on a hash set takes over, and a vertex of valence 100,000 stays linear. The
+/// place for them is filled only when the first item comes: an empty answer costs nothing.
 /// O(1) expected per item.
 #[derive(Clone, Debug)]
 pub struct Distinct<I: Iterator> {
     items: I,
-    few: [Option<I::Item>; FEW],
+    few: Option<[I::Item; FEW]>,
     seen: usize,
     many: FxHashSet<I::Item>,
 }
@@ -35,7 +36,7 @@ pub trait IteratorExt: Iterator + Sized {
     {
         Distinct {
             items: self,
-            few: [None; FEW],
+            few: None,
             seen: 0,
             many: FxHashSet::default(),
         }
@@ -52,19 +53,21 @@ where
     /// Notes `item`; whether it is new.
     #[inline]
     fn note(&mut self, item: I::Item) -> bool {
-        if self.seen <= FEW {
-            if self.few[..self.seen].contains(&Some(item)) {
-                return false;
-            }
-            if self.seen < FEW {
-                self.few[self.seen] = Some(item);
-                self.seen += 1;
-                return true;
-            }
-            self.seen += 1;
-            self.many.extend(self.few.iter().flatten());
+        let seen = self.seen;
+        if seen > FEW {
+            return self.many.insert(item);
         }
-        self.many.insert(item)
+        let few = self.few.get_or_insert([item; FEW]);
+        if few[..seen].contains(&item) {
+            return false;
+        }
+        self.seen += 1;
+        if seen < FEW {
+            few[seen] = item;
+        } else {
+            self.many.extend(few.iter().copied().chain([item]));
+        }
+        true
     }
 }
 

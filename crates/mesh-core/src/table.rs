@@ -74,6 +74,21 @@ impl<T, P: Probe> Table<T, P> {
         }
     }
 
+    /// Reads rows `2 * pair` and `2 * pair + 1`, with one bounds check for both.
+    ///
+    /// # Panics
+    ///
+    /// If the table lacks one of them; the message names the table, the element and the row.
+    #[inline]
+    pub fn read_pair(&self, pair: usize) -> &[T; 2] {
+        self.probe.read(self.name, 2 * pair, size_of::<T>());
+        self.probe.read(self.name, 2 * pair + 1, size_of::<T>());
+        match self.rows.as_chunks().0.get(pair) {
+            Some(rows) => rows,
+            None => self.no_such_row(2 * pair),
+        }
+    }
+
     /// Reads the rows of `range`.
     ///
     /// # Panics

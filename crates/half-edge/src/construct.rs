@@ -1,0 +1,205 @@
+//! In from polygons, and out again.
+
+use mesh_core::{
+    BuildError, Capabilities, Counts, FaceId, FaceList, InvariantError, MemoryFootprint, MeshQuery,
+    Point, PolygonMesh, Probe, QueryCost, Representation, RowMap, Slot, Table, TwinPairs, VertexId,
+    row,
+};
+
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+
+impl Representation for HalfEdgeMesh {
+    const NAME: &'static str = "half-edge";
+
+    const CAPABILITIES: Capabilities = Capabilities::ORIENTED_MANIFOLDS;
+
+    const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
+
+    type Probed<P: Probe> = HalfEdgeMesh<P>;
+
+    /// Pairs the sides, links the faces in turn, then closes each hole with a boundary loop;
+    /// O(corners + vertices), without hashing.
+    fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
+        let refusal = || match Self::CAPABILITIES.check(polygons) {
+            Err(fault) => fault,
+            Ok(()) => unreachable!("the draft finds a fault in a mesh that the check finds sound"),
+        };
+        let faces = polygons.faces();
+        let pairs = TwinPairs::of(polygons.vertex_count(), faces).ok_or_else(refusal)?;
+        let mut draft = Draft::link(polygons.vertex_count(), faces, &pairs);
+        let closed = faces.corners().len() == 2 * pairs.edge_count;
+        if (!closed && !draft.close_boundary_loops()) || !draft.every_vertex_is_one_fan() {
+            return Err(refusal());
+        }
+        Ok(Self {
+            positions: Table::new("positions", "vertex", polygons.positions().to_vec()),
+            leaving: Table::new("leaving", "vertex", draft.leaving),
+            halves: Table::new("halves", "half-edge", draft.halves),
+            first: Table::new("first", "face", draft.first),
+        })
+    }
+
+    fn to_polygons(&self) -> PolygonMesh {
+        let mut faces = FaceList::with_capacity(self.half_edge_count());
+        for f in self.faces() {
+            faces
+                .push(self.face_vertices(f))
+                .expect("no more corners than half-edges");
+        }
+        PolygonMesh::from_faces(self.positions().to_vec(), faces).expect("I7")
+    }
+
+    fn vertex_name(_: &PolygonMesh, v: VertexId) -> VertexId {
+        v
+    }
+
+    fn face_name(_: &PolygonMesh, f: FaceId) -> FaceId {
+        f
+    }
+
+    fn set_positions(&mut self, positions: &RowMap<VertexId, Point>) {
+        self.positions
+            .rows_mut()
+            .copy_from_slice(positions.values());
+    }
+
+    fn memory(&self) -> MemoryFootprint {
+        let Self {
+            positions,
+            leaving,
+            halves,
+            first,
+        } = self;
+        [
+            positions.bytes(),
+            leaving.bytes(),
+            halves.bytes(),
+            first.bytes(),
+        ]
+        .into_iter()
+        .collect()
+    }
+
+    fn layout_bytes(counts: &Counts) -> usize {
+        size_of::<Half>() * 2 * counts.edges + 16 * counts.vertices + 4 * counts.faces
+    }
+
+    fn validate(&self) -> Result<(), InvariantError> {
+        crate::validate::validate(self)
+    }
+
+    fn probed<P: Probe>(self, probe: P) -> HalfEdgeMesh<P> {
+        HalfEdgeMesh {
+            positions: self.positions.probed(probe.clone()),
+            leaving: self.leaving.probed(probe.clone()),
+            halves: self.halves.probed(probe.clone()),
+            first: self.first.probed(probe),
+        }
+    }
+}
+
+/// The tables while they are being filled.
+struct Draft {
+    leaving: Vec<Slot<HalfEdgeId>>,
+    halves: Vec<Half>,
+    first: Vec<HalfEdgeId>,
+}
+
+impl Draft {
+    /// Writes the half of every corner; the halves along holes stay blank.
+    fn link(vertices: usize, faces: &FaceList, pairs: &TwinPairs) -> Self {
+        let blank = Half {
+            next: HalfEdgeId::new(0),
+            origin: VertexId::new(0),
+            face: Slot::NONE,
+        };
+        let mut draft = Self {
+            leaving: vec![Slot::NONE; vertices],
+            halves: vec![blank; 2 * pairs.edge_count],
+            first: Vec::with_capacity(faces.len()),
+        };
+        let halves = pairs.half_of_corner.as_slice();
+        match faces.uniform_degree() {
+            Some(3) => draft.link_uniform::<3>(faces.corners(), halves),
+            Some(4) => draft.link_uniform::<4>(faces.corners(), halves),
+            _ => {
+                for (f, corners) in faces.iter() {
+                    draft.link_face(f, corners, &halves[faces.range(f)]);
+                }
+            }
+        }
+        draft
+    }
+
+    /// Links faces of a degree that the compiler knows and unrolls.
+    fn link_uniform<const DEGREE: usize>(&mut self, corners: &[VertexId], halves: &[u32]) {
+        let faces = corners
+            .as_chunks::<DEGREE>()
+            .0
+            .iter()
+            .zip(halves.as_chunks::<DEGREE>().0);
+        for (f, (corners, halves)) in (0..).zip(faces) {
+            self.link_face(FaceId::new(f), corners, halves);
+        }
+    }
+
+    #[inline(always)]
+    fn link_face(&mut self, face: FaceId, corners: &[VertexId], halves: &[u32]) {
+        self.first.push(HalfEdgeId::new(halves[0]));
+        for i in 0..corners.len() {
+            let next = if i + 1 == halves.len() { 0 } else { i + 1 };
+            self.halves[halves[i] as usize] = Half {
+                next: HalfEdgeId::new(halves[next]),
+                origin: corners[i],
+                face: Slot::some(face),
+            };
+            self.leaving[corners[i].index()] = Slot::some(HalfEdgeId::new(halves[i]));
+        }
+    }
+
+    /// Links the blank halves into loops; false if two of them leave one vertex.
+    fn close_boundary_loops(&mut self) -> bool {
+        let blank = |halves: &[Half], h: usize| halves[h].face.get().is_none();
+        for h in 0..self.halves.len() {
+            if blank(&self.halves, h) {
+                let origin = self.halves[self.halves[h ^ 1].next.index()].origin;
+                let leaving = &mut self.leaving[origin.index()];
+                if leaving
+                    .get()
+                    .is_some_and(|other| blank(&self.halves, other.index()))
+                {
+                    return false;
+                }
+                *leaving = Slot::some(HalfEdgeId::new(row(h)));
+                self.halves[h].origin = origin;
+            }
+        }
+        for h in 0..self.halves.len() {
+            if blank(&self.halves, h) {
+                let target = self.halves[h ^ 1].origin;
+                // As many boundary halves arrive at a vertex as leave it, and one leaves this one.
+                let next = self.leaving[target.index()]
+                    .get()
+                    .expect("a half leaves every target");
+                self.halves[h].next = next;
+            }
+        }
+        true
+    }
+
+    /// Whether the walks around all vertices meet every half.
+    fn every_vertex_is_one_fan(&self) -> bool {
+        let mut met = 0;
+        for first in self.leaving.iter().filter_map(|leaving| leaving.get()) {
+            let mut h = first;
+            loop {
+                met += 1;
+                h = self.halves[h.twin().index()].next;
+                if h == first {
+                    break;
+                }
+            }
+        }
+        met == self.halves.len()
+    }
+}

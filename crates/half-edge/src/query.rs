@@ -1,0 +1,111 @@
+//! The nine relations.
+
+use mesh_core::{EdgeId, FaceId, MeshQuery, Point, Probe, VertexId, row};
+
+use crate::circulate::{EdgeEdges, FaceFaces};
+use crate::mesh::HalfEdgeMesh;
+
+impl<P: Probe> MeshQuery for HalfEdgeMesh<P> {
+    type Vertex = VertexId;
+    type Edge = EdgeId;
+    type Face = FaceId;
+
+    #[inline]
+    fn vertices(&self) -> impl Iterator<Item = VertexId> {
+        (0..row(self.positions.len())).map(VertexId::new)
+    }
+
+    #[inline]
+    fn edges(&self) -> impl Iterator<Item = EdgeId> {
+        (0..row(self.halves.len() / 2)).map(EdgeId::new)
+    }
+
+    #[inline]
+    fn faces(&self) -> impl Iterator<Item = FaceId> {
+        (0..row(self.first.len())).map(FaceId::new)
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    fn edge_count(&self) -> usize {
+        self.halves.len() / 2
+    }
+
+    fn face_count(&self) -> usize {
+        self.first.len()
+    }
+
+    #[inline]
+    fn position(&self, v: VertexId) -> Point {
+        *self.positions.read(v.index())
+    }
+
+    #[inline]
+    fn vertex_vertices(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
+        self.spokes(v).map(|(_, twin)| twin.origin)
+    }
+
+    #[inline]
+    fn vertex_edges(&self, v: VertexId) -> impl Iterator<Item = EdgeId> {
+        self.spokes(v).map(|(h, _)| h.edge())
+    }
+
+    #[inline]
+    fn vertex_faces(&self, v: VertexId) -> impl Iterator<Item = FaceId> {
+        // Each face at v has one half that arrives there.
+        self.spokes(v).filter_map(|(_, twin)| twin.face.get())
+    }
+
+    #[inline]
+    fn edge_vertices(&self, e: EdgeId) -> [VertexId; 2] {
+        let [one, other] = self.halves.read_pair(e.index());
+        [one.origin, other.origin]
+    }
+
+    #[inline]
+    fn edge_edges(&self, e: EdgeId) -> impl Iterator<Item = EdgeId> {
+        EdgeEdges::new(self, e)
+    }
+
+    #[inline]
+    fn edge_faces(&self, e: EdgeId) -> impl Iterator<Item = FaceId> {
+        let [one, other] = self.halves.read_pair(e.index());
+        [one.face, other.face].into_iter().filter_map(|face| face.get())
+    }
+
+    #[inline]
+    fn face_vertices(&self, f: FaceId) -> impl Iterator<Item = VertexId> {
+        self.sides(f).map(|(_, half)| half.origin)
+    }
+
+    #[inline]
+    fn face_edges(&self, f: FaceId) -> impl Iterator<Item = EdgeId> {
+        self.sides(f).map(|(h, _)| h.edge())
+    }
+
+    #[inline]
+    fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
+        FaceFaces::new(self, f)
+    }
+
+    fn vertex_rows(&self) -> usize {
+        self.positions.len()
+    }
+
+    fn edge_rows(&self) -> usize {
+        self.halves.len() / 2
+    }
+
+    fn face_rows(&self) -> usize {
+        self.first.len()
+    }
+
+    /// The walk around `v`, turned: leaving halves come clockwise, the boundary one first.
+    fn one_ring(&self, v: VertexId) -> Option<impl Iterator<Item = VertexId>> {
+        let mut ring: Vec<VertexId> = self.vertex_vertices(v).collect();
+        ring.reverse();
+        Some(ring.into_iter())
+    }
+}

@@ -1,0 +1,284 @@
+//! One check for each invariant.
+
+use std::collections::HashSet;
+
+use mesh_core::{InvariantError, MeshQuery, RowId, VertexId, row};
+
+use crate::mesh::{HalfEdgeId, HalfEdgeMesh};
+
+/// Checks I1 to I8 in turn; the later ones rely on the earlier ones.
+pub(crate) fn validate(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+    names_exist(mesh)?;
+    pairs(mesh)?;
+    permutation(mesh)?;
+    faces_agree(mesh)?;
+    ends_meet(mesh)?;
+    leaving_halves(mesh)?;
+    one_fan_each(mesh)?;
+    faces(mesh)?;
+    edges_differ(mesh)
+}
+
+fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> {
+    Err(InvariantError::new(invariant, detail))
+}
+
+fn halves(mesh: &HalfEdgeMesh) -> impl Iterator<Item = HalfEdgeId> {
+    (0..row(mesh.half_edge_count())).map(HalfEdgeId::new)
+}
+
+/// Every name in the tables is that of a row: without it no other check could walk.
+fn names_exist(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+    let (vertices, halves, faces) = (
+        mesh.vertex_count(),
+        mesh.half_edge_count(),
+        mesh.face_count(),
+    );
+    for (h, half) in mesh.half_rows().iter().enumerate() {
+        let face_exists = half.face.get().is_none_or(|f| f.index() < faces);
+        if half.next.index() >= halves || half.origin.index() >= vertices || !face_exists {
+            return fails("I2", format!("h{h} names what is not there: {half:?}"));
+        }
+    }
+    let leaving = mesh.leaving_rows().iter().filter_map(|slot| slot.get());
+    if let Some(h) = leaving
+        .chain(mesh.first_rows().iter().copied())
+        .find(|h| h.index() >= halves)
+    {
+        return fails("I5", format!("{h} is named but not there"));
+    }
+    Ok(())
+}
+
+fn pairs(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+    if !mesh.half_edge_count().is_multiple_of(2) {
+        return fails(
+            "I1",
+            format!("{} half-edges are no pairs", mesh.half_edge_count()),
+        );
+    }
+    match halves(mesh).find(|&h| mesh.is_boundary(h) && mesh.is_boundary(h.twin())) {
+        Some(h) => fails("I1", format!("{} has no face on either side", h.edge())),
+        None => Ok(()),
+    }
+}
+
+fn permutation(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+    let mut reached = vec![false; mesh.half_edge_count()];
+    for h in halves(mesh) {
+        let next = mesh.next(h);
+        if std::mem::replace(&mut reached[next.index()], true) {
+            return fails("I2", format!("two half-edges lead on to {next}"));
+        }
+    }
+    Ok(())
+}
+
+fn faces_agree(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+    match halves(mesh).find(|&h| mesh.face(mesh.next(h)) != mesh.face(h)) {
+        Some(h) => fails(
+            "I3",
+            format!("{h} and its next {} differ in face", mesh.next(h)),
+        ),
+        None => Ok(()),
+    }
+}
+
+fn ends_meet(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+    match halves(mesh).find(|&h| mesh.origin(mesh.next(h)) != mesh.target(h)) {
+        Some(h) => fails("I4", format!("{h} does not end where its next starts")),
+        None => Ok(()),
+    }
+}
+
+fn leaving_halves(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+    for h in halves(mesh) {
+        let v = mesh.origin(h);
+        let Some(leaving) = mesh.half_leaving(v) else {
+            return fails(
+                "I5",
+                format!("{h} starts at {v}, which has no leaving half"),
+            );
+        };
+        if mesh.origin(leaving) != v {
+            return fails("I5", format!("{leaving} does not leave {v}"));
+        }
+        if mesh.is_boundary(h) && !mesh.is_boundary(leaving) {
+            return fails(
+                "I5",
+                format!("{v} is on a boundary, but {leaving} has a face"),
+            );
+        }
+    }
+    for v in mesh.vertices() {
+        if let Some(h) = mesh.half_leaving(v).filter(|&h| mesh.origin(h) != v) {
+            return fails("I5", format!("{h} does not leave {v}"));
+        }
+    }
+    Ok(())
+}
+
+fn one_fan_each(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+    let mut leaving = vec![0_usize; mesh.vertex_count()];
+    for h in halves(mesh) {
+        leaving[mesh.origin(h).index()] += 1;
+    }
+    for v in mesh.vertices() {
+        let walked = mesh.leaving(v).count();
+        if walked != leaving[v.index()] {
+            let all = leaving[v.index()];
+            return fails(
+                "I6",
+                format!("the walk around {v} meets {walked} of {all} half-edges"),
+            );
+        }
+    }
+    Ok(())
+}
+
+fn faces(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+    let mut along = 0;
+    for f in mesh.faces() {
+        let h = mesh.half_along(f);
+        if mesh.face(h) != Some(f) {
+            return fails("I7", format!("{h} does not run along {f}"));
+        }
+        let corners: Vec<VertexId> = mesh.face_vertices(f).collect();
+        let distinct: HashSet<u32> = corners.iter().map(|v| v.row()).collect();
+        if corners.len() < 3 || distinct.len() < corners.len() {
+            return fails("I7", format!("{f} has the corners {corners:?}"));
+        }
+        along += corners.len();
+    }
+    let with_face = halves(mesh).filter(|&h| !mesh.is_boundary(h)).count();
+    if along != with_face {
+        return fails(
+            "I7",
+            format!("{with_face} half-edges have a face, {along} are along one"),
+        );
+    }
+    Ok(())
+}
+
+fn edges_differ(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+    let mut ends = HashSet::new();
+    for e in mesh.edges() {
+        let [a, b] = mesh.edge_vertices(e);
+        if a == b || !ends.insert((a.min(b), a.max(b))) {
+            return fails(
+                "I8",
+                format!("{e} has the ends {a} and {b} of another edge"),
+            );
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::{FaceId, Point, PolygonMesh, Representation, Slot};
+
+    use super::*;
+
+    /// A square of two triangles and an isolated vertex.
+    fn sound() -> HalfEdgeMesh {
+        let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y, Point::Z];
+        let polygons = PolygonMesh::new(corners, [[0, 1, 2], [0, 2, 3]]).expect("valid");
+        HalfEdgeMesh::from_polygons(&polygons).expect("manifold")
+    }
+
+    /// The invariant that fails once `break_it` has had its way.
+    fn broken(break_it: impl Fn(&mut HalfEdgeMesh)) -> &'static str {
+        let mut mesh = sound();
+        assert_eq!(mesh.validate(), Ok(()));
+        break_it(&mut mesh);
+        mesh.validate().expect_err("the mesh is broken").invariant
+    }
+
+    fn h(row: u32) -> HalfEdgeId {
+        HalfEdgeId::new(row)
+    }
+
+    #[test]
+    fn each_broken_invariant_is_named() {
+        let mesh = sound();
+        let inner = mesh.half_along(FaceId::new(0));
+        let outer = halves(&mesh).find(|&h| mesh.is_boundary(h)).expect("open");
+        let (i, o) = (inner.index(), outer.index());
+        assert_eq!(broken(|m| m.halves.rows_mut()[i].next = h(99)), "I2");
+        assert_eq!(
+            broken(|m| m.halves.rows_mut()[i].origin = VertexId::new(99)),
+            "I2"
+        );
+        assert_eq!(
+            broken(|m| m.leaving.rows_mut()[0] = Slot::some(h(99))),
+            "I5"
+        );
+        assert_eq!(broken(|m| m.first.rows_mut()[0] = h(99)), "I5");
+        assert_eq!(
+            broken(|m| m.halves.rows_mut()[o ^ 1].face = Slot::NONE),
+            "I1"
+        );
+        assert_eq!(broken(|m| m.halves.rows_mut()[i].next = inner), "I2");
+        assert_eq!(
+            broken(|m| m.halves.rows_mut()[i].face = Slot::some(FaceId::new(1))),
+            "I3"
+        );
+        assert_eq!(
+            broken(|m| m.halves.rows_mut()[i].origin = VertexId::new(4)),
+            "I4"
+        );
+        assert_eq!(broken(|m| m.leaving.rows_mut()[1] = Slot::NONE), "I5");
+        assert_eq!(
+            broken(|m| m.leaving.rows_mut()[1] = m.leaving.rows()[2]),
+            "I5"
+        );
+        assert_eq!(
+            broken(|m| m.leaving.rows_mut()[4] = m.leaving.rows()[2]),
+            "I5"
+        );
+        let along = |m: &HalfEdgeMesh, f| m.half_along(FaceId::new(f));
+        assert_eq!(broken(|m| m.first.rows_mut()[0] = along(m, 1)), "I7");
+    }
+
+    #[test]
+    fn a_vertex_of_two_fans_is_found() {
+        // Two triangles that share no vertex; then one vertex of each is made the same.
+        let corners = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0].map(Point::splat);
+        let polygons = PolygonMesh::new(corners, [[0, 1, 2], [3, 4, 5]]).expect("valid");
+        let mut mesh = HalfEdgeMesh::from_polygons(&polygons).expect("manifold");
+        for half in mesh.halves.rows_mut() {
+            if half.origin == VertexId::new(5) {
+                half.origin = VertexId::new(0);
+            }
+        }
+        mesh.leaving.rows_mut()[5] = Slot::NONE;
+        assert_eq!(mesh.validate().expect_err("two fans").invariant, "I6");
+    }
+
+    #[test]
+    fn edges_with_the_same_ends_are_found() {
+        // A quad whose opposite corners become one vertex would break I7 first; two triangles with
+        // a vertex in common do not, once their far edges are given the same ends.
+        let corners = [0.0, 1.0, 2.0, 3.0].map(Point::splat);
+        let faces = [[0, 1, 2], [1, 0, 3]];
+        let polygons = PolygonMesh::new(corners, faces).expect("valid");
+        let mut mesh = HalfEdgeMesh::from_polygons(&polygons).expect("manifold");
+        for half in mesh.halves.rows_mut() {
+            if half.origin == VertexId::new(3) {
+                half.origin = VertexId::new(2);
+            }
+        }
+        mesh.leaving.rows_mut()[3] = Slot::NONE;
+        let broken = mesh
+            .validate()
+            .expect_err("v2 has two fans and two edges to each end");
+        assert!(["I6", "I8"].contains(&broken.invariant), "{broken}");
+        assert_eq!(
+            edges_differ(&mesh)
+                .expect_err("two pairs of equal edges")
+                .invariant,
+            "I8"
+        );
+    }
+}

@@ -1,0 +1,1 @@
+conformance::suite!(half_edge::HalfEdgeMesh);
