@@ -270,12 +270,12 @@ impl<'a> Survey<'a> {
     }
 
     fn distinct_vertex_sets(&self) -> usize {
+        let mut corners = self.faces.corners().to_vec();
+        for (f, _) in self.faces.iter() {
+            corners[self.faces.range(f)].sort_unstable();
+        }
         let used = self.faces.iter().filter(|(f, _)| self.used[f.index()]);
-        let sets = used.map(|(_, face)| {
-            let mut set = face.to_vec();
-            set.sort_unstable();
-            set
-        });
+        let sets = used.map(|(f, _)| &corners[self.faces.range(f)]);
         sets.collect::<FxHashSet<_>>().len()
     }
 }

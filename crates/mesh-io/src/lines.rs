@@ -1,0 +1,157 @@
+//! Bytes as logical lines.
+
+use std::io::{self, BufRead};
+
+/// The logical lines of a file: comments cut off, continued lines joined by a blank.
+///
+/// A line ends in LF, CRLF or a lone CR. `\` at its end, blanks aside, continues it on the next;
+/// not in a comment, where it is more likely the end of a path. Names may be in any encoding, so
+/// nothing is decoded here.
+pub(crate) struct Lines<R> {
+    source: R,
+    /// Bytes up to an LF; holds several lines if some end in a lone CR.
+    chunk: Vec<u8>,
+    /// Where the next line of `chunk` starts; `None` when there is none left.
+    next: Option<usize>,
+    /// How many lines were given out.
+    count: u64,
+}
+
+/// How a file starts.
+pub(crate) enum Start {
+    /// As text, a byte order mark in UTF-8 passed over.
+    Text,
+    /// With a byte order mark in UTF-16.
+    Utf16,
+}
+
+impl<R: BufRead> Lines<R> {
+    /// The lines of `source`.
+    pub(crate) fn new(source: R) -> Self {
+        Self {
+            source,
+            chunk: Vec::new(),
+            next: None,
+            count: 0,
+        }
+    }
+
+    /// Reads the first line ahead and looks for a byte order mark.
+    pub(crate) fn start(&mut self) -> io::Result<Start> {
+        self.next = self.read_chunk()?.then_some(0);
+        if self.chunk.starts_with(b"\xEF\xBB\xBF") {
+            self.next = Some(3);
+        } else if self.chunk.starts_with(b"\xFF\xFE") || self.chunk.starts_with(b"\xFE\xFF") {
+            return Ok(Start::Utf16);
+        }
+        Ok(Start::Text)
+    }
+
+    /// How many physical lines were read.
+    pub(crate) fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// Reads the next logical line into `statement`; the number of its first physical line.
+    pub(crate) fn read(&mut self, statement: &mut Vec<u8>) -> io::Result<Option<u64>> {
+        statement.clear();
+        let first = self.count + 1;
+        while let Some(line) = self.physical()? {
+            let comment = line.iter().position(|&byte| byte == b'#');
+            let text = line[..comment.unwrap_or(line.len())].trim_ascii_end();
+            match text.strip_suffix(b"\\") {
+                Some(continued) if comment.is_none() => {
+                    statement.extend_from_slice(continued);
+                    statement.push(b' ');
+                }
+                _ => {
+                    statement.extend_from_slice(text);
+                    return Ok(Some(first));
+                }
+            }
+        }
+        // The file may end in a continued line.
+        Ok((self.count >= first).then_some(first))
+    }
+
+    /// The next physical line, without its end.
+    fn physical(&mut self) -> io::Result<Option<&[u8]>> {
+        if self.next.is_none() && self.read_chunk()? {
+            self.next = Some(0);
+        }
+        let Some(start) = self.next else {
+            return Ok(None);
+        };
+        let rest = &self.chunk[start..];
+        let (line, next) = match rest.iter().position(|&byte| byte == b'\r') {
+            Some(end) => (&rest[..end], Some(start + end + 1)),
+            None => (rest, None),
+        };
+        self.next = next;
+        self.count += 1;
+        Ok(Some(line))
+    }
+
+    /// Reads up to the next LF and cuts the line end off; whether there was anything.
+    fn read_chunk(&mut self) -> io::Result<bool> {
+        self.chunk.clear();
+        let read = self.source.read_until(b'\n', &mut self.chunk)?;
+        for end in [b'\n', b'\r'] {
+            if self.chunk.last() == Some(&end) {
+                self.chunk.pop();
+            }
+        }
+        Ok(read > 0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(text: &str) -> Vec<(u64, String)> {
+        let mut lines = Lines::new(text.as_bytes());
+        assert!(matches!(lines.start(), Ok(Start::Text)));
+        let (mut statement, mut all) = (Vec::new(), Vec::new());
+        while let Some(line) = lines.read(&mut statement).expect("memory does not fail") {
+            let text = String::from_utf8(statement.clone()).expect("all of it is text");
+            all.push((line, text));
+        }
+        all
+    }
+
+    fn assert_lines(text: &str, expected: &[(u64, &str)]) {
+        let expected: Vec<(u64, String)> =
+            expected.iter().map(|&(n, s)| (n, s.to_owned())).collect();
+        assert_eq!(lines(text), expected, "{text:?}");
+    }
+
+    #[test]
+    fn every_line_end_ends_a_line() {
+        for text in ["a\nb\n\nc", "a\r\nb\r\n\r\nc\r\n", "a\rb\r\rc\r"] {
+            assert_lines(text, &[(1, "a"), (2, "b"), (3, ""), (4, "c")]);
+        }
+        assert_lines("a\rb\nc\r\nd", &[(1, "a"), (2, "b"), (3, "c"), (4, "d")]);
+        assert_lines("", &[]);
+        assert_lines("\r\n", &[(1, "")]);
+    }
+
+    #[test]
+    fn a_backslash_continues_a_line_but_not_a_comment() {
+        assert_lines("a \\\n b\\  \r\nc\nd", &[(1, "a   b c"), (4, "d")]);
+        assert_lines("a # b \\\nc", &[(1, "a"), (2, "c")]);
+        assert_lines("# C:\\\nc", &[(1, ""), (2, "c")]);
+        assert_lines("a \\ # b\nc", &[(1, "a \\"), (2, "c")]);
+        assert_lines("a \\\nb # c \\\nd", &[(1, "a  b"), (3, "d")]);
+        assert_lines("a\n\\\n\\\n\\", &[(1, "a"), (2, "   ")]);
+    }
+
+    #[test]
+    fn byte_order_marks_are_seen_at_the_start_alone() {
+        assert_lines("\u{feff}a\n\u{feff}b", &[(1, "a"), (2, "\u{feff}b")]);
+        assert_lines("\u{feff}", &[(1, "")]);
+        for utf16 in [&b"\xFF\xFEv\0"[..], b"\xFE\xFF\0v"] {
+            assert!(matches!(Lines::new(utf16).start(), Ok(Start::Utf16)));
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! OBJ out.
+
+use std::fmt;
+use std::io::{self, BufWriter, Write};
+
+use mesh_core::PolygonMesh;
+
+/// Writes `polygons` as OBJ text, which reads back bit for bit; O(corners).
+///
+/// Writes are buffered here; nothing is written of a mesh that OBJ cannot hold.
+///
+/// # Errors
+///
+/// What `out` fails with, and [`io::ErrorKind::InvalidInput`] for a coordinate that is not finite.
+///
+/// # Examples
+///
+/// ```
+/// use mesh_core::{Point, PolygonMesh};
+///
+/// let corners = [Point::ZERO, Point::X, Point::new(0.1, 1e-30, -0.0)];
+/// let triangle = PolygonMesh::new(corners, [[0, 1, 2]])?;
+/// let mut text = Vec::new();
+/// mesh_io::write_obj(&triangle, &mut text)?;
+/// let expected = "# vertices: 3, faces: 1\nv 0 0 0\nv 1 0 0\nv 0.1 1e-30 -0\nf 1 2 3\n";
+/// assert_eq!(text, expected.as_bytes());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write_obj(polygons: &PolygonMesh, out: impl Write) -> io::Result<()> {
+    let positions = polygons.positions();
+    if let Some(v) = positions.iter().position(|p| !p.is_finite()) {
+        let message = format!("vertex v{v} is not at a finite place: OBJ has no word for it");
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+    }
+    let mut out = BufWriter::new(out);
+    let (vertices, faces) = (polygons.vertex_count(), polygons.face_count());
+    writeln!(out, "# vertices: {vertices}, faces: {faces}")?;
+    for p in positions {
+        writeln!(
+            out,
+            "v {} {} {}",
+            Shortest(p.x),
+            Shortest(p.y),
+            Shortest(p.z)
+        )?;
+    }
+    for (_, face) in polygons.faces().iter() {
+        write!(out, "f")?;
+        for v in face {
+            write!(out, " {}", v.index() + 1)?;
+        }
+        writeln!(out)?;
+    }
+    out.flush()
+}
+
+/// The fewest digits that read back as the same number; powers of ten where zeros would fill the line.
+struct Shortest(f32);
+
+impl fmt::Display for Shortest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = self.0.abs();
+        if size == 0.0 || (1e-5..1e9).contains(&size) {
+            write!(f, "{}", self.0)
+        } else {
+            write!(f, "{:e}", self.0)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::Point;
+
+    use super::*;
+
+    #[test]
+    fn a_mesh_is_written_in_the_fewest_digits() {
+        let positions = [
+            Point::new(0.1, -0.0, 100.0),
+            Point::new(1e-30, f32::MAX, -f32::from_bits(1)),
+            Point::new(0.00001, 999_999_940.0, 1e9),
+        ];
+        let mesh = PolygonMesh::new(positions, [[2, 1, 0]]).expect("valid");
+        let mut text = Vec::new();
+        write_obj(&mesh, &mut text).expect("memory does not fail");
+        let expected = "# vertices: 3, faces: 1\nv 0.1 -0 100\nv 1e-30 3.4028235e38 -1e-45\n\
+                    v 0.00001 999999940 1e9\nf 3 2 1\n";
+        assert_eq!(String::from_utf8(text).expect("text"), expected);
+    }
+
+    #[test]
+    fn a_mesh_that_is_not_finite_is_not_written() {
+        for bad in [f32::NAN, f32::INFINITY] {
+            let positions = [Point::ZERO, Point::new(0.0, bad, 0.0)];
+            let mesh = PolygonMesh::new(positions, [[0_u32; 0]; 0]).expect("valid");
+            let mut text = Vec::new();
+            let error = write_obj(&mesh, &mut text).expect_err("not finite");
+            assert_eq!(error.kind(), io::ErrorKind::InvalidInput);
+            let message = "vertex v1 is not at a finite place: OBJ has no word for it";
+            assert_eq!(error.to_string(), message);
+            assert!(text.is_empty());
+        }
+    }
+
+    #[test]
+    fn a_full_disk_is_reported() {
+        struct Full;
+        impl Write for Full {
+            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+                Err(io::ErrorKind::StorageFull.into())
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let error = write_obj(&PolygonMesh::default(), Full).expect_err("full");
+        assert_eq!(error.kind(), io::ErrorKind::StorageFull);
+    }
+}
