@@ -1,1 +1,15 @@
-//! To be written.
+//! Face-vertex mesh: shared vertices, faces as lists of them, and each vertex knows its faces.
+//!
+//! Choose it where faces around a vertex are what is asked for (normals, gathering for a smoothing
+//! step, handing faces to a renderer), and where the input may be anything at all: it holds every
+//! polygon mesh. Edges are not stored; an edge is the [pair](mesh_core::Pair) of its ends. FV, FE,
+//! EV and VF take O(1) an item; the other five look through the faces around the element.
+//! Start at [`FaceVertexMesh`], whose three invariants explain the rest.
+
+mod circulate;
+mod construct;
+mod mesh;
+mod query;
+mod validate;
+
+pub use mesh::{FaceVertexMesh, Fan};

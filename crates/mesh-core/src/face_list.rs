@@ -198,11 +198,38 @@ impl<P: Probe> FaceSpans<P> {
                 let degree = *degree as usize;
                 f * degree..(f + 1) * degree
             }
-            Self::Mixed(offsets) => match offsets.read_range(f..f + 2) {
-                &[start, end] => start as usize..end as usize,
-                _ => no_such_face(face, offsets.len() - 1),
-            },
+            Self::Mixed(offsets) => {
+                if f + 1 >= offsets.len() {
+                    no_such_face(face, offsets.len() - 1);
+                }
+                *offsets.read(f) as usize..*offsets.read(f + 1) as usize
+            }
         }
+    }
+
+    /// Whether the spans divide `corners` corners into faces of three or more: what is wrong if not.
+    ///
+    /// # Errors
+    ///
+    /// The first face whose corners are not there or too few, or the corners that no face has.
+    pub fn check(&self, corners: usize) -> Result<(), String> {
+        if let Self::Mixed(offsets) = self
+            && offsets.is_empty()
+        {
+            return Err("the offsets lack even a first".to_owned());
+        }
+        let mut end = 0;
+        for face in (0..row(self.len())).map(FaceId::new) {
+            let range = self.range(face);
+            if range.start != end || range.end < range.start + 3 || range.end > corners {
+                return Err(format!("{face} has the corners {range:?} of {corners}"));
+            }
+            end = range.end;
+        }
+        if end != corners {
+            return Err(format!("corners {end}..{corners} belong to no face"));
+        }
+        Ok(())
     }
 
     /// The same spans watched by `probe`.
@@ -261,6 +288,21 @@ mod tests {
     #[should_panic(expected = "no face f2: there are 2")]
     fn a_missing_face_panics_by_name() {
         list(&[3, 3]).spans().range(FaceId::new(2));
+    }
+
+    #[test]
+    #[should_panic(expected = "no face f2: there are 2")]
+    fn a_missing_face_panics_by_name_among_mixed_degrees_too() {
+        list(&[3, 4]).spans().range(FaceId::new(2));
+    }
+
+    #[test]
+    fn spans_must_divide_the_corners() {
+        assert_eq!(list(&[3, 4]).spans().check(7), Ok(()));
+        assert!(list(&[3, 4]).spans().check(8).is_err());
+        assert!(list(&[3, 4]).spans().check(6).is_err());
+        assert!(list(&[3, 3]).spans().check(5).is_err());
+        assert!(list(&[3, 2]).spans().check(5).is_err());
     }
 
     #[test]

@@ -1,0 +1,213 @@
+//! In and out.
+
+use mesh_core::{
+    BuildError, Capabilities, Counts, FaceId, FaceList, FaceSpans, InvariantError, MemoryFootprint,
+    MeshQuery, Point, PolygonMesh, Probe, QueryCost, Representation, Table, VertexId, VertexMap,
+    row,
+};
+
+use crate::mesh::{FaceVertexMesh, Fan};
+
+impl Representation for FaceVertexMesh {
+    const NAME: &'static str = "face-vertex";
+
+    const CAPABILITIES: Capabilities = Capabilities::ALL;
+
+    const COSTS: [QueryCost; 9] = {
+        use QueryCost::{Constant, Local};
+        [
+            Local, Local, Constant, Constant, Local, Local, Constant, Constant, Local,
+        ]
+    };
+
+    type Probed<P: Probe> = FaceVertexMesh<P>;
+
+    /// Copies the face list, then sorts the faces by the vertices they name; O(corners + vertices).
+    fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
+        let faces = polygons.faces();
+        let (fans, pool) = incident_faces(polygons.vertex_count(), faces);
+        Ok(Self {
+            positions: Table::new("positions", "vertex", polygons.positions().to_vec()),
+            corners: Table::new("corners", "corner", faces.corners().to_vec()),
+            spans: faces.spans(),
+            fans: Table::new("fans", "vertex", fans),
+            pool: Table::new("pool", "place", pool),
+        })
+    }
+
+    fn to_polygons(&self) -> PolygonMesh {
+        let corners = self.corners.rows();
+        let faces = match &self.spans {
+            FaceSpans::Uniform { degree, .. } => {
+                FaceList::uniform(*degree as usize, corners.to_vec())
+            }
+            FaceSpans::Mixed(_) => {
+                let mut faces = FaceList::with_capacity(corners.len());
+                let pushed = self
+                    .faces()
+                    .try_for_each(|f| faces.push(self.face_vertices(f)));
+                pushed.map(|()| faces)
+            }
+        };
+        let faces = faces.expect("I1 holds");
+        PolygonMesh::from_faces(self.positions().to_vec(), faces).expect("I1 holds")
+    }
+
+    fn vertex_name(_: &PolygonMesh, v: VertexId) -> VertexId {
+        v
+    }
+
+    fn face_name(_: &PolygonMesh, f: FaceId) -> FaceId {
+        f
+    }
+
+    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) {
+        let positions = positions.values();
+        let vertices = self.positions.len();
+        assert_eq!(positions.len(), vertices, "the map is of another mesh");
+        self.positions.rows_mut().copy_from_slice(positions);
+    }
+
+    fn memory(&self) -> MemoryFootprint {
+        let tables = [
+            self.positions.bytes(),
+            self.corners.bytes(),
+            self.fans.bytes(),
+            self.pool.bytes(),
+        ];
+        tables.into_iter().chain(self.spans.bytes()).collect()
+    }
+
+    fn layout_bytes(counts: &Counts) -> usize {
+        let by_vertex = size_of::<Point>() + size_of::<Fan>();
+        let by_corner = size_of::<VertexId>() + size_of::<FaceId>();
+        by_vertex * counts.vertices + by_corner * counts.corners + counts.offset_bytes()
+    }
+
+    fn validate(&self) -> Result<(), InvariantError> {
+        self.check_invariants()
+    }
+
+    fn probed<P: Probe>(self, probe: P) -> FaceVertexMesh<P> {
+        FaceVertexMesh {
+            positions: self.positions.probed(probe.clone()),
+            corners: self.corners.probed(probe.clone()),
+            spans: self.spans.probed(probe.clone()),
+            fans: self.fans.probed(probe.clone()),
+            pool: self.pool.probed(probe),
+        }
+    }
+}
+
+/// The faces around every vertex, in the order of the faces: a counting sort.
+fn incident_faces(vertices: usize, faces: &FaceList) -> (Vec<Fan>, Vec<FaceId>) {
+    let corners = faces.corners();
+    let mut fans = vec![Fan::default(); vertices];
+    for v in corners {
+        fans[v.index()].len += 1;
+    }
+    let mut total = 0;
+    for fan in &mut fans {
+        fan.start = total;
+        total += fan.len;
+        // Counted up again while the pool is filled.
+        fan.len = 0;
+    }
+    let mut pool = vec![FaceId::new(0); corners.len()];
+    let mut file = |face: FaceId, v: VertexId| {
+        let fan = &mut fans[v.index()];
+        pool[(fan.start + fan.len) as usize] = face;
+        fan.len += 1;
+    };
+    match faces.uniform_degree() {
+        Some(3) => file_uniform::<3>(corners, file),
+        Some(4) => file_uniform::<4>(corners, file),
+        _ => {
+            for (f, face) in faces.iter() {
+                face.iter().for_each(|&v| file(f, v));
+            }
+        }
+    }
+    (fans, pool)
+}
+
+/// Files each face of `DEGREE` corners; with the degree known, the compiler unrolls the face.
+#[inline(always)]
+fn file_uniform<const DEGREE: usize>(corners: &[VertexId], mut file: impl FnMut(FaceId, VertexId)) {
+    let faces = corners.as_chunks::<DEGREE>().0;
+    for (f, face) in (0..row(faces.len())).zip(faces) {
+        for &v in face {
+            file(FaceId::new(f), v);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn build(faces: &[&[u32]]) -> FaceVertexMesh {
+        let square = [Point::ZERO, Point::X, Point::ONE, Point::Y, Point::Z];
+        let polygons = PolygonMesh::new(square, faces).expect("valid");
+        let mesh = FaceVertexMesh::from_polygons(&polygons).expect("holds everything");
+        assert_eq!(mesh.to_polygons(), polygons);
+        mesh
+    }
+
+    #[test]
+    fn fans_follow_one_another_in_the_order_of_vertices_and_faces() {
+        let all: [&[&[u32]]; 3] = [
+            &[&[0, 1, 2], &[2, 3, 0]],
+            &[&[0, 1, 2, 3], &[3, 2, 1, 0]],
+            &[&[0, 1, 2, 3], &[2, 1, 0]],
+        ];
+        let fans: [&[&[usize]]; 3] = [
+            &[&[0, 1], &[0], &[0, 1], &[1], &[]],
+            &[&[0, 1], &[0, 1], &[0, 1], &[0, 1], &[]],
+            &[&[0, 1], &[0, 1], &[0, 1], &[0], &[]],
+        ];
+        for (faces, fans) in all.into_iter().zip(fans) {
+            let mesh = build(faces);
+            for (v, &fan) in mesh.vertices().zip(fans) {
+                let found: Vec<usize> = mesh.fan(v).iter().map(|f| f.index()).collect();
+                assert_eq!(found, fan, "VF({v}) of {faces:?}");
+            }
+            assert!(
+                mesh.fans()
+                    .windows(2)
+                    .all(|pair| pair[0].range().end == pair[1].range().start)
+            );
+        }
+    }
+
+    #[test]
+    fn the_tables_hold_what_the_layout_says() {
+        let mut counts = Counts {
+            vertices: 5,
+            edges: 5,
+            faces: 2,
+            corners: 6,
+            uniform: true,
+        };
+        let triangles = build(&[&[0, 1, 2], &[0, 2, 3]]);
+        assert_eq!(triangles.memory().total(), 5 * 12 + 6 * 4 + 5 * 8 + 6 * 4);
+        assert_eq!(
+            triangles.memory().total(),
+            FaceVertexMesh::layout_bytes(&counts)
+        );
+        let mixed = build(&[&[0, 1, 2, 3], &[0, 2, 3]]);
+        (counts.corners, counts.uniform) = (7, false);
+        assert_eq!(
+            mixed.memory().total(),
+            FaceVertexMesh::layout_bytes(&counts)
+        );
+    }
+
+    #[test]
+    #[should_panic(expected = "the map is of another mesh")]
+    fn positions_of_another_mesh_are_refused() {
+        let mut mesh = build(&[&[0, 1, 2]]);
+        let smaller = FaceVertexMesh::from_polygons(&PolygonMesh::default()).expect("empty");
+        mesh.set_positions(&smaller.vertex_map(Point::ZERO));
+    }
+}

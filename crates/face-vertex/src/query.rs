@@ -1,0 +1,216 @@
+//! The nine relations.
+
+use mesh_core::{FaceId, MeshQuery, Pair, Point, Probe, VertexId, row};
+
+use crate::mesh::FaceVertexMesh;
+
+impl<P: Probe> MeshQuery for FaceVertexMesh<P> {
+    type Vertex = VertexId;
+    type Edge = Pair<VertexId>;
+    type Face = FaceId;
+
+    #[inline]
+    fn vertices(&self) -> impl Iterator<Item = VertexId> {
+        (0..row(self.fans.len())).map(VertexId::new)
+    }
+
+    /// By their lower ends.
+    #[inline]
+    fn edges(&self) -> impl Iterator<Item = Pair<VertexId>> {
+        self.all_edges()
+    }
+
+    #[inline]
+    fn faces(&self) -> impl Iterator<Item = FaceId> {
+        (0..row(self.spans.len())).map(FaceId::new)
+    }
+
+    #[inline]
+    fn vertex_count(&self) -> usize {
+        self.fans.len()
+    }
+
+    #[inline]
+    fn face_count(&self) -> usize {
+        self.spans.len()
+    }
+
+    #[inline]
+    fn position(&self, v: VertexId) -> Point {
+        *self.positions.read(v.index())
+    }
+
+    #[inline]
+    fn vertex_vertices(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
+        self.ring(v)
+    }
+
+    #[inline]
+    fn vertex_edges(&self, v: VertexId) -> impl Iterator<Item = Pair<VertexId>> {
+        self.ring(v).map(move |other| Pair::new(v, other))
+    }
+
+    #[inline]
+    fn vertex_faces(&self, v: VertexId) -> impl Iterator<Item = FaceId> {
+        self.fan(v).iter().copied()
+    }
+
+    #[inline]
+    fn edge_vertices(&self, e: Pair<VertexId>) -> [VertexId; 2] {
+        e.ends()
+    }
+
+    /// Only `e` itself ends at both of its ends, so no other edge comes twice.
+    #[inline]
+    fn edge_edges(&self, e: Pair<VertexId>) -> impl Iterator<Item = Pair<VertexId>> {
+        let edges = e.ends().into_iter().flat_map(|v| self.vertex_edges(v));
+        edges.filter(move |&edge| edge != e)
+    }
+
+    #[inline]
+    fn edge_faces(&self, e: Pair<VertexId>) -> impl Iterator<Item = FaceId> {
+        self.faces_along(e)
+    }
+
+    #[inline]
+    fn face_vertices(&self, f: FaceId) -> impl Iterator<Item = VertexId> {
+        self.face(f).iter().copied()
+    }
+
+    #[inline]
+    fn face_edges(&self, f: FaceId) -> impl Iterator<Item = Pair<VertexId>> {
+        self.sides(f)
+    }
+
+    #[inline]
+    fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
+        self.faces_around(f)
+    }
+
+    #[inline]
+    fn vertex_rows(&self) -> usize {
+        self.fans.len()
+    }
+
+    #[inline]
+    fn edge_rows(&self) -> usize {
+        0
+    }
+
+    #[inline]
+    fn face_rows(&self) -> usize {
+        self.spans.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::{PolygonMesh, Representation, Traced};
+
+    use super::*;
+
+    fn build(faces: impl IntoIterator<Item: AsRef<[u32]>>, vertices: usize) -> FaceVertexMesh {
+        let polygons = PolygonMesh::new(vec![Point::ZERO; vertices], faces).expect("valid");
+        FaceVertexMesh::from_polygons(&polygons).expect("holds everything")
+    }
+
+    /// A closed wheel: the hub v0, and `sides` triangles around it.
+    fn wheel(sides: u32) -> FaceVertexMesh {
+        let faces = (0..sides).map(|i| [0, i + 1, (i + 1) % sides + 1]);
+        build(faces, sides as usize + 1)
+    }
+
+    /// Two `sides`-gons back to back.
+    fn pillow(sides: u32) -> FaceVertexMesh {
+        let faces = [(0..sides).collect::<Vec<_>>(), (0..sides).rev().collect()];
+        build(faces, sides as usize)
+    }
+
+    #[test]
+    fn neighbours_come_once_in_small_and_in_large_fans() {
+        for sides in [3, 4, 15, 16, 17, 18, 40] {
+            let mesh = wheel(sides);
+            let [hub, rim] = [0, 1].map(VertexId::new);
+            let mut ring: Vec<VertexId> = mesh.vertex_vertices(hub).collect();
+            ring.sort_unstable();
+            assert!(
+                ring.into_iter().eq(mesh.vertices().skip(1)),
+                "{sides} sides"
+            );
+            assert_eq!(mesh.vertex_vertices(rim).count(), 3);
+            assert_eq!(mesh.vertex_edges(hub).count(), sides as usize);
+            assert_eq!(mesh.edge_count(), 2 * sides as usize);
+            let spoke = Pair::new(hub, rim);
+            assert_eq!(mesh.edge_edges(spoke).count(), sides as usize - 1 + 2);
+            assert_eq!(mesh.edge_faces(spoke).count(), 2);
+            for f in mesh.faces() {
+                assert_eq!(mesh.face_faces(f).count(), 2, "FF({f}) of {sides} sides");
+            }
+        }
+    }
+
+    #[test]
+    fn two_faces_with_the_same_sides_are_one_neighbour_of_each_other() {
+        for sides in [3, 4, 5, 15, 16, 17, 40] {
+            let mesh = pillow(sides);
+            let [front, back] = [0, 1].map(FaceId::new);
+            assert!(mesh.face_faces(front).eq([back]), "{sides} sides");
+            assert!(mesh.face_faces(back).eq([front]), "{sides} sides");
+            assert_eq!(mesh.edge_count(), sides as usize);
+        }
+    }
+
+    #[test]
+    fn forty_pages_of_a_book_are_all_neighbours() {
+        let mesh = build((0..40).map(|page| [0, 1, page + 2]), 42);
+        let spine = Pair::new(VertexId::new(0), VertexId::new(1));
+        assert_eq!(mesh.edge_faces(spine).count(), 40);
+        for f in mesh.faces() {
+            let others = mesh.faces().filter(|&face| face != f);
+            let mut around: Vec<FaceId> = mesh.face_faces(f).collect();
+            around.sort_unstable();
+            assert!(around.into_iter().eq(others), "FF({f})");
+        }
+    }
+
+    #[test]
+    fn a_diagonal_is_no_edge() {
+        let mesh = build([[0, 1, 2, 3]], 4);
+        let [a, b, c] = [0, 1, 2].map(VertexId::new);
+        assert_eq!(mesh.edge_faces(Pair::new(a, c)).next(), None);
+        assert_eq!(mesh.edge_faces(Pair::new(a, b)).count(), 1);
+    }
+
+    #[test]
+    fn no_query_reads_more_than_its_surroundings_a_few_times() {
+        let n = 5000;
+        let probe = Traced::default();
+        let reads = |bound: u32, asked: usize| {
+            let (read, bound) = (probe.take().len(), bound as usize);
+            assert!(
+                asked > 0 && read <= bound,
+                "{read} reads, at most {bound} allowed"
+            );
+        };
+        let wheel = wheel(n).probed(probe.clone());
+        let spoke = Pair::new(VertexId::new(0), VertexId::new(1));
+        reads(4 * n + 1, wheel.vertex_vertices(VertexId::new(0)).count());
+        reads(20, wheel.edge_faces(spoke).count());
+        reads(60, wheel.face_faces(FaceId::new(0)).count());
+        let pillow = pillow(n).probed(probe.clone());
+        reads(12 * n, pillow.face_faces(FaceId::new(0)).count());
+        reads(4 * n, pillow.edges().count());
+    }
+
+    #[test]
+    #[should_panic(expected = "no vertex 4: table `fans` has 4 rows")]
+    fn a_missing_vertex_panics_by_name() {
+        let _ = wheel(3).vertex_faces(VertexId::new(4));
+    }
+
+    #[test]
+    #[should_panic(expected = "no face f3: there are 3")]
+    fn a_missing_face_panics_by_name() {
+        let _ = wheel(3).face_edges(FaceId::new(3));
+    }
+}

@@ -1,0 +1,184 @@
+//! One check for each invariant.
+
+use mesh_core::{FaceId, InvariantError, IteratorExt, MeshQuery, Probe};
+
+use crate::mesh::FaceVertexMesh;
+
+impl<P: Probe> FaceVertexMesh<P> {
+    pub(crate) fn check_invariants(&self) -> Result<(), InvariantError> {
+        self.check_spans()?;
+        self.check_faces()?;
+        self.check_pool()?;
+        self.check_fans()
+    }
+
+    /// I1, its first half: the faces divide the corners among them, at least three each.
+    fn check_spans(&self) -> Result<(), InvariantError> {
+        let checked = self.spans.check(self.corners.len());
+        checked.map_err(|detail| InvariantError::new("I1", detail))
+    }
+
+    /// I1, its second half: a face names vertices that are there, each once.
+    fn check_faces(&self) -> Result<(), InvariantError> {
+        let fails = |detail: String| Err(InvariantError::new("I1", detail));
+        for f in self.faces() {
+            let face = self.face(f);
+            if let Some(v) = face.iter().find(|v| v.index() >= self.positions.len()) {
+                return fails(format!("{f} names {v}, which is not there"));
+            }
+            let mut once = face.iter().distinct();
+            if let Some(v) = face.iter().find(|&v| once.next() != Some(v)) {
+                return fails(format!("{f} names {v} twice"));
+            }
+        }
+        Ok(())
+    }
+
+    /// I2: every vertex has a fan, inside the pool and apart from all others.
+    fn check_pool(&self) -> Result<(), InvariantError> {
+        let fails = |detail: String| Err(InvariantError::new("I2", detail));
+        if self.fans.len() != self.positions.len() {
+            let (fans, vertices) = (self.fans.len(), self.positions.len());
+            return fails(format!("{fans} fans for {vertices} vertices"));
+        }
+        let mut owner = vec![None; self.pool.len()];
+        for v in self.vertices() {
+            let fan = self.fans.rows()[v.index()];
+            let Some(places) = owner.get_mut(fan.range()) else {
+                return fails(format!("the fan of {v} reaches beyond the pool"));
+            };
+            for place in places {
+                if let Some(other) = place.replace(v) {
+                    return fails(format!("the fans of {other} and {v} overlap"));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// I3: the fan of a vertex names each face with a corner there, once, and no other.
+    fn check_fans(&self) -> Result<(), InvariantError> {
+        let mut expected: Vec<Vec<FaceId>> = vec![Vec::new(); self.fans.len()];
+        for f in self.faces() {
+            for v in self.face(f) {
+                expected[v.index()].push(f);
+            }
+        }
+        for (v, expected) in self.vertices().zip(expected) {
+            let mut fan = self.fan(v).to_vec();
+            fan.sort_unstable();
+            let fault = if let Some(twice) = fan.windows(2).find(|pair| pair[0] == pair[1]) {
+                format!("names {} twice", twice[0])
+            } else if let Some(f) = fan.iter().find(|f| expected.binary_search(f).is_err()) {
+                format!("names {f}, which has no corner there")
+            } else if let Some(f) = expected.iter().find(|f| fan.binary_search(f).is_err()) {
+                format!("lacks {f}")
+            } else {
+                continue;
+            };
+            return Err(InvariantError::new("I3", format!("the fan of {v} {fault}")));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::{FaceSpans, Point, PolygonMesh, Representation, Table, VertexId};
+
+    use super::*;
+    use crate::mesh::Fan;
+
+    const SQUARE: [Point; 4] = [Point::ZERO, Point::X, Point::ONE, Point::Y];
+
+    fn mesh(faces: &[&[u32]]) -> FaceVertexMesh {
+        let polygons = PolygonMesh::new(SQUARE, faces).expect("valid");
+        let mesh = FaceVertexMesh::from_polygons(&polygons).expect("holds everything");
+        assert_eq!(mesh.validate(), Ok(()));
+        mesh
+    }
+
+    /// Faces 0 1 2 and 0 2 3; fans of v0 at 0, v1 at 2, v2 at 3, v3 at 5.
+    fn triangles() -> FaceVertexMesh {
+        mesh(&[&[0, 1, 2], &[0, 2, 3]])
+    }
+
+    fn fault(mesh: &FaceVertexMesh) -> String {
+        mesh.validate().expect_err("broken on purpose").to_string()
+    }
+
+    #[test]
+    fn i1_spans_that_do_not_divide_the_corners() {
+        let mut broken = triangles();
+        broken.spans = FaceSpans::Uniform {
+            degree: 3,
+            faces: 1,
+        };
+        assert_eq!(fault(&broken), "I1 fails: corners 3..6 belong to no face");
+        broken.spans = FaceSpans::Uniform {
+            degree: 2,
+            faces: 3,
+        };
+        assert_eq!(fault(&broken), "I1 fails: f0 has the corners 0..2 of 6");
+        let mut broken = mesh(&[&[0, 1, 2, 3], &[0, 1, 2]]);
+        let mut mixed = |offsets: &[u32]| {
+            broken.spans = FaceSpans::Mixed(Table::new("offsets", "face", offsets.to_vec()));
+            fault(&broken)
+        };
+        assert_eq!(mixed(&[0, 4, 3]), "I1 fails: f1 has the corners 4..3 of 7");
+        assert_eq!(mixed(&[0, 4, 8]), "I1 fails: f1 has the corners 4..8 of 7");
+        assert_eq!(mixed(&[0, 5, 7]), "I1 fails: f1 has the corners 5..7 of 7");
+        assert_eq!(mixed(&[1, 4, 7]), "I1 fails: f0 has the corners 1..4 of 7");
+        assert_eq!(mixed(&[]), "I1 fails: the offsets lack even a first");
+    }
+
+    #[test]
+    fn i1_faces_that_name_what_they_must_not() {
+        let mut broken = triangles();
+        broken.corners.rows_mut()[4] = VertexId::new(4);
+        assert_eq!(fault(&broken), "I1 fails: f1 names v4, which is not there");
+        broken.corners.rows_mut()[4] = VertexId::new(3);
+        assert_eq!(fault(&broken), "I1 fails: f1 names v3 twice");
+    }
+
+    #[test]
+    fn i2_fans_that_are_not_apart() {
+        let mut broken = triangles();
+        broken.fans.rows_mut()[1].len = 2;
+        assert_eq!(fault(&broken), "I2 fails: the fans of v1 and v2 overlap");
+        broken.fans.rows_mut()[1] = Fan {
+            start: u32::MAX,
+            len: u32::MAX,
+        };
+        assert_eq!(
+            fault(&broken),
+            "I2 fails: the fan of v1 reaches beyond the pool"
+        );
+        broken.fans = Table::new("fans", "vertex", Vec::new());
+        assert_eq!(fault(&broken), "I2 fails: 0 fans for 4 vertices");
+    }
+
+    #[test]
+    fn i3_fans_that_contradict_the_faces() {
+        let mut broken = triangles();
+        broken.pool.rows_mut()[1] = FaceId::new(0);
+        assert_eq!(fault(&broken), "I3 fails: the fan of v0 names f0 twice");
+        let mut broken = triangles();
+        broken.pool.rows_mut()[2] = FaceId::new(1);
+        let expected = "I3 fails: the fan of v1 names f1, which has no corner there";
+        assert_eq!(fault(&broken), expected);
+        broken.fans.rows_mut()[1].len = 0;
+        assert_eq!(fault(&broken), "I3 fails: the fan of v1 lacks f0");
+    }
+
+    #[test]
+    fn a_fan_may_lie_anywhere_in_the_pool() {
+        let mut edited = triangles();
+        let mut pool = edited.pool.rows().to_vec();
+        pool.push(FaceId::new(0));
+        edited.pool = Table::new("pool", "place", pool);
+        edited.fans.rows_mut()[1].start = 6;
+        assert_eq!(edited.validate(), Ok(()));
+        assert!(edited.vertex_faces(VertexId::new(1)).eq([FaceId::new(0)]));
+    }
+}

@@ -1,0 +1,221 @@
+//! In and out.
+
+use mesh_core::{
+    BuildError, Capabilities, Counts, FaceId, FaceList, InvariantError, IteratorExt,
+    MemoryFootprint, MeshQuery, Point, PolygonMesh, Probe, QueryCost, Representation, Table,
+    VertexId, VertexMap, row,
+};
+use rustc_hash::FxHashMap;
+
+use crate::mesh::PolygonSoup;
+use crate::vertex::SoupVertex;
+
+impl Representation for PolygonSoup {
+    const NAME: &'static str = "polygon-soup";
+
+    const CAPABILITIES: Capabilities = Capabilities {
+        isolated_vertices: false,
+        coincident_vertices: false,
+        ..Capabilities::ALL
+    };
+
+    const COSTS: [QueryCost; 9] = {
+        use QueryCost::{Constant, Scan};
+        [
+            Scan, Scan, Scan, Constant, Scan, Scan, Constant, Constant, Scan,
+        ]
+    };
+
+    type Probed<P: Probe> = PolygonSoup<P>;
+
+    /// Copies the position of every corner; O(corners).
+    fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
+        let at: Vec<Point> = polygons.positions().iter().map(|&p| canonical(p)).collect();
+        let faces = polygons.faces();
+        let corners = faces.corners().iter().map(|v| at[v.index()]).collect();
+        let mesh = Self {
+            corners: Table::new("corners", "corner", corners),
+            spans: faces.spans(),
+        };
+        if has_isolated_vertex(polygons) || mesh.faces().any(|f| has_coincident_corners(&mesh, f)) {
+            Self::CAPABILITIES.check(polygons)?;
+        }
+        Ok(mesh)
+    }
+
+    /// Numbers the vertices in the order of `vertices()`.
+    ///
+    /// # Panics
+    ///
+    /// If [`set_positions`](Self::set_positions) has brought two corners of a face together (I3):
+    /// no polygon mesh has such a face.
+    fn to_polygons(&self) -> PolygonMesh {
+        let mut names: FxHashMap<SoupVertex, VertexId> = FxHashMap::default();
+        let mut positions = Vec::new();
+        let mut faces = FaceList::with_capacity(self.corners.len());
+        for f in self.faces() {
+            let corners = self.face_vertices(f).map(|v| {
+                *names.entry(v).or_insert_with(|| {
+                    positions.push(v.position());
+                    VertexId::new(row(positions.len() - 1))
+                })
+            });
+            faces.push(corners).expect("as many corners as here");
+        }
+        PolygonMesh::from_faces(positions, faces)
+            .expect("I1 and I3: each corner of a face at its own place")
+    }
+
+    fn vertex_name(polygons: &PolygonMesh, v: VertexId) -> SoupVertex {
+        SoupVertex::at(polygons.position(v))
+    }
+
+    fn face_name(_: &PolygonMesh, f: FaceId) -> FaceId {
+        f
+    }
+
+    /// Moves every corner to where the map has the vertex of its old coordinates; O(corners) expected.
+    ///
+    /// Two corners of one face that come to one place break I3, which `validate` reports.
+    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) {
+        for corner in self.corners.rows_mut() {
+            *corner = canonical(positions[SoupVertex::at(*corner)]);
+        }
+    }
+
+    fn memory(&self) -> MemoryFootprint {
+        let offsets = self.spans.bytes();
+        offsets.into_iter().chain([self.corners.bytes()]).collect()
+    }
+
+    fn layout_bytes(counts: &Counts) -> usize {
+        size_of::<Point>() * counts.corners + counts.offset_bytes()
+    }
+
+    fn validate(&self) -> Result<(), InvariantError> {
+        self.check_invariants()
+    }
+
+    fn probed<P: Probe>(self, probe: P) -> PolygonSoup<P> {
+        PolygonSoup {
+            corners: self.corners.probed(probe.clone()),
+            spans: self.spans.probed(probe),
+        }
+    }
+}
+
+/// `point` as I2 has it: 0 for −0.
+fn canonical(point: Point) -> Point {
+    SoupVertex::at(point).position()
+}
+
+fn has_isolated_vertex(polygons: &PolygonMesh) -> bool {
+    let mut used = vec![false; polygons.vertex_count()];
+    for v in polygons.faces().corners() {
+        used[v.index()] = true;
+    }
+    used.contains(&false)
+}
+
+/// Whether two corners of `f` are at one place.
+fn has_coincident_corners(mesh: &PolygonSoup, f: FaceId) -> bool {
+    match mesh.face_positions(f) {
+        &[a, b, c] => {
+            let [a, b, c] = [a, b, c].map(SoupVertex::at);
+            a == b || b == c || c == a
+        }
+        corners => mesh.face_vertices(f).distinct().count() < corners.len(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn build(positions: &[Point], faces: &[&[u32]]) -> Result<PolygonSoup, BuildError> {
+        PolygonSoup::from_polygons(&PolygonMesh::new(positions, faces).expect("valid"))
+    }
+
+    #[test]
+    fn vertices_that_share_coordinates_are_one() {
+        let [a, b, c, d] = [Point::ZERO, Point::X, Point::ONE, Point::Y];
+        let positions = [a, b, c, Point::new(0.0, -0.0, 0.0), c, d];
+        let soup = build(&positions, &[&[0, 1, 2], &[3, 4, 5]]).expect("no face has both");
+        assert_eq!(
+            soup.vertices()
+                .map(SoupVertex::position)
+                .collect::<Vec<_>>(),
+            [a, b, c, d]
+        );
+        let welded = PolygonMesh::new([a, b, c, d], [[0, 1, 2], [0, 2, 3]]).expect("valid");
+        assert_eq!(soup.to_polygons(), welded);
+    }
+
+    #[test]
+    fn what_has_no_coordinates_of_its_own_is_refused() {
+        let [a, b, c, d] = [Point::ZERO, Point::X, Point::ONE, Point::Y];
+        let isolated = build(&[a, b, c, d], &[&[0, 1, 3]]);
+        let vertex = VertexId::new(2);
+        assert_eq!(
+            isolated.unwrap_err(),
+            BuildError::IsolatedVertex { vertex, count: 1 }
+        );
+        for face in [
+            &[0, 1, 2][..],
+            &[1, 0, 2],
+            &[0, 2, 1],
+            &[0, 1, 2, 3],
+            &[3, 0, 1, 2],
+        ] {
+            let coincident = build(&[a, b, -a, d], &[face, &[1, 2, 3]]).unwrap_err();
+            let BuildError::CoincidentCorners { face, mut vertices } = coincident else {
+                panic!("{coincident}");
+            };
+            vertices.sort_unstable();
+            assert_eq!((face.index(), vertices.map(VertexId::index)), (0, [0, 2]));
+        }
+    }
+
+    #[test]
+    fn moving_a_vertex_moves_all_its_corners() {
+        let square = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
+        let mut soup = build(&square, &[&[0, 1, 2], &[0, 2, 3]]).expect("valid");
+        let mut moved = soup.vertex_map(Point::ZERO);
+        for v in soup.vertices() {
+            moved[v] = v.position() - Point::X;
+        }
+        soup.set_positions(&moved);
+        assert_eq!(soup.validate(), Ok(()), "1 − 1 and −0 are zeros alike");
+        let expected = square.map(|p| SoupVertex::at(p - Point::X));
+        assert!(soup.vertices().eq(expected));
+    }
+
+    #[test]
+    fn corners_brought_together_are_reported() {
+        let mut soup = build(&[Point::ZERO, Point::X, Point::Y], &[&[0, 1, 2]]).expect("valid");
+        let mut moved = soup.vertex_map(Point::X);
+        moved[SoupVertex::at(Point::Y)] = Point::Y;
+        soup.set_positions(&moved);
+        let fault = soup.validate().expect_err("two corners at X").to_string();
+        assert_eq!(fault, "I3 fails: two corners of f0 are at (1, 0, 0)");
+    }
+
+    #[test]
+    fn the_tables_hold_eighteen_words_a_vertex_and_nothing_else() {
+        let [a, b, c, d] = [Point::ZERO, Point::X, Point::Y, Point::Z];
+        let faces: [&[u32]; 4] = [&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]];
+        let tetrahedron = build(&[a, b, c, d], &faces).expect("valid");
+        assert_eq!(tetrahedron.memory().total(), 4 * 3 * 12);
+        let pyramid: [&[u32]; 2] = [&[0, 1, 2, 3], &[1, 0, 3]];
+        let mixed = build(&[a, b, c, d], &pyramid).expect("valid");
+        let counts = Counts {
+            vertices: 4,
+            edges: 5,
+            faces: 2,
+            corners: 7,
+            uniform: false,
+        };
+        assert_eq!(mixed.memory().total(), 7 * 12 + 3 * 4);
+        assert_eq!(PolygonSoup::layout_bytes(&counts), 7 * 12 + 3 * 4);
+    }
+}

@@ -1,0 +1,119 @@
+//! One check for each invariant.
+
+use mesh_core::{InvariantError, IteratorExt, MeshQuery, Probe};
+
+use crate::mesh::PolygonSoup;
+use crate::vertex::SoupVertex;
+
+impl<P: Probe> PolygonSoup<P> {
+    pub(crate) fn check_invariants(&self) -> Result<(), InvariantError> {
+        self.check_spans()?;
+        self.check_zeros()?;
+        self.check_faces()
+    }
+
+    /// I1: the faces divide the corners among them, at least three each.
+    fn check_spans(&self) -> Result<(), InvariantError> {
+        let checked = self.spans.check(self.corners.len());
+        checked.map_err(|detail| InvariantError::new("I1", detail))
+    }
+
+    /// I2: no coordinate is −0.
+    fn check_zeros(&self) -> Result<(), InvariantError> {
+        let stored = self.corners.rows().iter();
+        match stored
+            .enumerate()
+            .find(|(_, p)| !SoupVertex::at(**p).holds(p))
+        {
+            Some((corner, point)) => {
+                let detail = format!("corner {corner} is at {point}, with a zero below zero");
+                Err(InvariantError::new("I2", detail))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// I3: the corners of a face are at different places.
+    fn check_faces(&self) -> Result<(), InvariantError> {
+        for f in self.faces() {
+            let mut once = self.face_vertices(f).distinct();
+            if let Some(v) = self.face_vertices(f).find(|&v| once.next() != Some(v)) {
+                let detail = format!("two corners of {f} are at {v}");
+                return Err(InvariantError::new("I3", detail));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::{FaceSpans, Point, PolygonMesh, Representation, Table};
+
+    use super::*;
+
+    const SQUARE: [Point; 4] = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
+
+    fn soup(faces: &[&[u32]]) -> PolygonSoup {
+        let polygons = PolygonMesh::new(SQUARE, faces).expect("valid");
+        let soup = PolygonSoup::from_polygons(&polygons).expect("within the capabilities");
+        assert_eq!(soup.validate(), Ok(()));
+        soup
+    }
+
+    fn fault(soup: &PolygonSoup) -> String {
+        soup.validate().expect_err("broken on purpose").to_string()
+    }
+
+    fn mixed(offsets: &[u32]) -> FaceSpans {
+        FaceSpans::Mixed(Table::new("offsets", "face", offsets.to_vec()))
+    }
+
+    #[test]
+    fn i1_corners_that_no_face_has() {
+        let mut broken = soup(&[&[0, 1, 2], &[0, 2, 3]]);
+        broken.spans = FaceSpans::Uniform {
+            degree: 3,
+            faces: 1,
+        };
+        assert_eq!(fault(&broken), "I1 fails: corners 3..6 belong to no face");
+        broken.spans = FaceSpans::Uniform {
+            degree: 2,
+            faces: 3,
+        };
+        assert_eq!(fault(&broken), "I1 fails: f0 has the corners 0..2 of 6");
+    }
+
+    #[test]
+    fn i1_offsets_that_do_not_divide_the_corners() {
+        let mut broken = soup(&[&[0, 1, 2, 3], &[0, 1, 2]]);
+        broken.spans = mixed(&[0, 4, 6]);
+        assert_eq!(fault(&broken), "I1 fails: f1 has the corners 4..6 of 7");
+        broken.spans = mixed(&[0, 4, 2]);
+        assert_eq!(fault(&broken), "I1 fails: f1 has the corners 4..2 of 7");
+        broken.spans = mixed(&[0, 4, 8]);
+        assert_eq!(fault(&broken), "I1 fails: f1 has the corners 4..8 of 7");
+        broken.spans = mixed(&[1, 4, 7]);
+        assert_eq!(fault(&broken), "I1 fails: f0 has the corners 1..4 of 7");
+        broken.spans = mixed(&[]);
+        assert_eq!(fault(&broken), "I1 fails: the offsets lack even a first");
+    }
+
+    #[test]
+    fn i2_a_zero_below_zero() {
+        let mut broken = soup(&[&[0, 1, 2, 3]]);
+        broken.corners.rows_mut()[3].z = -0.0;
+        let expected = "I2 fails: corner 3 is at [0, 1, -0], with a zero below zero";
+        assert_eq!(fault(&broken), expected);
+    }
+
+    #[test]
+    fn i3_two_corners_at_one_place() {
+        let mut broken = soup(&[&[0, 1, 2], &[0, 2, 3]]);
+        broken.corners.rows_mut()[5] = SQUARE[0];
+        assert_eq!(
+            fault(&broken),
+            "I3 fails: two corners of f1 are at (0, 0, 0)"
+        );
+    }
+}
