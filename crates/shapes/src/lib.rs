@@ -1,1 +1,73 @@
-//! To be written.
+//! Meshes made by formula, with counts known in closed form.
+//!
+//! | shape | V | E | F | χ |
+//! |---|---|---|---|---|
+//! | [`tetrahedron`] | 4 | 6 | 4 | 2 |
+//! | [`cube`] | 8 | 12 | 6 | 2 |
+//! | [`octahedron`] | 6 | 12 | 8 | 2 |
+//! | [`dodecahedron`] | 20 | 30 | 12 | 2 |
+//! | [`icosahedron`] | 12 | 30 | 20 | 2 |
+//! | [`prism`] | 2n | 3n | n + 2 | 2 |
+//! | [`antiprism`] | 2n | 4n | 2n + 2 | 2 |
+//! | [`uv_sphere`] | m(n − 1) + 2 | m(2n − 1) | mn | 2 |
+//! | [`geodesic`] | 10f² + 2 | 30f² | 20f² | 2 |
+//! | [`torus`] | mn | 2mn | mn | 0 |
+//! | [`triangle_torus`] | mn | 3mn | 2mn | 0 |
+//! | [`genus`] | 16(g + 1) | 36g + 28 | 18g + 14 | 2 − 2g |
+//! | [`moebius`] | 2n | 3n | n | 0 |
+//! | [`grid`], [`bezier_patch`], [`b_spline_patch`] | (m + 1)(n + 1) | 2mn + m + n | mn | 1 |
+//! | [`triangle_grid`], [`triangle_tiling`] | (m + 1)(n + 1) | 3mn + m + n | 2mn | 1 |
+//! | [`mixed_grid`], c = ⌊mn/2⌋ | (m + 1)(n + 1) | 2mn + m + n + c | mn + c | 1 |
+//! | [`hexagon_tiling`] | 2(m + 1)(n + 1) − 2 | 3mn + 2m + 2n − 1 | mn | 1 |
+//! | [`grid_with_hole`], a = ⌊m/3⌋, b = ⌊n/3⌋ | (m + 1)(n + 1) − (a − 1)(b − 1) | 2mn + m + n − 2ab + a + b | mn − ab | 0 |
+//! | [`grid_with_holes`], h holes | (m + 1)(n + 1) | 2mn + m + n | mn − h | 1 − h |
+//! | [`implicit`] surfaces, [`default_study`] | F/2 + χ | 3F/2 | F | by topology |
+//!
+//! Closed shapes are oriented outward, flat ones counter-clockwise seen from above. Every vertex has
+//! a place of its own. No platform's sine is called, so a shape is the same on every machine.
+//! Parameters beyond the documented ranges are refused with a [`ShapeError`] before anything is
+//! allocated. [`Order`] changes the order of any mesh; [`RECIPES`] lists all shapes by name.
+//!
+//! ```
+//! use mesh_core::Facts;
+//!
+//! let torus = shapes::recipe("torus").expect("a shape of that name");
+//! let mesh = torus.make(&[("m", 40.0), ("n", 20.0)])?;
+//! assert_eq!(mesh, shapes::torus(40, 20)?);
+//! assert_eq!(Facts::of(&shapes::morton(&mesh)).genus, Some(1));
+//! # Ok::<(), shapes::ShapeError>(())
+//! ```
+
+mod arithmetic;
+mod bounds;
+mod draft;
+mod error;
+mod fitting;
+mod genus;
+mod geodesic;
+pub mod implicit;
+mod marching;
+mod node;
+mod order;
+mod patch;
+mod planar;
+mod platonic;
+mod recipe;
+mod solids;
+mod study;
+mod surfaces;
+
+pub use error::ShapeError;
+pub use genus::genus;
+pub use geodesic::geodesic;
+pub use order::{Order, UnknownOrder, breadth_first, morton, shuffled};
+pub use patch::{ControlNet, b_spline_patch, bezier_patch};
+pub use planar::{
+    grid, grid_with_hole, grid_with_holes, hexagon_tiling, mixed_grid, triangle_grid,
+    triangle_tiling,
+};
+pub use platonic::{cube, dodecahedron, icosahedron, octahedron, tetrahedron};
+pub use recipe::{Parameter, RECIPES, Recipe, recipe};
+pub use solids::{antiprism, prism, uv_sphere};
+pub use study::default_study;
+pub use surfaces::{moebius, torus, triangle_torus};

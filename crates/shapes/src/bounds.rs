@@ -1,0 +1,113 @@
+//! Boxes that hold a solid, and the lattices over them.
+
+use crate::error::ShapeError;
+use crate::marching::{Lattice, MARGIN};
+
+/// The most cubes of a lattice.
+const MAX_CUBES: f64 = (1_u64 << 29) as f64;
+
+/// The most lattice points of one layer: two layers are kept.
+const MAX_LAYER: f64 = (1_u64 << 22) as f64;
+
+/// A box with sides along the axes; low corner, high corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bounds {
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Bounds {
+    /// `half` either way from `centre`; `None` if a side is negative.
+    pub(crate) fn around(centre: [f64; 3], half: [f64; 3]) -> Option<Self> {
+        half.iter().all(|&side| side >= 0.0).then(|| Self {
+            low: std::array::from_fn(|axis| centre[axis] - half[axis]),
+            high: std::array::from_fn(|axis| centre[axis] + half[axis]),
+        })
+    }
+
+    /// What holds both.
+    pub(crate) fn hull(a: Option<Self>, b: Option<Self>) -> Option<Self> {
+        match (a, b) {
+            (Some(a), Some(b)) => Some(Self {
+                low: std::array::from_fn(|axis| a.low[axis].min(b.low[axis])),
+                high: std::array::from_fn(|axis| a.high[axis].max(b.high[axis])),
+            }),
+            (one, other) => one.or(other),
+        }
+    }
+
+    /// What is in both.
+    pub(crate) fn overlap(a: Option<Self>, b: Option<Self>) -> Option<Self> {
+        let (a, b) = (a?, b?);
+        let low: [f64; 3] = std::array::from_fn(|axis| a.low[axis].max(b.low[axis]));
+        let high: [f64; 3] = std::array::from_fn(|axis| a.high[axis].min(b.high[axis]));
+        (0..3)
+            .all(|axis| low[axis] <= high[axis])
+            .then_some(Self { low, high })
+    }
+
+    /// Whether a point is in the box.
+    #[cfg(test)]
+    pub(crate) fn holds(&self, point: [f64; 3]) -> bool {
+        (0..3).all(|axis| (self.low[axis]..=self.high[axis]).contains(&point[axis]))
+    }
+
+    /// The longest side.
+    pub(crate) fn longest(&self) -> f64 {
+        let [x, y, z]: [f64; 3] = std::array::from_fn(|axis| self.high[axis] - self.low[axis]);
+        x.max(y).max(z)
+    }
+
+    /// The part that is left without the outer slices, of sixteen each way, that are `empty`; `None`
+    /// if all are.
+    ///
+    /// `empty(centre, radius)` may be true of a ball only if there is nothing in it.
+    pub(crate) fn tightened(&self, empty: impl Fn([f64; 3], f64) -> bool) -> Option<Self> {
+        const SLICES: usize = 16;
+        let step: [f64; 3] =
+            std::array::from_fn(|axis| (self.high[axis] - self.low[axis]) / SLICES as f64);
+        let [x, y, z] = step;
+        let radius = (x * x + y * y + z * z).sqrt() / 2.0;
+        let mut left = None;
+        for block in 0..SLICES.pow(3) {
+            let at = [
+                block % SLICES,
+                block / SLICES % SLICES,
+                block / (SLICES * SLICES),
+            ];
+            let centre =
+                std::array::from_fn(|axis| self.low[axis] + (at[axis] as f64 + 0.5) * step[axis]);
+            if !empty(centre, radius) {
+                left = Self::hull(left, Self::around(centre, step.map(|side| side / 2.0)));
+            }
+        }
+        left
+    }
+
+    /// A lattice of cubes of side `spacing` around the box, a cube or two wider on every side: by
+    /// `shift`, of which each part is from 0 to 1, more on the low side.
+    pub(crate) fn lattice(&self, spacing: f64, shift: [f64; 3]) -> Result<Lattice, ShapeError> {
+        let cells: [f64; 3] =
+            std::array::from_fn(|axis| ((self.high[axis] - self.low[axis]) / spacing).ceil() + 3.0);
+        let cubes = cells[0] * cells[1] * cells[2];
+        let layer = (cells[0] + 1.0) * (cells[1] + 1.0);
+        if !(cubes <= MAX_CUBES && layer <= MAX_LAYER) {
+            return Err(ShapeError::TooFine { spacing });
+        }
+        let origin: [f64; 3] =
+            std::array::from_fn(|axis| self.low[axis] - (1.0 + shift[axis]) * spacing);
+        // Two vertices differ by MARGIN · spacing or more along some axis, which f32 has to show.
+        let extent = (0..3).fold(0.0_f64, |extent, axis| {
+            let end = origin[axis] + cells[axis] * spacing;
+            extent.max(origin[axis].abs()).max(end.abs())
+        });
+        if MARGIN * spacing < 2.0 * extent * f64::from(f32::EPSILON) {
+            return Err(ShapeError::TooFine { spacing });
+        }
+        Ok(Lattice {
+            origin,
+            spacing,
+            cells: cells.map(|count| count as usize),
+        })
+    }
+}

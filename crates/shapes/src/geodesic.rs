@@ -1,0 +1,136 @@
+//! The geodesic sphere: an icosahedron divided and projected.
+
+use mesh_core::PolygonMesh;
+
+use crate::draft::Draft;
+use crate::error::{ShapeError, within};
+use crate::platonic::{ICOSAHEDRON_FACES, ICOSAHEDRON_VERTICES};
+
+/// The greatest frequency: 60 f² corners are at most 2³¹ − 1.
+pub(crate) const MAX_FREQUENCY: usize = 5_982;
+
+/// The icosahedron with every edge cut into `frequency` parts, projected to the unit sphere.
+///
+/// V = 10f² + 2, E = 30f², F = 20f²; twelve vertices of valence 5, all others 6. Class I of
+/// Buckminster Fuller's spheres, at any frequency.
+///
+/// ```text
+///          c
+///         ╱ ╲           f = 3: a vertex is a corner, or the k-th point of an edge,
+///        ╱───╲          or an inner point of one face
+///       ╱ ╲ ╱ ╲
+///      ╱───●───╲
+///     ╱ ╲ ╱ ╲ ╱ ╲
+///    a───────────b
+/// ```
+///
+/// # Errors
+///
+/// `frequency` outside 1 to 5982.
+pub fn geodesic(frequency: usize) -> Result<PolygonMesh, ShapeError> {
+    within("frequency", frequency, 1, MAX_FREQUENCY)?;
+    let f = frequency;
+    let mut draft = Draft::with_capacity(10 * f * f + 2, 60 * f * f);
+    for corner in 0..12 {
+        draft.vertex(on_sphere([(corner, 1), (corner, 0), (corner, 0)]));
+    }
+    let edges = edges();
+    for &[a, b] in &edges {
+        for k in 1..f {
+            draft.vertex(on_sphere([(a, f - k), (b, k), (b, 0)]));
+        }
+    }
+    for face in ICOSAHEDRON_FACES {
+        let mut names = Triangle::of(f, face, &edges);
+        // Row j lies j steps from the side ab towards c.
+        for j in 1..f {
+            for i in 1..f - j {
+                let [a, b, c] = face;
+                let inner = draft.vertex(on_sphere([(a, f - i - j), (b, i), (c, j)]));
+                names.set(i, j, inner);
+            }
+        }
+        for j in 0..f {
+            for i in 0..f - j {
+                draft.face([names.at(i, j), names.at(i + 1, j), names.at(i, j + 1)]);
+                if i + j + 1 < f {
+                    let right = names.at(i + 1, j + 1);
+                    draft.face([names.at(i + 1, j), right, names.at(i, j + 1)]);
+                }
+            }
+        }
+    }
+    Ok(draft.finish())
+}
+
+/// The names of the lattice points of one divided face, row by row.
+struct Triangle {
+    frequency: usize,
+    names: Vec<u32>,
+}
+
+impl Triangle {
+    /// The points that `face` shares with others; the inner ones are yet to be set.
+    fn of(frequency: usize, [a, b, c]: [u32; 3], edges: &[[u32; 2]]) -> Self {
+        let f = frequency;
+        let names = vec![0; (f + 1) * (f + 2) / 2];
+        let mut triangle = Self { frequency, names };
+        for k in 0..f {
+            triangle.set(k, 0, on_edge(f, a, b, k, edges));
+            triangle.set(f - k, k, on_edge(f, b, c, k, edges));
+            triangle.set(0, f - k, on_edge(f, c, a, k, edges));
+        }
+        triangle
+    }
+
+    fn index(&self, i: usize, j: usize) -> usize {
+        // Row r has f + 1 − r points.
+        j * (self.frequency + 1) - j * j.saturating_sub(1) / 2 + i
+    }
+
+    fn at(&self, i: usize, j: usize) -> u32 {
+        self.names[self.index(i, j)]
+    }
+
+    fn set(&mut self, i: usize, j: usize, name: u32) {
+        let index = self.index(i, j);
+        self.names[index] = name;
+    }
+}
+
+/// The name of the point `k` steps from `from` towards `to`.
+fn on_edge(frequency: usize, from: u32, to: u32, k: usize, edges: &[[u32; 2]]) -> u32 {
+    if k == 0 {
+        return from;
+    }
+    let ends = [from.min(to), from.max(to)];
+    let edge = edges
+        .binary_search(&ends)
+        .expect("an edge of the icosahedron");
+    let step = if from < to { k } else { frequency - k };
+    (12 + edge * (frequency - 1) + step - 1) as u32
+}
+
+/// The thirty edges of the icosahedron, sorted, the lower end first.
+fn edges() -> Vec<[u32; 2]> {
+    let sides = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
+    let sides = ICOSAHEDRON_FACES.iter().flat_map(sides);
+    // Each edge is run once in each direction.
+    let mut edges: Vec<[u32; 2]> = sides.filter(|[a, b]| a < b).collect();
+    edges.sort_unstable();
+    edges
+}
+
+/// The weighted mean of three corners, pushed out to the unit sphere.
+fn on_sphere(weights: [(u32, usize); 3]) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for (corner, weight) in weights {
+        let corner = ICOSAHEDRON_VERTICES[corner as usize];
+        for axis in 0..3 {
+            sum[axis] += weight as f64 * corner[axis];
+        }
+    }
+    let [x, y, z] = sum;
+    let length = (x * x + y * y + z * z).sqrt();
+    sum.map(|x| x / length)
+}

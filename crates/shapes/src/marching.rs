@@ -1,0 +1,374 @@
+//! Marching tetrahedra: the surface of a solid, as triangles.
+
+use crate::draft::Draft;
+
+/// How near to a lattice point a crossing may come, as a part of the lattice edge.
+///
+/// Nearer ones are moved off it: otherwise the crossings of all the edges there would coincide.
+pub(crate) const MARGIN: f64 = 0.08;
+
+/// How often a crossing found by a straight line is bettered.
+const REFINEMENTS: usize = 2;
+
+/// The lattice points along a side of the blocks that are asked about as a whole.
+const BLOCK: usize = 8;
+
+/// What is negative inside and positive outside.
+pub(crate) trait Solid {
+    /// The value at a point.
+    fn at(&self, point: [f64; 3]) -> f64;
+
+    /// 1 or −1 if all values in a ball are known to have that sign.
+    fn sign_over(&self, centre: [f64; 3], radius: f64) -> Option<f64>;
+}
+
+/// A lattice of cubes.
+pub(crate) struct Lattice {
+    /// The lowest lattice point.
+    pub(crate) origin: [f64; 3],
+    /// The side of a cube.
+    pub(crate) spacing: f64,
+    /// How many cubes there are along each axis.
+    pub(crate) cells: [usize; 3],
+}
+
+impl Lattice {
+    /// How many cubes there are.
+    pub(crate) fn cubes(&self) -> f64 {
+        self.cells.iter().map(|&count| count as f64).product()
+    }
+
+    fn point(&self, at: [usize; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|axis| self.origin[axis] + self.spacing * at[axis] as f64)
+    }
+
+    /// Whether a lattice point lies on the outside of the lattice.
+    fn is_outermost(&self, at: [usize; 3]) -> bool {
+        (0..3).any(|axis| at[axis] == 0 || at[axis] == self.cells[axis])
+    }
+}
+
+/// The paths along the sides of a cube from corner 000 to corner 111, as bits zyx: six tetrahedra.
+///
+/// Those whose four corners, in the order of the path, turn to the left come first.
+const PATHS: [[usize; 4]; 6] = [
+    [0, 1, 3, 7],
+    [0, 2, 6, 7],
+    [0, 4, 5, 7],
+    [0, 1, 5, 7],
+    [0, 2, 3, 7],
+    [0, 4, 6, 7],
+];
+
+/// The surface between the lattice points where `solid` is negative (inside) and all others.
+///
+/// Every cube falls into six tetrahedra around its diagonal (Kuhn), the same way in all cubes, so
+/// that neighbours agree; each tetrahedron is crossed by one triangle or two (Doi and Koide 1991).
+/// There is one vertex on each lattice edge whose ends differ, so the surface is a closed,
+/// consistently oriented manifold whatever the values: outermost points count as outside.
+/// O(lattice points) time, though values are asked for near the surface only; two layers of them are
+/// kept.
+pub(crate) fn polygonised<S: Solid>(solid: &S, lattice: &Lattice) -> Draft {
+    let [nx, ny, nz] = lattice.cells;
+    let mut march = March {
+        solid,
+        lattice,
+        signs: Vec::new(),
+        draft: Draft::with_capacity(0, 0),
+        values: [
+            vec![1.0; (nx + 1) * (ny + 1)],
+            vec![1.0; (nx + 1) * (ny + 1)],
+        ],
+        crossings: [
+            vec![[None; 8]; (nx + 1) * (ny + 1)],
+            vec![[None; 8]; (nx + 1) * (ny + 1)],
+        ],
+        touched: [Vec::new(), Vec::new()],
+    };
+    // The lowest layer is outermost: all outside, as the values begin.
+    for z in 0..nz {
+        march.sample(z + 1);
+        for y in 0..ny {
+            for x in 0..nx {
+                march.cube([x, y, z]);
+            }
+        }
+        march.values.swap(0, 1);
+        march.crossings.swap(0, 1);
+        march.touched.swap(0, 1);
+        for column in march.touched[1].drain(..) {
+            march.crossings[1][column] = [None; 8];
+        }
+    }
+    march.draft
+}
+
+/// Two layers of the lattice on their way upwards.
+struct March<'a, S> {
+    solid: &'a S,
+    lattice: &'a Lattice,
+    draft: Draft,
+    /// The values on the lower and on the upper layer.
+    values: [Vec<f64>; 2],
+    /// By lattice point, by direction (bits zyx): the vertex on the lattice edge there.
+    crossings: [Vec<[Option<u32>; 8]>; 2],
+    /// Where there are crossings; a point comes once for each.
+    touched: [Vec<usize>; 2],
+    /// By block of the upper layer's slab: the sign of all values there, where it is known.
+    signs: Vec<Option<f64>>,
+}
+
+impl<S: Solid> March<'_, S> {
+    /// Finds the values on the upper layer, which is layer `z`.
+    fn sample(&mut self, z: usize) {
+        let [nx, ny, _] = self.lattice.cells;
+        if z == 1 || z.is_multiple_of(BLOCK) {
+            self.sign_blocks(z / BLOCK);
+        }
+        for y in 0..=ny {
+            for x in 0..=nx {
+                let at = [x, y, z];
+                let sign = self.signs[y / BLOCK * (nx / BLOCK + 1) + x / BLOCK];
+                self.values[1][y * (nx + 1) + x] = match sign {
+                    _ if self.lattice.is_outermost(at) => 1.0,
+                    Some(sign) => sign,
+                    None => self.solid.at(self.lattice.point(at)),
+                };
+            }
+        }
+    }
+
+    /// Asks about the blocks of slab `z`, each with the points next to it: where all have one sign,
+    /// no lattice edge that ends in the block is crossed, and so no value in it is needed.
+    fn sign_blocks(&mut self, z: usize) {
+        let [nx, ny, _] = self.lattice.cells;
+        let spacing = self.lattice.spacing;
+        let half = (BLOCK + 1) as f64 / 2.0;
+        let radius = half * spacing * 3.0_f64.sqrt();
+        self.signs.clear();
+        for y in 0..=ny / BLOCK {
+            for x in 0..=nx / BLOCK {
+                let first = self.lattice.point([x, y, z].map(|block| block * BLOCK));
+                let centre = first.map(|low| low + (half - 1.0) * spacing);
+                self.signs.push(self.solid.sign_over(centre, radius));
+            }
+        }
+    }
+
+    fn cube(&mut self, cube: [usize; 3]) {
+        let corner = |bits: usize| self.values[bits >> 2][self.column(cube, bits)] < 0.0;
+        let inside: [bool; 8] = std::array::from_fn(corner);
+        if inside == [inside[0]; 8] {
+            return;
+        }
+        for (i, path) in PATHS.into_iter().enumerate() {
+            self.tetrahedron(cube, path, &inside, i < 3);
+        }
+    }
+
+    /// Where corner `bits` of a cube is in its layer.
+    fn column(&self, [x, y, _]: [usize; 3], bits: usize) -> usize {
+        (y + (bits >> 1 & 1)) * (self.lattice.cells[0] + 1) + x + (bits & 1)
+    }
+
+    fn tetrahedron(
+        &mut self,
+        cube: [usize; 3],
+        path: [usize; 4],
+        inside: &[bool; 8],
+        leftward: bool,
+    ) {
+        // The corners with those inside first, and whether that order still turns as the path did.
+        let mut corners = path;
+        let mut even = leftward;
+        for end in (1..4).rev() {
+            for i in 0..end {
+                if !inside[corners[i]] && inside[corners[i + 1]] {
+                    corners.swap(i, i + 1);
+                    even = !even;
+                }
+            }
+        }
+        if !even {
+            // Exchange two on the same side of the surface: the last two, or the first two.
+            if inside[corners[2]] {
+                corners.swap(0, 1);
+            } else {
+                corners.swap(2, 3);
+            }
+        }
+        let [a, b, c, d] = corners;
+        match corners.map(|corner| inside[corner]) {
+            [true, false, ..] => {
+                let triangle = [(a, b), (a, c), (a, d)].map(|edge| self.crossing(cube, edge));
+                self.draft.face(triangle);
+            }
+            [true, true, false, _] => {
+                let quad = [(a, c), (a, d), (b, d), (b, c)];
+                let quad = quad.map(|edge| self.crossing(cube, edge));
+                self.quad(quad);
+            }
+            [true, true, true, false] => {
+                let triangle = [(a, d), (b, d), (c, d)].map(|edge| self.crossing(cube, edge));
+                self.draft.face(triangle);
+            }
+            _ => {}
+        }
+    }
+
+    /// Two triangles along the diagonal from the earliest vertex.
+    ///
+    /// Names decide, not lengths: so the faces depend on nothing but which lattice points are
+    /// inside, and valences vary as they do in meshes from scanners.
+    fn quad(&mut self, [a, b, c, d]: [u32; 4]) {
+        if a.min(c) < b.min(d) {
+            self.draft.face([a, b, c]);
+            self.draft.face([a, c, d]);
+        } else {
+            self.draft.face([a, b, d]);
+            self.draft.face([b, c, d]);
+        }
+    }
+
+    /// The vertex on the lattice edge between two corners of a cube, of which one is inside.
+    fn crossing(&mut self, cube: [usize; 3], (p, q): (usize, usize)) -> u32 {
+        // Along a path the bits only grow, so one end's are among the other's.
+        let (low, high) = (p & q, p | q);
+        let (layer, column) = (low >> 2, self.column(cube, low));
+        if let Some(name) = self.crossings[layer][column][high ^ low] {
+            return name;
+        }
+        let values = [
+            self.values[layer][column],
+            self.values[high >> 2][self.column(cube, high)],
+        ];
+        let ends = [low, high].map(|bits| self.lattice.point(corner(cube, bits)));
+        let name = self.draft.vertex(self.root(ends, values));
+        self.crossings[layer][column][high ^ low] = Some(name);
+        self.touched[layer].push(column);
+        name
+    }
+
+    /// Where the field is zero between two points of opposite sides, not too near to either.
+    fn root(&self, ends: [[f64; 3]; 2], [mut start, mut end]: [f64; 2]) -> [f64; 3] {
+        let (mut low, mut high) = (0.0, 1.0);
+        let crossing = |low: f64, high: f64, start: f64, end: f64| {
+            let part = start / (start - end);
+            // Values too large to divide leave the middle.
+            let part = if part.is_finite() { part } else { 0.5 };
+            low + part * (high - low)
+        };
+        let mut part = crossing(low, high, start, end);
+        for _ in 0..REFINEMENTS {
+            let value = self.solid.at(along(ends, part));
+            if (value < 0.0) == (start < 0.0) {
+                (low, start) = (part, value);
+            } else {
+                (high, end) = (part, value);
+            }
+            part = crossing(low, high, start, end);
+        }
+        along(ends, part.clamp(MARGIN, 1.0 - MARGIN))
+    }
+}
+
+/// The point at `part` of the way between two others.
+fn along([a, b]: [[f64; 3]; 2], part: f64) -> [f64; 3] {
+    std::array::from_fn(|axis| a[axis] + part * (b[axis] - a[axis]))
+}
+
+/// The lattice point at a corner of a cube.
+fn corner([x, y, z]: [usize; 3], bits: usize) -> [usize; 3] {
+    [x + (bits & 1), y + (bits >> 1 & 1), z + (bits >> 2)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh_core::Facts;
+
+    impl<F: Fn([f64; 3]) -> f64> Solid for F {
+        fn at(&self, point: [f64; 3]) -> f64 {
+            self(point)
+        }
+
+        fn sign_over(&self, _: [f64; 3], _: f64) -> Option<f64> {
+            None
+        }
+    }
+
+    #[test]
+    fn any_field_gives_a_closed_oriented_manifold() {
+        let lattice = Lattice {
+            origin: [-3.0, 0.5, 9.0],
+            spacing: 0.7,
+            cells: [9, 7, 8],
+        };
+        for seed in 0..100_u64 {
+            // A number between −1 and 1 from the bits of the place: no two points agree.
+            let noise = |point: [f64; 3]| {
+                let bits = point.iter().fold(seed, |hash, x| {
+                    (hash ^ x.to_bits())
+                        .wrapping_mul(0x9E37_79B9_7F4A_7C15)
+                        .rotate_left(29)
+                });
+                (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+            };
+            let mesh = polygonised(&noise, &lattice).finish();
+            let facts = Facts::of(&mesh);
+            assert!(facts.closed && facts.faces > 1000, "seed {seed}");
+            assert_eq!(facts.consistently_oriented, Some(true), "seed {seed}");
+            let none = [
+                facts.non_manifold_edges,
+                facts.non_manifold_vertices,
+                facts.isolated_vertices,
+                facts.duplicate_faces,
+            ];
+            assert_eq!(none, [0; 4], "seed {seed}");
+        }
+    }
+
+    #[test]
+    fn one_point_inside_is_surrounded() {
+        let lattice = Lattice {
+            origin: [-1.0; 3],
+            spacing: 1.0,
+            cells: [2; 3],
+        };
+        let inside = |point: [f64; 3]| if point == [0.0; 3] { -1.0 } else { 1.0 };
+        let mesh = polygonised(&inside, &lattice).finish();
+        // The link of a lattice point: one vertex on each of its 14 edges, a triangle in each of
+        // its 24 tetrahedra.
+        assert_eq!((mesh.vertex_count(), mesh.face_count()), (14, 24));
+        for (f, face) in mesh.faces().iter() {
+            let [a, b, c] = [0, 1, 2].map(|i| mesh.position(face[i]));
+            assert!((b - a).cross(c - a).dot(a) > 0.0, "{f} looks inward");
+        }
+    }
+
+    #[test]
+    fn values_beyond_numbers_do_no_harm() {
+        let lattice = Lattice {
+            origin: [0.0; 3],
+            spacing: 1.0,
+            cells: [5; 3],
+        };
+        for odd in [
+            f64::NAN,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            f64::MAX,
+            f64::MIN,
+        ] {
+            let field = |[x, y, z]: [f64; 3]| match (x + y + z) as u32 % 3 {
+                0 => odd,
+                1 => -1.0,
+                _ => 1.0,
+            };
+            let draft = polygonised(&field, &lattice);
+            let mesh = draft.finish();
+            assert!(mesh.positions().iter().all(|p| p.is_finite()), "{odd}");
+            assert!(Facts::of(&mesh).closed, "{odd}");
+        }
+    }
+}

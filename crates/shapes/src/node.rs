@@ -1,0 +1,325 @@
+//! How a field is put together: its values, their range over a ball, and where it ends.
+
+use crate::arithmetic::exp_minus;
+use crate::bounds::Bounds;
+use crate::error::ShapeError;
+use crate::implicit::Blob;
+use crate::marching::Solid;
+
+/// How often bounds are tightened at least; further rounds must each take a quarter off.
+const TIGHTENINGS: u32 = 3;
+
+/// How a field is put together.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Node {
+    Sphere {
+        centre: [f64; 3],
+        radius: f64,
+    },
+    Torus {
+        centre: [f64; 3],
+        /// Of length 1.
+        axis: [f64; 3],
+        ring: f64,
+        tube: f64,
+    },
+    Cuboid {
+        centre: [f64; 3],
+        half: [f64; 3],
+    },
+    Blobs {
+        blobs: Vec<Blob>,
+        level: f64,
+    },
+    Union(Box<[Node; 2]>),
+    Intersection(Box<[Node; 2]>),
+    Difference(Box<[Node; 2]>),
+    SmoothUnion {
+        parts: Box<[Node; 2]>,
+        alpha: f64,
+    },
+    Inflated {
+        part: Box<Node>,
+        by: f64,
+    },
+}
+
+impl Node {
+    /// The field at a point.
+    pub(crate) fn at(&self, point: [f64; 3]) -> f64 {
+        match self {
+            Self::Sphere { centre, radius } => square(from(*centre, point)).sqrt() - radius,
+            Self::Torus {
+                centre,
+                axis,
+                ring,
+                tube,
+            } => {
+                let out = from(*centre, point);
+                let along = out[0] * axis[0] + out[1] * axis[1] + out[2] * axis[2];
+                // Rounding may bring the difference below zero near the axis.
+                let off = (square(out) - along * along).max(0.0).sqrt() - ring;
+                (off * off + along * along).sqrt() - tube
+            }
+            Self::Cuboid { centre, half } => {
+                let out = from(*centre, point);
+                let over: [f64; 3] = std::array::from_fn(|axis| out[axis].abs() - half[axis]);
+                let inside = over[0].max(over[1]).max(over[2]).min(0.0);
+                square(over.map(|x| x.max(0.0))).sqrt() + inside
+            }
+            Self::Blobs { blobs, level } => {
+                let bells = blobs.iter().map(|blob| {
+                    let r2 = square(from(blob.centre, point));
+                    blob.strength * exp_minus(blob.sharpness * r2)
+                });
+                level - bells.sum::<f64>()
+            }
+            Self::Union(parts) => parts[0].at(point).min(parts[1].at(point)),
+            Self::Intersection(parts) => parts[0].at(point).max(parts[1].at(point)),
+            Self::Difference(parts) => parts[0].at(point).max(-parts[1].at(point)),
+            Self::SmoothUnion { parts, alpha } => {
+                smooth_union(parts[0].at(point), parts[1].at(point), *alpha)
+            }
+            Self::Inflated { part, by } => part.at(point) - by,
+        }
+    }
+
+    /// Bounds of the field over a ball: its least and its greatest value lie between them.
+    fn range(&self, centre: [f64; 3], radius: f64) -> [f64; 2] {
+        let both = |parts: &[Self; 2]| [0, 1].map(|i| parts[i].range(centre, radius));
+        match self {
+            // Distances change no faster than the point moves.
+            Self::Sphere { .. } | Self::Torus { .. } | Self::Cuboid { .. } => {
+                let value = self.at(centre);
+                [value - radius, value + radius]
+            }
+            Self::Blobs { blobs, level } => {
+                let mut range = [*level; 2];
+                for blob in blobs {
+                    let away = square(from(blob.centre, centre)).sqrt();
+                    let [near, far] = [(away - radius).max(0.0), away + radius]
+                        .map(|r| blob.strength * exp_minus(blob.sharpness * r * r));
+                    range[0] -= near.max(far);
+                    range[1] -= near.min(far);
+                }
+                range
+            }
+            // The others grow, or never fall, as their parts grow.
+            Self::Union(parts) => {
+                let [f, g] = both(parts);
+                [0, 1].map(|end| f[end].min(g[end]))
+            }
+            Self::Intersection(parts) => {
+                let [f, g] = both(parts);
+                [0, 1].map(|end| f[end].max(g[end]))
+            }
+            Self::Difference(parts) => {
+                let [f, g] = both(parts);
+                [0, 1].map(|end| f[end].max(-g[1 - end]))
+            }
+            Self::SmoothUnion { parts, alpha } => {
+                let [f, g] = both(parts);
+                [0, 1].map(|end| smooth_union(f[end], g[end], *alpha))
+            }
+            Self::Inflated { part, by } => part.range(centre, radius).map(|value| value - by),
+        }
+    }
+
+    /// Bounds of the solid; `None` where it is certain that there is none.
+    pub(crate) fn bounds(&self) -> Result<Option<Bounds>, ShapeError> {
+        let Some(mut bounds) = self.reach(0.0)? else {
+            return Ok(None);
+        };
+        // A chain of smooth unions can reach far beyond what there is.
+        for round in 0.. {
+            let empty = |centre, radius| self.range(centre, radius)[0] > 0.0;
+            let Some(tighter) = bounds.tightened(empty) else {
+                return Ok(None);
+            };
+            if round >= TIGHTENINGS && tighter.longest() >= 0.75 * bounds.longest() {
+                break;
+            }
+            bounds = tighter;
+        }
+        Ok(Some(bounds))
+    }
+
+    /// Bounds of the points where the field is at most `level`; `None` if there are none.
+    fn reach(&self, level: f64) -> Result<Option<Bounds>, ShapeError> {
+        Ok(match self {
+            Self::Sphere { centre, radius } => Bounds::around(*centre, [radius + level; 3]),
+            Self::Torus {
+                centre, ring, tube, ..
+            } => {
+                // A ball will do, whichever way the axis points.
+                let thickness = tube + level;
+                (thickness >= 0.0)
+                    .then(|| Bounds::around(*centre, [ring + thickness; 3]))
+                    .flatten()
+            }
+            Self::Cuboid { centre, half } => Bounds::around(*centre, half.map(|x| x + level)),
+            Self::Blobs { blobs, level: sum } => blob_reach(blobs, sum - level)?,
+            Self::Union(parts) => Bounds::hull(parts[0].reach(level)?, parts[1].reach(level)?),
+            Self::Intersection(parts) => {
+                Bounds::overlap(parts[0].reach(level)?, parts[1].reach(level)?)
+            }
+            Self::Difference(parts) => parts[0].reach(level)?,
+            Self::SmoothUnion { parts, alpha } => {
+                // It grows with f and with g and is least, beside min(f, g), where they are equal.
+                let share = (2.0 - (2.0 - 2.0 * alpha).sqrt()) / (1.0 + alpha);
+                let level = level.max(0.0) / share;
+                Bounds::hull(parts[0].reach(level)?, parts[1].reach(level)?)
+            }
+            Self::Inflated { part, by } => part.reach(level + by)?,
+        })
+    }
+}
+
+impl Solid for Node {
+    fn at(&self, point: [f64; 3]) -> f64 {
+        self.at(point)
+    }
+
+    fn sign_over(&self, centre: [f64; 3], radius: f64) -> Option<f64> {
+        match self.range(centre, radius) {
+            [least, _] if least > 0.0 => Some(1.0),
+            [_, greatest] if greatest < 0.0 => Some(-1.0),
+            _ => None,
+        }
+    }
+}
+
+/// Rvachev's union, which never falls as `f` or `g` grows.
+fn smooth_union(f: f64, g: f64, alpha: f64) -> f64 {
+    let under = f * f + g * g - 2.0 * alpha * f * g;
+    (f + g - under.max(0.0).sqrt()) / (1.0 + alpha)
+}
+
+/// Bounds of the points where the blobs sum up to `sum` or more.
+fn blob_reach(blobs: &[Blob], sum: f64) -> Result<Option<Bounds>, ShapeError> {
+    if sum <= 0.0 {
+        return Err(ShapeError::Unbounded);
+    }
+    // Where they reach it together, one of them reaches its share.
+    let share = sum / blobs.len() as f64;
+    let bounds = blobs.iter().map(|blob| {
+        let ratio = blob.strength / share;
+        if ratio < 1.0 {
+            return None;
+        }
+        // exp(−x) ≤ (1 + x/8)⁻⁸, which square roots can solve for x.
+        let x = 8.0 * (ratio.sqrt().sqrt().sqrt() - 1.0);
+        Bounds::around(blob.centre, [(x / blob.sharpness).sqrt(); 3])
+    });
+    Ok(bounds.fold(None, Bounds::hull))
+}
+
+fn from(centre: [f64; 3], point: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|axis| point[axis] - centre[axis])
+}
+
+/// The square of a vector's length.
+pub(crate) fn square([x, y, z]: [f64; 3]) -> f64 {
+    x * x + y * y + z * z
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::marching::polygonised;
+
+    #[test]
+    fn ranges_and_bounds_hold_every_value() {
+        let ball = |x, radius| {
+            Box::new(Node::Sphere {
+                centre: [x, 0.1, 0.0],
+                radius,
+            })
+        };
+        let axis = [0.6, 0.0, 0.8];
+        let ring = Node::Torus {
+            centre: [0.2; 3],
+            axis,
+            ring: 1.0,
+            tube: 0.3,
+        };
+        let cuboid = Node::Cuboid {
+            centre: [0.0, 0.3, 0.0],
+            half: [0.5, 0.9, 0.2],
+        };
+        let blob = |x, strength, sharpness| Blob {
+            centre: [x, 0.0, 0.2],
+            strength,
+            sharpness,
+        };
+        let blobs = vec![
+            blob(0.0, 1.0, 1.5),
+            blob(0.8, -0.6, 3.0),
+            blob(-0.9, 0.9, 4.0),
+        ];
+        let blobs = Node::Blobs { blobs, level: 0.35 };
+        let pair = |f: &Node, g: &Node| Box::new([f.clone(), g.clone()]);
+        let smooth = |alpha| Node::SmoothUnion {
+            parts: pair(&ring, &cuboid),
+            alpha,
+        };
+        let inflated = |part: &Node, by| Node::Inflated {
+            part: Box::new(part.clone()),
+            by,
+        };
+        let nodes = [
+            *ball(0.0, 0.7),
+            ring.clone(),
+            cuboid.clone(),
+            blobs.clone(),
+            Node::Union(pair(&ring, &blobs)),
+            Node::Intersection(pair(&ring, &cuboid)),
+            Node::Difference(pair(&blobs, &ring)),
+            smooth(0.0),
+            smooth(0.7),
+            smooth(1.0),
+            inflated(&smooth(0.0), 0.3),
+            inflated(&smooth(0.4), -0.1),
+            inflated(&blobs, 0.1),
+        ];
+        // Points of a lattice, and balls around some of them that hold others.
+        let place = |i: usize, n: usize| 4.0 * i as f64 / n as f64 - 2.0;
+        let lattice = |n: usize| {
+            let index = move |i: usize| [i % n, i / n % n, i / (n * n)].map(|i| place(i, n - 1));
+            (0..n * n * n).map(index)
+        };
+        for node in nodes {
+            let bounds = node.bounds().expect("bounded").expect("not empty");
+            let mut inside = 0;
+            for point in lattice(41) {
+                if node.at(point) <= 0.0 {
+                    assert!(bounds.holds(point), "{node:?} at {point:?}");
+                    inside += 1;
+                }
+            }
+            assert!(inside > 0, "{node:?}");
+            // Passing over whole blocks changes nothing.
+            let fine = bounds.lattice(0.08, [0.3; 3]).expect("a coarse lattice");
+            let all = polygonised(&|point: [f64; 3]| node.at(point), &fine).finish();
+            let some = polygonised(&node, &fine).finish();
+            assert!(all == some, "{node:?}");
+            for centre in lattice(5) {
+                for radius in [0.1, 0.5, 1.5] {
+                    let [least, greatest] = node.range(centre, radius);
+                    for point in lattice(13) {
+                        let off = square(from(centre, point)).sqrt();
+                        let scale = if off > 0.0 { radius / off } else { 0.0 };
+                        let on: [f64; 3] =
+                            std::array::from_fn(|i| centre[i] + scale * (point[i] - centre[i]));
+                        let value = node.at(on);
+                        let within = least - 1e-12 <= value && value <= greatest + 1e-12;
+                        assert!(
+                            within,
+                            "{node:?} at {on:?}: {value} of {least} to {greatest}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}

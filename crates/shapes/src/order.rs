@@ -1,0 +1,270 @@
+//! The same mesh in another order: names and places in memory change, nothing else.
+
+use std::fmt;
+use std::str::FromStr;
+
+use mesh_core::{FaceId, FaceList, Point, PolygonMesh, VertexId, row};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+/// An order of the vertices and faces of a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Order {
+    /// As it is.
+    #[default]
+    Given,
+    /// At random: [`shuffled`].
+    Shuffled,
+    /// Along a space-filling curve: [`morton`].
+    Morton,
+    /// As a walk over the edges meets them: [`breadth_first`].
+    BreadthFirst,
+}
+
+impl Order {
+    /// All orders.
+    pub const ALL: [Self; 4] = [
+        Self::Given,
+        Self::Shuffled,
+        Self::Morton,
+        Self::BreadthFirst,
+    ];
+
+    /// What users call it: `breadth-first`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Given => "given",
+            Self::Shuffled => "shuffled",
+            Self::Morton => "morton",
+            Self::BreadthFirst => "breadth-first",
+        }
+    }
+
+    /// The mesh in this order; `seed` matters to [`Shuffled`](Self::Shuffled) alone.
+    pub fn of(self, mesh: &PolygonMesh, seed: u64) -> PolygonMesh {
+        match self {
+            Self::Given => mesh.clone(),
+            Self::Shuffled => shuffled(mesh, seed),
+            Self::Morton => morton(mesh),
+            Self::BreadthFirst => breadth_first(mesh),
+        }
+    }
+}
+
+impl fmt::Display for Order {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// A name that no order has.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no order is called {given:?}: choose from {}", Order::ALL.map(Order::name).join(", "))]
+pub struct UnknownOrder {
+    /// The name that was given.
+    pub given: String,
+}
+
+impl FromStr for Order {
+    type Err = UnknownOrder;
+
+    fn from_str(given: &str) -> Result<Self, UnknownOrder> {
+        let found = Self::ALL.into_iter().find(|order| order.name() == given);
+        found.ok_or_else(|| UnknownOrder {
+            given: given.to_owned(),
+        })
+    }
+}
+
+/// The mesh with its vertices and faces in random order, and each face starting anywhere; O(corners).
+///
+/// The same seed gives the same order on every machine (ChaCha8; Fisher and Yates).
+pub fn shuffled(mesh: &PolygonMesh, seed: u64) -> PolygonMesh {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let vertices = permutation(mesh.vertex_count(), &mut random);
+    let faces = permutation(mesh.face_count(), &mut random);
+    reordered(mesh, &vertices, &faces, |degree| below(degree, &mut random))
+}
+
+/// The mesh along the curve of Morton (1966): what is near in space is mostly near in memory.
+///
+/// Vertices are sorted by their place in a box of 2²¹ steps a side, the bits of the three
+/// coordinates interlaced; faces by the mean of their vertices. Ties keep the order given.
+/// O(n log n).
+pub fn morton(mesh: &PolygonMesh) -> PolygonMesh {
+    let finite = mesh.positions().iter().filter(|p| p.is_finite());
+    let (low, high) = finite.fold((Point::INFINITY, Point::NEG_INFINITY), |(low, high), &p| {
+        (low.min(p), high.max(p))
+    });
+    let low = low.to_array().map(f64::from);
+    let longest = (0..3).fold(0.0_f64, |longest, axis| {
+        longest.max(f64::from(high[axis]) - low[axis])
+    });
+    // Where there is no extent the scale is not finite; then everything saturates to one end.
+    let scale = f64::from((1 << 21) - 1) / longest;
+    let code = |point: [f64; 3]| {
+        let spread = |axis: usize| spread_bits(((point[axis] - low[axis]) * scale) as u32);
+        spread(0) | spread(1) << 1 | spread(2) << 2
+    };
+    let place = |v: VertexId| mesh.position(v).to_array().map(f64::from);
+    let mut vertices: Vec<u32> = (0..row(mesh.vertex_count())).collect();
+    vertices.sort_by_cached_key(|&v| code(place(VertexId::new(v))));
+    let mut faces: Vec<u32> = (0..row(mesh.face_count())).collect();
+    faces.sort_by_cached_key(|&f| {
+        let corners = mesh.faces().face(FaceId::new(f));
+        let sum = corners.iter().fold([0.0; 3], |sum: [f64; 3], &v| {
+            let place = place(v);
+            std::array::from_fn(|axis| sum[axis] + place[axis])
+        });
+        code(sum.map(|x| x / corners.len() as f64))
+    });
+    reordered(mesh, &vertices, &faces, |_| 0)
+}
+
+/// The mesh as a breadth-first walk over its faces meets it, from vertex 0; O(corners).
+///
+/// The walk visits the faces around each vertex in turn, and calls up the vertices of each; where it
+/// ends it goes on at the lowest vertex that is left.
+pub fn breadth_first(mesh: &PolygonMesh) -> PolygonMesh {
+    let around = FacesAround::of(mesh);
+    let mut vertices = Vec::with_capacity(mesh.vertex_count());
+    let mut faces = Vec::with_capacity(mesh.face_count());
+    let mut called = vec![false; mesh.vertex_count()];
+    let mut visited = vec![false; mesh.face_count()];
+    for start in mesh.vertices() {
+        if called[start.index()] {
+            continue;
+        }
+        called[start.index()] = true;
+        let mut next = vertices.len();
+        vertices.push(row(start.index()));
+        while let Some(&v) = vertices.get(next) {
+            next += 1;
+            for &f in around.vertex(v) {
+                if std::mem::replace(&mut visited[f as usize], true) {
+                    continue;
+                }
+                faces.push(f);
+                for &w in mesh.faces().face(FaceId::new(f)) {
+                    if !std::mem::replace(&mut called[w.index()], true) {
+                        vertices.push(row(w.index()));
+                    }
+                }
+            }
+        }
+    }
+    reordered(mesh, &vertices, &faces, |_| 0)
+}
+
+/// The faces around every vertex, in their order.
+struct FacesAround {
+    faces: Vec<u32>,
+    /// Where the faces of each vertex end.
+    ends: Vec<u32>,
+}
+
+impl FacesAround {
+    fn of(mesh: &PolygonMesh) -> Self {
+        let mut ends = vec![0_u32; mesh.vertex_count()];
+        for v in mesh.faces().corners() {
+            ends[v.index()] += 1;
+        }
+        let mut total = 0;
+        for end in &mut ends {
+            total += std::mem::replace(end, total);
+        }
+        let mut faces = vec![0; total as usize];
+        for (f, corners) in (0..).zip(mesh.faces().iter().map(|(_, corners)| corners)) {
+            for v in corners {
+                let at = &mut ends[v.index()];
+                faces[*at as usize] = f;
+                *at += 1;
+            }
+        }
+        Self { faces, ends }
+    }
+
+    fn vertex(&self, v: u32) -> &[u32] {
+        let v = v as usize;
+        let start = if v == 0 { 0 } else { self.ends[v - 1] };
+        &self.faces[start as usize..self.ends[v] as usize]
+    }
+}
+
+/// The mesh with `vertices` and `faces` in these orders; a face of some degree starts at the corner
+/// that `start` says.
+fn reordered(
+    mesh: &PolygonMesh,
+    vertices: &[u32],
+    faces: &[u32],
+    mut start: impl FnMut(usize) -> usize,
+) -> PolygonMesh {
+    let mut names = vec![VertexId::new(0); vertices.len()];
+    for (name, &v) in (0..).zip(vertices) {
+        names[v as usize] = VertexId::new(name);
+    }
+    let position = |&v: &u32| mesh.position(VertexId::new(v));
+    let positions = vertices.iter().map(position).collect();
+    let mut list = FaceList::with_capacity(mesh.corner_count());
+    for &face in faces {
+        let corners = mesh.faces().face(FaceId::new(face));
+        let (late, early) = corners.split_at(start(corners.len()));
+        let corners = early.iter().chain(late).map(|v| names[v.index()]);
+        list.push(corners).expect("as many corners as before");
+    }
+    PolygonMesh::from_faces(positions, list).expect("the same faces as before")
+}
+
+/// The numbers below `count` in random order.
+fn permutation(count: usize, random: &mut ChaCha8Rng) -> Vec<u32> {
+    let mut numbers: Vec<u32> = (0..row(count)).collect();
+    for last in (1..count).rev() {
+        numbers.swap(last, below(last + 1, random));
+    }
+    numbers
+}
+
+/// A random number below `bound`, by the high half of a product; its bias, bound / 2⁶⁴, is nothing.
+fn below(bound: usize, random: &mut ChaCha8Rng) -> usize {
+    ((u128::from(random.next_u64()) * bound as u128) >> 64) as usize
+}
+
+/// The low 21 bits of `x`, each followed by two zeros.
+fn spread_bits(x: u32) -> u64 {
+    let mut x = u64::from(x.min((1 << 21) - 1));
+    x = (x | x << 32) & 0x001F_0000_0000_FFFF;
+    x = (x | x << 16) & 0x001F_0000_FF00_00FF;
+    x = (x | x << 8) & 0x100F_00F0_0F00_F00F;
+    x = (x | x << 4) & 0x10C3_0C30_C30C_30C3;
+    (x | x << 2) & 0x1249_2492_4924_9249
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_are_spread_to_every_third_place() {
+        for bit in 0..21 {
+            assert_eq!(spread_bits(1 << bit), 1 << (3 * bit), "bit {bit}");
+        }
+        assert_eq!(spread_bits(u32::MAX), 0x1249_2492_4924_9249);
+    }
+
+    #[test]
+    fn a_permutation_holds_every_number_once() {
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        for count in [0, 1, 2, 3, 100] {
+            let mut numbers = permutation(count, &mut random);
+            numbers.sort_unstable();
+            assert!(numbers.into_iter().eq(0..count as u32), "{count}");
+        }
+    }
+
+    #[test]
+    fn a_seed_names_an_order() {
+        // Fixed for all time: results published with a seed must stay reproducible.
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        assert_eq!(permutation(8, &mut random), [5, 6, 2, 4, 1, 7, 0, 3]);
+    }
+}

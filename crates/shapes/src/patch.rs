@@ -1,0 +1,317 @@
+//! Curved patches over a net of control points: Bézier and uniform B-spline.
+
+use mesh_core::{Point, PolygonMesh};
+
+use crate::error::{MAX_AROUND, ShapeError, between, within};
+use crate::planar::sheet;
+
+/// The greatest degree of a curve in a patch.
+pub(crate) const MAX_DEGREE: usize = 32;
+
+/// The most control points along one direction.
+pub(crate) const MAX_NET: usize = 1024;
+
+/// Control points in rows: the corners of a grid that a patch follows.
+///
+/// # Invariants
+///
+/// - N1  Every row has the same number of points; both ways there are 2 to 1024.
+/// - N2  Every coordinate is finite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ControlNet {
+    columns: usize,
+    points: Vec<[f64; 3]>,
+}
+
+impl ControlNet {
+    /// A net of rows of `columns` points each, row after row.
+    ///
+    /// # Errors
+    ///
+    /// A last row that is not full, fewer than 2 or more than 1024 points either way, or a
+    /// coordinate that is not finite.
+    pub fn new(columns: usize, points: &[Point]) -> Result<Self, ShapeError> {
+        within("columns", columns, 2, MAX_NET)?;
+        if !points.len().is_multiple_of(columns) {
+            let points = points.len();
+            return Err(ShapeError::RaggedNet { points, columns });
+        }
+        within("rows", points.len() / columns, 2, MAX_NET)?;
+        let points: Vec<[f64; 3]> = points
+            .iter()
+            .map(|point| point.to_array().map(f64::from))
+            .collect();
+        for &coordinate in points.iter().flatten() {
+            between(
+                "coordinate",
+                coordinate,
+                f64::from(f32::MIN),
+                f64::from(f32::MAX),
+            )?;
+        }
+        Ok(Self { columns, points })
+    }
+
+    /// A net over the square from −1 to 1, at the height x² − y²: a saddle.
+    ///
+    /// # Errors
+    ///
+    /// `columns` or `rows` outside 2 to 1024.
+    pub fn saddle(columns: usize, rows: usize) -> Result<Self, ShapeError> {
+        Self::over_square(columns, rows, |_, _, x, y| x * x - y * y)
+    }
+
+    /// A net over the square from −1 to 1, with hills and hollows on every other point.
+    ///
+    /// # Errors
+    ///
+    /// `columns` or `rows` outside 2 to 1024.
+    pub fn waves(columns: usize, rows: usize) -> Result<Self, ShapeError> {
+        const HEIGHTS: [f64; 4] = [0.0, 0.5, 0.0, -0.5];
+        Self::over_square(columns, rows, |i, j, _, _| HEIGHTS[(i + 2 * (j % 2)) % 4])
+    }
+
+    fn over_square(
+        columns: usize,
+        rows: usize,
+        height: impl Fn(usize, usize, f64, f64) -> f64,
+    ) -> Result<Self, ShapeError> {
+        within("columns", columns, 2, MAX_NET)?;
+        within("rows", rows, 2, MAX_NET)?;
+        let place = |i: usize, count: usize| 2.0 * i as f64 / (count - 1) as f64 - 1.0;
+        let points = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
+        let points = points.map(|(i, j)| {
+            let (x, y) = (place(i, columns), place(j, rows));
+            [x, y, height(i, j, x, y)]
+        });
+        Ok(Self {
+            columns,
+            points: points.collect(),
+        })
+    }
+
+    /// How many points a row has.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// How many rows there are.
+    pub fn rows(&self) -> usize {
+        self.points.len() / self.columns
+    }
+
+    /// The points of column `i`, from the first row to the last.
+    fn column(&self, i: usize) -> impl Iterator<Item = [f64; 3]> {
+        self.points[i..].iter().copied().step_by(self.columns)
+    }
+}
+
+/// The Bézier patch of a net as `m` × `n` quads; it meets the net at its four corners.
+///
+/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn. The degree is one less than the points
+/// either way. Whether vertices coincide depends on the net. O(degree²) a vertex, by the
+/// construction of de Casteljau.
+///
+/// # Errors
+///
+/// A net with more than 33 points either way, `m` or `n` outside 1 to 2²⁰, or more than 2³¹ − 1
+/// corners.
+pub fn bezier_patch(net: &ControlNet, m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
+    within("columns", net.columns(), 2, MAX_DEGREE + 1)?;
+    within("rows", net.rows(), 2, MAX_DEGREE + 1)?;
+    tessellated("bezier-patch", net, [m, n], |points, k, steps| {
+        de_casteljau(points, k as f64 / steps as f64)
+    })
+}
+
+/// The uniform B-spline patch of a net as `m` × `n` quads, of one `degree` both ways.
+///
+/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn. It spans (columns − degree) ×
+/// (rows − degree) pieces and meets the net nowhere in general. Whether vertices coincide depends
+/// on the net. O(degree²) a vertex, by the recurrence of de Boor.
+///
+/// # Errors
+///
+/// A `degree` outside 1 to 32 or not below the points either way, `m` or `n` outside 1 to 2²⁰, or
+/// more than 2³¹ − 1 corners.
+pub fn b_spline_patch(
+    net: &ControlNet,
+    degree: usize,
+    m: usize,
+    n: usize,
+) -> Result<PolygonMesh, ShapeError> {
+    let least = net.columns().min(net.rows());
+    within("degree", degree, 1, MAX_DEGREE.min(least - 1))?;
+    tessellated("b-spline-patch", net, [m, n], |points, k, steps| {
+        // Pieces and steps in whole numbers, so that the ends are reached exactly.
+        let pieces = points.len() - degree;
+        let piece = (k * pieces / steps).min(pieces - 1);
+        let part = (k * pieces - piece * steps) as f64 / steps as f64;
+        de_boor(&mut points[piece..=piece + degree], part)
+    })
+}
+
+/// The grid of points that `curve` gives: first along every column of the net, then along the row
+/// of points so found. `curve(points, k, steps)` may spoil the points.
+fn tessellated(
+    shape: &'static str,
+    net: &ControlNet,
+    [m, n]: [usize; 2],
+    curve: impl Fn(&mut [[f64; 3]], usize, usize) -> [f64; 3],
+) -> Result<PolygonMesh, ShapeError> {
+    within("m", m, 1, MAX_AROUND)?;
+    within("n", n, 1, MAX_AROUND)?;
+    let mut row = vec![[0.0; 3]; net.columns()];
+    let mut scratch = Vec::new();
+    let mut at = None;
+    sheet(shape, m, n, |i, j| {
+        if at != Some(j) {
+            for (column, point) in row.iter_mut().enumerate() {
+                scratch.clear();
+                scratch.extend(net.column(column));
+                *point = curve(&mut scratch, j, n);
+            }
+            at = Some(j);
+        }
+        scratch.clear();
+        scratch.extend(&row);
+        curve(&mut scratch, i, m)
+    })
+}
+
+/// The point at `t` of the Bézier curve of `points`, which are spoilt.
+fn de_casteljau(points: &mut [[f64; 3]], t: f64) -> [f64; 3] {
+    for last in (1..points.len()).rev() {
+        for i in 0..last {
+            points[i] = between_points(points[i], points[i + 1], t);
+        }
+    }
+    points[0]
+}
+
+/// The point at `t`, 0 to 1, of the piece of a uniform B-spline that `points` govern; they are
+/// spoilt.
+fn de_boor(points: &mut [[f64; 3]], t: f64) -> [f64; 3] {
+    let degree = points.len() - 1;
+    for round in 1..=degree {
+        for i in (round..=degree).rev() {
+            let part = (t + (degree - i) as f64) / (degree + 1 - round) as f64;
+            points[i] = between_points(points[i - 1], points[i], part);
+        }
+    }
+    points[degree]
+}
+
+/// The point at `part` of the way from `a` to `b`; `a` at 0 and `b` at 1, exactly.
+fn between_points(a: [f64; 3], b: [f64; 3], part: f64) -> [f64; 3] {
+    std::array::from_fn(|axis| (1.0 - part) * a[axis] + part * b[axis])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh_core::VertexId;
+
+    fn point(mesh: &PolygonMesh, v: usize) -> Point {
+        mesh.position(VertexId::new(v as u32))
+    }
+
+    #[test]
+    fn a_bezier_patch_meets_the_corners_of_its_net() {
+        for (columns, rows) in [(2, 2), (4, 4), (3, 7), (33, 2)] {
+            let net = ControlNet::waves(columns, rows).expect("small");
+            let (m, n) = (5, 3);
+            let mesh = bezier_patch(&net, m, n).expect("small");
+            let ends = [
+                (0, 0),
+                (m, columns - 1),
+                (n * (m + 1), columns * (rows - 1)),
+                ((n + 1) * (m + 1) - 1, columns * rows - 1),
+            ];
+            for (vertex, control) in ends {
+                let control = net.points[control].map(|x| x as f32);
+                assert_eq!(
+                    point(&mesh, vertex).to_array(),
+                    control,
+                    "{columns} × {rows}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_bezier_patch_of_degree_two_is_the_polynomial_of_its_saddle() {
+        // The control heights 1, −1, 1 of u² on [−1, 1] would be the blossom; x² at −1, 0, 1 gives
+        // the polynomial (1 + x²) / 2.
+        let net = ControlNet::saddle(3, 3).expect("small");
+        let mesh = bezier_patch(&net, 8, 8).expect("small");
+        for &p in mesh.positions() {
+            let height = (p.x * p.x - p.y * p.y) / 2.0;
+            assert!((p.z - height).abs() < 1e-6, "{p} is not at {height}");
+        }
+    }
+
+    #[test]
+    fn a_cubic_b_spline_passes_where_the_mask_says() {
+        // At a knot: (p0 + 4 p1 + p2) / 6, the limit mask of the cubic B-spline.
+        let points: Vec<Point> = [3.0, -1.0, 4.0, 1.0, 5.0]
+            .iter()
+            .flat_map(|&z| (0..4).map(move |i| Point::new(i as f32, z, z * i as f32)))
+            .collect();
+        let net = ControlNet::new(4, &points).expect("five rows of four");
+        let mesh = b_spline_patch(&net, 3, 1, 2).expect("small");
+        for (step, rows) in [[3.0, -1.0, 4.0], [-1.0, 4.0, 1.0], [4.0, 1.0, 5.0]]
+            .into_iter()
+            .enumerate()
+        {
+            let y = (rows[0] + 4.0 * rows[1] + rows[2]) / 6.0;
+            for (end, x) in [1.0, 2.0].into_iter().enumerate() {
+                let expected = Point::new(x, y, y * x);
+                let got = point(&mesh, 2 * step + end);
+                assert!(got.distance(expected) < 1e-6, "{got} is not {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_b_spline_of_degree_one_is_its_net() {
+        let net = ControlNet::waves(4, 6).expect("small");
+        let mesh = b_spline_patch(&net, 1, 3, 5).expect("small");
+        for (got, control) in mesh.positions().iter().zip(&net.points) {
+            assert_eq!(got.to_array(), control.map(|x| x as f32));
+        }
+    }
+
+    #[test]
+    fn faulty_nets_are_refused() {
+        let points = [Point::ZERO; 6];
+        assert!(ControlNet::new(3, &points).is_ok());
+        assert_eq!(
+            ControlNet::new(4, &points),
+            Err(ShapeError::RaggedNet {
+                points: 6,
+                columns: 4
+            })
+        );
+        for columns in [0, 1, 6, MAX_NET + 1] {
+            assert!(
+                ControlNet::new(columns, &points).is_err(),
+                "{columns} columns"
+            );
+        }
+        for z in [f32::NAN, f32::INFINITY] {
+            let mut points = points;
+            points[4].z = z;
+            assert!(ControlNet::new(3, &points).is_err(), "{z}");
+        }
+        let net = ControlNet::saddle(4, 3).expect("small");
+        for degree in [0, 3, 100] {
+            assert!(
+                b_spline_patch(&net, degree, 2, 2).is_err(),
+                "degree {degree}"
+            );
+        }
+        let net = ControlNet::saddle(34, 2).expect("a net, but not for Bézier");
+        assert!(bezier_patch(&net, 1, 1).is_err());
+    }
+}

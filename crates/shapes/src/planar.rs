@@ -1,0 +1,255 @@
+//! Pieces of the plane: grids of quads and triangles, with and without holes.
+
+use mesh_core::PolygonMesh;
+
+use crate::draft::Draft;
+use crate::error::{MAX_SIDE, ShapeError, corners_within, within};
+
+/// `m` × `n` unit squares: the regular tiling {4, 4}.
+///
+/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn.
+///
+/// # Errors
+///
+/// `m` or `n` outside 1 to 2²², or more than 2³¹ − 1 corners.
+pub fn grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
+    sheet("grid", m, n, |i, j| [i as f64, j as f64, 0.0])
+}
+
+/// `m` × `n` quads, the corner at column `i` and row `j` where `place(i, j)` says, row by row.
+pub(crate) fn sheet(
+    shape: &'static str,
+    m: usize,
+    n: usize,
+    place: impl FnMut(usize, usize) -> [f64; 3],
+) -> Result<PolygonMesh, ShapeError> {
+    let corners = 4 * area(m, n)?;
+    cells(shape, [m, n], corners, place, |_, _| Cell::Quad)
+}
+
+/// `m` × `n` unit squares, each cut in two by the diagonal from lower left to upper right.
+///
+/// V = (m + 1)(n + 1), E = 3mn + m + n, F = 2mn.
+///
+/// # Errors
+///
+/// `m` or `n` outside 1 to 2²², or more than 2³¹ − 1 corners.
+pub fn triangle_grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
+    let corners = 6 * area(m, n)?;
+    cells("triangle-grid", [m, n], corners, on_lattice, |_, _| {
+        Cell::Rising
+    })
+}
+
+/// `m` × `n` unit squares, every other one cut in two, as on a chess board.
+///
+/// With c = ⌊mn/2⌋ of them cut: V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1) + c, F = mn + c.
+///
+/// # Errors
+///
+/// `m` or `n` outside 1 to 2²², or more than 2³¹ − 1 corners.
+pub fn mixed_grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
+    let squares = area(m, n)?;
+    let corners = 4 * squares + 2 * (squares / 2);
+    cells("mixed-grid", [m, n], corners, on_lattice, |i, j| {
+        match (i + j) % 2 {
+            0 => Cell::Quad,
+            _ => Cell::Rising,
+        }
+    })
+}
+
+/// `m` × `n` pairs of equilateral triangles of side 1: the regular tiling {3, 6}.
+///
+/// V = (m + 1)(n + 1), E = 3mn + m + n, F = 2mn.
+///
+/// ```text
+///      ╱╲╱╲╱╲╱      every other row of vertices is half a step to the right
+///      ╲╱╲╱╲╱╲
+/// ```
+///
+/// # Errors
+///
+/// `m` or `n` outside 1 to 2²², or more than 2³¹ − 1 corners.
+pub fn triangle_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
+    let corners = 6 * area(m, n)?;
+    let height = 3.0_f64.sqrt() / 2.0;
+    let place = |i: usize, j: usize| {
+        let shift = 0.5 * (j % 2) as f64;
+        [i as f64 + shift, j as f64 * height, 0.0]
+    };
+    let cell = |_, j: usize| match j % 2 {
+        0 => Cell::Falling,
+        _ => Cell::Rising,
+    };
+    cells("triangle-tiling", [m, n], corners, place, cell)
+}
+
+/// `m` × `n` unit squares without the a × b in the middle, a = ⌊m/3⌋ and b = ⌊n/3⌋: a frame.
+///
+/// V = (m + 1)(n + 1) − (a − 1)(b − 1), E = m(n + 1) + n(m + 1) − a(b − 1) − b(a − 1), F = mn − ab.
+///
+/// # Errors
+///
+/// `m` or `n` outside 3 to 2²², or more than 2³¹ − 1 corners.
+pub fn grid_with_hole(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
+    within("m", m, 3, MAX_SIDE)?;
+    within("n", n, 3, MAX_SIDE)?;
+    let (a, b) = (m / 3, n / 3);
+    let corners = 4 * (area(m, n)? - area(a, b)?);
+    let (left, low) = ((m - a) / 2, (n - b) / 2);
+    let cell = |i: usize, j: usize| {
+        let hole = (left..left + a).contains(&i) && (low..low + b).contains(&j);
+        if hole { Cell::Hole } else { Cell::Quad }
+    };
+    cells("grid-with-hole", [m, n], corners, on_lattice, cell)
+}
+
+/// `m` × `n` unit squares of which `holes` are left out, no two of them touching.
+///
+/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn − holes; 1 + holes boundary loops.
+///
+/// ```text
+///   ┌──┬──┬──┬──┬──┐
+///   ├──┼──┼──┼──┼──┤      m = 5, n = 3, holes = 2, filled in row by row
+///   ├──┤  ├──┤  ├──┤
+///   ├──┼──┼──┼──┼──┤
+///   └──┴──┴──┴──┴──┘
+/// ```
+///
+/// # Errors
+///
+/// `m` or `n` outside 1 to 2²², more than ⌊(m − 1)/2⌋ · ⌊(n − 1)/2⌋ holes, or more than 2³¹ − 1
+/// corners.
+pub fn grid_with_holes(m: usize, n: usize, holes: usize) -> Result<PolygonMesh, ShapeError> {
+    let squares = area(m, n)?;
+    let (across, up) = ((m - 1) / 2, (n - 1) / 2);
+    // Where the product is too large for this machine, the squares are too many as well.
+    within("holes", holes, 0, across.saturating_mul(up))?;
+    let corners = 4 * (squares - holes as u64);
+    let cell = |i: usize, j: usize| {
+        let place = i % 2 == 1 && j % 2 == 1 && i + 1 < m && j + 1 < n;
+        match place && (j / 2) * across + i / 2 < holes {
+            true => Cell::Hole,
+            false => Cell::Quad,
+        }
+    };
+    cells("grid-with-holes", [m, n], corners, on_lattice, cell)
+}
+
+/// `m` × `n` regular hexagons of side 1, every other row half a step to the right: {6, 3}.
+///
+/// V = 2(m + 1)(n + 1) − 2, E = 3mn + 2m + 2n − 1, F = mn.
+///
+/// ```text
+///     │   │   │       m = 2, n = 2
+///    ╱ ╲ ╱ ╲ ╱        Between two rows of hexagons runs a zigzag of 2m + 2 vertices;
+///   │   │   │         below the first and above the last, one of 2m + 1.
+///    ╲ ╱ ╲ ╱
+/// ```
+///
+/// # Errors
+///
+/// `m` or `n` outside 1 to 2²², or more than 2³¹ − 1 corners.
+pub fn hexagon_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
+    let corners = 6 * area(m, n)?;
+    let corners = corners_within("hexagon-tiling", &[("m", m), ("n", n)], corners)?;
+    let mut draft = Draft::with_capacity(2 * (m + 1) * (n + 1) - 2, corners);
+    let half_width = 3.0_f64.sqrt() / 2.0;
+    // By zigzag: what to add to a vertex's step to the right to get its name.
+    let mut before = Vec::with_capacity(n + 1);
+    let mut count = 0_i64;
+    for j in 0..=n {
+        let shift = j % 2;
+        let steps = match j {
+            0 => 0..2 * m + 1,
+            _ if j == n => (1 - shift)..2 * m + 2 - shift,
+            _ => 0..2 * m + 2,
+        };
+        before.push(count - steps.start as i64);
+        count += steps.len() as i64;
+        for k in steps {
+            let low = (k + shift) % 2 == 1;
+            let y = 1.5 * j as f64 - if low { 0.5 } else { 0.0 };
+            draft.vertex([k as f64 * half_width, y, 0.0]);
+        }
+    }
+    let at = |j: usize, k: usize| (before[j] + k as i64) as u32;
+    for j in 0..n {
+        for i in 0..m {
+            let k = 2 * i + j % 2;
+            let below = [at(j, k), at(j, k + 1), at(j, k + 2)];
+            let above = [at(j + 1, k + 2), at(j + 1, k + 1), at(j + 1, k)];
+            draft.face(below.into_iter().chain(above));
+        }
+    }
+    Ok(draft.finish())
+}
+
+/// What becomes of one square of a grid.
+#[derive(Clone, Copy)]
+enum Cell {
+    /// It stays.
+    Quad,
+    /// Two triangles along the diagonal from lower left to upper right.
+    Rising,
+    /// Two triangles along the diagonal from upper left to lower right.
+    Falling,
+    /// Nothing; the vertices inside a larger hole go with it.
+    Hole,
+}
+
+/// The number of squares, for sides that are allowed.
+fn area(m: usize, n: usize) -> Result<u64, ShapeError> {
+    within("m", m, 1, MAX_SIDE)?;
+    within("n", n, 1, MAX_SIDE)?;
+    Ok(m as u64 * n as u64)
+}
+
+fn on_lattice(i: usize, j: usize) -> [f64; 3] {
+    [i as f64, j as f64, 0.0]
+}
+
+/// `m` × `n` squares, each as `cell` says, which have `corners` together; row by row.
+fn cells(
+    shape: &'static str,
+    [m, n]: [usize; 2],
+    corners: u64,
+    mut place: impl FnMut(usize, usize) -> [f64; 3],
+    cell: impl Fn(usize, usize) -> Cell,
+) -> Result<PolygonMesh, ShapeError> {
+    let corners = corners_within(shape, &[("m", m), ("n", n)], corners)?;
+    let mut draft = Draft::with_capacity((m + 1) * (n + 1), corners);
+    let hole = |i: usize, j: usize| matches!(cell(i, j), Cell::Hole);
+    // By column, on the line below the cells and on the line above: the vertex, if there is one.
+    let mut below = vec![None; m + 1];
+    let mut above = vec![None; m + 1];
+    for j in 0..=n {
+        for (i, name) in above.iter_mut().enumerate() {
+            let inner = 0 < i && i < m && 0 < j && j < n;
+            let swallowed =
+                inner && hole(i - 1, j - 1) && hole(i, j - 1) && hole(i - 1, j) && hole(i, j);
+            *name = (!swallowed).then(|| draft.vertex(place(i, j)));
+        }
+        for i in (0..m).filter(|_| j > 0) {
+            let ring = [below[i], below[i + 1], above[i + 1], above[i]];
+            let [Some(a), Some(b), Some(c), Some(d)] = ring else {
+                continue;
+            };
+            match cell(i, j - 1) {
+                Cell::Quad => draft.face([a, b, c, d]),
+                Cell::Rising => {
+                    draft.face([a, b, c]);
+                    draft.face([a, c, d]);
+                }
+                Cell::Falling => {
+                    draft.face([a, b, d]);
+                    draft.face([b, c, d]);
+                }
+                Cell::Hole => {}
+            }
+        }
+        std::mem::swap(&mut below, &mut above);
+    }
+    Ok(draft.finish())
+}

@@ -1,0 +1,403 @@
+//! Every shape by name, with its parameters as data: what the command line offers.
+
+use mesh_core::PolygonMesh;
+
+use crate::error::{MAX_AROUND, MAX_SIDE, ShapeError, between};
+use crate::fitting::{MAX_FACES, MIN_FACES};
+use crate::geodesic::MAX_FREQUENCY;
+use crate::implicit::{Blob, Field};
+use crate::patch::{MAX_DEGREE, MAX_NET};
+use crate::{ControlNet, genus, geodesic, planar, platonic, solids, study, surfaces};
+use crate::{b_spline_patch, bezier_patch};
+
+/// A shape that can be asked for by name.
+#[derive(Clone, Copy, Debug)]
+pub struct Recipe {
+    /// What users call it: `triangle-torus`.
+    pub name: &'static str,
+    /// What it is, in one line.
+    pub summary: &'static str,
+    /// What it takes, in order.
+    pub parameters: &'static [Parameter],
+    build: fn(&[f64]) -> Result<PolygonMesh, ShapeError>,
+}
+
+/// A number that a recipe takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// What users call it.
+    pub name: &'static str,
+    /// What it sets.
+    pub meaning: &'static str,
+    /// Its value where none is given.
+    pub default: f64,
+    /// The least value allowed.
+    pub least: f64,
+    /// The greatest value allowed; a shape may refuse less where its parameters go together.
+    pub greatest: f64,
+    /// Whether it must be a whole number.
+    pub whole: bool,
+}
+
+impl Parameter {
+    const fn count(
+        name: &'static str,
+        meaning: &'static str,
+        default: usize,
+        least: usize,
+        greatest: usize,
+    ) -> Self {
+        Self {
+            name,
+            meaning,
+            default: default as f64,
+            least: least as f64,
+            greatest: greatest as f64,
+            whole: true,
+        }
+    }
+
+    /// Refuses what is out of range, or a fraction where a count is needed.
+    fn check(&self, value: f64) -> Result<(), ShapeError> {
+        let Self {
+            name: parameter,
+            least,
+            greatest,
+            ..
+        } = *self;
+        if self.whole && value.is_finite() && value.fract() != 0.0 {
+            return Err(ShapeError::NotWhole {
+                parameter,
+                value,
+                least,
+                greatest,
+            });
+        }
+        between(parameter, value, least, greatest)
+    }
+}
+
+impl Recipe {
+    /// The shape with `values` given by name, and the defaults for the rest.
+    ///
+    /// # Errors
+    ///
+    /// A name that is not among the parameters or given twice, a value out of range or not whole
+    /// where it must be, or what the shape itself refuses.
+    pub fn make(&self, values: &[(&str, f64)]) -> Result<PolygonMesh, ShapeError> {
+        let mut given: Vec<Option<f64>> = vec![None; self.parameters.len()];
+        for &(name, value) in values {
+            let found = self.parameters.iter().zip(&mut given);
+            let (parameter, slot) = found
+                .into_iter()
+                .find(|(parameter, _)| parameter.name == name)
+                .ok_or_else(|| self.unknown(name))?;
+            parameter.check(value)?;
+            if slot.replace(value).is_some() {
+                return Err(ShapeError::RepeatedParameter {
+                    shape: self.name,
+                    parameter: parameter.name,
+                });
+            }
+        }
+        let values = given.into_iter().zip(self.parameters);
+        let values: Vec<f64> = values
+            .map(|(value, parameter)| value.unwrap_or(parameter.default))
+            .collect();
+        (self.build)(&values)
+    }
+
+    fn unknown(&self, given: &str) -> ShapeError {
+        ShapeError::UnknownParameter {
+            shape: self.name,
+            given: given.to_owned(),
+            parameters: self.parameters.iter().map(|p| p.name).collect(),
+        }
+    }
+}
+
+/// The recipe called `name`.
+pub fn recipe(name: &str) -> Option<&'static Recipe> {
+    RECIPES.iter().find(|recipe| recipe.name == name)
+}
+
+const NONE: &[Parameter] = &[];
+
+const AROUND: Parameter = Parameter::count("n", "sides of the polygon", 8, 3, MAX_AROUND);
+
+const GRID: &[Parameter] = &[
+    Parameter::count("m", "cells from left to right", 20, 1, MAX_SIDE),
+    Parameter::count("n", "cells from bottom to top", 20, 1, MAX_SIDE),
+];
+
+const TORUS: &[Parameter] = &[
+    Parameter::count("m", "cells around the axis", 40, 3, MAX_AROUND),
+    Parameter::count("n", "cells around the tube", 20, 3, MAX_AROUND),
+];
+
+const STEPS_M: Parameter = Parameter::count("m", "cells from left to right", 20, 1, MAX_AROUND);
+const STEPS_N: Parameter = Parameter::count("n", "cells from bottom to top", 20, 1, MAX_AROUND);
+const FACES: Parameter = Parameter::count(
+    "faces",
+    "triangles, met within 5 %",
+    5_000,
+    MIN_FACES,
+    MAX_FACES,
+);
+
+/// Every shape, in the order in which help lists them.
+pub const RECIPES: &[Recipe] = &[
+    Recipe {
+        name: "tetrahedron",
+        summary: "four triangles",
+        parameters: NONE,
+        build: |_| Ok(platonic::tetrahedron()),
+    },
+    Recipe {
+        name: "cube",
+        summary: "six squares",
+        parameters: NONE,
+        build: |_| Ok(platonic::cube()),
+    },
+    Recipe {
+        name: "octahedron",
+        summary: "eight triangles",
+        parameters: NONE,
+        build: |_| Ok(platonic::octahedron()),
+    },
+    Recipe {
+        name: "dodecahedron",
+        summary: "twelve pentagons",
+        parameters: NONE,
+        build: |_| Ok(platonic::dodecahedron()),
+    },
+    Recipe {
+        name: "icosahedron",
+        summary: "twenty triangles",
+        parameters: NONE,
+        build: |_| Ok(platonic::icosahedron()),
+    },
+    Recipe {
+        name: "prism",
+        summary: "two polygons joined by quads",
+        parameters: &[AROUND],
+        build: |v| solids::prism(count(v[0])),
+    },
+    Recipe {
+        name: "antiprism",
+        summary: "two polygons joined by triangles",
+        parameters: &[AROUND],
+        build: |v| solids::antiprism(count(v[0])),
+    },
+    Recipe {
+        name: "grid",
+        summary: "unit squares, the tiling {4, 4}",
+        parameters: GRID,
+        build: |v| planar::grid(count(v[0]), count(v[1])),
+    },
+    Recipe {
+        name: "triangle-grid",
+        summary: "unit squares cut in two",
+        parameters: GRID,
+        build: |v| planar::triangle_grid(count(v[0]), count(v[1])),
+    },
+    Recipe {
+        name: "mixed-grid",
+        summary: "unit squares, every other one cut in two",
+        parameters: GRID,
+        build: |v| planar::mixed_grid(count(v[0]), count(v[1])),
+    },
+    Recipe {
+        name: "grid-with-hole",
+        summary: "unit squares without a third each way in the middle",
+        parameters: &[
+            Parameter::count("m", "cells from left to right", 20, 3, MAX_SIDE),
+            Parameter::count("n", "cells from bottom to top", 20, 3, MAX_SIDE),
+        ],
+        build: |v| planar::grid_with_hole(count(v[0]), count(v[1])),
+    },
+    Recipe {
+        name: "grid-with-holes",
+        summary: "unit squares with any number of one-cell holes that have room",
+        parameters: &[
+            GRID[0],
+            GRID[1],
+            Parameter::count("holes", "cells left out", 12, 0, 1 << 27),
+        ],
+        build: |v| planar::grid_with_holes(count(v[0]), count(v[1]), count(v[2])),
+    },
+    Recipe {
+        name: "triangle-tiling",
+        summary: "equilateral triangles, the tiling {3, 6}",
+        parameters: GRID,
+        build: |v| planar::triangle_tiling(count(v[0]), count(v[1])),
+    },
+    Recipe {
+        name: "hexagon-tiling",
+        summary: "regular hexagons, the tiling {6, 3}",
+        parameters: GRID,
+        build: |v| planar::hexagon_tiling(count(v[0]), count(v[1])),
+    },
+    Recipe {
+        name: "torus",
+        summary: "a ring of quads",
+        parameters: TORUS,
+        build: |v| surfaces::torus(count(v[0]), count(v[1])),
+    },
+    Recipe {
+        name: "triangle-torus",
+        summary: "a ring of triangles, every vertex of valence 6",
+        parameters: TORUS,
+        build: |v| surfaces::triangle_torus(count(v[0]), count(v[1])),
+    },
+    Recipe {
+        name: "moebius",
+        summary: "a strip of quads with half a twist: one side, one boundary loop",
+        parameters: &[Parameter::count(
+            "n",
+            "cells along the strip",
+            40,
+            3,
+            MAX_AROUND,
+        )],
+        build: |v| surfaces::moebius(count(v[0])),
+    },
+    Recipe {
+        name: "uv-sphere",
+        summary: "a sphere of meridians and parallels",
+        parameters: &[
+            Parameter::count("m", "meridians", 32, 3, MAX_AROUND),
+            Parameter::count("n", "bands between the poles", 16, 2, MAX_AROUND),
+        ],
+        build: |v| solids::uv_sphere(count(v[0]), count(v[1])),
+    },
+    Recipe {
+        name: "geodesic",
+        summary: "an icosahedron with divided edges, projected to a sphere",
+        parameters: &[Parameter::count(
+            "frequency",
+            "parts of each edge",
+            6,
+            1,
+            MAX_FREQUENCY,
+        )],
+        build: |v| geodesic::geodesic(count(v[0])),
+    },
+    Recipe {
+        name: "genus",
+        summary: "a bar of quads with holes through it, closed",
+        parameters: &[Parameter::count("g", "holes", 2, 0, MAX_SIDE)],
+        build: |v| genus::genus(count(v[0])),
+    },
+    Recipe {
+        name: "bezier-patch",
+        summary: "a Bézier patch over a saddle of control points",
+        parameters: &[
+            Parameter::count("degree", "degree both ways", 3, 1, MAX_DEGREE),
+            STEPS_M,
+            STEPS_N,
+        ],
+        build: |v| {
+            let points = count(v[0]) + 1;
+            bezier_patch(
+                &ControlNet::saddle(points, points)?,
+                count(v[1]),
+                count(v[2]),
+            )
+        },
+    },
+    Recipe {
+        name: "b-spline-patch",
+        summary: "a uniform B-spline patch over waves of control points",
+        parameters: &[
+            Parameter::count("degree", "degree both ways", 3, 1, MAX_DEGREE),
+            Parameter::count(
+                "points",
+                "control points both ways, above the degree",
+                9,
+                2,
+                MAX_NET,
+            ),
+            STEPS_M,
+            STEPS_N,
+        ],
+        build: |v| {
+            let points = count(v[1]);
+            let net = ControlNet::waves(points, points)?;
+            b_spline_patch(&net, count(v[0]), count(v[2]), count(v[3]))
+        },
+    },
+    Recipe {
+        name: "blobs",
+        summary: "a sum of bells, closed triangles of marching tetrahedra",
+        parameters: &[FACES],
+        build: |v| blobs()?.polygonised(count(v[0])),
+    },
+    Recipe {
+        name: "csg",
+        summary: "a cube and a ball in one, without three bars through both: genus 5",
+        parameters: &[FACES],
+        build: |v| csg()?.polygonised(count(v[0])),
+    },
+    Recipe {
+        name: "smooth-union",
+        summary: "two linked rings that blend where they meet",
+        parameters: &[
+            FACES,
+            Parameter {
+                name: "alpha",
+                meaning: "sharpness of the blend",
+                default: 0.0,
+                least: 0.0,
+                greatest: 1.0,
+                whole: false,
+            },
+        ],
+        build: |v| smooth_union(v[1])?.polygonised(count(v[0])),
+    },
+    Recipe {
+        name: "default-study",
+        summary: "the irregular mesh that a study without a file is made on",
+        parameters: NONE,
+        build: |_| Ok(study::default_study()),
+    },
+];
+
+/// A value that was checked to be a whole number in a small range.
+fn count(value: f64) -> usize {
+    value as usize
+}
+
+fn blobs() -> Result<Field, ShapeError> {
+    let blob = |centre, strength, sharpness| Blob {
+        centre,
+        strength,
+        sharpness,
+    };
+    let blobs = [
+        blob([0.0, 0.0, 0.0], 1.0, 2.0),
+        blob([1.0, 0.2, 0.1], 0.9, 3.0),
+        blob([-0.5, 0.9, -0.2], 0.8, 2.5),
+        blob([-0.6, -0.7, 0.5], 1.1, 4.0),
+        blob([0.2, 0.1, 1.0], 0.7, 3.5),
+        blob([0.3, -0.4, -0.8], 0.8, 3.0),
+    ];
+    Field::blobs(&blobs, 0.4)
+}
+
+fn csg() -> Result<Field, ShapeError> {
+    let cube = Field::cuboid([0.0; 3], [1.0; 3])?;
+    let mut solid = cube.intersection(Field::sphere([0.0; 3], 1.35)?)?;
+    for axis in 0..3 {
+        let mut half = [0.5; 3];
+        half[axis] = 2.0;
+        solid = solid.difference(Field::cuboid([0.0; 3], half)?)?;
+    }
+    Ok(solid)
+}
+
+fn smooth_union(alpha: f64) -> Result<Field, ShapeError> {
+    let flat = Field::torus([-0.5, 0.0, 0.0], [0.0, 0.0, 1.0], 1.0, 0.25)?;
+    let upright = Field::torus([0.9, 0.0, 0.0], [0.0, 1.0, 0.0], 1.0, 0.25)?;
+    flat.smooth_union(upright, alpha)?.inflated(0.1)
+}

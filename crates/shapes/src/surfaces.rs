@@ -1,0 +1,103 @@
+//! Surfaces that close on themselves: the torus and the Möbius strip.
+
+use mesh_core::PolygonMesh;
+
+use crate::arithmetic::turn;
+use crate::draft::Draft;
+use crate::error::{MAX_AROUND, ShapeError, corners_within, within};
+
+/// The radius of the torus's tube; the circle that it follows has radius 1.
+const TUBE: f64 = 0.4;
+
+/// A torus of `m` × `n` quads: `m` around the axis, `n` around the tube.
+///
+/// V = mn, E = 2mn, F = mn; χ = 0.
+///
+/// # Errors
+///
+/// `m` or `n` outside 3 to 2²⁰, or more than 2³¹ − 1 corners.
+pub fn torus(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
+    rolled("torus", m, n, 4, |draft, [a, b, c, d]| {
+        draft.face([a, b, c, d]);
+    })
+}
+
+/// A torus of `m` × `n` quads, each cut in two: every vertex has valence 6.
+///
+/// V = mn, E = 3mn, F = 2mn; χ = 0.
+///
+/// # Errors
+///
+/// `m` or `n` outside 3 to 2²⁰, or more than 2³¹ − 1 corners.
+pub fn triangle_torus(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
+    rolled("triangle-torus", m, n, 6, |draft, [a, b, c, d]| {
+        draft.face([a, b, c]);
+        draft.face([a, c, d]);
+    })
+}
+
+/// A torus, each of its cells as `cell` makes it, with `degrees` corners a cell.
+fn rolled(
+    shape: &'static str,
+    m: usize,
+    n: usize,
+    degrees: u64,
+    cell: impl Fn(&mut Draft, [u32; 4]),
+) -> Result<PolygonMesh, ShapeError> {
+    within("m", m, 3, MAX_AROUND)?;
+    within("n", n, 3, MAX_AROUND)?;
+    let corners = degrees * m as u64 * n as u64;
+    let corners = corners_within(shape, &[("m", m), ("n", n)], corners)?;
+    let mut draft = Draft::with_capacity(m * n, corners);
+    let tube: Vec<[f64; 2]> = (0..n).map(|j| turn(j, n)).collect();
+    for i in 0..m {
+        let [x, y] = turn(i, m);
+        for [out, up] in &tube {
+            let radius = 1.0 + TUBE * out;
+            draft.vertex([radius * x, radius * y, TUBE * up]);
+        }
+    }
+    let at = |i: usize, j: usize| ((i % m) * n + j % n) as u32;
+    for i in 0..m {
+        for j in 0..n {
+            let corners = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            cell(&mut draft, corners);
+        }
+    }
+    Ok(draft.finish())
+}
+
+/// A strip of `n` quads joined to its start with half a twist: one side, one boundary loop.
+///
+/// V = 2n, E = 3n, F = n; χ = 0.
+///
+/// ```text
+///   b0 ── b1 ── b2 ··· ── bn = a0      the last rung joins the first, turned over
+///   │     │     │         │
+///   a0 ── a1 ── a2 ··· ── an = b0
+/// ```
+///
+/// # Errors
+///
+/// `n` outside 3 to 2²⁰.
+pub fn moebius(n: usize) -> Result<PolygonMesh, ShapeError> {
+    within("n", n, 3, MAX_AROUND)?;
+    let mut draft = Draft::with_capacity(2 * n, 4 * n);
+    for i in 0..n {
+        let [x, y] = turn(i, n);
+        // The rung turns by half a turn while it goes round once.
+        let [out, up] = turn(i, 2 * n).map(|x| TUBE * x);
+        for side in [-1.0, 1.0] {
+            let radius = 1.0 + side * out;
+            draft.vertex([radius * x, radius * y, side * up]);
+        }
+    }
+    let at = |i: usize, side: usize| {
+        let side = if i < n { side } else { 1 - side };
+        (2 * (i % n) + side) as u32
+    };
+    for i in 0..n {
+        draft.face([at(i, 0), at(i + 1, 0), at(i + 1, 1), at(i, 1)]);
+    }
+    Ok(draft.finish())
+}

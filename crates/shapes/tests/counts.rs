@@ -1,0 +1,414 @@
+//! Every shape has the counts, the topology and the geometry that its documentation says.
+
+use mesh_core::{Facts, Point, PolygonMesh, VertexId};
+use shapes::{ControlNet, ShapeError};
+
+type Made = Result<PolygonMesh, ShapeError>;
+
+/// What a shape must be; a disk unless said otherwise.
+struct Expected {
+    vertices: usize,
+    edges: usize,
+    faces: usize,
+    boundary_loops: usize,
+    genus: Option<i64>,
+}
+
+impl Expected {
+    fn disk(vertices: usize, edges: usize, faces: usize) -> Self {
+        Self {
+            vertices,
+            edges,
+            faces,
+            boundary_loops: 1,
+            genus: Some(0),
+        }
+    }
+
+    fn closed(vertices: usize, edges: usize, faces: usize, genus: i64) -> Self {
+        Self {
+            boundary_loops: 0,
+            genus: Some(genus),
+            ..Self::disk(vertices, edges, faces)
+        }
+    }
+}
+
+/// Holds `mesh` to what is expected, and to what holds for all shapes; its facts.
+fn check(name: &str, mesh: &PolygonMesh, expected: &Expected) -> Facts {
+    let facts = Facts::of(mesh);
+    assert_eq!(facts.vertices, expected.vertices, "vertices of {name}");
+    assert_eq!(facts.edges, expected.edges, "edges of {name}");
+    assert_eq!(facts.faces, expected.faces, "faces of {name}");
+    assert_eq!(
+        facts.boundary_loops,
+        Some(expected.boundary_loops),
+        "boundary of {name}"
+    );
+    assert_eq!(facts.genus, expected.genus, "genus of {name}");
+    assert_eq!(
+        facts.orientable,
+        Some(expected.genus.is_some()),
+        "orientability of {name}"
+    );
+    let closed = expected.boundary_loops == 0;
+    assert_eq!(facts.closed, closed, "{name}");
+    let [v, e, f] = [expected.vertices, expected.edges, expected.faces].map(|x| x as i64);
+    assert_eq!(facts.euler_characteristic, v - e + f, "χ of {name}");
+    if let Some(genus) = expected.genus {
+        let characteristic = 2 - 2 * genus - expected.boundary_loops as i64;
+        assert_eq!(
+            facts.euler_characteristic, characteristic,
+            "χ by genus of {name}"
+        );
+    }
+    assert_eq!(facts.components, 1, "{name}");
+    let none = [
+        facts.isolated_vertices,
+        facts.non_manifold_edges,
+        facts.non_manifold_vertices,
+        facts.duplicate_faces,
+        facts.degenerate_faces,
+    ];
+    assert_eq!(none, [0; 5], "{name}");
+    // A shape with one side has edges where its faces disagree; no other has.
+    assert_eq!(
+        facts.inconsistent_edges > 0,
+        expected.genus.is_none(),
+        "{name}"
+    );
+
+    assert!(mesh.positions().iter().all(|p| p.is_finite()), "{name}");
+    let mut places: Vec<[u32; 3]> = mesh.positions().iter().map(bits).collect();
+    places.sort_unstable();
+    places.dedup();
+    assert_eq!(
+        places.len(),
+        mesh.vertex_count(),
+        "two vertices of {name} in one place"
+    );
+    if closed {
+        assert!(volume(mesh) > 0.0, "{name} is inside out");
+    }
+    facts
+}
+
+fn bits(point: &Point) -> [u32; 3] {
+    point.to_array().map(|x| (x + 0.0).to_bits())
+}
+
+/// The volume that a closed mesh encloses, negative where it is inside out.
+fn volume(mesh: &PolygonMesh) -> f64 {
+    let mut volume = 0.0;
+    for (_, face) in mesh.faces().iter() {
+        let place = |v: VertexId| mesh.position(v).as_dvec3();
+        for pair in face[1..].windows(2) {
+            volume += place(face[0]).dot(place(pair[0]).cross(place(pair[1]))) / 6.0;
+        }
+    }
+    volume
+}
+
+/// Every face of a flat shape runs counter-clockwise seen from above.
+fn check_flat(name: &str, mesh: &PolygonMesh) {
+    for (f, face) in mesh.faces().iter() {
+        let mut doubled = 0.0;
+        for (&a, &b) in face.iter().zip(face.iter().cycle().skip(1)) {
+            let [a, b] = [a, b].map(|v| mesh.position(v));
+            doubled += a.x * b.y - a.y * b.x;
+            assert_eq!(a.z, 0.0, "{name}");
+        }
+        assert!(doubled > 0.0, "{f} of {name} is turned over");
+    }
+}
+
+/// All sides of a mesh have this length.
+fn check_sides(name: &str, mesh: &PolygonMesh, length: f32) {
+    for (f, face) in mesh.faces().iter() {
+        for (&a, &b) in face.iter().zip(face.iter().cycle().skip(1)) {
+            let side = mesh.position(a).distance(mesh.position(b));
+            assert!(
+                (side - length).abs() < 1e-5 * length,
+                "a side of {f} of {name}: {side}"
+            );
+        }
+    }
+}
+
+/// How often each value occurs, as pairs.
+fn hist(spread: &Option<mesh_core::Spread>) -> Vec<(usize, usize)> {
+    let hist = spread.as_ref().and_then(|spread| spread.hist.clone());
+    hist.expect("a mesh of few degrees").into_iter().collect()
+}
+
+#[test]
+fn platonic_solids_and_their_duals() {
+    let solids = [
+        (
+            "tetrahedron",
+            shapes::tetrahedron(),
+            [4, 6, 4],
+            8.0_f32.sqrt(),
+        ),
+        ("cube", shapes::cube(), [8, 12, 6], 2.0),
+        (
+            "octahedron",
+            shapes::octahedron(),
+            [6, 12, 8],
+            2.0_f32.sqrt(),
+        ),
+        (
+            "dodecahedron",
+            shapes::dodecahedron(),
+            [20, 30, 12],
+            5.0_f32.sqrt() - 1.0,
+        ),
+        ("icosahedron", shapes::icosahedron(), [12, 30, 20], 2.0),
+    ];
+    let facts = solids.map(|(name, mesh, [v, e, f], side)| {
+        let facts = check(name, &mesh, &Expected::closed(v, e, f, 0));
+        check_sides(name, &mesh, side);
+        let radius = mesh.position(VertexId::new(0)).length();
+        for p in mesh.positions() {
+            assert!((p.length() - radius).abs() < 1e-6, "{name}");
+        }
+        (name, facts)
+    });
+    // The vertices of one are the faces of the other, valence and degree change places.
+    for (i, dual) in [0, 2, 1, 4, 3].into_iter().enumerate() {
+        let ((name, a), (other, b)) = (&facts[i], &facts[dual]);
+        assert_eq!(
+            (a.vertices, a.edges),
+            (b.faces, b.edges),
+            "{name} and {other}"
+        );
+        assert_eq!(hist(&a.valence), hist(&b.face_degree), "{name} and {other}");
+        assert_eq!(hist(&a.valence).len(), 1, "{name}");
+    }
+}
+
+#[test]
+fn prisms_and_antiprisms() {
+    for n in (3..40).chain([1000]) {
+        let name = format!("prism {n}");
+        let mesh = shapes::prism(n).expect(&name);
+        let facts = check(&name, &mesh, &Expected::closed(2 * n, 3 * n, n + 2, 0));
+        assert_eq!(hist(&facts.valence), [(3, 2 * n)], "{name}");
+        let name = format!("antiprism {n}");
+        let mesh = shapes::antiprism(n).expect(&name);
+        let facts = check(&name, &mesh, &Expected::closed(2 * n, 4 * n, 2 * n + 2, 0));
+        assert_eq!(hist(&facts.valence), [(4, 2 * n)], "{name}");
+    }
+    check_sides(
+        "prism 4",
+        &shapes::prism(4).expect("a cube"),
+        2.0_f32.sqrt(),
+    );
+    check_sides(
+        "antiprism 3",
+        &shapes::antiprism(3).expect("an octahedron"),
+        3.0_f32.sqrt(),
+    );
+}
+
+#[test]
+fn spheres() {
+    for m in 3..12 {
+        for n in 2..12 {
+            let name = format!("uv-sphere {m} {n}");
+            let mesh = shapes::uv_sphere(m, n).expect(&name);
+            let expected = Expected::closed(m * (n - 1) + 2, m * (2 * n - 1), m * n, 0);
+            check(&name, &mesh, &expected);
+            check_unit(&name, &mesh);
+        }
+    }
+    for f in 1..=16 {
+        let name = format!("geodesic {f}");
+        let mesh = shapes::geodesic(f).expect(&name);
+        let expected = Expected::closed(10 * f * f + 2, 30 * f * f, 20 * f * f, 0);
+        let facts = check(&name, &mesh, &expected);
+        check_unit(&name, &mesh);
+        let six = (6, 10 * f * f - 10);
+        let valences = [(5, 12), six];
+        assert_eq!(
+            hist(&facts.valence),
+            valences[..if f == 1 { 1 } else { 2 }],
+            "{name}"
+        );
+        // Every triangle looks away from the centre, not only most of them.
+        for (face, corners) in mesh.faces().iter() {
+            let [a, b, c] = [0, 1, 2].map(|i| mesh.position(corners[i]));
+            assert!((b - a).cross(c - a).dot(a) > 0.0, "{face} of {name}");
+        }
+    }
+}
+
+fn check_unit(name: &str, mesh: &PolygonMesh) {
+    for p in mesh.positions() {
+        assert!((p.length() - 1.0).abs() < 1e-6, "{p} of {name}");
+    }
+}
+
+#[test]
+fn grids_and_tilings() {
+    for m in 1..10 {
+        for n in 1..10 {
+            let (v, e, f) = ((m + 1) * (n + 1), 2 * m * n + m + n, m * n);
+            let flat = |name: &str, made: Made, expected: Expected| {
+                let name = format!("{name} {m} {n}");
+                let mesh = made.expect(&name);
+                check_flat(&name, &mesh);
+                (check(&name, &mesh, &expected), mesh)
+            };
+            let (_, squares) = flat("grid", shapes::grid(m, n), Expected::disk(v, e, f));
+            check_sides("grid", &squares, 1.0);
+            let halves = || Expected::disk(v, e + f, 2 * f);
+            flat("triangle-grid", shapes::triangle_grid(m, n), halves());
+            let (facts, triangles) =
+                flat("triangle-tiling", shapes::triangle_tiling(m, n), halves());
+            check_sides("triangle-tiling", &triangles, 1.0);
+            let inner = |facts: &Facts, valence| {
+                let of = |&(v, count)| (v == valence).then_some(count);
+                hist(&facts.valence).iter().find_map(of).unwrap_or(0)
+            };
+            assert!(inner(&facts, 6) >= (m - 1) * (n - 1), "{{3, 6}} {m} {n}");
+            let cut = f / 2;
+            let mixed = Expected::disk(v, e + cut, f + cut);
+            flat("mixed-grid", shapes::mixed_grid(m, n), mixed);
+            let hexagons = Expected::disk(2 * v - 2, 3 * f + 2 * m + 2 * n - 1, f);
+            let (facts, hexagons) = flat("hexagon-tiling", shapes::hexagon_tiling(m, n), hexagons);
+            check_sides("hexagon-tiling", &hexagons, 1.0);
+            assert_eq!(hist(&facts.face_degree), [(6, f)]);
+            assert!(
+                facts
+                    .valence
+                    .as_ref()
+                    .is_some_and(|valence| valence.max <= 3)
+            );
+        }
+    }
+}
+
+#[test]
+fn grids_with_holes() {
+    for m in 1..13 {
+        for n in 1..13 {
+            let (v, e, f) = ((m + 1) * (n + 1), 2 * m * n + m + n, m * n);
+            if m >= 3 && n >= 3 {
+                let (a, b) = (m / 3, n / 3);
+                let name = format!("grid-with-hole {m} {n}");
+                let mesh = shapes::grid_with_hole(m, n).expect(&name);
+                check_flat(&name, &mesh);
+                let expected = Expected {
+                    boundary_loops: 2,
+                    ..Expected::disk(v - (a - 1) * (b - 1), e - 2 * a * b + a + b, f - a * b)
+                };
+                check(&name, &mesh, &expected);
+            }
+            let room = ((m - 1) / 2) * ((n - 1) / 2);
+            for holes in 0..=room {
+                let name = format!("grid-with-holes {m} {n} {holes}");
+                let mesh = shapes::grid_with_holes(m, n, holes).expect(&name);
+                let expected = Expected {
+                    boundary_loops: 1 + holes,
+                    ..Expected::disk(v, e, f - holes)
+                };
+                check(&name, &mesh, &expected);
+            }
+            let error = shapes::grid_with_holes(m, n, room + 1).expect_err("no room");
+            let message = format!("holes = {}: choose from 0 to {room}", room + 1);
+            assert_eq!(error.to_string(), message);
+        }
+    }
+}
+
+#[test]
+fn patches() {
+    for (m, n) in [(1, 1), (1, 7), (6, 2), (20, 20)] {
+        let (v, e, f) = ((m + 1) * (n + 1), 2 * m * n + m + n, m * n);
+        for (columns, rows) in [(2, 2), (2, 5), (4, 4), (33, 3)] {
+            let name = format!("bezier-patch {columns} × {rows}, {m} {n}");
+            let net = ControlNet::saddle(columns, rows).expect(&name);
+            let mesh = shapes::bezier_patch(&net, m, n).expect(&name);
+            check(&name, &mesh, &Expected::disk(v, e, f));
+        }
+        for (columns, rows, degree) in [(2, 2, 1), (4, 4, 3), (9, 5, 3), (6, 8, 5)] {
+            let name = format!("b-spline-patch {columns} × {rows} of {degree}, {m} {n}");
+            let net = ControlNet::waves(columns, rows).expect(&name);
+            let mesh = shapes::b_spline_patch(&net, degree, m, n).expect(&name);
+            check(&name, &mesh, &Expected::disk(v, e, f));
+        }
+    }
+}
+
+#[test]
+fn tori_handles_and_the_moebius_strip() {
+    for m in 3..12 {
+        for n in 3..12 {
+            let cells = m * n;
+            let name = format!("torus {m} {n}");
+            let mesh = shapes::torus(m, n).expect(&name);
+            let facts = check(&name, &mesh, &Expected::closed(cells, 2 * cells, cells, 1));
+            assert_eq!(hist(&facts.valence), [(4, cells)], "{name}");
+            let name = format!("triangle-torus {m} {n}");
+            let mesh = shapes::triangle_torus(m, n).expect(&name);
+            let facts = check(
+                &name,
+                &mesh,
+                &Expected::closed(cells, 3 * cells, 2 * cells, 1),
+            );
+            assert_eq!(hist(&facts.valence), [(6, cells)], "{name}");
+        }
+    }
+    for g in 0..40 {
+        let name = format!("genus {g}");
+        let mesh = shapes::genus(g).expect(&name);
+        let expected = Expected::closed(16 * (g + 1), 36 * g + 28, 18 * g + 14, g as i64);
+        check(&name, &mesh, &expected);
+        let solid = (3 * (2 * g + 1) - g) as f64;
+        assert!(
+            (volume(&mesh) - solid).abs() < 1e-6,
+            "{name} has the volume of its cubes"
+        );
+    }
+    for n in 3..60 {
+        let name = format!("moebius {n}");
+        let mesh = shapes::moebius(n).expect(&name);
+        let expected = Expected {
+            genus: None,
+            ..Expected::disk(2 * n, 3 * n, n)
+        };
+        let facts = check(&name, &mesh, &expected);
+        assert_eq!(facts.boundary_edges, 2 * n, "{name}");
+        assert_eq!(facts.euler_characteristic, 0, "{name}");
+    }
+}
+
+#[test]
+fn the_default_study_is_the_same_everywhere() {
+    let mesh = shapes::default_study();
+    let (v, e, f) = (
+        mesh.vertex_count(),
+        3 * mesh.face_count() / 2,
+        mesh.face_count(),
+    );
+    let facts = check("default-study", &mesh, &Expected::closed(v, e, f, 7));
+    let valence = facts.valence.expect("a mesh");
+    assert!(valence.min <= 4 && valence.max >= 9, "{valence:?}");
+    let common = valence.hist.iter().flat_map(|hist| hist.values()).max();
+    assert!(
+        common.is_some_and(|&common| 2 * common < v),
+        "no valence rules: {valence:?}"
+    );
+    for (face, corners) in mesh.faces().iter() {
+        let [a, b, c] = [0, 1, 2].map(|i| mesh.position(corners[i]));
+        assert!((b - a).cross(c - a).length() > 1e-6, "{face} is a sliver");
+    }
+    // FNV-1a over every coordinate and corner: figures published for this mesh stay comparable.
+    let words = mesh.positions().iter().flat_map(bits);
+    let words = words.chain(mesh.faces().corners().iter().map(|v| v.index() as u32));
+    let hash = words.fold(0xCBF2_9CE4_8422_2325_u64, |hash, word| {
+        (hash ^ u64::from(word)).wrapping_mul(0x0100_0000_01B3)
+    });
+    assert_eq!((v, f, hash), (9_988, 20_000, 12_851_112_267_927_841_803));
+}

@@ -1,0 +1,133 @@
+//! An order changes names and places in memory, and nothing else.
+
+use mesh_core::{Facts, Point, PolygonMesh, VertexId};
+use shapes::{Order, breadth_first, morton, shuffled};
+
+fn meshes() -> Vec<PolygonMesh> {
+    let made = [
+        shapes::genus(2),
+        shapes::mixed_grid(6, 7),
+        shapes::moebius(9),
+        shapes::grid_with_holes(9, 9, 5),
+        PolygonMesh::new([Point::X, Point::Y, Point::Z, Point::ONE], [[1, 3, 2]])
+            .map_err(|_| unreachable!("a triangle beside an isolated vertex")),
+        Ok(PolygonMesh::default()),
+    ];
+    made.map(|mesh| mesh.expect("small parameters")).into()
+}
+
+/// The faces as cycles of places, each turned to start at its least; sorted.
+fn content(mesh: &PolygonMesh) -> (Vec<[u32; 3]>, Vec<Vec<[u32; 3]>>) {
+    let place = |v: VertexId| mesh.position(v).to_array().map(f32::to_bits);
+    let mut places: Vec<_> = mesh.vertices().map(place).collect();
+    places.sort_unstable();
+    let mut faces: Vec<Vec<_>> = Vec::new();
+    for (_, face) in mesh.faces().iter() {
+        let mut cycle: Vec<_> = face.iter().map(|&v| place(v)).collect();
+        let least = (0..cycle.len()).min_by_key(|&i| cycle[i]).unwrap_or(0);
+        cycle.rotate_left(least);
+        faces.push(cycle);
+    }
+    faces.sort_unstable();
+    (places, faces)
+}
+
+#[test]
+fn every_order_keeps_the_mesh() {
+    for mesh in meshes() {
+        for order in Order::ALL {
+            assert_eq!(order.name().parse(), Ok(order));
+            let ordered = order.of(&mesh, 3);
+            assert_eq!(content(&ordered), content(&mesh), "{order}");
+            assert_eq!(Facts::of(&ordered), Facts::of(&mesh), "{order}");
+        }
+        assert_eq!(Order::Given.of(&mesh, 3), mesh);
+    }
+}
+
+#[test]
+fn shuffling_depends_on_the_seed_alone() {
+    let mesh = shapes::torus(10, 10).expect("small");
+    assert_eq!(shuffled(&mesh, 5), shuffled(&mesh, 5));
+    assert_ne!(shuffled(&mesh, 5), shuffled(&mesh, 6));
+    assert_ne!(shuffled(&mesh, 5), mesh);
+    // Faces are turned too. In a grid each starts at its lower left; then a quarter of them do.
+    let mesh = shapes::grid(10, 10).expect("small");
+    let mut starts = [0; 4];
+    let turned = shuffled(&mesh, 5);
+    for (_, face) in turned.faces().iter() {
+        let height = |&i: &usize| {
+            let p = turned.position(face[i]);
+            p.x + p.y
+        };
+        let lower_left = (0..4).min_by(|a, b| height(a).total_cmp(&height(b)));
+        starts[lower_left.expect("a corner")] += 1;
+    }
+    assert!(starts.iter().all(|&count| count > 10), "{starts:?}");
+}
+
+#[test]
+fn morton_and_breadth_first_forget_the_order_before() {
+    let mesh = shapes::default_study();
+    let sorted = morton(&shuffled(&mesh, 1));
+    assert_eq!(sorted.positions(), morton(&mesh).positions());
+    // What is near on the surface is near in memory: the mean step along a side.
+    let step = |mesh: &PolygonMesh| {
+        let sides = mesh
+            .faces()
+            .iter()
+            .flat_map(|(_, f)| [(f[0], f[1]), (f[1], f[2]), (f[2], f[0])]);
+        let sum: usize = sides.map(|(a, b)| a.index().abs_diff(b.index())).sum();
+        sum / mesh.corner_count()
+    };
+    let random = step(&shuffled(&mesh, 1));
+    assert!(
+        10 * step(&sorted) < random,
+        "morton: {} of {random}",
+        step(&sorted)
+    );
+    let walked = breadth_first(&shuffled(&mesh, 1));
+    assert!(
+        10 * step(&walked) < random,
+        "breadth first: {} of {random}",
+        step(&walked)
+    );
+}
+
+#[test]
+fn a_walk_meets_faces_in_the_order_of_their_first_vertex() {
+    for mesh in meshes() {
+        let walked = breadth_first(&shuffled(&mesh, 2));
+        let firsts = walked
+            .faces()
+            .iter()
+            .map(|(_, face)| face.iter().min().copied());
+        assert!(firsts.is_sorted(), "{walked:?}");
+        // A vertex is called up by a face that an earlier vertex sees, but for where a walk starts.
+        let components = Facts::of(&mesh).components + Facts::of(&mesh).isolated_vertices;
+        let mut called = vec![false; walked.vertex_count()];
+        for (_, face) in walked.faces().iter() {
+            let first = face.iter().min().expect("a corner");
+            for v in face {
+                called[v.index()] |= v != first;
+            }
+        }
+        let starts = called.iter().filter(|&&called| !called).count();
+        assert_eq!(starts, components);
+    }
+}
+
+#[test]
+fn places_that_are_no_numbers_are_ordered_too() {
+    let odd = [
+        Point::NAN,
+        Point::INFINITY,
+        Point::NEG_INFINITY,
+        Point::MAX,
+        Point::MIN,
+    ];
+    let mesh = PolygonMesh::new(odd, [[0, 1, 2], [2, 3, 4]]).expect("valid faces");
+    assert_eq!(morton(&mesh).face_count(), 2);
+    let same = PolygonMesh::new([Point::ONE; 3], [[2, 1, 0]]).expect("valid faces");
+    assert_eq!(morton(&same), same);
+}
