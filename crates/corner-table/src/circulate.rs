@@ -1,0 +1,367 @@
+//! Walks around a vertex and around an edge: ordinary iterators that end after one turn.
+//!
+//! ```text
+//!        b                 The walk around v holds n, the corner after the one at v. One row of
+//!       / \                each table is all that a step needs: vertex(n) is the neighbour a,
+//!   …  / t \   a = V(n)    opposite(n) leads across the edge v–b, which n faces, and the corner
+//!     /     \  n           before that is the next n.
+//!    b ───── v
+//! ```
+
+use mesh_core::{Probe, Slot, VertexId};
+
+use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
+
+/// The corners at a vertex, counter-clockwise: each step is `c → swing(c)`.
+#[derive(Clone, Debug)]
+pub struct CornersAt<'a, P: Probe>(Fan<'a, P>);
+
+impl<P: Probe> Iterator for CornersAt<'_, P> {
+    type Item = CornerId;
+
+    #[inline]
+    fn next(&mut self) -> Option<CornerId> {
+        self.0.next().map(|(after, _)| after.prev())
+    }
+
+    #[inline]
+    fn fold<B, F: FnMut(B, CornerId) -> B>(self, init: B, mut f: F) -> B {
+        self.0
+            .fold(init, |folded, (after, _)| f(folded, after.prev()))
+    }
+}
+
+impl<P: Probe> CornerTable<P> {
+    /// The corners at `v`, counter-clockwise; from one boundary edge to the other, if `v` is on one.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such vertex.
+    #[inline]
+    pub fn corners_at(&self, v: VertexId) -> CornersAt<'_, P> {
+        CornersAt(self.fan(v))
+    }
+
+    #[inline]
+    pub(crate) fn fan(&self, v: VertexId) -> Fan<'_, P> {
+        let at = self.corner_at(v).map(CornerId::next);
+        Fan {
+            mesh: self,
+            at,
+            first: at,
+        }
+    }
+}
+
+/// For each corner at a vertex, counter-clockwise: the corner after it, and the one opposite to that.
+#[derive(Clone, Debug)]
+pub(crate) struct Fan<'a, P: Probe> {
+    mesh: &'a CornerTable<P>,
+    at: Option<CornerId>,
+    first: Option<CornerId>,
+}
+
+impl<P: Probe> Iterator for Fan<'_, P> {
+    type Item = (CornerId, Slot<CornerId>);
+
+    #[inline]
+    fn next(&mut self) -> Option<Self::Item> {
+        let n = self.at?;
+        let across = *self.mesh.opposite.read(n.index());
+        let turned = across.get().map(CornerId::prev);
+        self.at = if turned == self.first { None } else { turned };
+        Some((n, across))
+    }
+
+    #[inline]
+    fn fold<B, F: FnMut(B, Self::Item) -> B>(self, init: B, mut f: F) -> B {
+        let (Some(mut n), Some(first)) = (self.at, self.first) else {
+            return init;
+        };
+        let mut folded = init;
+        loop {
+            let across = *self.mesh.opposite.read(n.index());
+            folded = f(folded, (n, across));
+            match across.get().map(CornerId::prev) {
+                Some(turned) if turned != first => n = turned,
+                _ => return folded,
+            }
+        }
+    }
+}
+
+/// The neighbours of a vertex: one for each corner, and at the end of an open fan one more.
+#[derive(Clone, Debug)]
+pub(crate) struct Neighbours<'a, P: Probe> {
+    fan: Fan<'a, P>,
+    /// The last corner of an open fan, once the fan has ended there.
+    last: Option<CornerId>,
+}
+
+impl<'a, P: Probe> Neighbours<'a, P> {
+    #[inline]
+    pub(crate) fn new(mesh: &'a CornerTable<P>, v: VertexId) -> Self {
+        Self {
+            fan: mesh.fan(v),
+            last: None,
+        }
+    }
+}
+
+impl<P: Probe> Iterator for Neighbours<'_, P> {
+    type Item = VertexId;
+
+    #[inline]
+    fn next(&mut self) -> Option<VertexId> {
+        let at = match self.fan.next() {
+            Some((n, across)) => {
+                if across.get().is_none() {
+                    self.last = Some(n.next());
+                }
+                n
+            }
+            None => self.last.take()?,
+        };
+        Some(self.fan.mesh.vertex(at))
+    }
+
+    #[inline]
+    fn fold<B, F: FnMut(B, VertexId) -> B>(self, init: B, mut f: F) -> B {
+        let (mesh, mut last) = (self.fan.mesh, self.last);
+        let folded = self.fan.fold(init, |folded, (n, across)| {
+            if across.get().is_none() {
+                last = Some(n.next());
+            }
+            f(folded, mesh.vertex(n))
+        });
+        match last {
+            Some(at) => f(folded, mesh.vertex(at)),
+            None => folded,
+        }
+    }
+}
+
+/// The edges at a vertex: one for each corner, and at the end of an open fan the one it began with.
+#[derive(Clone, Debug)]
+pub(crate) struct Spokes<'a, P: Probe> {
+    fan: Fan<'a, P>,
+    open: bool,
+}
+
+impl<'a, P: Probe> Spokes<'a, P> {
+    #[inline]
+    pub(crate) fn new(mesh: &'a CornerTable<P>, v: VertexId) -> Self {
+        Self {
+            fan: mesh.fan(v),
+            open: false,
+        }
+    }
+
+    /// The boundary edge at which an open fan begins.
+    #[inline]
+    fn first_edge(&self) -> Option<EdgeCorner> {
+        self.fan.first.map(|n| edge_between(n.next(), Slot::NONE))
+    }
+}
+
+impl<P: Probe> Iterator for Spokes<'_, P> {
+    type Item = EdgeCorner;
+
+    #[inline]
+    fn next(&mut self) -> Option<EdgeCorner> {
+        match self.fan.next() {
+            Some((n, across)) => {
+                self.open = across.get().is_none();
+                Some(edge_between(n, across))
+            }
+            None if self.open => {
+                self.open = false;
+                self.first_edge()
+            }
+            None => None,
+        }
+    }
+
+    #[inline]
+    fn fold<B, F: FnMut(B, EdgeCorner) -> B>(self, init: B, mut f: F) -> B {
+        let (first_edge, mut open) = (self.first_edge(), self.open);
+        let folded = self.fan.fold(init, |folded, (n, across)| {
+            open = across.get().is_none();
+            f(folded, edge_between(n, across))
+        });
+        match first_edge.filter(|_| open) {
+            Some(edge) => f(folded, edge),
+            None => folded,
+        }
+    }
+}
+
+/// The edges at both ends of an edge, but for itself, read from `opposite` alone.
+///
+/// ```text
+///        c              Around a, counter-clockwise from the edge: the corners that face the
+///       / \             edges are prev(c) and on, until one is d. Around b likewise from prev(d)
+///      /   \            until c.
+///     a ─e─ b
+///      \   /            Where a walk ends at a boundary, the rest of the fan lies clockwise: from
+///       \ /             next(d) around a, from next(c) around b.
+///        d
+/// ```
+#[derive(Clone, Debug)]
+pub(crate) struct EdgeEdges<'a, P: Probe> {
+    mesh: &'a CornerTable<P>,
+    /// The corner that faces the next edge.
+    at: Option<CornerId>,
+    turn: Turn,
+    /// The corner on the side of the edge where the walk began.
+    near: Slot<CornerId>,
+    /// The one on the other side: what faces the edge at the end of the walk.
+    far: Slot<CornerId>,
+    /// Whether the walk around the other end is still to come.
+    more: bool,
+}
+
+/// Which way round a walk goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Turn {
+    Counterclockwise,
+    Clockwise,
+}
+
+impl<'a, P: Probe> EdgeEdges<'a, P> {
+    #[inline]
+    pub(crate) fn new(mesh: &'a CornerTable<P>, e: EdgeCorner) -> Self {
+        let c = e.corner();
+        Self {
+            mesh,
+            far: *mesh.opposite.read(c.index()),
+            near: Slot::some(c),
+            at: Some(c.prev()),
+            turn: Turn::Counterclockwise,
+            more: true,
+        }
+    }
+}
+
+impl<P: Probe> EdgeEdges<'_, P> {
+    /// The edge that the walk has come to, if it has not ended, and the corner across it.
+    #[inline]
+    fn here(&self) -> Option<(EdgeCorner, Option<CornerId>)> {
+        let at = self.at.filter(|&at| Slot::some(at) != self.far)?;
+        let across = *self.mesh.opposite.read(at.index());
+        Some((edge_between(at, across), across.get()))
+    }
+
+    /// Begins the walk after one that has ended; false if that was the last.
+    #[inline]
+    fn begin_next_walk(&mut self) -> bool {
+        // A walk that came back to the edge has seen the whole fan; one that ended has not.
+        if self.at.is_none() && self.turn == Turn::Counterclockwise {
+            self.turn = Turn::Clockwise;
+            self.at = self.far.get().map(CornerId::next);
+            return true;
+        }
+        let more = std::mem::take(&mut self.more);
+        if more {
+            self.turn = Turn::Counterclockwise;
+            (self.near, self.far) = (self.far, self.near);
+            self.at = self.near.get().map(CornerId::prev);
+        }
+        more
+    }
+}
+
+impl<P: Probe> Iterator for EdgeEdges<'_, P> {
+    type Item = EdgeCorner;
+
+    #[inline]
+    fn next(&mut self) -> Option<EdgeCorner> {
+        loop {
+            if let Some((edge, across)) = self.here() {
+                self.at = across.map(|across| match self.turn {
+                    Turn::Counterclockwise => across.prev(),
+                    Turn::Clockwise => across.next(),
+                });
+                return Some(edge);
+            }
+            if !self.begin_next_walk() {
+                return None;
+            }
+        }
+    }
+
+    #[inline]
+    fn fold<B, F: FnMut(B, EdgeCorner) -> B>(mut self, init: B, mut f: F) -> B {
+        let mut folded = init;
+        loop {
+            // Two loops, so that neither asks at each step which way it goes.
+            match self.turn {
+                Turn::Counterclockwise => {
+                    while let Some((edge, across)) = self.here() {
+                        folded = f(folded, edge);
+                        self.at = across.map(CornerId::prev);
+                    }
+                }
+                Turn::Clockwise => {
+                    while let Some((edge, across)) = self.here() {
+                        folded = f(folded, edge);
+                        self.at = across.map(CornerId::next);
+                    }
+                }
+            }
+            if !self.begin_next_walk() {
+                return folded;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Debug;
+    use std::iter::from_fn;
+
+    use mesh_core::{MeshQuery, Representation};
+
+    use super::*;
+
+    /// `fold` is written apart from `next` where speed asks for it: they must agree, from the start
+    /// and from any place that `next` has come to.
+    fn folds_as_it_steps<I>(items: I, of: impl Debug)
+    where
+        I: Iterator<Item: Debug + PartialEq> + Clone,
+    {
+        let mut rest = items;
+        loop {
+            let (mut stepped, mut folded) = (Vec::new(), Vec::new());
+            let mut steps = rest.clone();
+            stepped.extend(from_fn(|| steps.next()));
+            rest.clone().for_each(|item| folded.push(item));
+            assert_eq!(folded, stepped, "at {of:?}");
+            assert!(steps.next().is_none(), "at {of:?}: an end is an end");
+            if rest.next().is_none() {
+                return;
+            }
+        }
+    }
+
+    #[test]
+    fn walks_fold_as_they_step() {
+        let open = shapes::grid_with_hole(4, 4).expect("a size that is there");
+        for polygons in [
+            shapes::octahedron(),
+            open.fan_triangulated().expect("small"),
+        ] {
+            let mesh = CornerTable::from_polygons(&polygons).expect("manifold");
+            for v in mesh.vertices() {
+                folds_as_it_steps(mesh.corners_at(v), v);
+                folds_as_it_steps(mesh.fan(v), v);
+                folds_as_it_steps(Neighbours::new(&mesh, v), v);
+                folds_as_it_steps(Spokes::new(&mesh, v), v);
+            }
+            for e in mesh.edges() {
+                folds_as_it_steps(EdgeEdges::new(&mesh, e), e);
+            }
+        }
+    }
+}

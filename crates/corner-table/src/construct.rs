@@ -1,0 +1,180 @@
+//! In from polygons, and out again.
+
+use mesh_core::{
+    BuildError, Capabilities, Counts, FaceId, FaceList, InvariantError, MemoryFootprint, Point,
+    PolygonMesh, Probe, QueryCost, Representation, RowId, RowMap, Slot, Table, TwinPairs, VertexId,
+};
+
+use crate::mesh::{CornerId, CornerTable};
+
+impl Representation for CornerTable {
+    const NAME: &'static str = "corner-table";
+
+    const CAPABILITIES: Capabilities = Capabilities {
+        polygons: false,
+        ..Capabilities::ORIENTED_MANIFOLDS
+    };
+
+    const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
+
+    type Probed<P: Probe> = CornerTable<P>;
+
+    /// Pairs the sides, lets the corners that face a pair know each other, then enters every fan;
+    /// O(corners + vertices), without hashing.
+    fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
+        let refusal = || match Self::CAPABILITIES.check(polygons) {
+            Err(fault) => fault,
+            Ok(()) => unreachable!("building finds a fault in a mesh that the check finds sound"),
+        };
+        let (vertices, faces) = (polygons.vertex_count(), polygons.faces());
+        if !faces.is_empty() && faces.uniform_degree() != Some(3) {
+            return Err(refusal());
+        }
+        let pairs = TwinPairs::of(vertices, faces).ok_or_else(refusal)?;
+        let links = Links::of(pairs);
+        let corner = links.first_corners(vertices, faces.corners());
+        if !links.every_vertex_is_one_fan(&corner) {
+            return Err(refusal());
+        }
+        Ok(Self {
+            positions: Table::new("positions", "vertex", polygons.positions().to_vec()),
+            corner: Table::new("corner", "vertex", corner),
+            vertex: Table::new("vertex", "corner", faces.corners().to_vec()),
+            opposite: Table::new("opposite", "corner", links.opposite),
+        })
+    }
+
+    fn to_polygons(&self) -> PolygonMesh {
+        let faces = FaceList::uniform(3, self.vertex.rows().to_vec()).expect("I1");
+        PolygonMesh::from_faces(self.positions().to_vec(), faces).expect("I1")
+    }
+
+    fn vertex_name(_: &PolygonMesh, v: VertexId) -> VertexId {
+        v
+    }
+
+    fn face_name(_: &PolygonMesh, f: FaceId) -> FaceId {
+        f
+    }
+
+    fn set_positions(&mut self, positions: &RowMap<VertexId, Point>) {
+        self.positions
+            .rows_mut()
+            .copy_from_slice(positions.values());
+    }
+
+    fn memory(&self) -> MemoryFootprint {
+        let Self {
+            positions,
+            corner,
+            vertex,
+            opposite,
+        } = self;
+        [
+            positions.bytes(),
+            corner.bytes(),
+            vertex.bytes(),
+            opposite.bytes(),
+        ]
+        .into_iter()
+        .collect()
+    }
+
+    fn layout_bytes(counts: &Counts) -> usize {
+        16 * counts.vertices + 8 * counts.corners
+    }
+
+    fn validate(&self) -> Result<(), InvariantError> {
+        crate::validate::validate(self)
+    }
+
+    fn probed<P: Probe>(self, probe: P) -> CornerTable<P> {
+        CornerTable {
+            positions: self.positions.probed(probe.clone()),
+            corner: self.corner.probed(probe.clone()),
+            vertex: self.vertex.probed(probe.clone()),
+            opposite: self.opposite.probed(probe),
+        }
+    }
+}
+
+/// What building needs to know of every corner.
+struct Links {
+    /// The corner that faces the same edge from the other side.
+    opposite: Vec<Slot<CornerId>>,
+    /// The row of the corner after it around its vertex; at the end of an open fan, of none.
+    swing: Vec<u32>,
+    /// Whether there is no boundary.
+    closed: bool,
+}
+
+impl Links {
+    /// Lets the corners that face a pair of sides know each other; O(corners).
+    fn of(pairs: TwinPairs) -> Self {
+        let TwinPairs {
+            half_of_corner: mut sides,
+            edge_count,
+        } = pairs;
+        // By half-edge: the corner that faces it. None on the outside of a boundary.
+        let mut facing = vec![Slot::NONE; 2 * edge_count];
+        let mut corner = 0;
+        for &[a, b, c] in sides.as_chunks::<3>().0 {
+            // Side i runs from corner i to the next; the third corner faces it.
+            facing[a as usize] = Slot::some(CornerId::new(corner + 2));
+            facing[b as usize] = Slot::some(CornerId::new(corner));
+            facing[c as usize] = Slot::some(CornerId::new(corner + 1));
+            corner += 3;
+        }
+        let mut opposite = Vec::with_capacity(sides.len());
+        for triangle in sides.as_chunks_mut::<3>().0 {
+            let [a, b, c] = triangle.map(|half| facing[(half ^ 1) as usize]);
+            opposite.extend([b, c, a]);
+            // A triangle's sides are not read again, so their place is free for its swings: the
+            // walks around all vertices take half the time when no step has to work them out.
+            *triangle = [c, a, b].map(|right: Slot<CornerId>| match right.get() {
+                Some(right) => right.next().row(),
+                None => u32::MAX,
+            });
+        }
+        Self {
+            closed: opposite.len() == 2 * edge_count,
+            opposite,
+            swing: sides,
+        }
+    }
+
+    /// By vertex: a corner there, on a boundary the one that has no `unswing`.
+    fn first_corners(&self, vertices: usize, vertex: &[VertexId]) -> Vec<Slot<CornerId>> {
+        let mut first = vec![Slot::NONE; vertices];
+        for (c, v) in (0..).zip(vertex) {
+            first[v.index()] = Slot::some(CornerId::new(c));
+        }
+        if self.closed {
+            return first;
+        }
+        for (c, across) in (0..).zip(&self.opposite) {
+            if across.get().is_none() {
+                // Swinging back from the next corner would cross the edge that c faces.
+                let start = CornerId::new(c).next();
+                first[vertex[start.index()].index()] = Slot::some(start);
+            }
+        }
+        first
+    }
+
+    /// Whether the walks from `first` meet every corner.
+    fn every_vertex_is_one_fan(&self, first: &[Slot<CornerId>]) -> bool {
+        let mut met = 0;
+        for first in first.iter().filter_map(|first| first.get()) {
+            let mut at = first.row();
+            while let Some(&next) = self.swing.get(at as usize) {
+                met += 1;
+                at = next;
+                if at == first.row() {
+                    break;
+                }
+            }
+        }
+        met == self.swing.len()
+    }
+}

@@ -1,0 +1,72 @@
+//! Corner table: triangles as two columns, the vertex of each corner and the corner opposite to it.
+//!
+//! Choose it for large triangle meshes that must know their neighbours: it is the smallest of the
+//! structures that answer everything in place, and its column of vertices is the index list that a
+//! renderer takes as it is. Not for polygons, nor for input with three faces on an edge; both are
+//! refused. Start at [`CornerTable`], whose numbered invariants explain the rest. After Rossignac,
+//! Safonova & Szymczak, *3D compression made simple* (2001).
+//!
+//! | holds | |
+//! |---|---|
+//! | triangles, boundaries, isolated vertices | yes |
+//! | polygons, edges with three faces, vertices with two fans, faces that disagree about the side | no: refused by name |
+//!
+//! # Complexity
+//!
+//! | query | cost | reads |
+//! |---|---|---|
+//! | VV | O(valence) | `corner`, then one row of `vertex` and one of `opposite` a neighbour |
+//! | VE, VF | O(valence) | `corner`, then one row of `opposite` a triangle |
+//! | EV | O(1) | two rows of `vertex`, of one triangle |
+//! | EE | O(valence) of both ends | one row of `opposite` an edge |
+//! | EF | O(1) | one row of `opposite` |
+//! | FV | O(1) | three rows of `vertex`, side by side |
+//! | FE, FF | O(1) | three rows of `opposite`, side by side |
+//! | the edges, their number | O(corners) | `opposite` once through |
+//! | building | O(corners + vertices) | |
+//!
+//! Corner `c` belongs to triangle `c / 3`, and `next` and `prev` are arithmetic: what a half-edge
+//! mesh stores for each half, this one computes. An edge is named by the corner that faces it, of
+//! two the lower, so that data by edge is a vector with a row for each corner: no hashing, but half
+//! of the rows are idle.
+//!
+//! # What the sweeps wait for
+//!
+//! Around a vertex each step needs the row that the last one read: a load, then the corner before
+//! (a multiplication to find `c % 3`, a comparison, a choice), about ten cycles in all with the
+//! tables in the nearest cache. That chain is the price of storing no `next`, and it bounds VV, VE,
+//! VF and EE in order, not the bytes: smoothing 2,562 vertices took 18 ns each and 40,962 took 25,
+//! with 76 bytes to move (icospheres, one core of a shared AMD EPYC). In random order it is the
+//! latency of the cache or memory behind each step: 55 ns a vertex on 82,000 triangles, and 444 on
+//! 1.3 million, one trip to memory a neighbour. FV, FE and FF read three rows in sequence and are
+//! bound by what is done with the answer; so are the edges and EF, at 0.8 ns an edge.
+//!
+//! # Examples
+//!
+//! ```
+//! use corner_table::CornerTable;
+//! use mesh_core::{MeshQuery, Point, PolygonMesh, Representation, VertexId};
+//!
+//! let square = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
+//! let polygons = PolygonMesh::new(square, [[0, 1, 2], [0, 2, 3]])?;
+//! let mesh = CornerTable::from_polygons(&polygons)?;
+//!
+//! // Counter-clockwise, from one boundary edge to the other.
+//! let v = VertexId::new(0);
+//! assert!(mesh.vertex_vertices(v).eq([1, 2, 3].map(VertexId::new)));
+//!
+//! let c = mesh.corner_at(v).expect("v0 is in a triangle");
+//! let turned = mesh.swing(c).expect("and in another");
+//! assert_eq!(mesh.unswing(turned), Some(c));
+//! assert_eq!(mesh.swing(turned), None);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod circulate;
+mod construct;
+mod mesh;
+mod query;
+mod validate;
+
+pub use circulate::CornersAt;
+pub use mesh::{CornerId, CornerTable, EdgeCorner};

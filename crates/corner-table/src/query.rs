@@ -1,0 +1,130 @@
+//! The nine relations.
+
+use mesh_core::{FaceId, MeshQuery, Point, Probe, VertexId, row};
+
+use crate::circulate::{EdgeEdges, Neighbours, Spokes};
+use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
+
+impl<P: Probe> MeshQuery for CornerTable<P> {
+    type Vertex = VertexId;
+    type Edge = EdgeCorner;
+    type Face = FaceId;
+
+    #[inline]
+    fn vertices(&self) -> impl Iterator<Item = VertexId> {
+        (0..row(self.positions.len())).map(VertexId::new)
+    }
+
+    /// Every corner that has none opposite, or a higher one; reads `opposite` once through.
+    #[inline]
+    fn edges(&self) -> impl Iterator<Item = EdgeCorner> {
+        // Every second corner is passed over, in no order to be foreseen. To gather the edges of 64
+        // corners without a branch, and then to visit them, was slower all the same.
+        let corners = (0..row(self.opposite.len())).map(CornerId::new);
+        corners.filter_map(|c| {
+            let edge = self.edge(c);
+            (edge.corner() == c).then_some(edge)
+        })
+    }
+
+    #[inline]
+    fn faces(&self) -> impl Iterator<Item = FaceId> {
+        (0..row(self.face_count())).map(FaceId::new)
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// No table has edges, so they are counted; O(corners).
+    fn edge_count(&self) -> usize {
+        let opposite = self.opposite.read_range(0..self.opposite.len());
+        let boundary = opposite.iter().filter(|across| across.get().is_none());
+        let boundary = boundary.count();
+        boundary + (opposite.len() - boundary) / 2
+    }
+
+    #[inline]
+    fn face_count(&self) -> usize {
+        self.vertex.len() / 3
+    }
+
+    #[inline]
+    fn position(&self, v: VertexId) -> Point {
+        *self.positions.read(v.index())
+    }
+
+    #[inline]
+    fn vertex_vertices(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
+        Neighbours::new(self, v)
+    }
+
+    #[inline]
+    fn vertex_edges(&self, v: VertexId) -> impl Iterator<Item = EdgeCorner> {
+        Spokes::new(self, v)
+    }
+
+    #[inline]
+    fn vertex_faces(&self, v: VertexId) -> impl Iterator<Item = FaceId> {
+        self.fan(v).map(|(after, _)| after.triangle())
+    }
+
+    #[inline]
+    fn edge_vertices(&self, e: EdgeCorner) -> [VertexId; 2] {
+        self.ends_of(e).map(|c| self.vertex(c))
+    }
+
+    #[inline]
+    fn edge_edges(&self, e: EdgeCorner) -> impl Iterator<Item = EdgeCorner> {
+        EdgeEdges::new(self, e)
+    }
+
+    #[inline]
+    fn edge_faces(&self, e: EdgeCorner) -> impl Iterator<Item = FaceId> {
+        let c = e.corner();
+        let sides = [Some(c), self.opposite(c)];
+        sides.into_iter().flatten().map(CornerId::triangle)
+    }
+
+    #[inline]
+    fn face_vertices(&self, f: FaceId) -> impl Iterator<Item = VertexId> {
+        self.vertices_of(f).into_iter()
+    }
+
+    #[inline]
+    fn face_edges(&self, f: FaceId) -> impl Iterator<Item = EdgeCorner> {
+        // Side i runs from corner i to the next; the third corner faces it.
+        let [a, b, c] = self.opposites_of(f);
+        [c, a, b]
+            .into_iter()
+            .map(|(c, across)| edge_between(c, across))
+    }
+
+    #[inline]
+    fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
+        // Two triangles may share two sides, or three.
+        let [a, b, c] = self
+            .opposites_of(f)
+            .map(|(_, across)| across.get().map(CornerId::triangle));
+        let b = if b == a { None } else { b };
+        let c = if c == a || c == b { None } else { c };
+        [a, b, c].into_iter().flatten()
+    }
+
+    fn vertex_rows(&self) -> usize {
+        self.positions.len()
+    }
+
+    fn edge_rows(&self) -> usize {
+        self.opposite.len()
+    }
+
+    fn face_rows(&self) -> usize {
+        self.face_count()
+    }
+
+    /// The walk around `v` as it is: neighbours come counter-clockwise, from the boundary.
+    fn one_ring(&self, v: VertexId) -> Option<impl Iterator<Item = VertexId>> {
+        Some(self.vertex_vertices(v))
+    }
+}

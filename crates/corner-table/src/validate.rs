@@ -1,0 +1,224 @@
+//! One check for each invariant.
+
+use std::collections::HashSet;
+
+use mesh_core::{InvariantError, MeshQuery, row};
+
+use crate::mesh::{CornerId, CornerTable};
+
+/// Checks I1 to I7 in turn; the later ones rely on the earlier ones.
+pub(crate) fn validate(mesh: &CornerTable) -> Result<(), InvariantError> {
+    triangles(mesh)?;
+    opposites(mesh)?;
+    sides_agree(mesh)?;
+    a_corner_each(mesh)?;
+    fans_start(mesh)?;
+    one_fan_each(mesh)?;
+    edges_differ(mesh)
+}
+
+fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> {
+    Err(InvariantError::new(invariant, detail))
+}
+
+fn corners(mesh: &CornerTable) -> impl Iterator<Item = CornerId> {
+    (0..row(mesh.corner_count())).map(CornerId::new)
+}
+
+fn triangles(mesh: &CornerTable) -> Result<(), InvariantError> {
+    let (corners, opposites) = (mesh.vertex_rows().len(), mesh.opposite_rows().len());
+    if !corners.is_multiple_of(3) || opposites != corners {
+        let detail = format!("{corners} corners, {opposites} with an opposite, are no triangles");
+        return fails("I1", detail);
+    }
+    if mesh.corner_rows().len() != mesh.vertex_count() {
+        return fails("I1", "not every vertex has a row in `corner`".into());
+    }
+    for t in mesh.faces() {
+        let [a, b, c] = mesh.vertices_of(t);
+        if a == b || b == c || c == a {
+            return fails("I1", format!("{t} names {a}, {b} and {c}"));
+        }
+        let last = a.max(b).max(c);
+        if last.index() >= mesh.vertex_count() {
+            return fails("I1", format!("{t} names {last}, which is not there"));
+        }
+    }
+    Ok(())
+}
+
+fn opposites(mesh: &CornerTable) -> Result<(), InvariantError> {
+    for c in corners(mesh) {
+        if let Some(across) = mesh.opposite(c) {
+            if across.index() >= mesh.corner_count() {
+                return fails("I2", format!("{across}, opposite to {c}, is not there"));
+            }
+            if mesh.opposite(across) != Some(c) {
+                return fails("I2", format!("{across} is opposite to {c}, but not back"));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn sides_agree(mesh: &CornerTable) -> Result<(), InvariantError> {
+    for c in corners(mesh) {
+        if let Some(across) = mesh.opposite(c) {
+            let here = [c.next(), c.prev()].map(|c| mesh.vertex(c));
+            let there = [across.prev(), across.next()].map(|c| mesh.vertex(c));
+            if here != there {
+                let detail = format!("{c} faces {here:?}, and {across} across it {there:?}");
+                return fails("I3", detail);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn a_corner_each(mesh: &CornerTable) -> Result<(), InvariantError> {
+    let mut used = vec![false; mesh.vertex_count()];
+    for v in mesh.vertex_rows() {
+        used[v.index()] = true;
+    }
+    for v in mesh.vertices() {
+        let Some(c) = mesh.corner_at(v) else {
+            if used[v.index()] {
+                return fails("I4", format!("{v} is in a triangle and has no corner"));
+            }
+            continue;
+        };
+        if c.index() >= mesh.corner_count() || mesh.vertex(c) != v {
+            return fails("I4", format!("{c} is no corner at {v}"));
+        }
+    }
+    Ok(())
+}
+
+fn fans_start(mesh: &CornerTable) -> Result<(), InvariantError> {
+    for c in corners(mesh).filter(|&c| mesh.unswing(c).is_none()) {
+        let v = mesh.vertex(c);
+        let entered = mesh.corner_at(v).and_then(|first| mesh.unswing(first));
+        if let Some(before) = entered {
+            let detail = format!("{c} starts a fan at {v}, which is entered after {before}");
+            return fails("I5", detail);
+        }
+    }
+    Ok(())
+}
+
+fn one_fan_each(mesh: &CornerTable) -> Result<(), InvariantError> {
+    let mut all = vec![0_usize; mesh.vertex_count()];
+    for v in mesh.vertex_rows() {
+        all[v.index()] += 1;
+    }
+    for v in mesh.vertices() {
+        let (met, all) = (mesh.corners_at(v).count(), all[v.index()]);
+        if met != all {
+            return fails(
+                "I6",
+                format!("swinging around {v} meets {met} of {all} corners"),
+            );
+        }
+    }
+    Ok(())
+}
+
+fn edges_differ(mesh: &CornerTable) -> Result<(), InvariantError> {
+    let mut ends = HashSet::new();
+    for e in mesh.edges() {
+        let [a, b] = mesh.edge_vertices(e);
+        if !ends.insert((a.min(b), a.max(b))) {
+            return fails(
+                "I7",
+                format!("{e} has the ends {a} and {b} of another edge"),
+            );
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::{Point, PolygonMesh, Representation, Slot, Table, VertexId};
+
+    use super::*;
+
+    fn table<const N: usize>(vertices: u16, triangles: [[u32; 3]; N]) -> CornerTable {
+        let positions: Vec<_> = (0..vertices).map(|i| Point::splat(i.into())).collect();
+        let polygons = PolygonMesh::new(positions, triangles).expect("valid");
+        let mesh = CornerTable::from_polygons(&polygons).expect("manifold");
+        assert_eq!(mesh.validate(), Ok(()));
+        mesh
+    }
+
+    /// The invariant that fails once `break_it` has had its way with a fan of two triangles around
+    /// v0 (corners 0 and 3; 1 and 5 are opposite), and an isolated v4.
+    fn broken(break_it: impl Fn(&mut CornerTable)) -> &'static str {
+        let mut mesh = table(5, [[0, 1, 2], [0, 2, 3]]);
+        break_it(&mut mesh);
+        mesh.validate().expect_err("the mesh is broken").invariant
+    }
+
+    fn c(row: u32) -> Slot<CornerId> {
+        Slot::some(CornerId::new(row))
+    }
+
+    #[test]
+    fn each_broken_invariant_is_named() {
+        let v = VertexId::new;
+        // I1: a column too short, a vertex that is not there, one that is there twice.
+        let short = |m: &CornerTable| m.vertex_rows()[..4].to_vec();
+        assert_eq!(
+            broken(|m| m.vertex = Table::new("vertex", "corner", short(m))),
+            "I1"
+        );
+        assert_eq!(
+            broken(|m| m.corner = Table::new("corner", "vertex", vec![c(0)])),
+            "I1"
+        );
+        assert_eq!(broken(|m| m.vertex.rows_mut()[1] = v(99)), "I1");
+        assert_eq!(broken(|m| m.vertex.rows_mut()[1] = v(2)), "I1");
+        // I2: an opposite that is not there, that does not answer, that answers another.
+        assert_eq!(broken(|m| m.opposite.rows_mut()[1] = c(99)), "I2");
+        assert_eq!(broken(|m| m.opposite.rows_mut()[5] = Slot::NONE), "I2");
+        assert_eq!(broken(|m| m.opposite.rows_mut()[0] = c(1)), "I2");
+        // I3: the pair faces two different edges; one edge, but run the same way twice.
+        assert_eq!(broken(|m| m.vertex.rows_mut()[3] = v(1)), "I3");
+        assert_eq!(broken(|m| m.vertex.rows_mut().swap(3, 4)), "I3");
+        // I4: a corner that is not there, one elsewhere, none, and one at an isolated vertex.
+        assert_eq!(broken(|m| m.corner.rows_mut()[0] = c(99)), "I4");
+        assert_eq!(broken(|m| m.corner.rows_mut()[0] = c(1)), "I4");
+        assert_eq!(broken(|m| m.corner.rows_mut()[0] = Slot::NONE), "I4");
+        assert_eq!(broken(|m| m.corner.rows_mut()[4] = c(0)), "I4");
+        // I5: the fan around v0 is entered at its second corner.
+        assert_eq!(broken(|m| m.corner.rows_mut()[0] = c(3)), "I5");
+    }
+
+    #[test]
+    fn a_vertex_of_two_fans_is_found() {
+        // Two triangles apart; then a vertex of each is made the same.
+        let mut mesh = table(6, [[0, 1, 2], [3, 4, 5]]);
+        mesh.vertex.rows_mut()[5] = VertexId::new(0);
+        mesh.corner.rows_mut()[5] = Slot::NONE;
+        assert_eq!(mesh.validate().expect_err("two fans").invariant, "I6");
+    }
+
+    #[test]
+    fn edges_with_the_same_ends_are_found() {
+        // A tetrahedron cut open along two edges without a common end: a band, whose two rims are
+        // each two edges between the same two vertices. Every vertex is still one fan.
+        let mut mesh = table(4, [[0, 1, 2], [1, 3, 2], [1, 0, 3], [0, 2, 3]]);
+        let cut = corners(&mesh).filter(|&c| {
+            let ends = [c.next(), c.prev()].map(|c| mesh.vertex(c).index());
+            matches!(ends, [0, 1] | [1, 0] | [2, 3] | [3, 2])
+        });
+        let cut: Vec<CornerId> = cut.collect();
+        assert_eq!(cut.len(), 4);
+        for c in cut {
+            mesh.opposite.rows_mut()[c.index()] = Slot::NONE;
+            let start = mesh.vertex(c.next());
+            mesh.corner.rows_mut()[start.index()] = Slot::some(c.next());
+        }
+        assert_eq!(mesh.validate().expect_err("doubled edges").invariant, "I7");
+    }
+}

@@ -1,0 +1,3 @@
+//! The corner table keeps every law of the trait.
+
+conformance::suite!(corner_table::CornerTable);
