@@ -1,1 +1,5 @@
 //! What needs several crates at once.
+
+mod equivalence;
+mod facts;
+mod real_meshes;

@@ -1,8 +1,9 @@
 //! In from polygons, and out again.
 
 use mesh_core::{
-    BuildError, Capabilities, Counts, FaceId, FaceList, InvariantError, MemoryFootprint, Point,
-    PolygonMesh, Probe, QueryCost, Representation, RowId, RowMap, Slot, Table, TwinPairs, VertexId,
+    BuildError, Capabilities, Counts, FaceId, FaceList, InvariantError, MemoryFootprint, MoveError,
+    Point, PolygonMesh, Probe, QueryCost, Representation, RowId, RowMap, Slot, Table, TwinPairs,
+    VertexId,
 };
 
 use crate::mesh::{CornerId, CornerTable};
@@ -57,10 +58,8 @@ impl Representation for CornerTable {
         f
     }
 
-    fn set_positions(&mut self, positions: &RowMap<VertexId, Point>) {
-        self.positions
-            .rows_mut()
-            .copy_from_slice(positions.values());
+    fn set_positions(&mut self, positions: &RowMap<VertexId, Point>) -> Result<(), MoveError> {
+        self.positions.set_positions(positions)
     }
 
     fn memory(&self) -> MemoryFootprint {

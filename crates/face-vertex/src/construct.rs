@@ -2,8 +2,8 @@
 
 use mesh_core::{
     BuildError, Capabilities, Counts, FaceId, FaceList, FaceSpans, InvariantError, MemoryFootprint,
-    MeshQuery, Point, PolygonMesh, Probe, QueryCost, Representation, Table, VertexId, VertexMap,
-    row,
+    MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, Table, VertexId,
+    VertexMap, row,
 };
 
 use crate::mesh::{FaceVertexMesh, Fan};
@@ -61,11 +61,8 @@ impl Representation for FaceVertexMesh {
         f
     }
 
-    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) {
-        let positions = positions.values();
-        let vertices = self.positions.len();
-        assert_eq!(positions.len(), vertices, "the map is of another mesh");
-        self.positions.rows_mut().copy_from_slice(positions);
+    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
+        self.positions.set_positions(positions)
     }
 
     fn memory(&self) -> MemoryFootprint {
@@ -204,10 +201,12 @@ mod tests {
     }
 
     #[test]
-    #[should_panic(expected = "the map is of another mesh")]
     fn positions_of_another_mesh_are_refused() {
         let mut mesh = build(&[&[0, 1, 2]]);
         let smaller = FaceVertexMesh::from_polygons(&PolygonMesh::default()).expect("empty");
-        mesh.set_positions(&smaller.vertex_map(Point::ZERO));
+        let refusal = mesh
+            .set_positions(&smaller.vertex_map(Point::ZERO))
+            .unwrap_err();
+        assert!(matches!(refusal, MoveError::OtherMesh { given: 0, .. }));
     }
 }

@@ -196,7 +196,12 @@ impl<P: Probe> Iterator for EdgeEdges<'_, P> {
 
     #[inline]
     fn fold<B, F: FnMut(B, EdgeId) -> B>(self, init: B, mut f: F) -> B {
-        let Self { mesh, mut at, mut stop, then } = self;
+        let Self {
+            mesh,
+            mut at,
+            mut stop,
+            then,
+        } = self;
         let mut folded = init;
         let mut then = then;
         loop {
@@ -225,13 +230,18 @@ pub(crate) struct FaceFaces<'a, P: Probe> {
     sides: Sides<'a, P>,
     last: [Slot<FaceId>; 3],
     found: usize,
-    many: Option<Box<HashSet<FaceId>>>,
+    many: Option<HashSet<FaceId>>,
 }
 
 impl<'a, P: Probe> FaceFaces<'a, P> {
     #[inline]
     pub(crate) fn new(mesh: &'a HalfEdgeMesh<P>, f: FaceId) -> Self {
-        Self { sides: mesh.sides(f), last: [Slot::NONE; 3], found: 0, many: None }
+        Self {
+            sides: mesh.sides(f),
+            last: [Slot::NONE; 3],
+            found: 0,
+            many: None,
+        }
     }
 
     /// The faces across the three sides, if the walk has not begun and there are three.
@@ -272,15 +282,20 @@ fn is_new_among_many<P: Probe>(
     first: HalfEdgeId,
     h: HalfEdgeId,
     found: usize,
-    many: &mut Option<Box<HashSet<FaceId>>>,
+    many: &mut Option<HashSet<FaceId>>,
 ) -> bool {
-    let sides = Sides { mesh, at: Some(first), first }.map(|(k, _)| k);
+    let sides = Sides {
+        mesh,
+        at: Some(first),
+        first,
+    }
+    .map(|(k, _)| k);
     let mut before = sides.take_while(|&k| k != h).map(|k| mesh.face(k.twin()));
     let face = mesh.face(h.twin());
     if found < FEW {
         return before.all(|other| other != face);
     }
-    let many = many.get_or_insert_with(|| Box::new(before.flatten().collect()));
+    let many = many.get_or_insert_with(|| before.flatten().collect());
     face.is_some_and(|face| many.insert(face))
 }
 
@@ -317,7 +332,7 @@ impl<P: Probe> Iterator for FaceFaces<'_, P> {
             return folded;
         }
         let mut folded = init;
-        while let Some(face) = self.next() {
+        for face in self.by_ref() {
             folded = f(folded, face);
         }
         folded

@@ -2,8 +2,8 @@
 
 use mesh_core::{
     BuildError, Capabilities, Counts, FaceId, FaceList, InvariantError, MemoryFootprint, MeshQuery,
-    Point, PolygonMesh, Probe, QueryCost, Representation, RowMap, Slot, Table, TwinPairs, VertexId,
-    row,
+    MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, RowMap, Slot, Table,
+    TwinPairs, VertexId, row,
 };
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
@@ -57,10 +57,8 @@ impl Representation for HalfEdgeMesh {
         f
     }
 
-    fn set_positions(&mut self, positions: &RowMap<VertexId, Point>) {
-        self.positions
-            .rows_mut()
-            .copy_from_slice(positions.values());
+    fn set_positions(&mut self, positions: &RowMap<VertexId, Point>) -> Result<(), MoveError> {
+        self.positions.set_positions(positions)
     }
 
     fn memory(&self) -> MemoryFootprint {

@@ -72,7 +72,9 @@ impl<P: Probe> MeshQuery for HalfEdgeMesh<P> {
     #[inline]
     fn edge_faces(&self, e: EdgeId) -> impl Iterator<Item = FaceId> {
         let [one, other] = self.halves.read_pair(e.index());
-        [one.face, other.face].into_iter().filter_map(|face| face.get())
+        [one.face, other.face]
+            .into_iter()
+            .filter_map(|face| face.get())
     }
 
     #[inline]

@@ -81,6 +81,21 @@ pub enum BuildError {
     },
 }
 
+/// Why vertices cannot be moved; nothing has moved then.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum MoveError {
+    /// Two corners of one face at one point, where a vertex is its coordinates.
+    #[error(
+        "two corners of face {face} would come to one point, and here a vertex is its coordinates: keep them apart, or choose a structure that shares vertices"
+    )]
+    CoincidentCorners { face: FaceId },
+    /// Positions for another number of vertices.
+    #[error("{given} positions for {vertices} vertices: the map is of another mesh")]
+    OtherMesh { given: usize, vertices: usize },
+}
+
 /// The names of `faces`, at most eight of them.
 fn names(faces: &[FaceId]) -> String {
     let shown: Vec<String> = faces.iter().take(8).map(ToString::to_string).collect();

@@ -29,7 +29,7 @@ mod table;
 
 pub use capability::Capabilities;
 pub use distinct::{Distinct, IteratorExt};
-pub use error::{BuildError, InvariantError, PolygonError};
+pub use error::{BuildError, InvariantError, MoveError, PolygonError};
 pub use face_list::{FaceList, FaceSpans};
 pub use facts::{Facts, Spread};
 pub use glam::Vec3 as Point;

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::Point;
 use crate::capability::Capabilities;
-use crate::error::{BuildError, InvariantError};
+use crate::error::{BuildError, InvariantError, MoveError};
 use crate::memory::MemoryFootprint;
 use crate::polygon_mesh::PolygonMesh;
 use crate::probe::Probe;
@@ -148,7 +148,12 @@ pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
     /// Moves every vertex to its place in `positions`; O(vertices), or O(corners) where nothing is shared.
     ///
     /// Where a vertex is its coordinates this renames it, and vertices moved to one place become one.
-    fn set_positions(&mut self, positions: &VertexMap<Self, Point>);
+    ///
+    /// # Errors
+    ///
+    /// [`MoveError`]: a map of another mesh; or two corners of a face would come to one place where
+    /// a vertex is its coordinates. Nothing has moved then.
+    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError>;
 
     /// The bytes really held, table by table.
     fn memory(&self) -> MemoryFootprint;

@@ -3,8 +3,12 @@
 use std::fmt;
 use std::ops::Range;
 
+use crate::Point;
+use crate::error::MoveError;
+use crate::handle::RowMap;
 use crate::memory::TableBytes;
 use crate::probe::{Probe, Untraced};
+use crate::row_id::VertexId;
 
 /// The rows of one column of a structure; every access in query and edit code goes through it.
 ///
@@ -101,7 +105,7 @@ impl<T, P: Probe> Table<T, P> {
         }
         match self.rows.get(range.clone()) {
             Some(values) => values,
-            None => self.no_such_row(range.end.max(range.start)),
+            None => self.no_such_row(range.end.max(range.start + 1) - 1),
         }
     }
 
@@ -148,6 +152,23 @@ impl<T, P: Probe> Table<T, P> {
             "no {element} {row}: table `{name}` has {} rows",
             self.rows.len()
         )
+    }
+}
+
+impl<P: Probe> Table<Point, P> {
+    /// Moves every vertex to its place in `positions`: what structures with a table of positions do
+    /// for [`set_positions`](crate::Representation::set_positions). O(vertices), unwatched.
+    ///
+    /// # Errors
+    ///
+    /// [`MoveError::OtherMesh`] where the numbers of vertices differ.
+    pub fn set_positions(&mut self, positions: &RowMap<VertexId, Point>) -> Result<(), MoveError> {
+        let (given, vertices) = (positions.values().len(), self.rows.len());
+        if given != vertices {
+            return Err(MoveError::OtherMesh { given, vertices });
+        }
+        self.rows.copy_from_slice(positions.values());
+        Ok(())
     }
 }
 

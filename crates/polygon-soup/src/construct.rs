@@ -2,8 +2,8 @@
 
 use mesh_core::{
     BuildError, Capabilities, Counts, FaceId, FaceList, InvariantError, IteratorExt,
-    MemoryFootprint, MeshQuery, Point, PolygonMesh, Probe, QueryCost, Representation, Table,
-    VertexId, VertexMap, row,
+    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
+    Table, VertexId, VertexMap, row,
 };
 use rustc_hash::FxHashMap;
 
@@ -37,18 +37,14 @@ impl Representation for PolygonSoup {
             corners: Table::new("corners", "corner", corners),
             spans: faces.spans(),
         };
-        if has_isolated_vertex(polygons) || mesh.faces().any(|f| has_coincident_corners(&mesh, f)) {
+        if has_isolated_vertex(polygons) || mesh.faces().any(|f| coincident(mesh.face_positions(f)))
+        {
             Self::CAPABILITIES.check(polygons)?;
         }
         Ok(mesh)
     }
 
     /// Numbers the vertices in the order of `vertices()`.
-    ///
-    /// # Panics
-    ///
-    /// If [`set_positions`](Self::set_positions) has brought two corners of a face together (I3):
-    /// no polygon mesh has such a face.
     fn to_polygons(&self) -> PolygonMesh {
         let mut names: FxHashMap<SoupVertex, VertexId> = FxHashMap::default();
         let mut positions = Vec::new();
@@ -75,12 +71,17 @@ impl Representation for PolygonSoup {
     }
 
     /// Moves every corner to where the map has the vertex of its old coordinates; O(corners) expected.
-    ///
-    /// Two corners of one face that come to one place break I3, which `validate` reports.
-    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) {
-        for corner in self.corners.rows_mut() {
-            *corner = canonical(positions[SoupVertex::at(*corner)]);
+    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
+        let corners = self.corners.rows().iter();
+        let moved = corners.map(|&corner| canonical(positions[SoupVertex::at(corner)]));
+        let moved: Vec<Point> = moved.collect();
+        for face in self.faces() {
+            if coincident(&moved[self.spans.range(face)]) {
+                return Err(MoveError::CoincidentCorners { face });
+            }
         }
+        self.corners.rows_mut().copy_from_slice(&moved);
+        Ok(())
     }
 
     fn memory(&self) -> MemoryFootprint {
@@ -117,14 +118,14 @@ fn has_isolated_vertex(polygons: &PolygonMesh) -> bool {
     used.contains(&false)
 }
 
-/// Whether two corners of `f` are at one place.
-fn has_coincident_corners(mesh: &PolygonSoup, f: FaceId) -> bool {
-    match mesh.face_positions(f) {
-        &[a, b, c] => {
+/// Whether two of the corners of a face are at one place.
+fn coincident(face: &[Point]) -> bool {
+    match *face {
+        [a, b, c] => {
             let [a, b, c] = [a, b, c].map(SoupVertex::at);
             a == b || b == c || c == a
         }
-        corners => mesh.face_vertices(f).distinct().count() < corners.len(),
+        _ => face.iter().map(|&p| SoupVertex::at(p)).distinct().count() < face.len(),
     }
 }
 
@@ -184,20 +185,26 @@ mod tests {
         for v in soup.vertices() {
             moved[v] = v.position() - Point::X;
         }
-        soup.set_positions(&moved);
+        soup.set_positions(&moved).expect("apart");
         assert_eq!(soup.validate(), Ok(()), "1 − 1 and −0 are zeros alike");
         let expected = square.map(|p| SoupVertex::at(p - Point::X));
         assert!(soup.vertices().eq(expected));
     }
 
     #[test]
-    fn corners_brought_together_are_reported() {
+    fn corners_are_not_brought_together() {
         let mut soup = build(&[Point::ZERO, Point::X, Point::Y], &[&[0, 1, 2]]).expect("valid");
+        let before = soup.corners().to_vec();
         let mut moved = soup.vertex_map(Point::X);
         moved[SoupVertex::at(Point::Y)] = Point::Y;
-        soup.set_positions(&moved);
-        let fault = soup.validate().expect_err("two corners at X").to_string();
-        assert_eq!(fault, "I3 fails: two corners of f0 are at (1, 0, 0)");
+        let refusal = soup.set_positions(&moved).unwrap_err();
+        assert_eq!(
+            refusal,
+            MoveError::CoincidentCorners {
+                face: FaceId::new(0)
+            }
+        );
+        assert_eq!(soup.corners(), before, "nothing has moved");
     }
 
     #[test]

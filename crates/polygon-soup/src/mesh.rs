@@ -17,8 +17,8 @@ use crate::vertex::SoupVertex;
 /// - I1  Each corner belongs to one face: face `f` has the corners of `spans.range(f)`, at least
 ///   three, and these ranges follow one another through the whole table.
 /// - I2  No coordinate is −0; construction and [`set_positions`] write 0 for it.
-/// - I3  The corners of one face are at different places. Only [`set_positions`] can break this, by
-///   bringing two of them together: then the face counts twice around that vertex.
+/// - I3  The corners of one face are at different places; [`set_positions`] refuses what would bring
+///   two of them together.
 ///
 /// Words for each vertex of a large closed triangle mesh: 18, three points a face. Mixed degrees
 /// add the offsets of the faces.

@@ -3,13 +3,21 @@
 //! This crate re-exports the vocabulary and the structures, and holds the roster: the one list of
 //! all representations that every command, test and benchmark goes by.
 
+pub use corner_table::{self, CornerTable};
 pub use face_vertex::{self, FaceVertexMesh};
 pub use half_edge::{self, HalfEdgeMesh};
+pub use indexed_face_set::{self, IndexedFaceSet};
 pub use mesh_core::{self, *};
 pub use mesh_io;
 pub use polygon_soup::{self, PolygonSoup};
 pub use shapes;
+pub use winged_edge::{self, WingedEdgeMesh};
 
 mod roster;
 
 pub use roster::{BackendInfo, Visitor, roster, visit, visit_all};
+
+/// The examples of the README, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct ReadmeExamples;

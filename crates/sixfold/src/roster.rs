@@ -21,8 +21,11 @@ macro_rules! for_each_representation {
     ($mesh:ident => $body:block) => {
         $crate::for_each_representation!(@each $mesh $body
             $crate::PolygonSoup,
+            $crate::IndexedFaceSet,
             $crate::FaceVertexMesh,
+            $crate::WingedEdgeMesh,
             $crate::HalfEdgeMesh,
+            $crate::CornerTable,
         );
     };
     (@each $mesh:ident $body:block $($representation:ty,)+) => {

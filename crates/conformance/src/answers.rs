@@ -1,0 +1,47 @@
+//! Everything a mesh answers, in a form that two structures can be compared by.
+
+use std::collections::BTreeMap;
+
+use mesh_core::{PolygonMesh, Relation, Representation};
+
+use crate::element::Element;
+use crate::subject::Subject;
+
+/// Every relation of every element, and every one-ring, as `M` answers them; `None` if `M` cannot
+/// hold `polygons`.
+///
+/// Names are the input's own, sets ascend and cycles start at their lowest element, so that equal
+/// meshes have equal answers. The ring of a vertex is the line `one_ring v7`; it is left out where
+/// there is none.
+pub fn answers<M: Representation>(
+    polygons: &PolygonMesh,
+) -> Option<BTreeMap<String, Vec<Element>>> {
+    let subject = Subject::<M>::of(polygons)?;
+    let mut answers = BTreeMap::new();
+    for relation in Relation::ALL {
+        for element in subject.oracle.domain(relation) {
+            let mut answer = subject.ask(relation, element);
+            match relation {
+                Relation::FaceVertices | Relation::FaceEdges => lowest_first(&mut answer),
+                _ => answer.sort(),
+            }
+            answers.insert(format!("{relation} {element}"), answer);
+        }
+    }
+    for v in subject.oracle.vertices() {
+        if let Some(ring) = subject.names.ring(&subject.mesh, v) {
+            let mut ring: Vec<_> = ring.into_iter().map(Element::Vertex).collect();
+            if !subject.oracle.is_boundary(v) {
+                lowest_first(&mut ring);
+            }
+            answers.insert(format!("one_ring {v}"), ring);
+        }
+    }
+    Some(answers)
+}
+
+/// Turns a cycle until its lowest element is the first.
+fn lowest_first(cycle: &mut [Element]) {
+    let lowest = (0..cycle.len()).min_by_key(|&i| cycle[i]);
+    cycle.rotate_left(lowest.unwrap_or(0));
+}

@@ -1,0 +1,272 @@
+//! Small meshes made by hand, one for each corner case.
+
+use mesh_core::PolygonMesh;
+
+mod lectures;
+mod make;
+
+use make::{
+    closed_bow_tie, coincident_corners, klein_bottle, loose, mesh, minus_nought, numbers, place_at,
+    sized, union, voxels,
+};
+pub(crate) use make::{double_cone, spot, strip};
+
+/// A mesh with a name.
+#[derive(Clone, Debug)]
+pub struct Specimen {
+    /// What it shows.
+    pub name: &'static str,
+    /// The mesh.
+    pub polygons: PolygonMesh,
+}
+
+/// All of them: solids, surfaces of every kind, corner cases of the contract, lecture fixtures.
+pub fn gallery() -> Vec<Specimen> {
+    let parts = [
+        solids(),
+        surfaces(),
+        corner_cases(),
+        faulty(),
+        lectures::fixtures(),
+    ];
+    let all = parts.into_iter().flatten();
+    all.map(|(name, polygons)| Specimen { name, polygons })
+        .collect()
+}
+
+type Named = (&'static str, PolygonMesh);
+
+fn solids() -> Vec<Named> {
+    vec![
+        ("tetrahedron", shapes::tetrahedron()),
+        ("cube", shapes::cube()),
+        ("octahedron", shapes::octahedron()),
+        ("dodecahedron", shapes::dodecahedron()),
+        ("icosahedron", shapes::icosahedron()),
+        ("pentagonal prism", sized(shapes::prism(5))),
+        ("square antiprism", sized(shapes::antiprism(4))),
+        (
+            "shuffled icosahedron",
+            shapes::shuffled(&shapes::icosahedron(), 7),
+        ),
+    ]
+}
+
+fn surfaces() -> Vec<Named> {
+    vec![
+        ("grid of quads", sized(shapes::grid(3, 4))),
+        ("grid of triangles", sized(shapes::triangle_grid(4, 3))),
+        (
+            "grid of triangles and quads",
+            sized(shapes::mixed_grid(4, 4)),
+        ),
+        ("grid with a hole", sized(shapes::grid_with_hole(4, 5))),
+        ("torus of quads", sized(shapes::torus(3, 4))),
+        ("torus of triangles", sized(shapes::triangle_torus(4, 3))),
+        ("genus 2", voxels(&[".....", ".o.o.", "....."])),
+        ("Möbius strip", sized(shapes::moebius(5))),
+        ("Klein bottle", klein_bottle(4, 5)),
+        ("projective plane", mesh(6, &PROJECTIVE_PLANE)),
+        (
+            "two cubes and a grid",
+            union(&[shapes::cube(), sized(shapes::grid(2, 2)), shapes::cube()]),
+        ),
+        ("double cone", double_cone(8)),
+        ("double cone of valence 200", double_cone(200)),
+    ]
+}
+
+/// The contract's own cases, all of them oriented manifolds.
+fn corner_cases() -> Vec<Named> {
+    let hundred: Vec<u32> = (0..100).collect();
+    vec![
+        ("empty", PolygonMesh::default()),
+        ("points only", mesh::<[u32; 3]>(4, &[])),
+        ("single triangle", mesh(3, &[[0, 1, 2]])),
+        ("single polygon of 100 corners", mesh(100, &[hundred])),
+        ("pillow of two triangles", mesh(3, &[[0, 1, 2], [0, 2, 1]])),
+        (
+            "pillow of two quads",
+            mesh(4, &[[0, 1, 2, 3], [3, 2, 1, 0]]),
+        ),
+        // v1 has valence 2: the quads share the edges v0–v1 and v1–v2.
+        (
+            "two quads sharing two edges",
+            mesh(5, &[[0, 1, 2, 3], [2, 1, 0, 4]]),
+        ),
+        (
+            "digon neighbours in a closed mesh",
+            mesh(
+                5,
+                &[&[0, 1, 2, 3][..], &[2, 1, 0, 4], &[0, 3, 4], &[2, 4, 3]],
+            ),
+        ),
+        (
+            "isolated vertices first, between and last",
+            mesh(7, &[[1, 2, 4], [4, 2, 5]]),
+        ),
+        (
+            "mixed degrees, the first a triangle",
+            mesh(7, &[&[0, 1, 2][..], &[2, 1, 3, 4], &[4, 3, 5, 6, 2]]),
+        ),
+        (
+            "first mixed by the last face",
+            mesh(7, &[&[0, 1, 2][..], &[2, 1, 3], &[2, 3, 4, 5, 6]]),
+        ),
+        (
+            "a wheel without a rim",
+            mesh(5, &[[0, 1, 2], [0, 2, 3], [0, 3, 4]]),
+        ),
+        ("cube of loose faces", loose(&shapes::cube())),
+        ("minus nought is nought", minus_nought()),
+        (
+            "one face with two corners at one point",
+            coincident_corners(),
+        ),
+        (
+            "two triangles on one place",
+            place_at(&mesh(6, &[[0, 1, 2], [3, 4, 5]]), &[0, 1, 2, 0, 1, 2]),
+        ),
+    ]
+}
+
+/// Meshes that the oriented structures refuse.
+fn faulty() -> Vec<Named> {
+    let mut turned = shapes::cube()
+        .faces()
+        .iter()
+        .map(|(_, f)| numbers(f))
+        .collect::<Vec<_>>();
+    turned[3].reverse();
+    vec![
+        ("open bow-tie", mesh(5, &[[0, 1, 2], [0, 3, 4]])),
+        ("closed bow-tie", closed_bow_tie()),
+        (
+            "three faces on an edge",
+            mesh(5, &[[0, 1, 2], [1, 0, 3], [0, 1, 4]]),
+        ),
+        (
+            "four faces on an edge, in two pairs",
+            mesh(6, &[[0, 1, 2], [1, 0, 3], [0, 1, 4], [1, 0, 5]]),
+        ),
+        (
+            "two tetrahedra sharing an edge",
+            mesh(6, &TETRAHEDRA_ON_AN_EDGE),
+        ),
+        (
+            "duplicate face",
+            mesh(4, &[[0, 1, 2], [0, 1, 2], [2, 1, 3]]),
+        ),
+        (
+            "one face, three times",
+            mesh(3, &[[0, 1, 2], [1, 2, 0], [2, 1, 0]]),
+        ),
+        ("cube with a face turned over", mesh(8, &turned)),
+        (
+            "two triangles that run one way",
+            mesh(4, &[[0, 1, 2], [0, 1, 3]]),
+        ),
+        (
+            "bow-tie of a fan and an umbrella",
+            mesh(6, &[[0, 1, 2], [0, 2, 3], [0, 3, 1], [0, 4, 5]]),
+        ),
+        (
+            "three fans at a vertex",
+            mesh(7, &[[3, 0, 1], [3, 2, 4], [5, 6, 3]]),
+        ),
+        (
+            "faults and isolated vertices",
+            mesh(8, &[[1, 2, 4], [1, 2, 5], [4, 6, 5]]),
+        ),
+    ]
+}
+
+/// The projective plane on six vertices, every two of them adjacent.
+const PROJECTIVE_PLANE: [[u32; 3]; 10] = [
+    [0, 1, 2],
+    [0, 2, 3],
+    [0, 3, 4],
+    [0, 4, 5],
+    [0, 5, 1],
+    [1, 2, 4],
+    [2, 3, 5],
+    [3, 4, 1],
+    [4, 5, 2],
+    [5, 1, 3],
+];
+
+/// Vertices 0 and 1 are in both, and so is the edge between them.
+const TETRAHEDRA_ON_AN_EDGE: [[u32; 3]; 8] = [
+    [0, 2, 1],
+    [0, 1, 3],
+    [1, 2, 3],
+    [2, 0, 3],
+    [0, 4, 1],
+    [0, 1, 5],
+    [1, 4, 5],
+    [4, 0, 5],
+];
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use mesh_core::{Capabilities, Facts};
+
+    use super::*;
+
+    #[test]
+    fn names_are_names() {
+        let names: BTreeSet<&str> = gallery().iter().map(|specimen| specimen.name).collect();
+        assert_eq!(names.len(), gallery().len());
+    }
+
+    #[test]
+    fn specimens_are_what_they_are_called() {
+        for Specimen { name, polygons } in gallery() {
+            let facts = Facts::of(&polygons);
+            let (genus, orientable) = (facts.genus, facts.orientable);
+            match name {
+                "genus 2" => assert_eq!((genus, facts.closed), (Some(2), true)),
+                "Möbius strip" => {
+                    assert_eq!((orientable, facts.boundary_loops), (Some(false), Some(1)))
+                }
+                "Klein bottle" => {
+                    assert_eq!((orientable, facts.closed), (Some(false), true));
+                    assert_eq!(facts.euler_characteristic, 0);
+                }
+                "projective plane" => {
+                    assert_eq!((orientable, facts.closed), (Some(false), true));
+                    assert_eq!(facts.euler_characteristic, 1);
+                }
+                "closed bow-tie" => {
+                    assert_eq!((facts.closed, facts.non_manifold_vertices), (true, 1))
+                }
+                "double cone of valence 200" => assert_eq!(facts.valence.map(|v| v.max), Some(200)),
+                "two cubes and a grid" => assert_eq!(facts.components, 3),
+                "lecture: half-edge cube" | "lecture: face-vertex box, mended" => {
+                    assert_eq!((genus, facts.closed), (Some(0), true), "{name}");
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Only what is filed under faults, and what is no manifold by its nature, is refused.
+    #[test]
+    fn manifolds_and_faults_are_told_apart() {
+        let refused =
+            |polygons: &PolygonMesh| Capabilities::ORIENTED_MANIFOLDS.check(polygons).is_err();
+        for (name, polygons) in [solids(), surfaces(), corner_cases()].concat() {
+            let one_sided = ["Möbius strip", "Klein bottle", "projective plane"].contains(&name);
+            assert_eq!(refused(&polygons), one_sided, "{name}");
+        }
+        for (name, polygons) in faulty() {
+            assert!(refused(&polygons), "{name}");
+        }
+        for (name, polygons) in lectures::fixtures() {
+            let faulty = name.contains("wrong way") || name.contains("misplaced");
+            assert_eq!(refused(&polygons), faulty, "{name}");
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! What specimens are made with.
+
+use mesh_core::{Point, PolygonMesh};
+
+/// Two tetrahedra that meet in vertex 0.
+pub(super) fn closed_bow_tie() -> PolygonMesh {
+    let one = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    let other = one.map(|face| face.map(|v| if v == 0 { 0 } else { v + 3 }));
+    mesh(7, &[one, other].concat())
+}
+
+/// A quad grid whose left and right columns are joined the wrong way round.
+pub(super) fn klein_bottle(m: u32, n: u32) -> PolygonMesh {
+    let at = |i: u32, j: u32| match i == m {
+        true => (n - j % n) % n,
+        false => i * n + j % n,
+    };
+    let cells = (0..m).flat_map(|i| (0..n).map(move |j| (i, j)));
+    let faces = cells.map(|(i, j)| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+    mesh(m * n, &faces.collect::<Vec<_>>())
+}
+
+/// Triangles around a rim of `n` vertices, to an apex above (the first vertex) and one below.
+pub(crate) fn double_cone(n: u32) -> PolygonMesh {
+    let sides = (0..n).map(|i| (1 + i, 1 + (i + 1) % n));
+    let faces = sides.flat_map(|(a, b)| [[0, a, b], [n + 1, b, a]]);
+    mesh(n + 2, &faces.collect::<Vec<_>>())
+}
+
+/// A strip of `n` triangles, from `x` on to the right.
+pub(crate) fn strip(n: u32, x: f32) -> PolygonMesh {
+    let faces = (0..n).map(|i| match i % 2 {
+        0 => [i, i + 1, i + 2],
+        _ => [i + 1, i, i + 2],
+    });
+    let points = (0..n + 2).map(|i| Point::new(x + i as f32, (i % 2) as f32, 0.0));
+    let points: Vec<Point> = points.collect();
+    PolygonMesh::new(points, faces).expect("three vertices that follow each other differ")
+}
+
+/// The surface of a slab of cubes, one for each dot.
+pub(super) fn voxels(rows: &[&str]) -> PolygonMesh {
+    let filled = |x: i32, y: i32, z: i32| {
+        let row = usize::try_from(y).ok().and_then(|y| rows.get(y));
+        let cell = usize::try_from(x).ok().and_then(|x| row?.chars().nth(x));
+        z == 0 && cell == Some('.')
+    };
+    let mut corners: Vec<[i32; 3]> = Vec::new();
+    let mut faces = Vec::new();
+    for (y, row) in (0..).zip(rows) {
+        for x in (0..).take(row.len()).filter(|&x| filled(x, y, 0)) {
+            for (axis, step) in [(0, 1), (0, -1), (1, 1), (1, -1), (2, 1), (2, -1)] {
+                let mut beside = [x, y, 0];
+                beside[axis] += step;
+                if filled(beside[0], beside[1], beside[2]) {
+                    continue;
+                }
+                let mut face = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[u, v]| {
+                    let mut corner = [x, y, 0];
+                    corner[axis] += i32::from(step > 0);
+                    corner[(axis + 1) % 3] += u;
+                    corner[(axis + 2) % 3] += v;
+                    let known = corners.iter().position(|&c| c == corner);
+                    known.unwrap_or_else(|| {
+                        corners.push(corner);
+                        corners.len() - 1
+                    }) as u32
+                });
+                if step < 0 {
+                    face.reverse();
+                }
+                faces.push(face);
+            }
+        }
+    }
+    let points = corners
+        .iter()
+        .map(|c| Point::from_array(c.map(|x| x as f32)));
+    PolygonMesh::new(points.collect::<Vec<_>>(), faces).expect("a square has four corners")
+}
+
+/// Every face with vertices of its own, which still share their coordinates.
+pub(super) fn loose(polygons: &PolygonMesh) -> PolygonMesh {
+    let mut points = Vec::new();
+    let mut faces = Vec::new();
+    for (_, corners) in polygons.faces().iter() {
+        let first = points.len() as u32;
+        points.extend(corners.iter().map(|&v| polygons.position(v)));
+        faces.push((first..points.len() as u32).collect::<Vec<_>>());
+    }
+    PolygonMesh::new(points, faces).expect("as many corners as before")
+}
+
+/// Two triangles that share an edge, if −0 is 0.
+pub(super) fn minus_nought() -> PolygonMesh {
+    let points = [
+        Point::new(0.0, 0.0, 0.0),
+        Point::new(1.0, -0.0, 0.0),
+        Point::new(0.0, 1.0, 0.0),
+        Point::new(1.0, 0.0, -0.0),
+        Point::new(-0.0, 0.0, -0.0),
+        Point::new(0.0, -1.0, 0.0),
+    ];
+    PolygonMesh::new(points, [[0, 1, 2], [3, 4, 5]]).expect("valid")
+}
+
+pub(super) fn coincident_corners() -> PolygonMesh {
+    place_at(
+        &mesh(5, &[[0, 1, 2], [0, 2, 3], [0, 3, 4]]),
+        &[0, 1, 2, 2, 3],
+    )
+}
+
+/// The mesh with vertex `v` at point number `places[v]`.
+pub(super) fn place_at(polygons: &PolygonMesh, places: &[u32]) -> PolygonMesh {
+    let points: Vec<Point> = places.iter().map(|&place| spot(place)).collect();
+    let faces = polygons.faces().clone();
+    PolygonMesh::from_faces(points, faces).expect("as many vertices as before")
+}
+
+/// The meshes side by side, as components of one.
+pub(super) fn union(parts: &[PolygonMesh]) -> PolygonMesh {
+    let mut points: Vec<Point> = Vec::new();
+    let mut faces: Vec<Vec<u32>> = Vec::new();
+    for (part, shift) in parts.iter().zip(0_u8..) {
+        let first = points.len() as u32;
+        let away = Point::X * 16.0 * f32::from(shift);
+        points.extend(part.positions().iter().map(|&p| p + away));
+        let corners = part.faces().iter().map(|(_, face)| numbers(face));
+        faces.extend(corners.map(|face| face.iter().map(|v| v + first).collect()));
+    }
+    PolygonMesh::new(points, faces).expect("the parts are meshes")
+}
+
+/// `vertices` vertices, each at its own place, and `faces`.
+pub(super) fn mesh<F: AsRef<[u32]>>(vertices: u32, faces: &[F]) -> PolygonMesh {
+    let points: Vec<Point> = (0..vertices).map(spot).collect();
+    PolygonMesh::new(points, faces).expect("a mesh made by hand is valid")
+}
+
+/// A place for each number, no two alike and no three in line for long.
+pub(crate) fn spot(number: u32) -> Point {
+    let x = number as f32;
+    Point::new(x, (number * number % 7) as f32, (number % 3) as f32)
+}
+
+pub(super) fn numbers(corners: &[mesh_core::VertexId]) -> Vec<u32> {
+    corners.iter().map(|v| v.index() as u32).collect()
+}
+
+pub(super) fn sized(shape: Result<PolygonMesh, shapes::ShapeError>) -> PolygonMesh {
+    shape.expect("a shape of this size can be made")
+}

@@ -1,0 +1,57 @@
+//! What every representation keeps: one plain function a law.
+//!
+//! A law builds the structure from the mesh it is given and panics where the law is broken; the
+//! message names structure, element and relation. A mesh that the structure's capabilities exclude
+//! says nothing about it, but for [`verdict`], which holds the exclusion itself to account.
+#![expect(
+    clippy::missing_panics_doc,
+    reason = "a law panics where it is broken: that is what it is for"
+)]
+
+mod corner_cases;
+mod cost;
+mod elements;
+mod relations;
+mod structure;
+
+pub use corner_cases::corner_cases;
+pub use cost::{costs, memory};
+pub use elements::{elements, maps, missing_handles, names, positions};
+pub use relations::{
+    edge_edges, edge_faces, edge_vertices, face_edges, face_faces, face_vertices, one_ring,
+    symmetry, vertex_edges, vertex_faces, vertex_vertices,
+};
+pub use structure::{invariants, probed, round_trip, set_positions, verdict};
+
+/// Calls a macro with the name of every law: `for_each_law!(callback! { … })`.
+///
+/// The callback gets `[laws about a mesh] [laws about a structure] …`, the one list of them.
+#[macro_export]
+macro_rules! for_each_law {
+    ($callback:ident! { $($arguments:tt)* }) => {
+        $crate::$callback! {
+            [
+                vertex_vertices vertex_edges vertex_faces
+                edge_vertices edge_edges edge_faces
+                face_vertices face_edges face_faces
+                symmetry one_ring
+                elements names positions maps missing_handles
+                verdict round_trip set_positions invariants probed
+            ]
+            [corner_cases costs memory]
+            $($arguments)*
+        }
+    };
+}
+
+/// The names of all laws.
+pub const NAMES: &[&str] = for_each_law!(names_of_laws! {});
+
+/// The callback that makes [`NAMES`].
+#[doc(hidden)]
+#[macro_export]
+macro_rules! names_of_laws {
+    ([$($law:ident)+] [$($structural:ident)+]) => {
+        &[$(stringify!($law),)+ $(stringify!($structural)),+]
+    };
+}

@@ -1,0 +1,183 @@
+//! The contract's answers where one might ask, written down by hand.
+
+use mesh_core::Representation;
+
+use crate::answers::answers;
+use crate::element::Element;
+use crate::gallery::gallery;
+use crate::print::compact;
+use crate::weld::welded;
+
+/// What [`answers`] must say of a mesh of the gallery; "none" where there is no ring.
+struct Case {
+    mesh: &'static str,
+    answers: &'static [(&'static str, &'static str)],
+}
+
+/// Neighbours that meet twice are one neighbour; nothing is its own; where faces do not form one
+/// fan there is no ring.
+const CASES: &[Case] = &[
+    Case {
+        mesh: "pillow of two triangles",
+        answers: &[
+            ("vertex_vertices v0", "v1 v2"),
+            ("vertex_edges v0", "v0–v1 v0–v2"),
+            ("vertex_faces v0", "f0 f1"),
+            ("edge_edges v0–v1", "v0–v2 v1–v2"),
+            ("edge_faces v0–v1", "f0 f1"),
+            ("face_faces f0", "f1"),
+            ("face_faces f1", "f0"),
+            ("face_edges f0", "v0–v1 v1–v2 v0–v2"),
+            ("face_edges f1", "v0–v1 v0–v2 v1–v2"),
+            ("one_ring v0", "v1 v2"),
+        ],
+    },
+    Case {
+        mesh: "pillow of two quads",
+        answers: &[
+            ("vertex_vertices v0", "v1 v3"),
+            ("face_faces f0", "f1"),
+            ("edge_edges v0–v1", "v0–v3 v1–v2"),
+            ("one_ring v0", "v1 v3"),
+        ],
+    },
+    Case {
+        mesh: "two quads sharing two edges",
+        answers: &[
+            ("vertex_vertices v1", "v0 v2"),
+            ("vertex_faces v1", "f0 f1"),
+            ("edge_faces v0–v1", "f0 f1"),
+            ("edge_edges v0–v1", "v0–v3 v0–v4 v1–v2"),
+            ("face_faces f0", "f1"),
+            ("face_faces f1", "f0"),
+            ("one_ring v1", "v0 v2"),
+            ("one_ring v0", "v4 v1 v3"),
+        ],
+    },
+    Case {
+        mesh: "single triangle",
+        answers: &[
+            ("vertex_vertices v0", "v1 v2"),
+            ("edge_faces v0–v1", "f0"),
+            ("edge_edges v0–v1", "v0–v2 v1–v2"),
+            ("face_faces f0", ""),
+            ("one_ring v0", "v1 v2"),
+            ("one_ring v1", "v2 v0"),
+        ],
+    },
+    Case {
+        mesh: "points only",
+        answers: &[
+            ("vertex_vertices v0", ""),
+            ("vertex_edges v0", ""),
+            ("one_ring v0", ""),
+        ],
+    },
+    Case {
+        mesh: "isolated vertices first, between and last",
+        answers: &[
+            ("vertex_vertices v3", ""),
+            ("vertex_edges v3", ""),
+            ("vertex_faces v3", ""),
+            ("one_ring v3", ""),
+            ("one_ring v2", "v5 v4 v1"),
+        ],
+    },
+    Case {
+        mesh: "duplicate face",
+        answers: &[
+            ("vertex_faces v0", "f0 f1"),
+            ("vertex_vertices v0", "v1 v2"),
+            ("edge_faces v0–v1", "f0 f1"),
+            ("edge_faces v1–v2", "f0 f1 f2"),
+            ("face_faces f0", "f1 f2"),
+            ("face_faces f1", "f0 f2"),
+            ("one_ring v0", "none"),
+            ("one_ring v3", "v2 v1"),
+        ],
+    },
+    Case {
+        mesh: "one face, three times",
+        answers: &[
+            ("face_faces f0", "f1 f2"),
+            ("edge_edges v0–v1", "v0–v2 v1–v2"),
+            ("one_ring v0", "none"),
+        ],
+    },
+    Case {
+        mesh: "open bow-tie",
+        answers: &[
+            ("vertex_vertices v0", "v1 v2 v3 v4"),
+            ("vertex_faces v0", "f0 f1"),
+            ("edge_edges v0–v1", "v0–v2 v0–v3 v0–v4 v1–v2"),
+            ("face_faces f0", ""),
+            ("one_ring v0", "none"),
+            ("one_ring v1", "v2 v0"),
+        ],
+    },
+    Case {
+        mesh: "closed bow-tie",
+        answers: &[
+            ("vertex_vertices v0", "v1 v2 v3 v4 v5 v6"),
+            ("face_faces f0", "f1 f2 f3"),
+            ("one_ring v0", "none"),
+        ],
+    },
+    Case {
+        mesh: "three faces on an edge",
+        answers: &[
+            ("edge_faces v0–v1", "f0 f1 f2"),
+            ("face_faces f0", "f1 f2"),
+            ("face_faces f2", "f0 f1"),
+            ("vertex_vertices v0", "v1 v2 v3 v4"),
+            ("one_ring v0", "none"),
+            ("one_ring v2", "v0 v1"),
+        ],
+    },
+    Case {
+        mesh: "two triangles that run one way",
+        answers: &[
+            ("face_faces f0", "f1"),
+            ("edge_faces v0–v1", "f0 f1"),
+            ("one_ring v0", "none"),
+            ("one_ring v2", "v0 v1"),
+        ],
+    },
+];
+
+/// The corner cases of the contract are answered as it says, by a table made by hand.
+pub fn corner_cases<M: Representation>() {
+    let gallery = gallery();
+    let mut held = 0;
+    for case in CASES {
+        let specimen = gallery.iter().find(|specimen| specimen.name == case.mesh);
+        let polygons = &specimen.expect("the gallery has it").polygons;
+        // Where a vertex is its coordinates, only meshes that keep their numbers can be looked up.
+        if !M::CAPABILITIES.coincident_vertices && welded(polygons).as_ref() != Ok(polygons) {
+            continue;
+        }
+        let Some(got) = answers::<M>(polygons) else {
+            continue;
+        };
+        held += 1;
+        for &(question, expected) in case.answers {
+            let got = got
+                .get(question)
+                .map_or("none".to_owned(), |items| words(items));
+            assert_eq!(
+                got,
+                expected,
+                "{}: {question} on “{}” ({})",
+                M::NAME,
+                case.mesh,
+                compact(polygons)
+            );
+        }
+    }
+    assert!(held > 0, "{}: holds none of the corner cases", M::NAME);
+}
+
+fn words(items: &[Element]) -> String {
+    let words: Vec<String> = items.iter().map(ToString::to_string).collect();
+    words.join(" ")
+}

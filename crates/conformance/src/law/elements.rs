@@ -1,0 +1,287 @@
+//! Elements, their names and what is kept for them.
+
+use std::collections::BTreeSet;
+use std::fmt::Debug;
+use std::ops::{Index, IndexMut};
+
+use mesh_core::{PolygonMesh, Representation};
+
+use super::relations::is_rotation;
+use crate::caught::caught;
+use crate::element::Element;
+use crate::subject::{Subject, held};
+use crate::weld::place;
+
+/// Each element is iterated once, faces and vertices in the promised order, and counts agree.
+pub fn elements<M: Representation>(polygons: &PolygonMesh) {
+    let Some(subject) = Subject::<M>::of(polygons) else {
+        return;
+    };
+    let Subject {
+        mesh,
+        oracle,
+        names,
+        ..
+    } = &subject;
+    let vertices: Vec<_> = oracle.vertices().map(|v| names.vertex(v)).collect();
+    let faces: Vec<_> = oracle.faces().map(|f| names.face(f)).collect();
+    assert!(
+        mesh.vertices().eq(vertices.iter().copied()),
+        "{}: vertices() is {:?}, not {vertices:?}",
+        M::NAME,
+        mesh.vertices().collect::<Vec<_>>()
+    );
+    assert!(
+        mesh.faces().eq(faces.iter().copied()),
+        "{}: faces() is {:?}, not {faces:?}",
+        M::NAME,
+        mesh.faces().collect::<Vec<_>>()
+    );
+    let mut ends = BTreeSet::new();
+    for e in mesh.edges() {
+        let edge = names.edge_id(e);
+        assert!(ends.insert(edge), "{}: edges() has {edge} twice", M::NAME);
+    }
+    let expected: BTreeSet<Element> = oracle.edges().collect();
+    assert_eq!(ends, expected, "{}: edges()", M::NAME);
+    for (what, got, expected) in [
+        ("vertex_count", mesh.vertex_count(), vertices.len()),
+        ("edge_count", mesh.edge_count(), expected.len()),
+        ("face_count", mesh.face_count(), faces.len()),
+    ] {
+        assert_eq!(got, expected, "{}: {what}()", M::NAME);
+    }
+}
+
+/// `vertex_name` and `face_name` are the names that the mesh itself uses, one for each element.
+pub fn names<M: Representation>(polygons: &PolygonMesh) {
+    let Some(subject) = Subject::<M>::of(polygons) else {
+        return;
+    };
+    let mesh = &subject.mesh;
+    for ((_, corners), f) in polygons.faces().iter().zip(mesh.faces()) {
+        let named: Vec<_> = corners
+            .iter()
+            .map(|&v| M::vertex_name(polygons, v))
+            .collect();
+        let got: Vec<_> = mesh.face_vertices(f).collect();
+        assert!(
+            is_rotation(&got, &named),
+            "{}: face_vertices of {f:?} is {got:?}, and vertex_name says {named:?}",
+            M::NAME
+        );
+    }
+    let vertices: BTreeSet<_> = polygons
+        .vertices()
+        .map(|v| M::vertex_name(polygons, v))
+        .collect();
+    assert_eq!(
+        vertices.len(),
+        held::<M>(polygons).vertex_count(),
+        "{}: different vertices have different vertex_names",
+        M::NAME
+    );
+    for (f, name) in polygons.faces().iter().map(|(f, _)| f).zip(mesh.faces()) {
+        assert_eq!(
+            M::face_name(polygons, f),
+            name,
+            "{}: face_name of {f}",
+            M::NAME
+        );
+    }
+}
+
+/// `position` is where the input has the vertex, to the bit, but that −0 may be 0.
+pub fn positions<M: Representation>(polygons: &PolygonMesh) {
+    let Some(subject) = Subject::<M>::of(polygons) else {
+        return;
+    };
+    for v in subject.oracle.vertices() {
+        let got = subject.mesh.position(subject.names.vertex(v));
+        let expected = subject.input.position(v);
+        assert_eq!(place(got), place(expected), "{}: position of {v}", M::NAME);
+    }
+}
+
+/// Maps read what they were filled with until written, and then what was written, by handle.
+pub fn maps<M: Representation>(polygons: &PolygonMesh) {
+    let Some(Subject { mesh, .. }) = Subject::<M>::of(polygons) else {
+        return;
+    };
+    keeps::<M, _, _>(mesh.vertices().collect(), mesh.vertex_map(usize::MAX));
+    keeps::<M, _, _>(mesh.edges().collect(), mesh.edge_map(usize::MAX));
+    keeps::<M, _, _>(mesh.faces().collect(), mesh.face_map(usize::MAX));
+}
+
+fn keeps<M: Representation, H, Map>(handles: Vec<H>, mut map: Map)
+where
+    H: Copy + Debug,
+    Map: Index<H, Output = usize> + IndexMut<H>,
+{
+    for &h in &handles {
+        assert_eq!(map[h], usize::MAX, "{}: a new map at {h:?}", M::NAME);
+    }
+    for (i, &h) in handles.iter().enumerate() {
+        map[h] = i;
+    }
+    for (i, &h) in handles.iter().enumerate() {
+        assert_eq!(map[h], i, "{}: a map written at {h:?}", M::NAME);
+    }
+}
+
+/// A handle that is a row beyond the mesh panics by name; a handle that is coordinates, or a pair
+/// of them, and names nothing has empty relations.
+///
+/// The missing handles are those of a prism too large for the mesh, set far away from it.
+pub fn missing_handles<M: Representation>(polygons: &PolygonMesh) {
+    let Some(Subject { mesh, .. }) = Subject::<M>::of(polygons) else {
+        return;
+    };
+    let larger = M::from_polygons(&far_away(polygons)).expect("an oriented manifold of triangles");
+    let (v, e, f) = (
+        larger
+            .vertices()
+            .max()
+            .expect("the larger mesh has vertices"),
+        larger.edges().max().expect("the larger mesh has edges"),
+        larger.faces().max().expect("the larger mesh has faces"),
+    );
+    let rows = Rows {
+        vertex: caught(|| mesh.vertex_map(0)[v]).is_err(),
+        edge: caught(|| mesh.edge_map(0)[e]).is_err(),
+        face: caught(|| mesh.face_map(0)[f]).is_err(),
+    };
+    let asked: [(&str, Missing, String); 9] = [
+        (
+            "vertex_vertices",
+            rows.of_vertex(),
+            items(|| mesh.vertex_vertices(v).count()),
+        ),
+        (
+            "vertex_edges",
+            rows.of_vertex(),
+            items(|| mesh.vertex_edges(v).count()),
+        ),
+        (
+            "vertex_faces",
+            rows.of_vertex(),
+            items(|| mesh.vertex_faces(v).count()),
+        ),
+        (
+            "one_ring",
+            rows.of_vertex(),
+            items(|| mesh.one_ring(v).map_or(0, Iterator::count)),
+        ),
+        (
+            "edge_edges",
+            rows.of_edge(),
+            items(|| mesh.edge_edges(e).count()),
+        ),
+        (
+            "edge_faces",
+            rows.of_edge(),
+            items(|| mesh.edge_faces(e).count()),
+        ),
+        (
+            "face_vertices",
+            rows.of_face(),
+            items(|| mesh.face_vertices(f).count()),
+        ),
+        (
+            "face_edges",
+            rows.of_face(),
+            items(|| mesh.face_edges(f).count()),
+        ),
+        (
+            "face_faces",
+            rows.of_face(),
+            items(|| mesh.face_faces(f).count()),
+        ),
+    ];
+    for (query, missing, answer) in asked {
+        missing.judge(M::NAME, query, &answer);
+    }
+    if rows.vertex {
+        let answer = items(|| mesh.position(v).to_array().len());
+        Missing::Panics.judge(M::NAME, "position", &answer);
+    }
+    if rows.edge {
+        let answer = items(|| mesh.edge_vertices(e).len());
+        Missing::Panics.judge(M::NAME, "edge_vertices", &answer);
+    }
+}
+
+/// Which handles are rows: a map panics on those it has no row for.
+struct Rows {
+    vertex: bool,
+    edge: bool,
+    face: bool,
+}
+
+impl Rows {
+    fn of_vertex(&self) -> Missing {
+        if self.vertex {
+            Missing::Panics
+        } else {
+            Missing::Empty
+        }
+    }
+
+    fn of_edge(&self) -> Missing {
+        match (self.edge, self.vertex) {
+            (true, _) => Missing::Panics,
+            // A pair of rows: its ends are out of range, and the pair names nothing.
+            (false, true) => Missing::Either,
+            (false, false) => Missing::Empty,
+        }
+    }
+
+    fn of_face(&self) -> Missing {
+        if self.face {
+            Missing::Panics
+        } else {
+            Missing::Empty
+        }
+    }
+}
+
+/// What a query must do with a handle that names nothing.
+#[derive(Clone, Copy, Debug)]
+enum Missing {
+    Panics,
+    Empty,
+    Either,
+}
+
+impl Missing {
+    fn judge(self, structure: &str, query: &str, answer: &str) {
+        let named = answer.starts_with("no ") && answer.contains(|c: char| c.is_ascii_digit());
+        let right = match self {
+            Self::Panics => named,
+            Self::Empty => answer == EMPTY,
+            Self::Either => named || answer == EMPTY,
+        };
+        assert!(
+            right,
+            "{structure}: {query} of an element that is not there must be {self:?}, and is “{answer}”"
+        );
+    }
+}
+
+const EMPTY: &str = "0 items";
+
+/// The number of items in words, or the message of the panic.
+fn items(query: impl FnOnce() -> usize) -> String {
+    match caught(query) {
+        Ok(count) => format!("{count} items"),
+        Err(panic) => panic.message,
+    }
+}
+
+/// Triangles in a strip, with more of everything than `polygons` has and at other places.
+fn far_away(polygons: &PolygonMesh) -> PolygonMesh {
+    let far = polygons.positions().iter().filter(|p| p.is_finite());
+    let x = far.map(|p| p.x.abs()).fold(1.0, f32::max) * 4.0;
+    let size = polygons.vertex_count() + polygons.corner_count() + 3;
+    crate::gallery::strip(size as u32, x)
+}

@@ -1,0 +1,45 @@
+//! A failing mesh, face by face made smaller.
+
+use mesh_core::{Point, PolygonMesh, VertexId};
+
+/// A smallest mesh that still `fails`: no face can be taken away from it.
+///
+/// Proptest shrinks how a mesh was made, which can get stuck on a large one; this goes on from there.
+pub(crate) fn smallest(polygons: PolygonMesh, fails: impl Fn(&PolygonMesh) -> bool) -> PolygonMesh {
+    let mut smallest = polygons;
+    let mut at = 0;
+    let mut kept = 0;
+    // Around and around, until every face in turn has had to stay.
+    while kept < smallest.face_count() {
+        at %= smallest.face_count();
+        let fewer = without_face(&smallest, at);
+        if fails(&fewer) {
+            (smallest, kept) = (fewer, 0);
+        } else {
+            (at, kept) = (at + 1, kept + 1);
+        }
+    }
+    let used = without_isolated(&smallest);
+    if fails(&used) { used } else { smallest }
+}
+
+fn without_face(polygons: &PolygonMesh, gone: usize) -> PolygonMesh {
+    let faces = polygons.faces().iter().filter(|(f, _)| f.index() != gone);
+    let faces = faces.map(|(_, corners)| rows(corners, |v| v.index() as u32));
+    PolygonMesh::new(polygons.positions(), faces).expect("the other faces are as they were")
+}
+
+fn without_isolated(polygons: &PolygonMesh) -> PolygonMesh {
+    let mut used = polygons.faces().corners().to_vec();
+    used.sort();
+    used.dedup();
+    let name = |v: &VertexId| used.iter().position(|u| u == v).unwrap_or_default() as u32;
+    let faces = polygons.faces().iter();
+    let faces = faces.map(|(_, corners)| rows(corners, name));
+    let points: Vec<Point> = used.iter().map(|&v| polygons.position(v)).collect();
+    PolygonMesh::new(points, faces).expect("the corners keep apart")
+}
+
+fn rows(corners: &[VertexId], name: impl Fn(&VertexId) -> u32) -> Vec<u32> {
+    corners.iter().map(name).collect()
+}

@@ -1,0 +1,180 @@
+//! Faces under the knife.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use mesh_core::{Point, PolygonMesh};
+
+use crate::gallery::spot;
+
+/// An oriented mesh that is being worked on; positions come at the end.
+#[derive(Clone, Debug)]
+pub(super) struct Draft {
+    /// Every vertex named by a face is below.
+    pub(super) vertices: u32,
+    pub(super) faces: Vec<Vec<u32>>,
+    /// How many vertices to add that no face names.
+    pub(super) isolated: u32,
+    /// Vertices that are put where another is.
+    pub(super) coincident: Option<[u32; 2]>,
+}
+
+impl Draft {
+    /// The faces of all `pieces`, side by side.
+    pub(super) fn of(pieces: &[PolygonMesh]) -> Self {
+        let mut draft = Self {
+            vertices: 0,
+            faces: Vec::new(),
+            isolated: 0,
+            coincident: None,
+        };
+        for piece in pieces {
+            let first = draft.vertices;
+            draft.vertices += piece.vertex_count() as u32;
+            let corners = piece.faces().iter().map(|(_, corners)| corners);
+            let faces = corners.map(|c| c.iter().map(|v| v.index() as u32 + first).collect());
+            draft.faces.extend(faces);
+        }
+        draft
+    }
+
+    /// A new vertex.
+    pub(super) fn vertex(&mut self) -> u32 {
+        self.vertices += 1;
+        self.vertices - 1
+    }
+
+    /// Every face seen from behind.
+    pub(super) fn mirror(&mut self) {
+        for face in &mut self.faces {
+            face.reverse();
+        }
+    }
+
+    /// The sides in order: where each starts and ends, and its face.
+    pub(super) fn sides(&self) -> Vec<(u32, u32, usize)> {
+        let faces = self.faces.iter().enumerate();
+        let sides = faces.flat_map(|(f, face)| {
+            let next = face.iter().cycle().skip(1);
+            face.iter().zip(next).map(move |(&a, &b)| (a, b, f))
+        });
+        sides.collect()
+    }
+
+    /// By the two ends of each side, its face; of an oriented manifold.
+    pub(super) fn face_of_side(&self) -> BTreeMap<(u32, u32), usize> {
+        let sides = self.sides().into_iter();
+        sides.map(|(a, b, f)| ((a, b), f)).collect()
+    }
+
+    /// The vertices adjacent to `v`.
+    pub(super) fn ring(&self, v: u32) -> BTreeSet<u32> {
+        let sides = self.sides().into_iter();
+        let ends = sides.filter(|&(a, b, _)| a == v || b == v);
+        ends.map(|(a, b, _)| if a == v { b } else { a }).collect()
+    }
+
+    /// The vertices that faces name, ascending.
+    pub(super) fn used(&self) -> Vec<u32> {
+        let used: BTreeSet<u32> = self.faces.iter().flatten().copied().collect();
+        used.into_iter().collect()
+    }
+
+    /// Gives each fan of a vertex but the first a vertex of its own.
+    ///
+    /// The faces of one fan share edges at the vertex; no edge is in two fans, so none is cut.
+    pub(super) fn separate_fans(&mut self) {
+        for v in self.used() {
+            let mut rest: Vec<usize> = (0..self.faces.len())
+                .filter(|&f| self.faces[f].contains(&v))
+                .collect();
+            self.take_fan(v, &mut rest);
+            while !rest.is_empty() {
+                let copy = self.vertex();
+                for f in self.take_fan(v, &mut rest) {
+                    let corner = self.faces[f].iter_mut().find(|corner| **corner == v);
+                    *corner.expect("the face is at v") = copy;
+                }
+            }
+        }
+    }
+
+    /// Takes the faces of one fan at `v` out of `rest`.
+    fn take_fan(&self, v: u32, rest: &mut Vec<usize>) -> Vec<usize> {
+        let mut fan: Vec<usize> = rest.pop().into_iter().collect();
+        let mut reached: BTreeSet<u32> = fan.iter().flat_map(|&f| self.spokes(f, v)).collect();
+        while let Some(next) = rest
+            .iter()
+            .position(|&f| self.spokes(f, v).iter().any(|end| reached.contains(end)))
+        {
+            let f = rest.swap_remove(next);
+            reached.extend(self.spokes(f, v));
+            fan.push(f);
+        }
+        fan
+    }
+
+    /// The corners before and after `v` in face `f`.
+    fn spokes(&self, f: usize, v: u32) -> [u32; 2] {
+        let face = &self.faces[f];
+        let at = face.iter().position(|&corner| corner == v);
+        let at = at.expect("the face is at v");
+        [
+            face[(at + face.len() - 1) % face.len()],
+            face[(at + 1) % face.len()],
+        ]
+    }
+
+    /// The mesh, without the vertices that surgery left over, and with names drawn from `seed`.
+    pub(super) fn finish(self, seed: u64) -> PolygonMesh {
+        let used = self.used();
+        let place = |v: u32| {
+            let moved = self.coincident.filter(|pair| pair[0] == v);
+            spot(moved.map_or(v, |pair| pair[1]))
+        };
+        let mut points: Vec<Point> = used.iter().map(|&v| place(v)).collect();
+        points.extend((0..self.isolated).map(|i| spot(self.vertices + i)));
+        let names: BTreeMap<u32, u32> = used.iter().copied().zip(0..).collect();
+        let mut draw = Draw(seed);
+        let mut faces: Vec<Vec<u32>> = self
+            .faces
+            .iter()
+            .map(|face| face.iter().map(|v| names[v]).collect())
+            .collect();
+        if seed != 0 {
+            draw.shuffle(&mut faces);
+            for face in &mut faces {
+                let start = draw.below(face.len());
+                face.rotate_left(start);
+            }
+        }
+        let mesh =
+            PolygonMesh::new(points, faces).expect("surgery keeps the corners of a face apart");
+        let mut names: Vec<u32> = (0..mesh.vertex_count() as u32).collect();
+        if seed != 0 {
+            draw.shuffle(&mut names);
+        }
+        mesh.renamed(&names)
+    }
+}
+
+/// Numbers drawn from a seed (SplitMix64, Steele et al. 2014).
+struct Draw(u64);
+
+impl Draw {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, limit: usize) -> usize {
+        (self.next() % limit as u64) as usize
+    }
+
+    fn shuffle<T>(&mut self, items: &mut [T]) {
+        for i in (1..items.len()).rev() {
+            items.swap(i, self.below(i + 1));
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! One line that puts a representation on trial.
+
+use mesh_core::{PolygonMesh, Representation};
+use proptest::strategy::{Strategy, Union};
+use proptest::test_runner::{Config, TestCaseError, TestError, TestRunner};
+
+use crate::caught::caught;
+use crate::gallery::gallery;
+use crate::print::compact;
+use crate::shrink::smallest;
+use crate::strategy::{any_mesh, faulty_mesh, manifold_mesh};
+
+/// Makes one `#[test]` of each law: `conformance::suite!(half_edge::HalfEdgeMesh);`
+///
+/// Laws about a mesh run over the gallery and over random meshes; a failing random mesh shrinks
+/// and is printed on one line. `PROPTEST_CASES` sets the number of random meshes of each kind.
+#[macro_export]
+macro_rules! suite {
+    ($mesh:ty) => {
+        $crate::for_each_law!(suite_of_laws! { $mesh });
+    };
+}
+
+/// The callback that makes the tests of [`suite!`].
+#[doc(hidden)]
+#[macro_export]
+macro_rules! suite_of_laws {
+    ([$($law:ident)+] [$($structural:ident)+] $mesh:ty) => {
+        $(
+            #[test]
+            fn $law() {
+                $crate::hold::<$mesh>(stringify!($law), $crate::law::$law::<$mesh>);
+            }
+        )+
+        $(
+            #[test]
+            fn $structural() {
+                $crate::law::$structural::<$mesh>();
+            }
+        )+
+    };
+}
+
+/// How many random meshes a law sees where the environment does not say.
+const CASES: u32 = 192;
+
+/// Holds `M` to `law` on every mesh of the gallery and on random manifold, faulty and chaotic meshes.
+///
+/// # Panics
+///
+/// If the law is broken; the message shows the mesh, of random ones the smallest found.
+pub fn hold<M: Representation>(name: &str, law: impl Fn(&PolygonMesh)) {
+    let name = format!("{}: {name}", M::NAME);
+    for specimen in gallery() {
+        if let Err(fault) = caught(|| law(&specimen.polygons)) {
+            let mesh = compact(&specimen.polygons);
+            panic!("{name} fails on “{}” ({mesh})\n{fault}", specimen.name);
+        }
+    }
+    let mut config = Config {
+        failure_persistence: None,
+        ..Config::default()
+    };
+    if std::env::var_os("PROPTEST_CASES").is_none() {
+        config.cases = CASES;
+    }
+    let outcome = TestRunner::new(config).run(&random_mesh(), |Printed(polygons)| {
+        caught(|| law(&polygons)).map_err(|fault| TestCaseError::fail(fault.to_string()))
+    });
+    match outcome {
+        Ok(()) => {}
+        Err(TestError::Fail(fault, Printed(mesh))) => {
+            let fails = |mesh: &PolygonMesh| caught(|| law(mesh)).err();
+            let mesh = smallest(mesh, |mesh| fails(mesh).is_some());
+            let fault = fails(&mesh).map_or(fault.to_string(), |fault| fault.to_string());
+            panic!("{name} fails on {}\n{fault}", compact(&mesh))
+        }
+        Err(TestError::Abort(reason)) => panic!("{name}: no verdict: {reason}"),
+    }
+}
+
+/// Manifolds half of the time, else known faults or chaos.
+fn random_mesh() -> impl Strategy<Value = Printed> {
+    let faulty = faulty_mesh().prop_map(|faulty| faulty.polygons);
+    Union::new_weighted(vec![
+        (2, manifold_mesh().boxed()),
+        (1, faulty.boxed()),
+        (1, any_mesh().boxed()),
+    ])
+    .prop_map(Printed)
+}
+
+/// A mesh that proptest prints on one line.
+struct Printed(PolygonMesh);
+
+impl std::fmt::Debug for Printed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&compact(&self.0))
+    }
+}

@@ -1,0 +1,63 @@
+//! What a mesh is to a structure in which a vertex is its coordinates.
+
+use std::collections::BTreeMap;
+
+use mesh_core::{Point, PolygonError, PolygonMesh, VertexId};
+
+/// The mesh with vertices at one point made one, in the order in which faces first name them.
+///
+/// −0 is 0. Isolated vertices are gone, for no face names them.
+///
+/// # Errors
+///
+/// [`PolygonError::RepeatedVertex`] where two corners of one face are at one point.
+pub fn welded(polygons: &PolygonMesh) -> Result<PolygonMesh, PolygonError> {
+    let numbers = weld_numbers(polygons);
+    let mut positions = vec![Point::ZERO; numbers.values().max().map_or(0, |n| *n as usize + 1)];
+    for (&v, &number) in &numbers {
+        positions[number as usize] = polygons.position(v);
+    }
+    let faces = polygons.faces().iter().map(|(_, corners)| {
+        let welded = corners.iter().map(|v| numbers[v]);
+        welded.collect::<Vec<u32>>()
+    });
+    PolygonMesh::new(positions, faces)
+}
+
+/// What [`welded`] calls each vertex that a face names.
+pub(crate) fn weld_numbers(polygons: &PolygonMesh) -> BTreeMap<VertexId, u32> {
+    let mut at: BTreeMap<[u32; 3], u32> = BTreeMap::new();
+    let mut numbers = BTreeMap::new();
+    for &v in polygons.faces().corners() {
+        let next = at.len() as u32;
+        let number = *at.entry(place(polygons.position(v))).or_insert(next);
+        numbers.insert(v, number);
+    }
+    numbers
+}
+
+/// The bits of the coordinates, with −0 as 0.
+pub(crate) fn place(point: Point) -> [u32; 3] {
+    let bits = |x: f32| if x == 0.0 { 0 } else { x.to_bits() };
+    point.to_array().map(bits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vertices_at_one_point_become_one_in_order_of_naming() {
+        let minus = Point::new(-0.0, 0.0, 0.0);
+        let points = [Point::Y, Point::ZERO, Point::X, minus, Point::Z];
+        let mesh = PolygonMesh::new(points, [[2, 1, 0], [4, 0, 3]]).expect("valid");
+        let one = welded(&mesh).expect("no face has two corners at one point");
+        let expected = PolygonMesh::new(
+            [Point::X, Point::ZERO, Point::Y, Point::Z],
+            [[0, 1, 2], [3, 2, 1]],
+        );
+        assert_eq!(Ok(one), expected);
+        let flat = PolygonMesh::new(points, [[1, 3, 0]]).expect("valid");
+        assert!(welded(&flat).is_err());
+    }
+}

@@ -1,0 +1,140 @@
+//! Every law fails some flawed structure, and says which structure and what.
+
+use std::panic::catch_unwind;
+
+use conformance::{hold, law};
+
+use crate::flawed::{Flaw, Flawed, Kind};
+
+/// `Kind => law, "words of the message"` makes a test that the law fails the flaw in those words.
+macro_rules! bites {
+    (meshes { $($flaw:ident => $law:ident, $words:literal;)+ }
+     structures { $($whole:ident => $structural:ident, $whole_words:literal;)+ }) => {
+        bites!(@flaws $($flaw)+ $($whole)+);
+
+        #[expect(non_snake_case, reason = "each test is called by its flaw")]
+        mod meshes {
+            use super::*;
+            $(
+                #[test]
+                fn $flaw() {
+                    let fault = fault(|| hold::<Flawed<flaws::$flaw>>(stringify!($law), law::$law::<Flawed<flaws::$flaw>>));
+                    speaks(&fault, $words);
+                }
+            )+
+        }
+
+        #[expect(non_snake_case, reason = "each test is called by its flaw")]
+        mod structures {
+            use super::*;
+            $(
+                #[test]
+                fn $whole() {
+                    speaks(&fault(law::$structural::<Flawed<flaws::$whole>>), $whole_words);
+                }
+            )+
+        }
+
+        /// The laws that are shown to bite.
+        const BITTEN: &[&str] = &[$(stringify!($law),)+ $(stringify!($structural)),+];
+    };
+    (@flaws $($flaw:ident)+) => {
+        mod flaws {
+            $(
+                #[derive(Clone, Copy, Debug)]
+                pub(super) struct $flaw;
+
+                impl super::Flaw for $flaw {
+                    const KIND: super::Kind = super::Kind::$flaw;
+                }
+            )+
+        }
+    };
+}
+
+bites! {
+    meshes {
+        NeighbourTwice => vertex_vertices, "vertex_vertices of v0 yields v";
+        OwnNeighbour => vertex_vertices, "vertex_vertices of v0 yields v0 itself";
+        EdgeLeftOut => vertex_edges, "vertex_edges of v0";
+        FaceLeftOut => vertex_faces, "vertex_faces of v0";
+        EndTwice => edge_vertices, "an element v";
+        EdgeOfItself => edge_edges, "itself";
+        ThirdFaceLeftOut => edge_faces, "edge_faces of v0–v1";
+        CornersReversed => face_vertices, "face_vertices of f0";
+        SidesShifted => face_edges, "face_edges of f0";
+        FaceTwiceAcrossTwoEdges => face_faces, "yields f1 twice";
+        HigherEdgesOnly => symmetry, "edge_edges of";
+        RingReversed => one_ring, "one_ring of v0";
+        RingFromTheMiddle => one_ring, "one_ring of v0";
+        RingOfABowTie => one_ring, "not None";
+        NoRingOfAnIsolatedVertex => one_ring, "is None";
+        EdgeIteratedTwice => elements, "twice";
+        FacesOutOfOrder => elements, "faces() is";
+        VertexCountOff => elements, "vertex_count()";
+        FaceNameOff => names, "f";
+        VertexNameOff => names, "vertex_name says";
+        PositionOff => positions, "position of v";
+        TooFewRows => maps, "no e";
+        EmptyForMissingRow => missing_handles, "vertex_vertices of an element that is not there";
+        BareIndex => missing_handles, "vertex_vertices of an element that is not there";
+        NeverRefuses => verdict, "from_polygons, and then CAPABILITIES.check";
+        RefusesIsolated => verdict, "IsolatedVertex";
+        AnotherError => verdict, "NonManifoldVertex";
+        FaceTurnedOnTheWayOut => round_trip, "of to_polygons is";
+        LastVertexNeverMoves => set_positions, "after set_positions";
+        LaterPositionsForgotten => set_positions, "after set_positions";
+        NeverValid => invariants, "validate: I9 fails";
+        OtherWhenWatched => probed, "watched and then not";
+    }
+    structures {
+        DuplicateFaceLeftOut => corner_cases, "face_faces f0";
+        AllConstant => costs, "vertex_vertices is declared Constant";
+        NothingScans => costs, "vertex_vertices is declared Local";
+        AllScan => costs, "edge_vertices is declared Scan";
+        RowsToSpare => memory, "holds";
+    }
+}
+
+/// What is said of the structure that fails.
+fn fault(trial: impl FnOnce() + std::panic::UnwindSafe) -> String {
+    let outcome = catch_unwind(trial);
+    let payload = outcome.expect_err("the suite passes a flawed structure");
+    let message = payload.downcast_ref::<String>();
+    message.expect("a law panics with a message").clone()
+}
+
+fn speaks(fault: &str, words: &str) {
+    assert!(fault.contains(words), "“{words}” is not in:\n{fault}");
+    assert!(
+        fault.contains("flawed"),
+        "the structure has no name in:\n{fault}"
+    );
+}
+
+#[test]
+fn every_law_bites() {
+    for law in law::NAMES {
+        assert!(BITTEN.contains(law), "nothing shows that {law} bites");
+    }
+}
+
+/// A flaw that no mesh of the gallery shows is brought down from a large mesh to a small one.
+#[test]
+fn a_failing_mesh_shrinks_and_is_shown() {
+    type Lists = crate::face_and_edge_lists::FaceAndEdgeLists;
+    let fault = fault(|| {
+        hold::<Lists>("no_heptagon", |polygons| {
+            let mut faces = polygons.faces().iter();
+            assert!(faces.all(|(_, face)| face.len() != 7), "a heptagon");
+        });
+    });
+    let first = fault.lines().next().expect("a line");
+    assert!(
+        first.starts_with("face-and-edge-lists: no_heptagon fails on "),
+        "{fault}"
+    );
+    assert!(fault.contains("\na heptagon\n(at "), "{fault}");
+    assert!(first.contains("on 7 vertices, faces ["), "{fault}");
+    assert_eq!(first.matches('[').count(), 1, "{fault}");
+}

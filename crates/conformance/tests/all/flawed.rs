@@ -1,0 +1,378 @@
+//! The sound structure with one flaw at a time.
+
+use std::marker::PhantomData;
+
+use mesh_core::{
+    BuildError, Capabilities, Counts, EdgeId, FaceId, InvariantError, MemoryFootprint, MeshQuery, MoveError,
+    Point, PolygonMesh, Probe, QueryCost, Representation, Untraced, VertexId, VertexMap,
+};
+
+use crate::face_and_edge_lists::FaceAndEdgeLists;
+
+/// What is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    NeighbourTwice,
+    OwnNeighbour,
+    EdgeLeftOut,
+    FaceLeftOut,
+    EndTwice,
+    EdgeOfItself,
+    ThirdFaceLeftOut,
+    CornersReversed,
+    SidesShifted,
+    FaceTwiceAcrossTwoEdges,
+    DuplicateFaceLeftOut,
+    HigherEdgesOnly,
+    RingReversed,
+    RingFromTheMiddle,
+    RingOfABowTie,
+    NoRingOfAnIsolatedVertex,
+    EdgeIteratedTwice,
+    FacesOutOfOrder,
+    VertexCountOff,
+    FaceNameOff,
+    VertexNameOff,
+    PositionOff,
+    TooFewRows,
+    EmptyForMissingRow,
+    BareIndex,
+    NeverRefuses,
+    RefusesIsolated,
+    AnotherError,
+    FaceTurnedOnTheWayOut,
+    LastVertexNeverMoves,
+    LaterPositionsForgotten,
+    NeverValid,
+    OtherWhenWatched,
+    AllConstant,
+    NothingScans,
+    AllScan,
+    RowsToSpare,
+}
+
+/// A type for each [`Kind`].
+pub(crate) trait Flaw: Copy + std::fmt::Debug + Send + Sync + 'static {
+    const KIND: Kind;
+}
+
+/// [`FaceAndEdgeLists`] with flaw `F`.
+#[derive(Clone, Debug)]
+pub(crate) struct Flawed<F: Flaw, P: Probe = Untraced> {
+    inner: FaceAndEdgeLists<P>,
+    watched: bool,
+    moves: u32,
+    flaw: PhantomData<F>,
+}
+
+impl<F: Flaw, P: Probe> Flawed<F, P> {
+    fn is(&self, kind: Kind) -> bool {
+        F::KIND == kind
+    }
+
+    /// `items`, with the first of them once more if the flaw is `kind`.
+    fn twice<T: Copy>(&self, kind: Kind, mut items: Vec<T>) -> std::vec::IntoIter<T> {
+        if self.is(kind) {
+            items.extend(items.first().copied());
+        }
+        items.into_iter()
+    }
+
+    /// `items`, without the last of them if the flaw is `kind`.
+    fn fewer<T>(&self, kind: Kind, mut items: Vec<T>) -> Vec<T> {
+        if self.is(kind) {
+            items.pop();
+        }
+        items
+    }
+}
+
+impl<F: Flaw, P: Probe> MeshQuery for Flawed<F, P> {
+    type Vertex = VertexId;
+    type Edge = EdgeId;
+    type Face = FaceId;
+
+    fn vertices(&self) -> impl Iterator<Item = VertexId> {
+        self.inner.vertices()
+    }
+
+    fn edges(&self) -> impl Iterator<Item = EdgeId> {
+        self.twice(Kind::EdgeIteratedTwice, self.inner.edges().collect())
+    }
+
+    fn faces(&self) -> impl Iterator<Item = FaceId> {
+        let mut faces: Vec<_> = self.inner.faces().collect();
+        if self.is(Kind::FacesOutOfOrder) {
+            faces.reverse();
+        }
+        faces.into_iter()
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.inner.vertex_count() + usize::from(self.is(Kind::VertexCountOff))
+    }
+
+    fn face_count(&self) -> usize {
+        self.inner.face_count()
+    }
+
+    fn position(&self, v: VertexId) -> Point {
+        let position = self.inner.position(v);
+        if self.is(Kind::PositionOff) {
+            Point::new(position.z, position.x, position.y)
+        } else {
+            position
+        }
+    }
+
+    fn vertex_vertices(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
+        if v.index() >= self.inner.vertex_rows() {
+            match F::KIND {
+                Kind::EmptyForMissingRow => return Vec::new().into_iter(),
+                Kind::BareIndex => panic!("index out of bounds: the index is {}", v.index()),
+                _ => {}
+            }
+        }
+        let mut ring: Vec<_> = self.inner.vertex_vertices(v).collect();
+        if self.is(Kind::OwnNeighbour) {
+            ring.push(v);
+        }
+        if self.watched {
+            ring = self.fewer(Kind::OtherWhenWatched, ring);
+        }
+        self.twice(Kind::NeighbourTwice, ring)
+    }
+
+    fn vertex_edges(&self, v: VertexId) -> impl Iterator<Item = EdgeId> {
+        let edges = self.inner.vertex_edges(v).collect();
+        self.fewer(Kind::EdgeLeftOut, edges).into_iter()
+    }
+
+    fn vertex_faces(&self, v: VertexId) -> impl Iterator<Item = FaceId> {
+        let faces = self.inner.vertex_faces(v).collect();
+        self.fewer(Kind::FaceLeftOut, faces).into_iter()
+    }
+
+    fn edge_vertices(&self, e: EdgeId) -> [VertexId; 2] {
+        let [a, b] = self.inner.edge_vertices(e);
+        if self.is(Kind::EndTwice) && e.index() % 2 == 1 {
+            [b, b]
+        } else {
+            [a, b]
+        }
+    }
+
+    fn edge_edges(&self, e: EdgeId) -> impl Iterator<Item = EdgeId> {
+        let mut edges: Vec<_> = self.inner.edge_edges(e).collect();
+        if self.is(Kind::EdgeOfItself) {
+            edges.push(e);
+        }
+        if self.is(Kind::HigherEdgesOnly) {
+            edges.retain(|&other| other > e);
+        }
+        edges.into_iter()
+    }
+
+    fn edge_faces(&self, e: EdgeId) -> impl Iterator<Item = FaceId> {
+        let mut faces: Vec<_> = self.inner.edge_faces(e).collect();
+        if self.is(Kind::ThirdFaceLeftOut) {
+            faces.truncate(2);
+        }
+        faces.into_iter()
+    }
+
+    fn face_vertices(&self, f: FaceId) -> impl Iterator<Item = VertexId> {
+        let mut corners: Vec<_> = self.inner.face_vertices(f).collect();
+        if self.is(Kind::CornersReversed) {
+            corners.reverse();
+        }
+        corners.into_iter()
+    }
+
+    fn face_edges(&self, f: FaceId) -> impl Iterator<Item = EdgeId> {
+        let mut sides: Vec<_> = self.inner.face_edges(f).collect();
+        if self.is(Kind::SidesShifted) {
+            sides.rotate_left(1);
+        }
+        sides.into_iter()
+    }
+
+    fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
+        let across = |f| {
+            self.inner
+                .face_edges(f)
+                .flat_map(|e| self.inner.edge_faces(e))
+        };
+        let same = |a, b| {
+            let set = |f| {
+                self.inner
+                    .face_vertices(f)
+                    .collect::<std::collections::BTreeSet<_>>()
+            };
+            set(a) == set(b)
+        };
+        let faces: Vec<_> = match F::KIND {
+            Kind::FaceTwiceAcrossTwoEdges => across(f).filter(|&other| other != f).collect(),
+            Kind::DuplicateFaceLeftOut => self
+                .inner
+                .face_faces(f)
+                .filter(|&other| !same(f, other))
+                .collect(),
+            _ => self.inner.face_faces(f).collect(),
+        };
+        faces.into_iter()
+    }
+
+    fn vertex_rows(&self) -> usize {
+        self.inner.vertex_rows()
+    }
+
+    fn edge_rows(&self) -> usize {
+        let rows = self.inner.edge_rows();
+        if self.is(Kind::TooFewRows) {
+            rows.saturating_sub(1)
+        } else {
+            rows
+        }
+    }
+
+    fn face_rows(&self) -> usize {
+        self.inner.face_rows()
+    }
+
+    fn one_ring(&self, v: VertexId) -> Option<impl Iterator<Item = VertexId>> {
+        let sound = self.inner.one_ring(v).map(Iterator::collect::<Vec<_>>);
+        let ring = match F::KIND {
+            Kind::RingReversed => sound.map(|ring| ring.into_iter().rev().collect()),
+            Kind::RingFromTheMiddle => sound.map(|mut ring| {
+                let middle = ring.len() / 2;
+                ring.rotate_left(middle);
+                ring
+            }),
+            Kind::RingOfABowTie => sound.or_else(|| Some(self.inner.vertex_vertices(v).collect())),
+            Kind::NoRingOfAnIsolatedVertex => sound.filter(|ring| !ring.is_empty()),
+            _ => sound,
+        };
+        ring.map(Vec::into_iter)
+    }
+}
+
+impl<F: Flaw> Representation for Flawed<F> {
+    const NAME: &'static str = "flawed";
+
+    const CAPABILITIES: Capabilities = match F::KIND {
+        Kind::NeverRefuses | Kind::AnotherError => Capabilities::ORIENTED_MANIFOLDS,
+        _ => Capabilities::ALL,
+    };
+
+    const COSTS: [QueryCost; 9] = match F::KIND {
+        Kind::AllConstant => [QueryCost::Constant; 9],
+        Kind::NothingScans => [QueryCost::Local; 9],
+        Kind::AllScan => [QueryCost::Scan; 9],
+        _ => FaceAndEdgeLists::COSTS,
+    };
+
+    type Probed<P: Probe> = Flawed<F, P>;
+
+    fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
+        match F::KIND {
+            Kind::NeverRefuses => {}
+            Kind::RefusesIsolated => {
+                let strict = Capabilities {
+                    isolated_vertices: false,
+                    ..Capabilities::ALL
+                };
+                strict.check(polygons)?;
+            }
+            // Looks at vertices before edges.
+            Kind::AnotherError => {
+                let vertices = Capabilities {
+                    non_manifold_vertices: false,
+                    ..Capabilities::ALL
+                };
+                vertices.check(polygons)?;
+                Self::CAPABILITIES.check(polygons)?;
+            }
+            _ => Self::CAPABILITIES.check(polygons)?,
+        }
+        Ok(Self {
+            inner: FaceAndEdgeLists::from_polygons(polygons)?,
+            watched: false,
+            moves: 0,
+            flaw: PhantomData,
+        })
+    }
+
+    fn to_polygons(&self) -> PolygonMesh {
+        let polygons = self.inner.to_polygons();
+        if !self.is(Kind::FaceTurnedOnTheWayOut) {
+            return polygons;
+        }
+        let mut faces: Vec<Vec<u32>> = Vec::new();
+        for (_, corners) in polygons.faces().iter() {
+            faces.push(corners.iter().map(|v| v.index() as u32).collect());
+        }
+        if let Some(face) = faces.last_mut() {
+            face.reverse();
+        }
+        PolygonMesh::new(polygons.positions(), faces).expect("the corners are the same")
+    }
+
+    fn vertex_name(polygons: &PolygonMesh, v: VertexId) -> VertexId {
+        let last = polygons.vertex_count() as u32 - 1;
+        match F::KIND {
+            Kind::VertexNameOff => VertexId::new(last - v.index() as u32),
+            _ => v,
+        }
+    }
+
+    fn face_name(polygons: &PolygonMesh, f: FaceId) -> FaceId {
+        let last = polygons.face_count() as u32 - 1;
+        match F::KIND {
+            Kind::FaceNameOff => FaceId::new(last - f.index() as u32),
+            _ => f,
+        }
+    }
+
+    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
+        self.moves += 1;
+        let mut positions = positions.clone();
+        if self.is(Kind::LaterPositionsForgotten) && self.moves > 1 {
+            return Ok(());
+        }
+        if let Some(last) = self.inner.vertices().last()
+            && self.is(Kind::LastVertexNeverMoves)
+        {
+            positions[last] = self.inner.position(last);
+        }
+        self.inner.set_positions(&positions)
+    }
+
+    fn memory(&self) -> MemoryFootprint {
+        let mut memory = self.inner.memory();
+        if self.is(Kind::RowsToSpare) {
+            memory.tables[0].bytes += memory.tables[0].bytes / 4;
+        }
+        memory
+    }
+
+    fn layout_bytes(counts: &Counts) -> usize {
+        FaceAndEdgeLists::layout_bytes(counts)
+    }
+
+    fn validate(&self) -> Result<(), InvariantError> {
+        if self.is(Kind::NeverValid) {
+            return Err(InvariantError::new("I9", "no mesh is good enough"));
+        }
+        self.inner.validate()
+    }
+
+    fn probed<P: Probe>(self, probe: P) -> Flawed<F, P> {
+        Flawed {
+            inner: self.inner.probed(probe),
+            watched: true,
+            moves: self.moves,
+            flaw: PhantomData,
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! The laws of `conformance`, on this structure.
+
+conformance::suite!(indexed_face_set::IndexedFaceSet);

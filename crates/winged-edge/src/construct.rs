@@ -1,0 +1,231 @@
+//! In from polygons, and out again.
+
+use mesh_core::{
+    BuildError, Capabilities, Counts, EdgeId, FaceId, FaceList, InvariantError, MemoryFootprint,
+    MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, RowMap, Slot,
+    Table, TwinPairs, VertexId, row,
+};
+
+use crate::edge::{Edge, Run};
+use crate::mesh::WingedEdgeMesh;
+use crate::wings::{Side, Wings};
+
+impl Representation for WingedEdgeMesh {
+    const NAME: &'static str = "winged-edge";
+
+    const CAPABILITIES: Capabilities = Capabilities::ORIENTED_MANIFOLDS;
+
+    const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
+
+    type Probed<P: Probe> = WingedEdgeMesh<P>;
+
+    /// Pairs the sides, writes each side into its edge, then closes each hole with a boundary loop;
+    /// O(corners + vertices), without hashing.
+    fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
+        let refusal = || match Self::CAPABILITIES.check(polygons) {
+            Err(fault) => fault,
+            Ok(()) => unreachable!("the draft finds a fault in a mesh that the check finds sound"),
+        };
+        let faces = polygons.faces();
+        let pairs = TwinPairs::of(polygons.vertex_count(), faces).ok_or_else(refusal)?;
+        let mut draft = Draft::link(polygons.vertex_count(), faces, &pairs);
+        let closed = faces.corners().len() == 2 * pairs.edge_count;
+        if (!closed && !draft.close_boundary_loops()) || !draft.every_vertex_is_one_fan() {
+            return Err(refusal());
+        }
+        Ok(Self {
+            positions: Table::new("positions", "vertex", polygons.positions().to_vec()),
+            spokes: Table::new("spokes", "vertex", draft.spokes),
+            edges: Table::new("edges", "edge", draft.edges),
+            sides: Table::new("sides", "face", draft.sides),
+        })
+    }
+
+    fn to_polygons(&self) -> PolygonMesh {
+        let mut faces = FaceList::with_capacity(2 * self.edge_count());
+        for f in self.faces() {
+            faces
+                .push(self.face_vertices(f))
+                .expect("no more corners than sides of edges");
+        }
+        PolygonMesh::from_faces(self.positions().to_vec(), faces).expect("I7")
+    }
+
+    fn vertex_name(_: &PolygonMesh, v: VertexId) -> VertexId {
+        v
+    }
+
+    fn face_name(_: &PolygonMesh, f: FaceId) -> FaceId {
+        f
+    }
+
+    fn set_positions(&mut self, positions: &RowMap<VertexId, Point>) -> Result<(), MoveError> {
+        self.positions.set_positions(positions)
+    }
+
+    fn memory(&self) -> MemoryFootprint {
+        let Self {
+            positions,
+            spokes,
+            edges,
+            sides,
+        } = self;
+        [
+            positions.bytes(),
+            spokes.bytes(),
+            edges.bytes(),
+            sides.bytes(),
+        ]
+        .into_iter()
+        .collect()
+    }
+
+    fn layout_bytes(counts: &Counts) -> usize {
+        size_of::<Edge>() * counts.edges + 16 * counts.vertices + 4 * counts.faces
+    }
+
+    fn validate(&self) -> Result<(), InvariantError> {
+        crate::validate::validate(self)
+    }
+
+    fn probed<P: Probe>(self, probe: P) -> WingedEdgeMesh<P> {
+        WingedEdgeMesh {
+            positions: self.positions.probed(probe.clone()),
+            spokes: self.spokes.probed(probe.clone()),
+            edges: self.edges.probed(probe.clone()),
+            sides: self.sides.probed(probe),
+        }
+    }
+}
+
+/// The tables while they are being filled.
+struct Draft {
+    spokes: Vec<Slot<EdgeId>>,
+    edges: Vec<Edge>,
+    sides: Vec<EdgeId>,
+}
+
+impl Draft {
+    /// Writes every corner's side into its edge; sides without a face stay blank, but for their ends.
+    fn link(vertices: usize, faces: &FaceList, pairs: &TwinPairs) -> Self {
+        let blank = Edge {
+            ends: [VertexId::new(0); 2],
+            faces: [Slot::NONE; 2],
+            next: Wings::BLANK,
+            prev: Wings::BLANK,
+        };
+        let mut draft = Self {
+            spokes: vec![Slot::NONE; vertices],
+            edges: vec![blank; pairs.edge_count],
+            sides: Vec::with_capacity(faces.len()),
+        };
+        let halves = pairs.half_of_corner.as_slice();
+        match faces.uniform_degree() {
+            Some(3) => draft.link_uniform::<3>(faces.corners(), halves),
+            Some(4) => draft.link_uniform::<4>(faces.corners(), halves),
+            _ => {
+                for (f, corners) in faces.iter() {
+                    draft.link_face(f, corners, &halves[faces.range(f)]);
+                }
+            }
+        }
+        draft
+    }
+
+    /// Links faces of a degree that the compiler knows and unrolls.
+    fn link_uniform<const DEGREE: usize>(&mut self, corners: &[VertexId], halves: &[u32]) {
+        let faces = corners
+            .as_chunks::<DEGREE>()
+            .0
+            .iter()
+            .zip(halves.as_chunks::<DEGREE>().0);
+        for (f, (corners, halves)) in (0..).zip(faces) {
+            self.link_face(FaceId::new(f), corners, halves);
+        }
+    }
+
+    #[inline(always)]
+    fn link_face(&mut self, face: FaceId, corners: &[VertexId], halves: &[u32]) {
+        let name = |half: u32| EdgeId::new(half >> 1);
+        self.sides.push(name(halves[0]));
+        let last = corners.len() - 1;
+        for i in 0..corners.len() {
+            let (next, prev) = (
+                if i == last { 0 } else { i + 1 },
+                if i == 0 { last } else { i - 1 },
+            );
+            let (here, then) = (corners[i], corners[next]);
+            let edge = &mut self.edges[name(halves[i]).index()];
+            let side = Side::right_if(halves[i] & 1 == 1);
+            // The even half of a pair runs from the lower end to the higher.
+            edge.ends = [here.min(then), here.max(then)];
+            edge.faces[side.index()] = Slot::some(face);
+            edge.next.link(side, name(halves[next]));
+            edge.prev.link(side, name(halves[prev]));
+            self.spokes[here.index()] = Slot::some(name(halves[i]));
+        }
+    }
+
+    /// Links the blank sides into loops; false if two of them arrive at one vertex.
+    fn close_boundary_loops(&mut self) -> bool {
+        for e in 0..self.edges.len() {
+            let Some(side) = blank_side(&self.edges[e]) else {
+                continue;
+            };
+            let target = self.edges[e].ends[side.other().index()];
+            let spoke = &mut self.spokes[target.index()];
+            // Run away from the vertex, an edge whose blank side arrives there has it on the right.
+            let arrives = |other: EdgeId| {
+                let run = Run::from(&self.edges[other.index()], target);
+                run.across() == Slot::NONE
+            };
+            let e = EdgeId::new(row(e));
+            if spoke
+                .get()
+                .is_some_and(|other| other != e && arrives(other))
+            {
+                return false;
+            }
+            *spoke = Slot::some(e);
+        }
+        for e in 0..self.edges.len() {
+            let Some(side) = blank_side(&self.edges[e]) else {
+                continue;
+            };
+            // As many blank sides arrive at a vertex as leave it, and one leaves this one.
+            let origin = self.edges[e].ends[side.index()];
+            let before = self.spokes[origin.index()].get();
+            let before = before.expect("a side arrives at every origin");
+            self.edges[e].prev.link(side, before);
+            let before = &mut self.edges[before.index()];
+            let arriving = Side::right_if(before.ends[0] == origin);
+            before.next.link(arriving, EdgeId::new(row(e)));
+        }
+        true
+    }
+
+    /// Whether the walks around all vertices meet every edge twice, once from each end.
+    fn every_vertex_is_one_fan(&self) -> bool {
+        let mut met = 0;
+        for (v, spoke) in (0..).map(VertexId::new).zip(&self.spokes) {
+            let Some(first) = spoke.get() else {
+                continue;
+            };
+            let mut e = first;
+            loop {
+                met += 1;
+                e = Run::from(&self.edges[e.index()], v).ccw();
+                if e == first {
+                    break;
+                }
+            }
+        }
+        met == 2 * self.edges.len()
+    }
+}
+
+/// The side of an edge that has no face.
+fn blank_side(edge: &Edge) -> Option<Side> {
+    let mut sides = [Side::LEFT, Side::RIGHT].into_iter();
+    sides.find(|&side| edge.faces[side.index()] == Slot::NONE)
+}

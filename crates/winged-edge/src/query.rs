@@ -1,0 +1,109 @@
+//! The nine relations.
+
+use mesh_core::{EdgeId, FaceId, MeshQuery, Point, Probe, VertexId, row};
+
+use crate::circulate::{EdgeEdges, FaceFaces};
+use crate::mesh::WingedEdgeMesh;
+
+impl<P: Probe> MeshQuery for WingedEdgeMesh<P> {
+    type Vertex = VertexId;
+    type Edge = EdgeId;
+    type Face = FaceId;
+
+    #[inline]
+    fn vertices(&self) -> impl Iterator<Item = VertexId> {
+        (0..row(self.positions.len())).map(VertexId::new)
+    }
+
+    #[inline]
+    fn edges(&self) -> impl Iterator<Item = EdgeId> {
+        (0..row(self.edges.len())).map(EdgeId::new)
+    }
+
+    #[inline]
+    fn faces(&self) -> impl Iterator<Item = FaceId> {
+        (0..row(self.sides.len())).map(FaceId::new)
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    fn edge_count(&self) -> usize {
+        self.edges.len()
+    }
+
+    fn face_count(&self) -> usize {
+        self.sides.len()
+    }
+
+    #[inline]
+    fn position(&self, v: VertexId) -> Point {
+        *self.positions.read(v.index())
+    }
+
+    /// Counter-clockwise; from the boundary, if `v` is on one.
+    #[inline]
+    fn vertex_vertices(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
+        self.runs_from(v).map(|(_, run)| run.target())
+    }
+
+    #[inline]
+    fn vertex_edges(&self, v: VertexId) -> impl Iterator<Item = EdgeId> {
+        self.runs_from(v).map(|(e, _)| e)
+    }
+
+    #[inline]
+    fn vertex_faces(&self, v: VertexId) -> impl Iterator<Item = FaceId> {
+        // Each face at v is on the left of one edge that leaves it.
+        self.runs_from(v).filter_map(|(_, run)| run.face().get())
+    }
+
+    #[inline]
+    fn edge_vertices(&self, e: EdgeId) -> [VertexId; 2] {
+        self.edge(e).ends()
+    }
+
+    #[inline]
+    fn edge_edges(&self, e: EdgeId) -> impl Iterator<Item = EdgeId> {
+        EdgeEdges::new(self, e)
+    }
+
+    #[inline]
+    fn edge_faces(&self, e: EdgeId) -> impl Iterator<Item = FaceId> {
+        self.edge(e).faces().into_iter().flatten()
+    }
+
+    #[inline]
+    fn face_vertices(&self, f: FaceId) -> impl Iterator<Item = VertexId> {
+        self.runs_along(f).map(|(_, run)| run.origin())
+    }
+
+    #[inline]
+    fn face_edges(&self, f: FaceId) -> impl Iterator<Item = EdgeId> {
+        self.runs_along(f).map(|(e, _)| e)
+    }
+
+    #[inline]
+    fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
+        FaceFaces::new(self, f)
+    }
+
+    fn vertex_rows(&self) -> usize {
+        self.positions.len()
+    }
+
+    fn edge_rows(&self) -> usize {
+        self.edges.len()
+    }
+
+    fn face_rows(&self) -> usize {
+        self.sides.len()
+    }
+
+    /// The walk around `v` as it is, for it is counter-clockwise and begins at the boundary.
+    #[inline]
+    fn one_ring(&self, v: VertexId) -> Option<impl Iterator<Item = VertexId>> {
+        Some(self.vertex_vertices(v))
+    }
+}

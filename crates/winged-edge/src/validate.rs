@@ -1,0 +1,375 @@
+//! One check for each invariant.
+
+use std::collections::HashSet;
+
+use mesh_core::{EdgeId, InvariantError, MeshQuery, Slot};
+
+use crate::edge::Run;
+use crate::mesh::WingedEdgeMesh;
+
+/// Checks I1 to I8 in turn; the later ones rely on the earlier ones.
+pub(crate) fn validate(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+    names_exist(mesh)?;
+    sides_differ(mesh)?;
+    ends_meet(mesh)?;
+    faces_agree(mesh)?;
+    wings_undo_each_other(mesh)?;
+    spokes(mesh)?;
+    one_fan_each(mesh)?;
+    faces(mesh)?;
+    edges_differ(mesh)
+}
+
+fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> {
+    Err(InvariantError::new(invariant, detail))
+}
+
+/// Both runs of every edge, each from the end where it starts.
+fn runs(mesh: &WingedEdgeMesh) -> impl Iterator<Item = (EdgeId, Run<'_>)> {
+    mesh.edges().flat_map(|e| {
+        let edge = mesh.edge(e);
+        edge.ends().map(|v| (e, Run::from(edge, v)))
+    })
+}
+
+/// I1, its second half: without it no other check could walk.
+fn names_exist(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+    let [vertices, edges, faces] = [mesh.vertex_count(), mesh.edge_count(), mesh.face_count()];
+    if mesh.positions.len() != mesh.spokes.len() {
+        let spokes = mesh.spokes.len();
+        return fails("I1", format!("{spokes} spokes for {vertices} vertices"));
+    }
+    for (e, edge) in mesh.edges().zip(mesh.edge_records()) {
+        let ends = edge.ends().iter().all(|v| v.index() < vertices);
+        let mut wings = edge.next().into_iter().chain(edge.prev());
+        let mut sides = edge.faces().into_iter().flatten();
+        if !ends || !wings.all(|w| w.index() < edges) || !sides.all(|f| f.index() < faces) {
+            return fails("I1", format!("{e} names what is not there: {edge:?}"));
+        }
+    }
+    let spokes = mesh.spoke_rows().iter().filter_map(|slot| slot.get());
+    let mut named = spokes.chain(mesh.side_rows().iter().copied());
+    match named.find(|e| e.index() >= edges) {
+        Some(e) => fails("I1", format!("{e} is named but not there")),
+        None => Ok(()),
+    }
+}
+
+/// I1, its first half.
+fn sides_differ(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+    for (e, edge) in mesh.edges().zip(mesh.edge_records()) {
+        let ([start, end], [left, right]) = (edge.ends(), edge.faces());
+        if start == end {
+            return fails("I1", format!("{e} runs from {start} to itself"));
+        }
+        if left == right {
+            return fails("I1", format!("{e} has {left:?} on both sides"));
+        }
+    }
+    Ok(())
+}
+
+fn ends_meet(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+    for (e, run) in runs(mesh) {
+        for (wing, v) in [(run.next(), run.target()), (run.prev(), run.origin())] {
+            if !mesh.edge(wing).ends().contains(&v) {
+                return fails(
+                    "I2",
+                    format!("{wing}, a wing of {e} at {v}, does not end there"),
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+fn faces_agree(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+    for (e, run) in runs(mesh) {
+        let next = Run::from(mesh.edge(run.next()), run.target());
+        if next.face() != run.face() {
+            let (wing, v) = (run.next(), run.target());
+            return fails(
+                "I3",
+                format!("{e} and its next wing {wing} at {v} differ in face"),
+            );
+        }
+    }
+    Ok(())
+}
+
+fn wings_undo_each_other(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+    for (e, run) in runs(mesh) {
+        // The wing before arrives at the origin: run away from it, `e` is its next clockwise.
+        let next = Run::from(mesh.edge(run.next()), run.target());
+        let prev = Run::from(mesh.edge(run.prev()), run.origin());
+        if next.prev() != e || prev.cw() != e {
+            let (next, prev) = (run.next(), run.prev());
+            return fails(
+                "I4",
+                format!("{e} is not between its wings {prev} and {next}"),
+            );
+        }
+    }
+    Ok(())
+}
+
+fn spokes(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+    for v in mesh.vertices() {
+        if let Some(e) = mesh.spoke(v).filter(|&e| !mesh.edge(e).ends().contains(&v)) {
+            return fails("I5", format!("{e}, the spoke of {v}, does not end there"));
+        }
+    }
+    for (e, run) in runs(mesh) {
+        let v = run.origin();
+        let Some(spoke) = mesh.spoke(v) else {
+            return fails("I5", format!("{e} ends at {v}, which has no spoke"));
+        };
+        let first = Run::from(mesh.edge(spoke), v);
+        if run.across() == Slot::NONE && first.across() != Slot::NONE {
+            let detail = format!("{v} is on a boundary, but its spoke {spoke} is not first there");
+            return fails("I5", detail);
+        }
+    }
+    Ok(())
+}
+
+fn one_fan_each(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+    let mut edges = vec![0_usize; mesh.vertex_count()];
+    for (_, run) in runs(mesh) {
+        edges[run.origin().index()] += 1;
+    }
+    for v in mesh.vertices() {
+        let (walked, all) = (mesh.vertex_edges(v).count(), edges[v.index()]);
+        if walked != all {
+            return fails(
+                "I6",
+                format!("the walk around {v} meets {walked} of {all} edges"),
+            );
+        }
+    }
+    Ok(())
+}
+
+fn faces(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+    let mut along = 0;
+    for f in mesh.faces() {
+        let e = mesh.side(f);
+        if !mesh.edge(e).faces().contains(&Some(f)) {
+            return fails("I7", format!("{e}, the side of {f}, does not lie along it"));
+        }
+        let corners: Vec<_> = mesh.face_vertices(f).collect();
+        let distinct: HashSet<_> = corners.iter().collect();
+        if corners.len() < 3 || distinct.len() < corners.len() {
+            return fails("I7", format!("{f} has the corners {corners:?}"));
+        }
+        along += corners.len();
+    }
+    let with_face = runs(mesh)
+        .filter(|(_, run)| run.face() != Slot::NONE)
+        .count();
+    if along != with_face {
+        let detail = format!("edges have {with_face} sides with a face, {along} are along one");
+        return fails("I7", detail);
+    }
+    Ok(())
+}
+
+fn edges_differ(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+    let mut ends = HashSet::new();
+    for e in mesh.edges() {
+        let [a, b] = mesh.edge_vertices(e);
+        if !ends.insert([a.min(b), a.max(b)]) {
+            return fails(
+                "I8",
+                format!("{e} has the ends {a} and {b} of another edge"),
+            );
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::{FaceId, Point, PolygonMesh, Representation, RowId, Table, VertexId};
+
+    use super::*;
+    use crate::edge::Edge;
+    use crate::wings::{Side, Wings};
+
+    fn mesh(vertices: u16, faces: &[&[u32]]) -> WingedEdgeMesh {
+        let corners: Vec<_> = (0..vertices).map(|i| Point::splat(i.into())).collect();
+        let polygons = PolygonMesh::new(corners, faces).expect("valid");
+        let mesh = WingedEdgeMesh::from_polygons(&polygons).expect("manifold");
+        assert_eq!(mesh.validate(), Ok(()));
+        mesh
+    }
+
+    /// A square of two triangles and an isolated vertex; the diagonal runs from v0 to v2.
+    fn sound() -> WingedEdgeMesh {
+        mesh(5, &[&[0, 1, 2], &[0, 2, 3]])
+    }
+
+    /// The invariant that fails once `break_it` has had its way.
+    fn broken(break_it: impl Fn(&mut WingedEdgeMesh)) -> &'static str {
+        let mut mesh = sound();
+        break_it(&mut mesh);
+        mesh.validate().expect_err("the mesh is broken").invariant
+    }
+
+    fn between(mesh: &WingedEdgeMesh, a: u32, b: u32) -> EdgeId {
+        let has = |e, v| mesh.edge(e).ends().contains(&VertexId::new(v));
+        let mut edges = mesh.edges();
+        edges.find(|&e| has(e, a) && has(e, b)).expect("an edge")
+    }
+
+    /// The record of the edge between `a` and `b`, to be broken.
+    fn record(mesh: &mut WingedEdgeMesh, a: u32, b: u32) -> &mut Edge {
+        let e = between(mesh, a, b);
+        &mut mesh.edges.rows_mut()[e.index()]
+    }
+
+    /// The record of the diagonal.
+    fn inner(mesh: &mut WingedEdgeMesh) -> &mut Edge {
+        record(mesh, 0, 2)
+    }
+
+    /// Writes over the wing on the left (0) or on the right (1).
+    fn put(wings: &mut Wings, side: usize, wing: EdgeId) {
+        let mut both = wings.both();
+        both[side] = wing;
+        *wings = Wings::BLANK;
+        wings.link(Side::LEFT, both[0]);
+        wings.link(Side::RIGHT, both[1]);
+    }
+
+    /// Makes one vertex of two in all records, and leaves the second without a spoke.
+    fn merge(mesh: &mut WingedEdgeMesh, kept: u32, merged: u32) {
+        for edge in mesh.edges.rows_mut() {
+            let merge = |v: VertexId| VertexId::new(if v.row() == merged { kept } else { v.row() });
+            edge.ends = edge.ends.map(merge);
+        }
+        mesh.spokes.rows_mut()[merged as usize] = Slot::NONE;
+    }
+
+    #[test]
+    fn names_that_are_not_there_break_i1() {
+        let (v, e, f) = (VertexId::new(9), EdgeId::new(9), Slot::some(FaceId::new(9)));
+        assert_eq!(broken(|m| inner(m).ends[1] = v), "I1");
+        assert_eq!(broken(|m| put(&mut inner(m).next, 0, e)), "I1");
+        assert_eq!(broken(|m| put(&mut inner(m).prev, 1, e)), "I1");
+        assert_eq!(broken(|m| inner(m).faces[1] = f), "I1");
+        assert_eq!(broken(|m| m.spokes.rows_mut()[0] = Slot::some(e)), "I1");
+        assert_eq!(broken(|m| m.sides.rows_mut()[0] = e), "I1");
+        let shorter = |m: &mut WingedEdgeMesh| {
+            m.spokes = Table::new("spokes", "vertex", m.spokes.rows()[..4].to_vec());
+        };
+        assert_eq!(broken(shorter), "I1");
+    }
+
+    #[test]
+    fn sides_that_do_not_differ_break_i1() {
+        let loops = |m: &mut WingedEdgeMesh| inner(m).ends[1] = VertexId::new(0);
+        assert_eq!(broken(loops), "I1");
+        let folded = |m: &mut WingedEdgeMesh| inner(m).faces[1] = inner(m).faces[0];
+        assert_eq!(broken(folded), "I1");
+        assert_eq!(broken(|m| record(m, 0, 1).faces = [Slot::NONE; 2]), "I1");
+    }
+
+    #[test]
+    fn wings_that_lie_elsewhere_break_i2() {
+        let far = |m: &mut WingedEdgeMesh, side, a, b| {
+            let wing = between(m, a, b);
+            put(&mut inner(m).next, side, wing);
+        };
+        assert_eq!(broken(|m| far(m, 0, 0, 1)), "I2");
+        assert_eq!(broken(|m| far(m, 1, 2, 3)), "I2");
+        let behind = |m: &mut WingedEdgeMesh| {
+            let wing = between(m, 2, 3);
+            put(&mut inner(m).prev, 0, wing);
+        };
+        assert_eq!(broken(behind), "I2");
+        assert_eq!(broken(|m| inner(m).ends[1] = VertexId::new(4)), "I2");
+        assert_eq!(broken(|m| inner(m).ends.reverse()), "I2");
+    }
+
+    #[test]
+    fn a_face_that_changes_along_its_sides_breaks_i3() {
+        assert_eq!(broken(|m| inner(m).faces.reverse()), "I3");
+        assert_eq!(broken(|m| record(m, 0, 1).faces.reverse()), "I3");
+    }
+
+    #[test]
+    fn wings_that_do_not_lead_back_break_i4() {
+        // Two triangles with a vertex in common: there the boundary of one may lead on to the other.
+        let mut mesh = mesh(6, &[&[0, 1, 2], &[3, 4, 5]]);
+        merge(&mut mesh, 0, 5);
+        let v = VertexId::new(0);
+        let [one, other] = [between(&mesh, 0, 1), between(&mesh, 0, 3)];
+        for (e, to) in [(one, other), (other, one)] {
+            let run = Run::from(mesh.edge(e), v);
+            assert_eq!(
+                [run.face(), run.across()].map(|f| f == Slot::NONE),
+                [false, true]
+            );
+            // The blank side arrives at v; what follows it there is the edge clockwise of `to`.
+            let next = Run::from(mesh.edge(to), v).cw();
+            let blank = usize::from(mesh.edge(e).ends()[0] == v);
+            let mut broken = mesh.clone();
+            put(&mut broken.edges.rows_mut()[e.index()].next, blank, next);
+            assert_eq!(broken.validate().expect_err("no way back").invariant, "I4");
+        }
+    }
+
+    #[test]
+    fn spokes_that_are_not_first_break_i5() {
+        let spoke = |m: &mut WingedEdgeMesh, v: usize, to: Option<EdgeId>| {
+            m.spokes.rows_mut()[v] = Slot::from(to);
+        };
+        assert_eq!(broken(|m| spoke(m, 1, None)), "I5");
+        assert_eq!(broken(|m| spoke(m, 1, Some(between(m, 0, 3)))), "I5");
+        assert_eq!(broken(|m| spoke(m, 4, Some(between(m, 0, 1)))), "I5");
+        // v0 has edges to v1, v2 and v3, in this order.
+        assert_eq!(
+            sound().spoke(VertexId::new(0)),
+            Some(between(&sound(), 0, 1))
+        );
+        assert_eq!(broken(|m| spoke(m, 0, Some(between(m, 0, 2)))), "I5");
+        assert_eq!(broken(|m| spoke(m, 0, Some(between(m, 0, 3)))), "I5");
+    }
+
+    #[test]
+    fn a_vertex_of_two_fans_breaks_i6() {
+        let mut mesh = mesh(6, &[&[0, 1, 2], &[3, 4, 5]]);
+        merge(&mut mesh, 0, 5);
+        assert_eq!(mesh.validate().expect_err("two fans").invariant, "I6");
+    }
+
+    #[test]
+    fn a_face_that_is_not_along_its_side_breaks_i7() {
+        let elsewhere = |m: &mut WingedEdgeMesh| {
+            let side = between(m, 0, 3);
+            m.sides.rows_mut()[0] = side;
+        };
+        assert_eq!(broken(elsewhere), "I7");
+        // A square that is folded until two of its corners are one.
+        let mut folded = mesh(
+            9,
+            &[
+                &[0, 1, 2, 3],
+                &[1, 0, 4, 5],
+                &[2, 1, 6, 7],
+                &[3, 2, 8, 4, 0],
+            ],
+        );
+        merge(&mut folded, 0, 2);
+        assert_eq!(faces(&folded).expect_err("a corner twice").invariant, "I7");
+    }
+
+    #[test]
+    fn edges_with_the_same_ends_break_i8() {
+        let mut mesh = mesh(4, &[&[0, 1, 2], &[1, 0, 3]]);
+        merge(&mut mesh, 2, 3);
+        let parallel = edges_differ(&mesh).expect_err("parallel edges");
+        assert_eq!(parallel.invariant, "I8");
+    }
+}

@@ -1,0 +1,3 @@
+//! The laws of `conformance`, on this structure.
+
+conformance::suite!(winged_edge::WingedEdgeMesh);

@@ -1,0 +1,239 @@
+//! The facts of a small mesh by definition, each by its own loop, as TRUTH.md words them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use conformance::{Element, Oracle};
+use sixfold::{FaceId, Facts, PolygonMesh, Relation, Spread, VertexId};
+
+/// What [`Facts::of`] must say of `polygons`.
+pub(crate) fn facts(polygons: &PolygonMesh) -> Facts {
+    let oracle = Oracle::of(polygons);
+    let mesh = Small::of(&oracle);
+    let faces: Vec<FaceId> = oracle.faces().collect();
+    let edges: Vec<Element> = oracle.edges().collect();
+    let vertices: Vec<VertexId> = oracle.vertices().collect();
+    let valence = |v: VertexId| {
+        oracle
+            .answer(Relation::VertexEdges, Element::Vertex(v))
+            .len()
+    };
+    let used: Vec<VertexId> = vertices
+        .iter()
+        .copied()
+        .filter(|&v| valence(v) > 0)
+        .collect();
+    let edges_of = |many: fn(usize) -> bool| {
+        let chosen = edges.iter().copied();
+        chosen
+            .filter(|&e| many(mesh.along(e).len()))
+            .collect::<Vec<_>>()
+    };
+    let boundary = edges_of(|faces| faces == 1);
+    let non_manifold = edges_of(|faces| faces > 2);
+    let touches = |v: VertexId, e: &Element| matches!(e, Element::Edge(a, b) if *a == v || *b == v);
+    let not_manifold =
+        |v: &VertexId| mesh.fans[v].len() > 1 || non_manifold.iter().any(|e| touches(*v, e));
+    let inconsistent = edges.iter().filter(|&&e| mesh.inconsistent(e)).count();
+    let any = !faces.is_empty();
+    let components = mesh.components();
+    let orientable = mesh.orientable(&components);
+    let loops = non_manifold.is_empty().then(|| mesh.loops(&boundary));
+    let genus = loops.as_ref().filter(|_| any && orientable).map(|loops| {
+        let genera = components
+            .iter()
+            .map(|component| mesh.genus(component, loops));
+        genera.sum()
+    });
+    let sets: BTreeSet<BTreeSet<VertexId>> = faces
+        .iter()
+        .map(|&f| oracle.corners(f).iter().copied().collect())
+        .collect();
+    Facts {
+        vertices: vertices.len(),
+        edges: edges.len(),
+        faces: faces.len(),
+        euler_characteristic: used.len() as i64 - edges.len() as i64 + faces.len() as i64,
+        components: components.len(),
+        boundary_edges: boundary.len(),
+        boundary_loops: loops.map(|loops| loops.len()),
+        non_manifold_edges: non_manifold.len(),
+        non_manifold_vertices: used.iter().filter(|v| not_manifold(v)).count(),
+        inconsistent_edges: inconsistent,
+        consistently_oriented: any.then_some(inconsistent == 0),
+        orientable: any.then_some(orientable),
+        closed: any && boundary.is_empty(),
+        genus,
+        isolated_vertices: vertices.len() - used.len(),
+        duplicate_faces: faces.len() - sets.len(),
+        degenerate_faces: 0,
+        valence: spread(used.iter().map(|&v| valence(v)).collect()),
+        face_degree: spread(faces.iter().map(|&f| oracle.corners(f).len()).collect()),
+    }
+}
+
+/// A mesh small enough for loops within loops.
+struct Small<'a> {
+    oracle: &'a Oracle,
+    /// By vertex: the faces there in classes under "share an edge that ends there".
+    fans: BTreeMap<VertexId, Vec<Vec<FaceId>>>,
+}
+
+impl<'a> Small<'a> {
+    fn of(oracle: &'a Oracle) -> Self {
+        let mut mesh = Self {
+            oracle,
+            fans: BTreeMap::new(),
+        };
+        mesh.fans = oracle.vertices().map(|v| (v, mesh.fans_at(v))).collect();
+        mesh
+    }
+
+    /// The faces along `e`.
+    fn along(&self, e: Element) -> Vec<FaceId> {
+        faces_of(self.oracle.answer(Relation::EdgeFaces, e))
+    }
+
+    fn fans_at(&self, v: VertexId) -> Vec<Vec<FaceId>> {
+        let vertex = Element::Vertex(v);
+        let faces = faces_of(self.oracle.answer(Relation::VertexFaces, vertex));
+        let edges = self.oracle.answer(Relation::VertexEdges, vertex);
+        let along: Vec<Vec<FaceId>> = edges.iter().map(|&e| self.along(e)).collect();
+        classes(&faces, |f, g| {
+            let mut along = along.iter();
+            along.any(|faces| faces.contains(&f) && faces.contains(&g))
+        })
+    }
+
+    /// The faces in classes under "share an edge".
+    fn components(&self) -> Vec<Vec<FaceId>> {
+        let faces: Vec<FaceId> = self.oracle.faces().collect();
+        classes(&faces, |f, g| {
+            let across = self.oracle.answer(Relation::FaceFaces, Element::Face(f));
+            across.contains(&Element::Face(g))
+        })
+    }
+
+    /// Whether `f` runs along the edge from its lower to its higher end.
+    fn runs_up(&self, f: FaceId, edge: Element) -> bool {
+        let corners = self.oracle.corners(f);
+        (0..corners.len()).any(|i| {
+            let next = corners[(i + 1) % corners.len()];
+            Element::Edge(corners[i], next) == edge
+        })
+    }
+
+    /// Whether `e` has two faces, which run along it in the same direction.
+    fn inconsistent(&self, e: Element) -> bool {
+        match self.along(e)[..] {
+            [f, g] => self.runs_up(f, e) == self.runs_up(g, e),
+            _ => false,
+        }
+    }
+
+    /// Whether faces can be turned over so that no edge of two faces is inconsistent.
+    fn orientable(&self, components: &[Vec<FaceId>]) -> bool {
+        let pairs: Vec<([FaceId; 2], bool)> = self
+            .oracle
+            .edges()
+            .filter_map(|e| match self.along(e)[..] {
+                [f, g] => Some(([f, g], self.inconsistent(e))),
+                _ => None,
+            })
+            .collect();
+        let mut turned: BTreeMap<FaceId, bool> = BTreeMap::new();
+        for &start in components.iter().flatten() {
+            // What is not reached from here yet starts as it is; then turn until nothing changes.
+            turned.entry(start).or_insert(false);
+            let mut changed = true;
+            while changed {
+                changed = false;
+                for &([f, g], differ) in &pairs {
+                    for (f, g) in [(f, g), (g, f)] {
+                        if let Some(&side) = turned.get(&f)
+                            && !turned.contains_key(&g)
+                        {
+                            turned.insert(g, side ^ differ);
+                            changed = true;
+                        }
+                    }
+                }
+            }
+        }
+        pairs
+            .iter()
+            .all(|&([f, g], differ)| turned[&f] ^ turned[&g] == differ)
+    }
+
+    /// The boundary edges in classes: two follow each other if they meet in one fan.
+    fn loops(&self, boundary: &[Element]) -> Vec<Vec<Element>> {
+        classes(boundary, |e, g| {
+            let (Element::Edge(a, b), Element::Edge(c, d)) = (e, g) else {
+                return false;
+            };
+            let ends = [a, b].into_iter().filter(|v| [c, d].contains(v));
+            ends.into_iter().any(|v| {
+                let both =
+                    |fan: &Vec<FaceId>| [e, g].iter().all(|&e| fan.contains(&self.along(e)[0]));
+                self.fans[&v].iter().any(both)
+            })
+        })
+    }
+
+    /// The genus of an orientable component, its vertices cut apart where fans meet.
+    fn genus(&self, component: &[FaceId], loops: &[Vec<Element>]) -> i64 {
+        let inside = |f: &FaceId| component.contains(f);
+        let fans = self.oracle.vertices().flat_map(|v| &self.fans[&v]);
+        let fans = fans.filter(|fan| inside(&fan[0])).count() as i64;
+        let edges = self
+            .oracle
+            .edges()
+            .filter(|&e| inside(&self.along(e)[0]))
+            .count() as i64;
+        let loops = loops
+            .iter()
+            .filter(|l| inside(&self.along(l[0])[0]))
+            .count() as i64;
+        let twice = 2 - (fans - edges + component.len() as i64) - loops;
+        assert_eq!(twice % 2, 0, "an orientable surface has a whole genus");
+        twice / 2
+    }
+}
+
+fn faces_of(elements: &[Element]) -> Vec<FaceId> {
+    let faces = elements.iter().filter_map(|element| match element {
+        Element::Face(f) => Some(*f),
+        _ => None,
+    });
+    faces.collect()
+}
+
+/// `items` in classes under "can be reached through `linked`".
+fn classes<T: Copy + PartialEq>(items: &[T], linked: impl Fn(T, T) -> bool) -> Vec<Vec<T>> {
+    let mut rest = items.to_vec();
+    let mut classes = Vec::new();
+    while let Some(start) = rest.pop() {
+        let mut class = vec![start];
+        let mut next = 0;
+        while let Some(&at) = class.get(next) {
+            let (near, far): (Vec<T>, Vec<T>) = rest.iter().partition(|&&item| linked(at, item));
+            class.extend(near);
+            rest = far;
+            next += 1;
+        }
+        classes.push(class);
+    }
+    classes
+}
+
+fn spread(values: Vec<usize>) -> Option<Spread> {
+    let mut hist = BTreeMap::new();
+    for &value in &values {
+        *hist.entry(value).or_insert(0) += 1;
+    }
+    Some(Spread {
+        min: *values.iter().min()?,
+        max: *values.iter().max()?,
+        mean: values.iter().sum::<usize>() as f64 / values.len() as f64,
+        hist: (hist.len() <= 64).then_some(hist),
+    })
+}
