@@ -1,1 +1,36 @@
-//! To be written.
+//! Workloads, interleaved measurement and reports: which structure fits this mesh and this work?
+//!
+//! [`study`] builds every backend asked for, runs the [`Operation`]s on them in interleaved rounds
+//! until the budget is spent, proves by checksum that all did the same work, and gives a [`Report`].
+//! [`inspect`] says what a mesh is and which backends can hold it, and measures nothing.
+//!
+//! What a reader of the figures should know is in `reports/SCHEMA.md`. This crate knows no
+//! command line and prints nothing: progress goes to a closure, and a flag stops it.
+
+mod agreement;
+mod candidate;
+mod clock;
+mod environment;
+mod inspect;
+mod measure;
+mod operation;
+mod plan;
+mod report;
+mod sample;
+mod solo;
+mod standing;
+mod statistics;
+mod study;
+mod words;
+mod workload;
+
+pub use clock::{Clock, MachineClock, Time};
+pub use environment::Environment;
+pub use inspect::{Specimen, inspect};
+pub use measure::Progress;
+pub use operation::{Kind, Operation, UnknownOperation};
+pub use report::{
+    Agreement, BackendReport, Inspection, MeshReport, Report, ResultRow, SCHEMA, Standing,
+};
+pub use solo::{Solo, SoloRun};
+pub use study::{Settings, StudyError, study};

@@ -1,0 +1,221 @@
+//! What can be asked for.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use ::study::Operation;
+use clap::{Args, Parser, Subcommand};
+use sixfold::shapes::Order;
+
+const EXAMPLES: &str = "Examples:
+  sixfold                                    study the built-in mesh
+  sixfold study bunny.obj                    study your own
+  sixfold inspect bunny.obj                  what it is, and which backends can hold it
+  sixfold generate geodesic frequency=20 -o ball.obj
+
+Exit codes: 0 done; 1 done, and the answer is no; 2 wrong usage or unusable input;
+3 not supported by this backend or scheme; 4 interrupted, finished part kept.";
+
+/// What help on `study` says before the names.
+pub(crate) const STUDY_EXAMPLES: &str = "Examples:
+  sixfold study bunny.obj
+  sixfold study bunny.obj --backends half-edge,face-vertex --operations vv_smooth,build
+  sixfold study quads.obj --triangulate --budget 2m
+  sixfold study bunny.obj --json - --csv bunny.csv
+
+How it measures: every round runs each operation on each backend, one after the other, in random
+order, on the processor time of the thread; the table shows medians. Ctrl-C ends it between two
+samples and keeps what is finished. A second Ctrl-C ends it at once, with code 130.
+
+Exit codes: 0 done; 1 backends found different results, a fault in Sixfold; 2 wrong usage or
+unusable input; 3 no backend asked for can hold the mesh; 4 interrupted, finished part kept.";
+
+const INSPECT_EXAMPLES: &str = "Examples:
+  sixfold inspect bunny.obj
+  sixfold inspect bunny.obj --json -         for machines
+
+Exit codes: 0 done; 2 wrong usage or unusable input.";
+
+/// Which mesh data structure fits this mesh and this workload? Measured, with evidence.
+///
+/// Builds every backend from the same mesh, runs the same operations on each and compares.
+/// Without a command it studies a built-in mesh of about 20,000 triangles for about 20 seconds.
+#[derive(Debug, Parser)]
+#[command(name = "sixfold", version, after_help = EXAMPLES, verbatim_doc_comment)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Measure what each backend costs for a mesh
+    Study(Study),
+    /// Say what a mesh is, and which backends can hold it
+    Inspect(Inspect),
+    /// Write a built-in shape
+    Generate(Generate),
+}
+
+/// Measure what each backend costs for a mesh.
+///
+/// Prints the mesh in facts, who can hold it, and for each backend the time of every operation and
+/// the bytes for each vertex.
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Study {
+    /// The mesh, an OBJ file; without it a built-in mesh of about 20,000 triangles
+    #[arg(value_name = "FILE.obj")]
+    pub(crate) mesh: Option<PathBuf>,
+    /// Only these backends, by name
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
+    pub(crate) backends: Vec<String>,
+    /// Only these operations, by name
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
+    pub(crate) operations: Vec<Operation>,
+    /// How long to measure: 20s, 500ms, 2m
+    #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration)]
+    pub(crate) budget: Duration,
+    /// What decides samples and the order of measuring
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Cut every polygon into a fan of triangles first
+    #[arg(long)]
+    pub(crate) triangulate: bool,
+    /// Refuse a file with degenerate faces instead of leaving them out
+    #[arg(long)]
+    pub(crate) strict: bool,
+    /// Write everything as JSON (- for standard output)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
+    /// Write one line for each result as CSV (- for standard output)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) csv: Option<PathBuf>,
+}
+
+impl Default for Study {
+    fn default() -> Self {
+        let settings = ::study::Settings::default();
+        Self {
+            mesh: None,
+            backends: Vec::new(),
+            operations: Vec::new(),
+            budget: settings.budget,
+            seed: settings.seed,
+            triangulate: false,
+            strict: false,
+            json: None,
+            csv: None,
+        }
+    }
+}
+
+/// Say what a mesh is, and which backends can hold it.
+///
+/// Measures nothing. Faces that name a vertex twice, or have fewer than three corners, are counted.
+#[derive(Debug, Args)]
+#[command(after_help = INSPECT_EXAMPLES, verbatim_doc_comment)]
+pub(crate) struct Inspect {
+    /// The mesh, an OBJ file
+    #[arg(value_name = "FILE.obj")]
+    pub(crate) mesh: PathBuf,
+    /// Write the facts and verdicts as JSON (- for standard output)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
+}
+
+/// Write a built-in shape.
+#[derive(Debug, Args)]
+pub(crate) struct Generate {
+    /// The shape: see the list below
+    #[arg(value_name = "SHAPE")]
+    pub(crate) shape: String,
+    /// Its parameters
+    #[arg(value_name = "name=value", value_parser = setting)]
+    pub(crate) settings: Vec<(String, f64)>,
+    /// Its order: given, shuffled, morton, breadth-first
+    #[arg(long, value_name = "ORDER", default_value = "given")]
+    pub(crate) order: Order,
+    /// What decides the order `shuffled`
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Where to write it (- for standard output)
+    #[arg(short, long, value_name = "FILE.obj")]
+    pub(crate) output: PathBuf,
+}
+
+fn backend(name: &str) -> Result<String, String> {
+    let settings = ::study::Settings {
+        backends: vec![name.trim().into()],
+        ..Default::default()
+    };
+    match settings.chosen_backends() {
+        Ok(_) => Ok(name.trim().into()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn operation(name: &str) -> Result<Operation, String> {
+    let parsed: Result<Operation, _> = name.trim().parse();
+    parsed.map_err(|error| error.to_string())
+}
+
+/// `20s`, `500ms`, `2m`: more than nothing, and at most a week.
+fn duration(text: &str) -> Result<Duration, String> {
+    const LONGEST_S: f64 = 7.0 * 24.0 * 3600.0;
+    let units = [("ms", 1e-3), ("s", 1.0), ("m", 60.0)];
+    let parsed = units.into_iter().find_map(|(unit, seconds)| {
+        let number: f64 = text.strip_suffix(unit)?.parse().ok()?;
+        Some(number * seconds)
+    });
+    match parsed {
+        Some(seconds) if seconds > 0.0 && seconds <= LONGEST_S => {
+            Ok(Duration::from_secs_f64(seconds))
+        }
+        Some(_) => Err("a budget is more than nothing and at most a week".into()),
+        None => Err("write a budget as 20s, 500ms or 2m".into()),
+    }
+}
+
+fn setting(text: &str) -> Result<(String, f64), String> {
+    let wrong = || format!("write a parameter as name=number, not `{text}`");
+    let (name, value) = text.split_once('=').ok_or_else(wrong)?;
+    let value = value.trim().parse().map_err(|_| wrong())?;
+    Ok((name.trim().into(), value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn budgets_have_a_unit_and_are_more_than_nothing() {
+        for (text, milliseconds) in [
+            ("20s", 20_000),
+            ("500ms", 500),
+            ("2m", 120_000),
+            ("1.5s", 1500),
+        ] {
+            assert_eq!(duration(text), Ok(Duration::from_millis(milliseconds)));
+        }
+        for text in [
+            "",
+            "20",
+            "s",
+            "-1s",
+            "0s",
+            "nans",
+            "infs",
+            "1e300m",
+            "20 minutes",
+        ] {
+            assert!(duration(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! A mesh in facts, and what each backend says to it.
+
+use ::study::{BackendReport, MeshReport};
+use sixfold::{Facts, Spread};
+
+use crate::numbers::{counted, grouped};
+use crate::text::hanging;
+
+/// The mesh in a compact block of lines.
+pub(crate) fn facts_text(mesh: &MeshReport) -> String {
+    let facts = &mesh.facts;
+    let mut lines = vec![hanging("mesh         ", &mesh.name)];
+    if !mesh.changes.is_empty() {
+        lines.push(hanging("changed      ", &mesh.changes.join(", ")));
+    }
+    lines.push(hanging("elements     ", &elements(facts)));
+    if facts.faces > facts.degenerate_faces || facts.edges > 0 {
+        lines.push(hanging("surface      ", &surface(facts)));
+        lines.push(hanging("orientation  ", &orientation(facts)));
+        lines.push(hanging("manifold     ", &manifold(facts)));
+        lines.push(hanging("degrees      ", &degrees(facts)));
+    }
+    let also = blemishes(facts);
+    if !also.is_empty() {
+        lines.push(hanging("also         ", &also.join(", ")));
+    }
+    lines.join("\n")
+}
+
+fn elements(facts: &Facts) -> String {
+    let vertices = counted(facts.vertices, "vertex", "vertices");
+    let edges = counted(facts.edges, "edge", "edges");
+    let faces = counted(facts.faces, "face", "faces");
+    let chi = facts.euler_characteristic;
+    format!("{vertices}, {edges}, {faces}; Euler characteristic {chi}")
+}
+
+fn surface(facts: &Facts) -> String {
+    let mut text = counted(facts.components, "component", "components");
+    if facts.closed {
+        text += ", closed";
+    } else {
+        let edges = counted(facts.boundary_edges, "boundary edge", "boundary edges");
+        text += &format!(", {edges}");
+        if let Some(loops) = facts.boundary_loops {
+            text += &format!(" in {}", counted(loops, "loop", "loops"));
+        }
+    }
+    match facts.genus {
+        Some(genus) => text + &format!(", genus {genus}"),
+        None => text + ", genus not defined",
+    }
+}
+
+fn orientation(facts: &Facts) -> String {
+    let edges = counted(facts.inconsistent_edges, "edge", "edges");
+    match (facts.consistently_oriented, facts.orientable) {
+        (Some(true), Some(true)) => "consistent".into(),
+        (Some(true), _) => "consistent along the edges of two faces, but not orientable".into(),
+        (_, Some(true)) => format!("orientable, but the two faces disagree along {edges}"),
+        _ => format!("not orientable; the two faces disagree along {edges}"),
+    }
+}
+
+fn manifold(facts: &Facts) -> String {
+    match (facts.non_manifold_edges, facts.non_manifold_vertices) {
+        (0, 0) => "yes".into(),
+        (edges, vertices) => {
+            let edges = counted(edges, "non-manifold edge", "non-manifold edges");
+            let vertices = counted(vertices, "non-manifold vertex", "non-manifold vertices");
+            format!("no: {edges}, {vertices}")
+        }
+    }
+}
+
+fn degrees(facts: &Facts) -> String {
+    let range = |spread: &Option<Spread>| match spread {
+        Some(s) if s.min == s.max => s.min.to_string(),
+        Some(s) => format!(
+            "{} to {} (mean {:.2})",
+            grouped(s.min),
+            grouped(s.max),
+            s.mean
+        ),
+        None => "none".into(),
+    };
+    let (valence, degree) = (range(&facts.valence), range(&facts.face_degree));
+    format!("valence {valence}; face degree {degree}")
+}
+
+fn blemishes(facts: &Facts) -> Vec<String> {
+    let named = [
+        (
+            facts.isolated_vertices,
+            "isolated vertex",
+            "isolated vertices",
+        ),
+        (facts.duplicate_faces, "duplicate face", "duplicate faces"),
+        (
+            facts.degenerate_faces,
+            "degenerate face",
+            "degenerate faces",
+        ),
+    ];
+    let there = named.into_iter().filter(|&(count, ..)| count > 0);
+    there
+        .map(|(count, one, several)| counted(count, one, several))
+        .collect()
+}
+
+/// Which backends can hold the mesh, and why the others cannot.
+pub(crate) fn verdicts_text(mesh: &MeshReport, backends: &[BackendReport]) -> String {
+    let name = backends.iter().map(|b| b.name.chars().count()).max();
+    let width = name.unwrap_or(0);
+    let mut lines = Vec::new();
+    for (i, backend) in backends.iter().enumerate() {
+        let label = if i == 0 { "backends" } else { "" };
+        let name = &backend.name;
+        let (verdict, reason) = match &backend.reason {
+            None => ("holds it", ""),
+            Some(reason) => ("refuses: ", reason.as_str()),
+        };
+        let first = format!("{label:<13}{name:<width$}  {verdict}");
+        lines.push(hanging(&first, reason));
+    }
+    if backends.iter().any(|backend| !backend.holds) {
+        let changed = match mesh.changes.is_empty() {
+            true => "",
+            false => "; f counts what is left",
+        };
+        lines.push(format!(
+            "{:<13}(names count from 0: v0 is the first vertex of the file{changed})",
+            ""
+        ));
+    }
+    lines.join("\n")
+}

@@ -1,0 +1,74 @@
+//! `sixfold generate`: built-in shapes.
+
+use std::process::ExitCode;
+
+use sixfold::mesh_io::write_obj;
+use sixfold::shapes::{Parameter, RECIPES, Recipe, recipe};
+
+use crate::arguments::Generate;
+use crate::failure::Failure;
+use crate::numbers::counted;
+use crate::output::{Output, is_stdout};
+use crate::text::{Text, hanging};
+
+/// Writes the shape asked for.
+pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
+    let shape = &arguments.shape;
+    let recipe = recipe(shape).ok_or_else(|| {
+        let names: Vec<&str> = RECIPES.iter().map(|recipe| recipe.name).collect();
+        let names = names.join(", ");
+        Failure::usage(format!("no shape is called `{shape}`: choose from {names}"))
+    })?;
+    let settings = arguments.settings.iter();
+    let settings: Vec<(&str, f64)> = settings
+        .map(|(name, value)| (name.as_str(), *value))
+        .collect();
+    let made = recipe.make(&settings).map_err(Failure::usage)?;
+    let mesh = arguments.order.of(&made, arguments.seed);
+    let output = Output::open(&arguments.output)?;
+    output.finish(|writer| write_obj(&mesh, writer))?;
+    let vertices = counted(mesh.vertex_count(), "vertex", "vertices");
+    let faces = counted(mesh.face_count(), "face", "faces");
+    let place = arguments.output.display();
+    let mut text = Text::shown(!is_stdout(&arguments.output));
+    text.say(&format!("{place}: {shape}, {vertices}, {faces}"));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What help says after the options: examples and the list of shapes.
+pub(crate) fn help() -> String {
+    let mut lines: Vec<String> = vec![
+        "Examples:".into(),
+        "  sixfold generate icosahedron -o ico.obj".into(),
+        "  sixfold generate geodesic frequency=20 -o ball.obj".into(),
+        "  sixfold generate torus m=256 n=128 --order shuffled --seed 7 -o - | head".into(),
+        String::new(),
+        "Exit codes: 0 done; 2 wrong usage.".into(),
+        String::new(),
+        "Shapes:".into(),
+    ];
+    let width = RECIPES.iter().map(|recipe| recipe.name.len()).max();
+    for recipe in RECIPES {
+        lines.extend(described(recipe, width.unwrap_or(0)));
+    }
+    lines.join("\n")
+}
+
+/// A shape in a line, and each of its parameters in one more.
+fn described(recipe: &Recipe, width: usize) -> Vec<String> {
+    let Recipe { name, summary, .. } = recipe;
+    let mut lines = vec![hanging(&format!("  {name:<width$}  "), summary)];
+    for parameter in recipe.parameters {
+        let Parameter {
+            name,
+            meaning,
+            default,
+            least,
+            greatest,
+            ..
+        } = parameter;
+        let text = format!("{name}={default}: {meaning}, {least} to {greatest}");
+        lines.push(hanging(&format!("  {:width$}    ", ""), &text));
+    }
+    lines
+}

@@ -1,0 +1,65 @@
+//! Numbers as people read them.
+
+/// `1,234,567`.
+pub(crate) fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::with_capacity(digits.len() * 4 / 3);
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// Three digits that count: `0.412`, `4.12`, `41.2`, `412`, `4,120`.
+pub(crate) fn figure(number: f64) -> String {
+    match number {
+        n if !n.is_finite() => "–".into(),
+        n if n < 0.9995 => format!("{n:.3}"),
+        n if n < 9.995 => format!("{n:.2}"),
+        n if n < 99.95 => format!("{n:.1}"),
+        n => grouped(n.round() as usize),
+    }
+}
+
+/// `3 edges`, `1 edge`: `plural` is the word for any other number.
+pub(crate) fn counted(number: usize, singular: &str, plural: &str) -> String {
+    let word = if number == 1 { singular } else { plural };
+    format!("{} {word}", grouped(number))
+}
+
+/// A time with the unit that suits it.
+pub(crate) fn duration(ns: f64) -> String {
+    match ns {
+        ns if ns < 1e3 => format!("{} ns", figure(ns)),
+        ns if ns < 1e6 => format!("{} µs", figure(ns / 1e3)),
+        ns if ns < 1e9 => format!("{} ms", figure(ns / 1e6)),
+        ns => format!("{} s", figure(ns / 1e9)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thousands_are_parted() {
+        let numbers = [0, 12, 123, 1234, 123_456, 1_234_567].map(grouped);
+        assert_eq!(numbers, ["0", "12", "123", "1,234", "123,456", "1,234,567"]);
+    }
+
+    #[test]
+    fn three_digits_count() {
+        let figures = [
+            0.0, 0.05, 0.9994, 0.9996, 9.994, 9.996, 99.94, 99.96, 41234.5,
+        ]
+        .map(figure);
+        let expected = [
+            "0.000", "0.050", "0.999", "1.00", "9.99", "10.0", "99.9", "100", "41,235",
+        ];
+        assert_eq!(figures, expected);
+        assert_eq!(duration(2_340_000.0), "2.34 ms");
+    }
+}

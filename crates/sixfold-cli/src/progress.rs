@@ -1,0 +1,62 @@
+//! Progress on a terminal, and what Ctrl-C does.
+
+use std::io::{self, IsTerminal};
+use std::process::exit;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use ::study::Progress;
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// How finely the bar moves.
+const STEPS: u64 = 1000;
+
+/// A bar on standard error, if that is a terminal.
+pub(crate) struct Bar(Option<ProgressBar>);
+
+impl Bar {
+    /// An empty bar.
+    pub(crate) fn new() -> Self {
+        if !io::stderr().is_terminal() {
+            return Self(None);
+        }
+        let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}");
+        let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+        Self(Some(ProgressBar::new(STEPS).with_style(style)))
+    }
+
+    /// Shows where the study stands.
+    pub(crate) fn show(&self, progress: Progress<'_>) {
+        let Self(Some(bar)) = self else { return };
+        let Progress {
+            done,
+            stage,
+            operation,
+            backend,
+        } = progress;
+        bar.set_position((done * STEPS as f64) as u64);
+        bar.set_message(format!("{stage} {operation} on {backend}"));
+    }
+
+    /// Takes the bar away.
+    pub(crate) fn clear(&self) {
+        if let Self(Some(bar)) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// A flag that the first Ctrl-C sets; the second ends the program at once.
+pub(crate) fn interrupt_flag() -> Arc<AtomicBool> {
+    /// What shells expect of a program that was interrupted.
+    const INTERRUPTED: i32 = 130;
+    let flag = Arc::new(AtomicBool::new(false));
+    let set = Arc::clone(&flag);
+    // Where there can be no handler, Ctrl-C does what it always did.
+    let _ = ctrlc::set_handler(move || {
+        if set.swap(true, Ordering::Relaxed) {
+            exit(INTERRUPTED);
+        }
+    });
+    flag
+}

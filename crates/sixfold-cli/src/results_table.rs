@@ -1,0 +1,323 @@
+//! The table: a row for each operation, a column for each backend.
+
+use ::study::{Agreement, BackendReport, Operation, Report, ResultRow, Standing};
+use comfy_table::{
+    Attribute, Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle,
+};
+
+use crate::numbers::{duration, figure};
+use crate::text::{WIDTH, wrapped};
+
+/// Two blanks between columns, and one line under the header.
+const STYLE: TableStyle =
+    TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
+
+/// The table of times and bytes, and what its signs mean.
+pub(crate) fn results_table(report: &Report, bold: bool) -> String {
+    let columns: Vec<&BackendReport> = report.backends.iter().filter(|b| b.holds).collect();
+    // Intervals have room beside a few columns only; the JSON has them all.
+    let intervals = columns.len() <= 4;
+    let mut table = Table::new();
+    table
+        .load_style(STYLE)
+        .set_content_arrangement(ContentArrangement::Disabled);
+    if bold {
+        table.enforce_styling();
+    } else {
+        table.force_no_tty();
+    }
+    let mut header = vec![Cell::new("nanoseconds"), Cell::new("per")];
+    header.extend(columns.iter().map(|backend| {
+        let name = match intervals {
+            true => backend.name.clone(),
+            false => backend.name.replace('-', "\n"),
+        };
+        Cell::new(name).set_alignment(CellAlignment::Right)
+    }));
+    table.set_header(header);
+
+    let mut signs = Signs::default();
+    for operation in Operation::ALL {
+        let rows: Vec<&ResultRow> = report.rows(operation).collect();
+        if rows.is_empty() {
+            continue;
+        }
+        let mut line = vec![Cell::new(operation.name()), Cell::new(operation.per())];
+        for backend in &columns {
+            let row = rows.iter().find(|row| row.backend == backend.name);
+            line.push(match row {
+                Some(row) => cell(row, intervals, bold, &mut signs),
+                None => Cell::new("–  ").set_alignment(CellAlignment::Right),
+            });
+        }
+        table.add_row(line);
+    }
+    add_bytes(&mut table, &columns, intervals, bold, &mut signs);
+    let mut text = table.trim_fmt();
+    for line in signs.legend(report) {
+        text += "\n";
+        text += &line;
+    }
+    text
+}
+
+/// Bytes for each vertex: really held, and by the layout.
+fn add_bytes(
+    table: &mut Table,
+    columns: &[&BackendReport],
+    intervals: bool,
+    bold: bool,
+    signs: &mut Signs,
+) {
+    let least = columns
+        .iter()
+        .filter_map(|backend| backend.bytes)
+        .min()
+        .filter(|_| columns.len() > 1);
+    let winners = columns.iter().filter(|b| b.bytes == least).count();
+    let figure = |bytes: Option<f64>| {
+        let figure = bytes.map_or("–".into(), |bytes| format!("{bytes:.1}"));
+        aligned(figure, "", intervals)
+    };
+    let mut held = vec![Cell::new("bytes held"), Cell::new("vertex")];
+    let mut theory = vec![Cell::new("bytes in theory"), Cell::new("vertex")];
+    for backend in columns {
+        let wins = least.is_some() && backend.bytes == least;
+        let mark = match (wins, winners) {
+            (false, _) => ' ',
+            (true, 1) => signs.note('*'),
+            (true, _) => signs.note('='),
+        };
+        held.push(marked(figure(backend.bytes_per_vertex), mark, ' ', bold));
+        theory.push(marked(
+            figure(backend.layout_bytes_per_vertex),
+            ' ',
+            ' ',
+            bold,
+        ));
+    }
+    table.add_row(held).add_row(theory);
+}
+
+/// A figure and how far it may be off, in a field of its own if there is one.
+fn aligned(figure: String, spread: &str, intervals: bool) -> String {
+    match intervals {
+        true => format!("{figure} {spread:>5}"),
+        false => figure,
+    }
+}
+
+/// A figure with its signs, bold if it is the best.
+fn marked(figure: String, standing: char, note: char, bold: bool) -> Cell {
+    let cell = Cell::new(format!("{figure} {standing}{note}")).set_alignment(CellAlignment::Right);
+    if bold && standing == '*' {
+        cell.add_attribute(Attribute::Bold)
+    } else {
+        cell
+    }
+}
+
+fn cell(row: &ResultRow, intervals: bool, bold: bool, signs: &mut Signs) -> Cell {
+    let standing = match row.standing {
+        Some(Standing::Best) => signs.note('*'),
+        Some(Standing::Tied) => signs.note('='),
+        _ => ' ',
+    };
+    let note = match row.agreement {
+        Agreement::Mismatch => signs.note('!'),
+        Agreement::Merged => signs.note('m'),
+        _ => ' ',
+    };
+    let Some(each) = row.ns_per_element else {
+        let estimate = row.estimated_ns.zip(row.elements);
+        let each = estimate.map(|(ns, elements)| ns / elements.max(1) as f64);
+        let figure = each.map_or("–".into(), |each| {
+            format!("{}{}", signs.note('?'), figure(each))
+        });
+        return marked(aligned(figure, "", intervals), standing, note, bold);
+    };
+    let mut text = figure(each);
+    if row.sampled {
+        text.insert(0, signs.note('~'));
+    }
+    if intervals {
+        text = aligned(text, &spread(row, signs), intervals);
+    }
+    marked(text, standing, note, bold)
+}
+
+/// How far the interval reaches from the median, in percent: `±3%`.
+fn spread(row: &ResultRow, signs: &mut Signs) -> String {
+    let known = (row.median_ns, row.ci_low_ns, row.ci_high_ns);
+    let (Some(median), Some(low), Some(high)) = known else {
+        return String::new();
+    };
+    signs.note('±');
+    let percent = 100.0 * (high - median).max(median - low) / median;
+    match percent {
+        p if p < 0.95 => format!("±.{:.0}%", (10.0 * p).max(1.0)),
+        p if p < 999.0 => format!("±{p:.0}%"),
+        _ => "±big".into(),
+    }
+}
+
+/// The signs that occur, for the legend to explain them and no others.
+#[derive(Default)]
+struct Signs(Vec<char>);
+
+impl Signs {
+    fn note(&mut self, sign: char) -> char {
+        if !self.0.contains(&sign) {
+            self.0.push(sign);
+        }
+        sign
+    }
+
+    fn legend(&self, report: &Report) -> Vec<String> {
+        let meanings = [
+            ('*', "best"),
+            (
+                '=',
+                "tied for best: no difference beyond the noise, or less than 2 %",
+            ),
+            ('~', "from a sample of the elements"),
+            ('?', "estimated, not run"),
+            ('±', "95 % interval of the median"),
+            ('m', "of a mesh with merged vertices"),
+            ('!', "WRONG: differs from the other backends"),
+        ];
+        let there = meanings.iter().filter(|(sign, _)| self.0.contains(sign));
+        // Broken between meanings only.
+        let mut lines: Vec<String> = Vec::new();
+        for (sign, meaning) in there {
+            let part = format!("{sign} {meaning}");
+            match lines.last_mut() {
+                Some(line) if line.chars().count() + 2 + part.chars().count() <= WIDTH => {
+                    *line += "; ";
+                    *line += &part;
+                }
+                _ => lines.push(part),
+            }
+        }
+        for row in &report.results {
+            if let Some(ns) = row.estimated_ns {
+                let ResultRow {
+                    backend, operation, ..
+                } = row;
+                let time = duration(ns);
+                let text = format!(
+                    "? {operation} on {backend} was not run: one run would take about {time}, too long to repeat in the budget"
+                );
+                lines.extend(wrapped(&text, WIDTH));
+            }
+        }
+        lines
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ::study::{Environment, MeshReport, SCHEMA};
+    use sixfold::{Facts, PolygonMesh, roster};
+
+    use super::*;
+
+    fn backend(name: &str, bytes: usize) -> BackendReport {
+        BackendReport {
+            name: name.into(),
+            holds: true,
+            reason: None,
+            bytes: Some(bytes),
+            bytes_per_vertex: Some(bytes as f64 / 100.0),
+            layout_bytes: Some(bytes),
+            layout_bytes_per_vertex: Some(bytes as f64 / 100.0),
+            tables: Vec::new(),
+            merged_vertices: Some(0),
+            capabilities: roster()[0].capabilities,
+        }
+    }
+
+    fn row(name: &str, operation: &str, median_ns: f64, standing: Standing) -> ResultRow {
+        let operation: Operation = operation.parse().expect("a name");
+        ResultRow {
+            backend: name.into(),
+            operation,
+            median_ns: Some(median_ns),
+            min_ns: Some(median_ns * 0.99),
+            ci_low_ns: Some(median_ns * 0.995),
+            ci_high_ns: Some(median_ns * 1.03),
+            elements: Some(100),
+            per: operation.per(),
+            ns_per_element: Some(median_ns / 100.0),
+            wall_median_ns: Some(median_ns),
+            wall_min_ns: Some(median_ns),
+            sampled: false,
+            sample_size: None,
+            estimated_ns: None,
+            checksum: Some(1.0),
+            agreement: Agreement::Same,
+            standing: Some(standing),
+            ratio_to_best: Some(1.0),
+            ratio_ci_low: None,
+            ratio_ci_high: None,
+            samples: 9,
+            runs_per_sample: 1,
+            warm_up_only: false,
+        }
+    }
+
+    fn report() -> Report {
+        let mut scanned = row("polygon-soup", "vertex_vertices", 4e6, Standing::Slower);
+        scanned.sampled = true;
+        let mut wrong = row("half-edge", "ff_bfs", 900.0, Standing::Best);
+        wrong.agreement = Agreement::Mismatch;
+        let mut unrun = row("polygon-soup", "ff_bfs", 0.0, Standing::Slower);
+        (unrun.median_ns, unrun.ns_per_element, unrun.standing) = (None, None, None);
+        unrun.estimated_ns = Some(7.3e9);
+        let mut merged = row("polygon-soup", "build", 1234.0, Standing::Tied);
+        merged.agreement = Agreement::Merged;
+        let mesh = PolygonMesh::default();
+        Report {
+            schema: SCHEMA,
+            mesh: MeshReport {
+                name: "fixed".into(),
+                facts: Facts::of(&mesh),
+                changes: Vec::new(),
+            },
+            backends: vec![backend("polygon-soup", 7200), backend("half-edge", 9600)],
+            results: vec![
+                merged,
+                row("half-edge", "build", 1240.0, Standing::Tied),
+                scanned,
+                row("half-edge", "vertex_vertices", 1.2e6, Standing::Best),
+                unrun,
+                wrong,
+            ],
+            words: Vec::new(),
+            interrupted: false,
+            environment: Environment::here(1, 1.0),
+        }
+    }
+
+    /// The whole table with each sign in it, from fixed figures.
+    #[test]
+    fn golden() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/table.txt");
+        let text = results_table(&report(), false) + "\n";
+        if std::env::var_os("SIXFOLD_GOLDEN").is_some_and(|value| value == "write") {
+            std::fs::write(path, &text).expect("the file");
+        }
+        assert_eq!(text, std::fs::read_to_string(path).unwrap_or_default());
+    }
+
+    #[test]
+    fn best_is_bold_on_a_terminal_and_marked_everywhere() {
+        let (plain, bold) = (
+            results_table(&report(), false),
+            results_table(&report(), true),
+        );
+        assert!(!plain.contains('\u{1b}') && bold.contains('\u{1b}'));
+        assert!(plain.contains('*') && bold.contains('*'));
+        assert!(plain.lines().all(|line| line.chars().count() <= WIDTH));
+    }
+}

@@ -1,0 +1,63 @@
+//! Text that does not depend on the clock, as whole files; `SIXFOLD_GOLDEN=write` writes them anew.
+
+use std::fs;
+use std::path::Path;
+
+use crate::run::{Sixfold, TETRAHEDRON};
+
+fn golden(name: &str, text: &str) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden");
+    let path = folder.join(name);
+    if std::env::var_os("SIXFOLD_GOLDEN").is_some_and(|value| value == "write") {
+        fs::create_dir_all(&folder).expect("the folder");
+        fs::write(&path, text).expect("the file");
+    }
+    let expected = fs::read_to_string(&path).unwrap_or_default();
+    assert_eq!(
+        text, expected,
+        "{name} differs; SIXFOLD_GOLDEN=write takes it over"
+    );
+}
+
+/// What a command prints, no line wider than a hundred columns.
+fn printed(sixfold: &Sixfold, arguments: &[&str]) -> String {
+    let run = sixfold.run(arguments);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    for line in run.stdout.lines() {
+        assert!(line.chars().count() <= 100, "too wide: {line}");
+    }
+    run.stdout
+}
+
+#[test]
+fn help() {
+    let sixfold = Sixfold::new();
+    for (name, arguments) in [
+        ("help.txt", &["--help"][..]),
+        ("help_study.txt", &["study", "--help"]),
+        ("help_inspect.txt", &["inspect", "--help"]),
+        ("help_generate.txt", &["generate", "--help"]),
+    ] {
+        golden(name, &printed(&sixfold, arguments));
+    }
+}
+
+#[test]
+fn inspections() {
+    let sixfold = Sixfold::new();
+    let book = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nv 9 9 9\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
+    let bow_tie = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv -1 0 0\nv -1 -1 0\nf 1 2 3\nf 1 4 5\nf 1 2 2\n";
+    let flipped = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4 \nf 1 3 4\n";
+    for (name, text) in [
+        ("tetrahedron", TETRAHEDRON),
+        ("book", book),
+        ("bow_tie", bow_tie),
+        ("flipped", flipped),
+        ("points", "v 0 0 0\n"),
+    ] {
+        let file = format!("{name}.obj");
+        sixfold.file(&file, text);
+        let text = printed(&sixfold, &["inspect", &file]);
+        golden(&format!("inspect_{name}.txt"), &text);
+    }
+}

@@ -1,0 +1,8 @@
+//! The command line as users meet it: one binary, run for real.
+
+mod bad_input;
+mod golden;
+mod interrupt;
+mod machine;
+mod outputs;
+mod run;

@@ -1,0 +1,91 @@
+//! Running the binary, and meshes to run it on.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+/// A small tetrahedron.
+pub(crate) const TETRAHEDRON: &str =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+
+/// What a run came to.
+#[derive(Debug)]
+pub(crate) struct Run {
+    pub(crate) code: Option<i32>,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+impl Run {
+    fn of(output: Output) -> Self {
+        let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
+        Self {
+            code: output.status.code(),
+            stdout: text(output.stdout),
+            stderr: text(output.stderr),
+        }
+    }
+}
+
+/// The binary, with a scratch folder as the current one.
+pub(crate) struct Sixfold {
+    folder: TempDir,
+}
+
+impl Sixfold {
+    pub(crate) fn new() -> Self {
+        let folder = tempfile::tempdir().expect("a scratch folder");
+        Self { folder }
+    }
+
+    pub(crate) fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Writes a file into the folder.
+    pub(crate) fn file(&self, name: &str, text: &str) -> PathBuf {
+        let path = self.folder.path().join(name);
+        fs::write(&path, text).expect("a scratch file");
+        path
+    }
+
+    /// A grid of triangles as `name`, with `side` vertices a side.
+    pub(crate) fn grid(&self, name: &str, side: usize) -> PathBuf {
+        let mut text = String::new();
+        for i in 0..side * side {
+            let (x, y) = (i % side, i / side);
+            text += &format!("v {x} {y} {}\n", (x * y) % 3);
+        }
+        for y in 0..side - 1 {
+            for x in 0..side - 1 {
+                let a = y * side + x + 1;
+                let (b, c, d) = (a + 1, a + side + 1, a + side);
+                text += &format!("f {a} {b} {c}\nf {a} {c} {d}\n");
+            }
+        }
+        self.file(name, &text)
+    }
+
+    /// The binary with these arguments, ready to run.
+    pub(crate) fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_sixfold"));
+        command.args(arguments).current_dir(self.folder.path());
+        command
+    }
+
+    /// Runs the binary to its end.
+    pub(crate) fn run(&self, arguments: &[&str]) -> Run {
+        Run::of(self.command(arguments).output().expect("the binary runs"))
+    }
+
+    /// The names in the folder, sorted.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.folder.path()).expect("the folder");
+        let name = |entry: fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
+        let mut names: Vec<String> = entries.map(|e| name(e.expect("an entry"))).collect();
+        names.sort();
+        names
+    }
+}

@@ -1,0 +1,208 @@
+//! Whether all backends did the same work.
+
+use sixfold::{Point, PolygonMesh};
+
+use crate::candidate::{Job, Outcome, Subject};
+use crate::clock::Clock;
+use crate::measure::Entry;
+use crate::operation::Operation;
+use crate::report::Agreement;
+use crate::workload::field_sum;
+
+/// How far sums of `f32` may differ by the order of adding, relative to their size.
+const TOLERANCE: f64 = 1e-4;
+
+/// Compares the checksum of every entry with that of a backend which keeps the mesh as it is.
+///
+/// A sample is compared with the same sample run on that backend, untimed.
+pub(crate) fn judge(
+    entries: &[Entry],
+    subjects: &mut [Box<dyn Subject + '_>],
+    polygons: &PolygonMesh,
+    clock: &dyn Clock,
+) -> Vec<Agreement> {
+    let faithful =
+        |subjects: &[Box<dyn Subject + '_>], s: usize| subjects[s].merged_vertices() == 0;
+    let verdict = |entry: &Entry| {
+        let Some(outcome) = entry.outcome else {
+            return Agreement::Unchecked;
+        };
+        let others = entries.iter().filter(|other| {
+            other.job.operation == entry.job.operation
+                && other.subject != entry.subject
+                && other.outcome.is_some()
+                && faithful(subjects, other.subject)
+        });
+        // Whoever went through all of it comes first, for a sample costs it little.
+        let mut others: Vec<&Entry> = others.collect();
+        others.sort_by_key(|other| other.job.sample.is_some());
+        let reference = match others.first() {
+            Some(other) if other.job == entry.job => other.outcome,
+            Some(other) if entry.job.sample.is_some() || other.job.sample.is_some() => {
+                let job = entry.job;
+                rerun(&mut subjects[other.subject], &job, clock)
+            }
+            _ => None,
+        };
+        let Some(reference) = reference else {
+            return Agreement::Unchecked;
+        };
+        let operation = entry.job.operation;
+        if agree(operation, outcome.checksum, reference.checksum, polygons) {
+            Agreement::Same
+        } else if !faithful(subjects, entry.subject) {
+            Agreement::Merged
+        } else if !(outcome.checksum.is_finite() && reference.checksum.is_finite()) {
+            Agreement::Unchecked
+        } else {
+            Agreement::Mismatch
+        }
+    };
+    entries.iter().map(verdict).collect()
+}
+
+fn rerun(subject: &mut Box<dyn Subject + '_>, job: &Job, clock: &dyn Clock) -> Option<Outcome> {
+    subject.run(job, 1, clock, true).outcome
+}
+
+/// Whether two checksums tell of the same work.
+fn agree(operation: Operation, a: f64, b: f64, polygons: &PolygonMesh) -> bool {
+    if operation.counts() {
+        return a == b;
+    }
+    let far = (a - b).abs();
+    let size = a.abs().max(b.abs());
+    if far <= TOLERANCE * size {
+        return true;
+    }
+    // Sums that cancel leave the noise of their terms, in whichever order they were added.
+    far <= noise(operation, polygons) + TOLERANCE * size
+}
+
+/// How far the checksum may be off where terms cancel; O(corners).
+fn noise(operation: Operation, polygons: &PolygonMesh) -> f64 {
+    match operation {
+        Operation::VertexNormal => 12.0 * cancelled_normals(polygons) as f64,
+        Operation::FaceBarycenter | Operation::VvSmooth => {
+            let corners = polygons.faces().corners().iter();
+            1e-6 * field_sum(corners.map(|&v| polygons.position(v)))
+        }
+        _ => 0.0,
+    }
+}
+
+/// Vertices whose face normals cancel, so that the direction of their sum is noise.
+fn cancelled_normals(polygons: &PolygonMesh) -> usize {
+    let mut sums = vec![(Point::ZERO, 0.0_f32); polygons.vertex_count()];
+    for (_, face) in polygons.faces().iter() {
+        let at = |corner: usize| polygons.position(face[corner]);
+        let spokes = (1..face.len() - 1).map(|i| (at(i) - at(0)).cross(at(i + 1) - at(0)));
+        let (mut normal, mut size) = (Point::ZERO, 0.0);
+        for cross in spokes {
+            normal += cross;
+            size += cross.length();
+        }
+        for &v in face {
+            let (sum, total) = &mut sums[v.index()];
+            *sum += normal;
+            *total += size;
+        }
+    }
+    let cancels = |(sum, total): &&(Point, f32)| *total > 0.0 && sum.length() < 1e-3 * total;
+    sums.iter().filter(cancels).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold::QueryCost;
+
+    use super::*;
+    use crate::candidate::{Run, Sample};
+    use crate::clock::MachineClock;
+
+    fn pillow() -> PolygonMesh {
+        let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y];
+        PolygonMesh::new(corners, [[0, 1, 2, 3], [3, 2, 1, 0]]).expect("valid")
+    }
+
+    #[test]
+    fn counts_agree_to_the_last_digit_and_sums_nearly() {
+        let mesh = pillow();
+        assert!(!agree(Operation::Boundary, 1e9, 1e9 + 1.0, &mesh));
+        assert!(agree(Operation::EdgeLength, 1e9, 1e9 + 1e4, &mesh));
+        assert!(!agree(Operation::EdgeLength, 1e9, 1.001e9, &mesh));
+    }
+
+    /// A backend that always finds the same, for the judge to compare.
+    struct Fixed {
+        checksum: f64,
+        merged: usize,
+    }
+
+    impl Subject for Fixed {
+        fn name(&self) -> &'static str {
+            "fixed"
+        }
+        fn costs(&self) -> [QueryCost; 9] {
+            [QueryCost::Local; 9]
+        }
+        fn merged_vertices(&self) -> usize {
+            self.merged
+        }
+        fn bytes(&self) -> usize {
+            1
+        }
+        fn run(&mut self, job: &Job, _: u32, clock: &dyn Clock, _: bool) -> Run {
+            // A sample finds half as much as the whole.
+            let part = if job.sample.is_some() { 0.5 } else { 1.0 };
+            let outcome = Outcome {
+                checksum: self.checksum * part,
+                elements: 1,
+            };
+            Run {
+                time: clock.now(),
+                outcome: Some(outcome),
+            }
+        }
+    }
+
+    fn judged(subjects: &[(f64, usize, bool)]) -> Vec<Agreement> {
+        let clock = MachineClock::start();
+        let (mut boxed, mut entries): (Vec<Box<dyn Subject>>, Vec<Entry>) = Default::default();
+        for (i, &(checksum, merged, sampled)) in subjects.iter().enumerate() {
+            let mut entry = Entry::new(i, Operation::Boundary);
+            entry.job.sample = sampled.then_some(Sample {
+                scanned: [true; 3],
+                size: 4,
+            });
+            let mut subject = Fixed { checksum, merged };
+            entry.outcome = subject.run(&entry.job, 1, &clock, true).outcome;
+            boxed.push(Box::new(subject));
+            entries.push(entry);
+        }
+        judge(&entries, &mut boxed, &pillow(), &clock)
+    }
+
+    #[test]
+    fn whoever_found_something_else_is_told_apart() {
+        use Agreement::{Merged, Mismatch, Same, Unchecked};
+        assert_eq!(judged(&[(8.0, 0, false), (8.0, 0, false)]), [Same, Same]);
+        assert_eq!(judged(&[(8.0, 0, false), (9.0, 0, false)]), [Mismatch; 2]);
+        // A sample is held against the same sample, not against the whole.
+        assert_eq!(judged(&[(8.0, 0, true), (8.0, 0, false)]), [Same, Same]);
+        assert_eq!(judged(&[(9.0, 0, true), (8.0, 0, false)]), [Mismatch; 2]);
+        // Merging explains a difference, and nothing is judged by a mesh that was merged.
+        assert_eq!(
+            judged(&[(7.0, 2, false), (8.0, 0, false)]),
+            [Merged, Unchecked]
+        );
+        assert_eq!(judged(&[(8.0, 0, false)]), [Unchecked]);
+    }
+
+    #[test]
+    fn normals_that_cancel_may_point_anywhere() {
+        assert_eq!(cancelled_normals(&pillow()), 4);
+        assert!(agree(Operation::VertexNormal, 0.0, 3.0, &pillow()));
+        assert!(!agree(Operation::VertexNormal, 0.0, 60.0, &pillow()));
+    }
+}

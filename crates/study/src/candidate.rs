@@ -1,0 +1,351 @@
+//! One structure on the bench: what it is asked to do, and how long it takes.
+
+use std::hint::black_box;
+
+use sixfold::{MeshQuery, PolygonMesh, QueryCost, Representation};
+
+use crate::clock::{Clock, Time, timed};
+use crate::operation::{Kind, Operation};
+use crate::sample::{Draw, Side};
+use crate::workload::{All, Elements, Outputs, Tally, field_sum, share};
+
+/// What to run: an operation on all elements, or on a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Job {
+    /// The operation.
+    pub(crate) operation: Operation,
+    /// Which elements stand for all; `None` for all of them.
+    pub(crate) sample: Option<Sample>,
+}
+
+/// The first few elements of the draw, of the kinds that are scanned for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Sample {
+    /// By kind: whether a sample stands for all. The other kinds are gone through in full.
+    pub(crate) scanned: [bool; 3],
+    /// How many elements of each such kind, if there are as many.
+    pub(crate) size: usize,
+}
+
+/// What a run came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Run {
+    /// The time of one run of the whole operation; scaled where a sample stands for it.
+    pub(crate) time: Time,
+    /// What it found; `None` if nobody asked.
+    pub(crate) outcome: Option<Outcome>,
+}
+
+/// What an operation found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Outcome {
+    /// A number that depends on all results, and not on the order of neighbours.
+    pub(crate) checksum: f64,
+    /// How many elements the whole operation visits; scaled where a sample stands for it.
+    pub(crate) elements: u64,
+}
+
+/// Something that can be timed; a test can bring its own.
+pub(crate) trait Subject {
+    /// What users call it.
+    fn name(&self) -> &'static str;
+    /// How much of the mesh each relation looks at.
+    fn costs(&self) -> [QueryCost; 9];
+    /// How many vertices of the input are no vertices of their own here.
+    fn merged_vertices(&self) -> usize;
+    /// The bytes held.
+    fn bytes(&self) -> usize;
+    /// Runs `job` `runs` times in a row, once if it has a sample; `check` asks for the outcome.
+    fn run(&mut self, job: &Job, runs: u32, clock: &dyn Clock, check: bool) -> Run;
+}
+
+/// A structure built from `polygons`, with room for outputs and its names of the draw.
+pub(crate) struct Candidate<'a, M: Representation> {
+    polygons: &'a PolygonMesh,
+    draw: Option<&'a Draw>,
+    mesh: M,
+    outputs: Outputs<M>,
+    chosen: Chosen<M>,
+    merged_vertices: usize,
+}
+
+impl<'a, M: Representation> Candidate<'a, M> {
+    /// Puts `mesh`, built from `polygons`, on the bench.
+    pub(crate) fn new(polygons: &'a PolygonMesh, draw: Option<&'a Draw>, mesh: M) -> Self {
+        Self {
+            polygons,
+            draw,
+            outputs: Outputs::for_mesh(&mesh),
+            chosen: Chosen::default(),
+            merged_vertices: polygons.vertex_count().saturating_sub(mesh.vertex_count()),
+            mesh,
+        }
+    }
+
+    fn build(&self, runs: u32, clock: &dyn Clock) -> Run {
+        let mut built = Vec::with_capacity(runs as usize);
+        let time = timed(clock, || {
+            for _ in 0..runs {
+                built.push(black_box(M::from_polygons(black_box(self.polygons))));
+            }
+        });
+        let outcome = built.pop().and_then(Result::ok).map(|mesh| Outcome {
+            checksum: (mesh.vertex_count() + mesh.face_count()) as f64,
+            elements: mesh.face_count() as u64,
+        });
+        Run { time, outcome }
+    }
+
+    /// Each run smooths a fresh copy, made before the clock starts.
+    fn smooth(&mut self, runs: u32, clock: &dyn Clock, check: bool) -> Run {
+        let mut copies = vec![self.mesh.clone(); runs as usize];
+        let mut tally = Tally::default();
+        let mut moved = Ok(());
+        let operation = Operation::VvSmooth;
+        let time = timed(clock, || {
+            for copy in &mut copies {
+                tally = share(operation, Kind::Vertex, copy, &All, &mut self.outputs);
+                moved = copy.set_positions(&self.outputs.vertices);
+                black_box(&mut *copy);
+            }
+        });
+        let outcome = copies.pop().filter(|_| check).map(|smoothed| {
+            let after = smoothed.vertices().map(|v| smoothed.position(v));
+            let means = self.mesh.vertices().map(|v| self.outputs.vertices[v]);
+            // Where a vertex is its coordinates, two may have moved to one place, or two corners
+            // of a face have been refused it: the same work up to there, and the means tell.
+            let apart = smoothed.vertex_count() == self.mesh.vertex_count();
+            let checksum = match moved.is_ok() && apart {
+                true => field_sum(after),
+                false => field_sum(means),
+            };
+            Outcome {
+                checksum,
+                elements: tally.elements,
+            }
+        });
+        Run { time, outcome }
+    }
+
+    fn whole(&mut self, operation: Operation, runs: u32, clock: &dyn Clock, check: bool) -> Run {
+        let mut tallies = [Tally::default(); 3];
+        let time = timed(clock, || {
+            for _ in 0..runs {
+                for &kind in operation.kinds() {
+                    let mesh = black_box(&self.mesh);
+                    tallies[kind.index()] =
+                        black_box(share(operation, kind, mesh, &All, &mut self.outputs));
+                }
+                black_box(&mut self.outputs);
+            }
+        });
+        let outcome = check.then(|| self.outcome(operation, &All, tallies, [1.0; 3]));
+        Run { time, outcome }
+    }
+
+    fn sampled(
+        &mut self,
+        operation: Operation,
+        sample: Sample,
+        clock: &dyn Clock,
+        check: bool,
+    ) -> Run {
+        let Some(draw) = self.draw else {
+            return self.whole(operation, 1, clock, check);
+        };
+        self.chosen
+            .grow(&self.mesh, self.polygons, draw, sample.size);
+        let population = draw.population();
+        let size = population.map(|all| all.min(sample.size));
+        let mut scale = [1.0; 3];
+        for kind in Kind::ALL {
+            let k = kind.index();
+            if sample.scanned[k] && size[k] > 0 {
+                scale[k] = population[k] as f64 / size[k] as f64;
+            }
+        }
+        let chosen = Picked {
+            chosen: &self.chosen,
+            scanned: sample.scanned,
+            size,
+        };
+        let mut tallies = [Tally::default(); 3];
+        let mut total = Time::none_like(clock.now());
+        for &kind in operation.kinds() {
+            let k = kind.index();
+            let time = timed(clock, || {
+                let mesh = black_box(&self.mesh);
+                tallies[k] = black_box(share(operation, kind, mesh, &chosen, &mut self.outputs));
+                black_box(&mut self.outputs);
+            });
+            total = total.plus(time.scaled(scale[k]));
+        }
+        if operation == Operation::VvSmooth {
+            let mut copy = self.mesh.clone();
+            let swap = timed(clock, || {
+                let moved = copy.set_positions(&self.outputs.vertices);
+                black_box((&mut copy, moved.is_ok()));
+            });
+            total = total.plus(swap);
+        }
+        let outcome = check.then(|| self.outcome(operation, &chosen, tallies, scale));
+        Run {
+            time: total,
+            outcome,
+        }
+    }
+
+    fn outcome<E: Elements<M>>(
+        &self,
+        operation: Operation,
+        elements: &E,
+        tallies: [Tally; 3],
+        scale: [f64; 3],
+    ) -> Outcome {
+        let mesh = &self.mesh;
+        let mut sum = Tally::default();
+        tallies.into_iter().for_each(|tally| sum.add(tally));
+        let checksum = match operation {
+            Operation::FaceBarycenter => {
+                let faces = elements.faces(mesh);
+                field_sum(faces.map(|f| self.outputs.faces[f]))
+            }
+            Operation::VertexNormal | Operation::VvSmooth => {
+                let vertices = elements.vertices(mesh);
+                field_sum(vertices.map(|v| self.outputs.vertices[v]))
+            }
+            Operation::EdgeLength => sum.sum,
+            _ => sum.count as f64,
+        };
+        let of = Kind::ALL
+            .into_iter()
+            .find(|kind| kind.name() == operation.per());
+        let scaled = |kind: Kind, number: u64| number as f64 * scale[kind.index()];
+        let visited = match of {
+            Some(kind) => scaled(kind, tallies[kind.index()].elements),
+            None => Kind::ALL
+                .map(|kind| scaled(kind, tallies[kind.index()].count))
+                .into_iter()
+                .sum(),
+        };
+        Outcome {
+            checksum,
+            elements: visited.round() as u64,
+        }
+    }
+}
+
+impl<M: Representation> Subject for Candidate<'_, M> {
+    fn name(&self) -> &'static str {
+        M::NAME
+    }
+
+    fn costs(&self) -> [QueryCost; 9] {
+        M::COSTS
+    }
+
+    fn merged_vertices(&self) -> usize {
+        self.merged_vertices
+    }
+
+    fn bytes(&self) -> usize {
+        self.mesh.memory().total()
+    }
+
+    fn run(&mut self, job: &Job, runs: u32, clock: &dyn Clock, check: bool) -> Run {
+        let run = match (job.operation, job.sample) {
+            (Operation::Build, _) => self.build(runs, clock),
+            (operation, Some(sample)) => return self.sampled(operation, sample, clock, check),
+            (Operation::VvSmooth, None) => self.smooth(runs, clock, check),
+            (operation, None) => self.whole(operation, runs, clock, check),
+        };
+        Run {
+            time: run.time.scaled(1.0 / f64::from(runs)),
+            ..run
+        }
+    }
+}
+
+/// The structure's own names of the first elements of the draw.
+struct Chosen<M: MeshQuery> {
+    vertices: Vec<M::Vertex>,
+    edges: Vec<M::Edge>,
+    faces: Vec<M::Face>,
+}
+
+impl<M: MeshQuery> Default for Chosen<M> {
+    fn default() -> Self {
+        Self {
+            vertices: Vec::new(),
+            edges: Vec::new(),
+            faces: Vec::new(),
+        }
+    }
+}
+
+impl<M: Representation> Chosen<M> {
+    /// Names elements of the draw until there are `size` of each kind, or no more.
+    fn grow(&mut self, mesh: &M, polygons: &PolygonMesh, draw: &Draw, size: usize) {
+        fn more<T>(drawn: &[T], named: usize, size: usize) -> &[T] {
+            &drawn[named..drawn.len().min(size).max(named)]
+        }
+        let vertices = more(&draw.vertices, self.vertices.len(), size).iter();
+        self.vertices
+            .extend(vertices.map(|&v| M::vertex_name(polygons, v)));
+        let edges = more(&draw.edges, self.edges.len(), size).iter();
+        self.edges
+            .extend(edges.map(|&side| edge_name(mesh, polygons, side)));
+        let faces = more(&draw.faces, self.faces.len(), size).iter();
+        self.faces.extend(faces.map(|&f| M::face_name(polygons, f)));
+    }
+}
+
+/// The name of the edge that `side` stands for, looked up among the edges of its face.
+fn edge_name<M: Representation>(mesh: &M, polygons: &PolygonMesh, side: Side) -> M::Edge {
+    let [a, b] = side.ends.map(|v| M::vertex_name(polygons, v));
+    let joins = |&e: &M::Edge| {
+        let ends = mesh.edge_vertices(e);
+        ends == [a, b] || ends == [b, a]
+    };
+    mesh.face_edges(M::face_name(polygons, side.face))
+        .find(joins)
+        .expect("a face has an edge for each of its sides")
+}
+
+/// The first elements of the kinds that are sampled, and all of the others.
+struct Picked<'c, M: MeshQuery> {
+    chosen: &'c Chosen<M>,
+    scanned: [bool; 3],
+    size: [usize; 3],
+}
+
+impl<M: MeshQuery> Picked<'_, M> {
+    /// The sampled `handles` of `kind`, or all of `others`, which may be costly to ask for.
+    #[inline(always)]
+    fn pick<'p, H: Copy, I: Iterator<Item = H> + 'p>(
+        &self,
+        kind: Kind,
+        handles: &'p [H],
+        others: impl FnOnce() -> I,
+    ) -> impl Iterator<Item = H> + 'p {
+        let k = kind.index();
+        let (some, all) = match self.scanned[k] {
+            true => (Some(&handles[..self.size[k]]), None),
+            false => (None, Some(others())),
+        };
+        let some = some.into_iter().flatten().copied();
+        some.chain(all.into_iter().flatten())
+    }
+}
+
+impl<M: MeshQuery> Elements<M> for Picked<'_, M> {
+    fn vertices<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Vertex> + 'a {
+        self.pick(Kind::Vertex, &self.chosen.vertices, || mesh.vertices())
+    }
+    fn edges<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Edge> + 'a {
+        self.pick(Kind::Edge, &self.chosen.edges, || mesh.edges())
+    }
+    fn faces<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Face> + 'a {
+        self.pick(Kind::Face, &self.chosen.faces, || mesh.faces())
+    }
+}

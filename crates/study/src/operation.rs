@@ -1,0 +1,257 @@
+//! The operations of a study: what each is called, asks and counts.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Serialize, Serializer};
+use sixfold::{QueryCost, Relation};
+
+/// One kind of element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Kind {
+    /// Vertices.
+    Vertex,
+    /// Edges.
+    Edge,
+    /// Faces.
+    Face,
+}
+
+impl Kind {
+    /// All three, in the order in which [`Kind::index`] counts them.
+    pub const ALL: [Self; 3] = [Self::Vertex, Self::Edge, Self::Face];
+
+    /// Its place in [`Kind::ALL`].
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+
+    /// The kind of element that `relation` is asked of.
+    pub const fn asked(relation: Relation) -> Self {
+        Self::ALL[relation as usize / 3]
+    }
+
+    /// What one is called: `vertex`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Vertex => "vertex",
+            Self::Edge => "edge",
+            Self::Face => "face",
+        }
+    }
+}
+
+/// Something that a study times.
+///
+/// Each visits its elements in the order of the structure, and every handle it comes upon goes into
+/// a sink, so that no structure can count elements without naming them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Operation {
+    /// Flat arrays to the structure.
+    Build,
+    /// Every element of a kind asked one relation.
+    Relation(Relation),
+    /// The incident faces of every vertex and the vertices of every face.
+    Circulate,
+    /// The mean of each face's vertices, stored.
+    FaceBarycenter,
+    /// Face normals stored; then for each vertex the normalised sum over its faces, stored.
+    VertexNormal,
+    /// For each vertex the mean of its neighbours, stored and then swapped in.
+    VvSmooth,
+    /// The sum of all edge lengths.
+    EdgeLength,
+    /// The number of edges with one face.
+    Boundary,
+    /// Breadth-first over faces from face 0, then from the lowest unseen; the sum of the depths.
+    FfBfs,
+    /// Every element asked its three relations.
+    AllQueries,
+}
+
+const RELATIONS: &[Relation; 9] = &Relation::ALL;
+
+impl Operation {
+    /// All of them, in the order in which tables show them.
+    pub const ALL: [Self; 18] = [
+        Self::Build,
+        Self::Relation(Relation::VertexVertices),
+        Self::Relation(Relation::VertexEdges),
+        Self::Relation(Relation::VertexFaces),
+        Self::Relation(Relation::EdgeVertices),
+        Self::Relation(Relation::EdgeEdges),
+        Self::Relation(Relation::EdgeFaces),
+        Self::Relation(Relation::FaceVertices),
+        Self::Relation(Relation::FaceEdges),
+        Self::Relation(Relation::FaceFaces),
+        Self::Circulate,
+        Self::FaceBarycenter,
+        Self::VertexNormal,
+        Self::VvSmooth,
+        Self::EdgeLength,
+        Self::Boundary,
+        Self::FfBfs,
+        Self::AllQueries,
+    ];
+
+    /// What users call it: `vv_smooth`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Build => "build",
+            Self::Relation(relation) => relation.name(),
+            Self::Circulate => "circulate",
+            Self::FaceBarycenter => "face_barycenter",
+            Self::VertexNormal => "vertex_normal",
+            Self::VvSmooth => "vv_smooth",
+            Self::EdgeLength => "edge_length",
+            Self::Boundary => "boundary",
+            Self::FfBfs => "ff_bfs",
+            Self::AllQueries => "all_queries",
+        }
+    }
+
+    /// What one element of its count is: `vertex`, or `visit` where neighbours are counted.
+    pub const fn per(self) -> &'static str {
+        match self {
+            Self::Relation(relation) => Kind::asked(relation).name(),
+            Self::VertexNormal | Self::VvSmooth => Kind::Vertex.name(),
+            Self::EdgeLength | Self::Boundary => Kind::Edge.name(),
+            Self::Build | Self::FaceBarycenter | Self::FfBfs => Kind::Face.name(),
+            Self::Circulate | Self::AllQueries => "visit",
+        }
+    }
+
+    /// The kinds of elements that it goes through, in the order of running.
+    pub const fn kinds(self) -> &'static [Kind] {
+        const V: &[Kind] = &[Kind::Vertex];
+        const E: &[Kind] = &[Kind::Edge];
+        const F: &[Kind] = &[Kind::Face];
+        match self {
+            Self::Build => &[],
+            Self::Relation(relation) => match Kind::asked(relation) {
+                Kind::Vertex => V,
+                Kind::Edge => E,
+                Kind::Face => F,
+            },
+            Self::Circulate => &[Kind::Vertex, Kind::Face],
+            Self::FaceBarycenter | Self::FfBfs => F,
+            Self::VertexNormal => &[Kind::Face, Kind::Vertex],
+            Self::VvSmooth => V,
+            Self::EdgeLength | Self::Boundary => E,
+            Self::AllQueries => &Kind::ALL,
+        }
+    }
+
+    /// The relations that it asks of elements of `kind`.
+    pub fn relations(self, kind: Kind) -> &'static [Relation] {
+        let one = |relation: Relation| std::slice::from_ref(&RELATIONS[relation as usize]);
+        match (self, kind) {
+            (Self::Relation(relation), _) if Kind::asked(relation) == kind => one(relation),
+            (Self::Circulate | Self::VertexNormal, Kind::Vertex) => one(Relation::VertexFaces),
+            (Self::Circulate | Self::VertexNormal | Self::FaceBarycenter, Kind::Face) => {
+                one(Relation::FaceVertices)
+            }
+            (Self::VvSmooth, Kind::Vertex) => one(Relation::VertexVertices),
+            (Self::EdgeLength, Kind::Edge) => one(Relation::EdgeVertices),
+            (Self::Boundary, Kind::Edge) => one(Relation::EdgeFaces),
+            (Self::FfBfs, Kind::Face) => one(Relation::FaceFaces),
+            (Self::AllQueries, _) => &RELATIONS[3 * kind.index()..][..3],
+            _ => &[],
+        }
+    }
+
+    /// By kind: whether a structure with these costs scans all faces for each element of it.
+    pub fn scans(self, costs: &[QueryCost; 9]) -> [bool; 3] {
+        Kind::ALL.map(|kind| {
+            let relations = self.relations(kind);
+            relations
+                .iter()
+                .any(|&r| costs[r as usize] == QueryCost::Scan)
+        })
+    }
+
+    /// Whether some of its elements can stand for all.
+    pub const fn can_be_sampled(self) -> bool {
+        !matches!(self, Self::Build | Self::FfBfs)
+    }
+
+    /// Whether its checksum is a count, equal to the last digit for all structures.
+    pub const fn counts(self) -> bool {
+        !matches!(
+            self,
+            Self::FaceBarycenter | Self::VertexNormal | Self::VvSmooth | Self::EdgeLength
+        )
+    }
+}
+
+impl fmt::Display for Operation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl Serialize for Operation {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+/// A name that no operation has.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no operation is called `{name}`: choose from {}", Operation::ALL.map(Operation::name).join(", "))]
+pub struct UnknownOperation {
+    /// The name.
+    pub name: String,
+}
+
+impl FromStr for Operation {
+    type Err = UnknownOperation;
+
+    fn from_str(name: &str) -> Result<Self, UnknownOperation> {
+        let mut all = Self::ALL.into_iter();
+        all.find(|operation| operation.name() == name)
+            .ok_or_else(|| UnknownOperation { name: name.into() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_found_again() {
+        for operation in Operation::ALL {
+            assert_eq!(operation.name().parse(), Ok(operation));
+        }
+        let error = "vv_smoth".parse::<Operation>().unwrap_err().to_string();
+        assert!(
+            error.contains("vv_smoth") && error.contains("vv_smooth"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn relations_are_asked_of_their_own_kind() {
+        for operation in Operation::ALL {
+            for kind in Kind::ALL {
+                let relations = operation.relations(kind);
+                assert!(relations.iter().all(|&r| Kind::asked(r) == kind));
+                assert_eq!(
+                    relations.is_empty(),
+                    !operation.kinds().contains(&kind),
+                    "{operation} of {kind:?}"
+                );
+            }
+        }
+        let all = Kind::ALL.map(|kind| Operation::AllQueries.relations(kind));
+        assert_eq!(all.concat(), Relation::ALL);
+    }
+
+    #[test]
+    fn a_scan_is_seen_where_it_happens() {
+        let mut costs = [QueryCost::Local; 9];
+        costs[Relation::VertexFaces as usize] = QueryCost::Scan;
+        assert_eq!(Operation::VertexNormal.scans(&costs), [true, false, false]);
+        assert_eq!(Operation::FaceBarycenter.scans(&costs), [false; 3]);
+    }
+}

@@ -1,0 +1,221 @@
+//! The report: everything a study found, in the shape that `reports/SCHEMA.md` documents.
+
+use std::io;
+
+use serde::{Serialize, Serializer};
+use sixfold::{Capabilities, Facts, TableBytes};
+
+use crate::environment::Environment;
+use crate::operation::Operation;
+
+/// The version of the shape; it changes when a reader of the old one would go wrong.
+pub const SCHEMA: u32 = 1;
+
+/// What an inspection finds: the mesh, and what each backend says to it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Inspection {
+    /// The version of the shape.
+    pub schema: u32,
+    /// What the mesh is.
+    pub mesh: MeshReport,
+    /// By name, in the order of the roster.
+    #[serde(serialize_with = "as_map")]
+    pub backends: Vec<BackendReport>,
+}
+
+/// What a study finds.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// The version of the shape.
+    pub schema: u32,
+    /// What the mesh is.
+    pub mesh: MeshReport,
+    /// By name, in the order of the roster.
+    #[serde(serialize_with = "as_map")]
+    pub backends: Vec<BackendReport>,
+    /// Operation by operation, and within each in the order of the roster.
+    pub results: Vec<ResultRow>,
+    /// What the table shows, in words.
+    pub words: Vec<String>,
+    /// Told to stop before the end: some rows are missing, or rest on fewer samples.
+    pub interrupted: bool,
+    /// The machine and the program.
+    pub environment: Environment,
+}
+
+/// A mesh, as its file has it.
+#[derive(Clone, Debug, Serialize)]
+pub struct MeshReport {
+    /// Where it comes from.
+    pub name: String,
+    /// Its topology.
+    #[serde(flatten)]
+    pub facts: Facts,
+    /// What was changed before the study: `triangulated`, faces left out.
+    pub changes: Vec<String>,
+}
+
+/// What a backend says to the mesh.
+#[derive(Clone, Debug, Serialize)]
+pub struct BackendReport {
+    /// What users call it: the key of the map.
+    #[serde(skip)]
+    pub name: String,
+    /// Whether it can hold the mesh.
+    pub holds: bool,
+    /// Why not.
+    pub reason: Option<String>,
+    /// Bytes really held; `None` if it was not built.
+    pub bytes: Option<usize>,
+    /// The same for each vertex of the mesh.
+    pub bytes_per_vertex: Option<f64>,
+    /// Bytes that the layout takes in theory; `None` if it does not hold the mesh.
+    pub layout_bytes: Option<usize>,
+    /// The same for each vertex of the mesh.
+    pub layout_bytes_per_vertex: Option<f64>,
+    /// Bytes really held, table by table.
+    pub tables: Vec<TableBytes>,
+    /// Vertices of the mesh that are no vertices of their own here: they share coordinates.
+    pub merged_vertices: Option<usize>,
+    /// What it can hold at all.
+    pub capabilities: Capabilities,
+}
+
+/// One operation on one backend. Times are of one whole run, in nanoseconds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ResultRow {
+    /// The backend.
+    pub backend: String,
+    /// The operation.
+    pub operation: Operation,
+    /// The median of the samples; `None` where nothing was measured.
+    pub median_ns: Option<f64>,
+    /// The smallest sample.
+    pub min_ns: Option<f64>,
+    /// The lower end of the 95 % interval of the median; `None` below three samples.
+    pub ci_low_ns: Option<f64>,
+    /// Its upper end.
+    pub ci_high_ns: Option<f64>,
+    /// How many elements a whole run visits.
+    pub elements: Option<u64>,
+    /// What one of them is: `vertex`, `edge`, `face`, or `visit`.
+    pub per: &'static str,
+    /// `median_ns` for each of them.
+    pub ns_per_element: Option<f64>,
+    /// The median on the wall clock.
+    pub wall_median_ns: Option<f64>,
+    /// The smallest sample on the wall clock.
+    pub wall_min_ns: Option<f64>,
+    /// A sample of the elements stands for all: times and elements are scaled.
+    pub sampled: bool,
+    /// How many elements of each kind that is scanned for.
+    pub sample_size: Option<usize>,
+    /// Not measured: the estimate of a whole run.
+    pub estimated_ns: Option<f64>,
+    /// A number that depends on all results, on the sample where there is one; `None` where nothing
+    /// was measured or the arithmetic overflows.
+    pub checksum: Option<f64>,
+    /// Whether other backends found the same.
+    pub agreement: Agreement,
+    /// How it stands beside the other backends; `None` where nothing was measured.
+    pub standing: Option<Standing>,
+    /// The median, over rounds, of its time by that of the fastest; 1 for the fastest itself.
+    pub ratio_to_best: Option<f64>,
+    /// The lower end of the 95 % interval of that ratio.
+    pub ratio_ci_low: Option<f64>,
+    /// Its upper end.
+    pub ratio_ci_high: Option<f64>,
+    /// How many samples there are.
+    pub samples: usize,
+    /// How many runs in a row make one.
+    pub runs_per_sample: u32,
+    /// The budget was gone after the warm-up: that one run, with its cold caches, is the sample.
+    pub warm_up_only: bool,
+}
+
+/// What the checksums of one operation say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Agreement {
+    /// All did the same work.
+    Same,
+    /// It differs, as it may where vertices that share coordinates are one.
+    Merged,
+    /// It differs, and nothing explains that: a fault in Sixfold.
+    Mismatch,
+    /// There is nothing to compare with.
+    Unchecked,
+}
+
+/// How a result stands beside those of other backends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Standing {
+    /// Faster than all others.
+    Best,
+    /// Nobody is faster beyond doubt, and another is as fast.
+    Tied,
+    /// Another is faster.
+    Slower,
+    /// No other backend was measured.
+    Alone,
+}
+
+impl Report {
+    /// The rows of `operation`.
+    pub fn rows(&self, operation: Operation) -> impl Iterator<Item = &ResultRow> {
+        self.results
+            .iter()
+            .filter(move |row| row.operation == operation)
+    }
+
+    /// Results that no difference between the backends explains.
+    pub fn mismatches(&self) -> impl Iterator<Item = &ResultRow> {
+        self.results
+            .iter()
+            .filter(|row| row.agreement == Agreement::Mismatch)
+    }
+
+    /// Writes the report as JSON.
+    ///
+    /// # Errors
+    ///
+    /// What `writer` reports.
+    pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
+        write_json(self, writer)
+    }
+
+    /// Writes one line for each result, under a line with the names of the fields.
+    ///
+    /// # Errors
+    ///
+    /// What `writer` reports.
+    pub fn write_csv(&self, writer: impl io::Write) -> io::Result<()> {
+        let mut lines = csv::Writer::from_writer(writer);
+        for row in &self.results {
+            lines.serialize(row).map_err(io::Error::from)?;
+        }
+        lines.flush()
+    }
+}
+
+impl Inspection {
+    /// Writes the inspection as JSON.
+    ///
+    /// # Errors
+    ///
+    /// What `writer` reports.
+    pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
+        write_json(self, writer)
+    }
+}
+
+fn write_json(value: &impl Serialize, mut writer: impl io::Write) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut writer, value).map_err(io::Error::from)?;
+    writeln!(writer)
+}
+
+/// A map by name that keeps the order.
+fn as_map<S: Serializer>(backends: &[BackendReport], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(backends.iter().map(|backend| (&backend.name, backend)))
+}

@@ -1,0 +1,89 @@
+//! A seeded choice of elements, made on the input so that it is the same for every structure.
+
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use sixfold::{FaceId, PolygonMesh, VertexId};
+
+/// One side of a face, standing for its edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Side {
+    /// The face.
+    pub(crate) face: FaceId,
+    /// The two ends of the edge, the lower first.
+    pub(crate) ends: [VertexId; 2],
+}
+
+/// All elements of a mesh in an order that the seed decides; every prefix is a fair sample.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Draw {
+    /// Every vertex.
+    pub(crate) vertices: Vec<VertexId>,
+    /// Every edge once, by one of its sides.
+    pub(crate) edges: Vec<Side>,
+    /// Every face.
+    pub(crate) faces: Vec<FaceId>,
+}
+
+impl Draw {
+    /// The order that `seed` gives to the elements of `polygons`; O(n log n) in the corners.
+    pub(crate) fn of(polygons: &PolygonMesh, seed: u64) -> Self {
+        let mut draw = Self {
+            vertices: polygons.vertices().collect(),
+            edges: edges_of(polygons),
+            faces: polygons.faces().iter().map(|(f, _)| f).collect(),
+        };
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        draw.vertices.shuffle(&mut random);
+        draw.edges.shuffle(&mut random);
+        draw.faces.shuffle(&mut random);
+        draw
+    }
+
+    /// How many elements there are, by kind.
+    pub(crate) fn population(&self) -> [usize; 3] {
+        [self.vertices.len(), self.edges.len(), self.faces.len()]
+    }
+}
+
+fn edges_of(polygons: &PolygonMesh) -> Vec<Side> {
+    let mut sides = Vec::with_capacity(polygons.corner_count());
+    for (face, corners) in polygons.faces().iter() {
+        let next = corners.iter().cycle().skip(1);
+        sides.extend(corners.iter().zip(next).map(|(&a, &b)| Side {
+            face,
+            ends: [a.min(b), a.max(b)],
+        }));
+    }
+    sides.sort_unstable_by_key(|side| (side.ends, side.face));
+    sides.dedup_by_key(|side| side.ends);
+    sides
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sixfold::shapes;
+
+    #[test]
+    fn every_edge_is_drawn_once_and_by_a_face_that_has_it() {
+        let mesh = shapes::default_study();
+        let draw = Draw::of(&mesh, 7);
+        assert_eq!(draw.edges.len() * 2, mesh.corner_count(), "closed");
+        for side in &draw.edges {
+            let corners = mesh.faces().face(side.face);
+            assert!(side.ends.iter().all(|end| corners.contains(end)));
+        }
+        let mut edges: Vec<_> = draw.edges.iter().map(|side| side.ends).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        assert_eq!(edges.len(), draw.edges.len());
+    }
+
+    #[test]
+    fn the_seed_decides() {
+        let mesh = shapes::default_study();
+        assert_eq!(Draw::of(&mesh, 7), Draw::of(&mesh, 7));
+        assert_ne!(Draw::of(&mesh, 7), Draw::of(&mesh, 8));
+    }
+}

@@ -1,0 +1,138 @@
+//! Who is fastest, and who as fast as far as anybody can tell.
+
+use crate::clock::Time;
+use crate::report::Standing;
+use crate::statistics::Median;
+
+/// Medians this close are a tie, whatever their intervals say.
+const NO_DIFFERENCE: f64 = 1.02;
+
+/// Too few samples for an interval still tell apart what differs by this much.
+const BEYOND_DOUBT: f64 = 2.0;
+
+/// How the samples of one backend stand beside those of the fastest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Place {
+    /// The median time by that of the fastest, formed within rounds.
+    pub(crate) ratio: Median,
+    /// What that makes it.
+    pub(crate) standing: Standing,
+}
+
+/// Ranks the backends of one operation by their samples, each with its round; `None` for those
+/// without any.
+///
+/// The fastest is the one with the smallest median. Another ties with it if the interval of its
+/// ratio reaches down to 1, or if the ratio is within 2 %; where samples are too few for an interval,
+/// if the ratio is below 2.
+pub(crate) fn places(backends: &[Vec<(u32, Time)>]) -> Vec<Option<Place>> {
+    let medians = backends
+        .iter()
+        .map(|samples| Median::of(samples.iter().map(|(_, t)| t.ns())));
+    let medians: Vec<Option<Median>> = medians.collect();
+    let measured = medians.iter().flatten().count();
+    let best = (0..backends.len())
+        .filter(|&b| medians[b].is_some())
+        .min_by(|&a, &b| {
+            let value = |b: usize| medians[b].map_or(f64::INFINITY, |m| m.value);
+            value(a).total_cmp(&value(b))
+        });
+    let Some(best) = best else {
+        return vec![None; backends.len()];
+    };
+    let mut places: Vec<Option<Place>> = backends
+        .iter()
+        .map(|samples| {
+            let ratio = ratio(samples, &backends[best])?;
+            let tied = match ratio.interval {
+                _ if ratio.value <= NO_DIFFERENCE => true,
+                Some([low, _]) => low <= 1.0,
+                None => ratio.value < BEYOND_DOUBT,
+            };
+            let standing = if tied {
+                Standing::Tied
+            } else {
+                Standing::Slower
+            };
+            Some(Place { ratio, standing })
+        })
+        .collect();
+    let ties = places
+        .iter()
+        .flatten()
+        .filter(|p| p.standing == Standing::Tied)
+        .count();
+    if let Some(place) = &mut places[best] {
+        place.standing = match (measured, ties) {
+            (1, _) => Standing::Alone,
+            (_, 1) => Standing::Best,
+            _ => Standing::Tied,
+        };
+    }
+    places
+}
+
+/// The ratio within the rounds that both have; of the medians where they share none.
+fn ratio(samples: &[(u32, Time)], best: &[(u32, Time)]) -> Option<Median> {
+    let of_round = |round: u32| best.iter().find(|(r, _)| *r == round);
+    let pairs = samples
+        .iter()
+        .filter_map(|(round, time)| Some(time.ns() / of_round(*round)?.1.ns()));
+    Median::of(pairs.filter(|ratio| ratio.is_finite())).or_else(|| {
+        let median = |times: &[(u32, Time)]| Median::of(times.iter().map(|(_, t)| t.ns()));
+        let value = median(samples)?.value / median(best)?.value;
+        value.is_finite().then_some(Median {
+            value,
+            least: value,
+            interval: None,
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn samples(times: &[f64]) -> Vec<(u32, Time)> {
+        let time = |&ns: &f64| Time {
+            cpu_ns: Some(ns),
+            wall_ns: ns,
+        };
+        (0..).zip(times.iter().map(time)).collect()
+    }
+
+    fn standings(backends: &[Vec<(u32, Time)>]) -> Vec<Option<Standing>> {
+        let places = places(backends).into_iter();
+        places.map(|place| place.map(|p| p.standing)).collect()
+    }
+
+    #[test]
+    fn a_clear_winner_is_named() {
+        let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
+        let fast = samples(&drift);
+        let slow = samples(&drift.map(|t| t * 1.1));
+        let expected = [Some(Standing::Slower), Some(Standing::Best), None];
+        assert_eq!(standings(&[slow.clone(), fast.clone(), vec![]]), expected);
+        let ratio = places(&[fast, slow])[1].expect("measured").ratio;
+        let [low, high] = ratio.interval.expect("seven rounds");
+        assert!((ratio.value - 1.1).abs() < 1e-9 && low > 1.09 && high < 1.11);
+    }
+
+    #[test]
+    fn noise_and_small_differences_are_ties() {
+        let a = samples(&[1.0, 1.2, 0.9, 1.1, 1.3, 0.8, 1.0]);
+        let b = samples(&[1.1, 1.0, 1.1, 0.9, 1.4, 1.2, 0.9]);
+        let c = samples(&[1.01, 1.212, 0.909, 1.111, 1.313, 0.808, 1.01]);
+        assert_eq!(standings(&[a, b, c]), [Some(Standing::Tied); 3]);
+    }
+
+    #[test]
+    fn too_few_samples_name_no_narrow_winner() {
+        let ties = standings(&[samples(&[1.0, 1.0]), samples(&[1.5, 1.5])]);
+        assert_eq!(ties, [Some(Standing::Tied); 2]);
+        let clear = standings(&[samples(&[1.0, 1.0]), samples(&[9.0, 9.0])]);
+        assert_eq!(clear, [Some(Standing::Best), Some(Standing::Slower)]);
+        assert_eq!(standings(&[samples(&[1.0])]), [Some(Standing::Alone)]);
+        assert_eq!(standings(&[vec![], vec![]]), [None, None]);
+    }
+}

@@ -1,0 +1,293 @@
+//! A whole study: build, measure, compare, report.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use sixfold::{
+    BackendInfo, BuildError, Counts, MemoryFootprint, PolygonMesh, QueryCost, Representation,
+    Visitor, roster, visit,
+};
+
+use crate::agreement::judge;
+use crate::candidate::{Candidate, Subject};
+use crate::clock::{Clock, MachineClock, Time};
+use crate::environment::Environment;
+use crate::inspect::{Specimen, counts, per_vertex, unbuilt};
+use crate::measure::{Bench, Entry, Progress};
+use crate::operation::Operation;
+use crate::report::{Agreement, BackendReport, Report, ResultRow, SCHEMA};
+use crate::sample::Draw;
+use crate::standing::places;
+use crate::statistics::Median;
+use crate::words::words;
+
+/// What to study, and for how long.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Names of backends; empty for all.
+    pub backends: Vec<String>,
+    /// Operations; empty for all.
+    pub operations: Vec<Operation>,
+    /// How long measuring may take. One run of everything is made in any case.
+    pub budget: Duration,
+    /// Decides samples and orders.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            backends: Vec::new(),
+            operations: Vec::new(),
+            budget: Duration::from_secs(20),
+            seed: 1,
+        }
+    }
+}
+
+/// Why there is nothing to study.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum StudyError {
+    /// A name that no backend has.
+    #[error("no backend is called `{name}`: choose from {}", all_names())]
+    UnknownBackend { name: String },
+    /// The mesh has vertices at most.
+    #[error("the mesh has no faces, so there is nothing to study: `inspect` shows its facts")]
+    NoFaces,
+    /// None of the backends asked for can hold the mesh.
+    #[error("none of the backends asked for can hold the mesh ({}): {}", .refusals.len(), reasons(.refusals))]
+    NoneHolds { refusals: Vec<(String, String)> },
+}
+
+fn all_names() -> String {
+    let names: Vec<&str> = roster().iter().map(|backend| backend.name).collect();
+    names.join(", ")
+}
+
+fn reasons(refusals: &[(String, String)]) -> String {
+    let reasons: Vec<String> = refusals
+        .iter()
+        .map(|(backend, reason)| format!("{backend}: {reason}"))
+        .collect();
+    reasons.join("; ")
+}
+
+impl Settings {
+    /// The backends asked for, in the order of the roster.
+    ///
+    /// # Errors
+    ///
+    /// [`StudyError::UnknownBackend`] for the first name that no backend has.
+    pub fn chosen_backends(&self) -> Result<Vec<BackendInfo>, StudyError> {
+        let all = roster();
+        let unknown = |name: &&String| all.iter().all(|backend| backend.name != **name);
+        if let Some(name) = self.backends.iter().find(unknown) {
+            return Err(StudyError::UnknownBackend { name: name.clone() });
+        }
+        let asked = |backend: &BackendInfo| {
+            self.backends.is_empty() || self.backends.iter().any(|name| name == backend.name)
+        };
+        Ok(all.into_iter().filter(asked).collect())
+    }
+
+    /// The operations asked for, each once, in the order in which tables show them.
+    fn chosen_operations(&self) -> Vec<Operation> {
+        let asked = |operation: &Operation| {
+            self.operations.is_empty() || self.operations.contains(operation)
+        };
+        Operation::ALL.into_iter().filter(asked).collect()
+    }
+}
+
+/// Measures the operations on the backends that can hold the mesh.
+///
+/// `stop` ends it early, between two samples; what is finished by then is in the report.
+/// `progress` hears what is going on.
+///
+/// # Errors
+///
+/// An unknown backend, a mesh without faces, or one that no backend asked for can hold.
+pub fn study(
+    specimen: &Specimen,
+    settings: &Settings,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(Progress<'_>),
+) -> Result<Report, StudyError> {
+    let chosen = settings.chosen_backends()?;
+    let operations = settings.chosen_operations();
+    let polygons = &specimen.polygons;
+    if polygons.face_count() == 0 {
+        return Err(StudyError::NoFaces);
+    }
+    let environment = Environment::here(settings.seed, settings.budget.as_secs_f64());
+    let counts = counts(polygons, specimen.facts.edges);
+    let draw = chosen
+        .iter()
+        .any(|backend| scans(backend, &operations))
+        .then(|| Draw::of(polygons, settings.seed));
+
+    let mut backends = Vec::new();
+    let mut subjects: Vec<Box<dyn Subject + '_>> = Vec::new();
+    for info in &chosen {
+        let (report, subject) = put_on_the_bench(info, polygons, draw.as_ref(), &counts);
+        backends.push(report);
+        subjects.extend(subject);
+    }
+    if subjects.is_empty() {
+        let refusals = backends
+            .into_iter()
+            .map(|b| (b.name, b.reason.unwrap_or_default()));
+        return Err(StudyError::NoneHolds {
+            refusals: refusals.collect(),
+        });
+    }
+
+    let clock = MachineClock::start();
+    let mut bench = Bench {
+        subjects: &mut subjects,
+        population: [counts.vertices, counts.edges, counts.faces],
+        clock: &clock,
+        budget: settings.budget,
+        random: ChaCha8Rng::seed_from_u64(settings.seed),
+        stop,
+        progress,
+    };
+    let entries = bench.measure(&operations);
+    let interrupted = stop.load(Ordering::Relaxed);
+    let results = results(&entries, &mut subjects, polygons, &clock);
+    let words = words(&backends, &results, polygons);
+    Ok(Report {
+        schema: SCHEMA,
+        mesh: specimen.report(),
+        backends,
+        results,
+        words,
+        interrupted,
+        environment,
+    })
+}
+
+/// Whether some operation scans on this backend.
+fn scans(backend: &BackendInfo, operations: &[Operation]) -> bool {
+    backend.costs.contains(&QueryCost::Scan)
+        && operations
+            .iter()
+            .any(|operation| operation.scans(&backend.costs).contains(&true))
+}
+
+/// Builds a backend, and says what it weighs or why it refuses.
+pub(crate) fn put_on_the_bench<'a>(
+    info: &BackendInfo,
+    polygons: &'a PolygonMesh,
+    draw: Option<&'a Draw>,
+    counts: &Counts,
+) -> (BackendReport, Option<Box<dyn Subject + 'a>>) {
+    type Built<'a> = (Box<dyn Subject + 'a>, MemoryFootprint);
+    struct Build<'a> {
+        polygons: &'a PolygonMesh,
+        draw: Option<&'a Draw>,
+    }
+
+    impl<'a> Visitor for Build<'a> {
+        type Output = Result<Built<'a>, BuildError>;
+
+        fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
+            let mesh = M::from_polygons(self.polygons)?;
+            let memory = mesh.memory();
+            let candidate = Candidate::new(self.polygons, self.draw, mesh);
+            Ok((Box::new(candidate), memory))
+        }
+    }
+
+    let built = visit(info.name, &mut Build { polygons, draw }).expect("a name of the roster");
+    match built {
+        Err(refusal) => (unbuilt(info, counts, Err(refusal)), None),
+        Ok((subject, memory)) => {
+            let bytes = memory.total();
+            let report = BackendReport {
+                bytes: Some(bytes),
+                bytes_per_vertex: per_vertex(bytes, counts),
+                tables: memory.tables,
+                merged_vertices: Some(subject.merged_vertices()),
+                ..unbuilt(info, counts, Ok(()))
+            };
+            (report, Some(subject))
+        }
+    }
+}
+
+/// One row for each entry that was measured or estimated.
+fn results(
+    entries: &[Entry],
+    subjects: &mut [Box<dyn Subject + '_>],
+    polygons: &PolygonMesh,
+    clock: &dyn Clock,
+) -> Vec<ResultRow> {
+    let agreements = judge(entries, subjects, polygons, clock);
+    let mut rows = Vec::new();
+    let mut agreements = agreements.into_iter();
+    for group in entries.chunk_by(|a, b| a.job.operation == b.job.operation) {
+        let times: Vec<Vec<(u32, Time)>> = group.iter().map(Entry::times).collect();
+        let places = places(&times);
+        // What a whole run visits is known where somebody made one.
+        let counted = group
+            .iter()
+            .filter(|e| e.job.sample.is_none() && subjects[e.subject].merged_vertices() == 0)
+            .find_map(|e| e.outcome);
+        for ((entry, times), place) in group.iter().zip(&times).zip(places) {
+            let agreement = agreements.next().unwrap_or(Agreement::Unchecked);
+            if times.is_empty() && entry.estimate.is_none() {
+                continue; // the study was told to stop before
+            }
+            let median = Median::of(times.iter().map(|(_, time)| time.ns()));
+            let wall = Median::of(times.iter().map(|(_, time)| time.wall_ns));
+            let elements = match entry.job.sample {
+                Some(_) => counted.or(entry.outcome),
+                None => entry.outcome.or(counted),
+            };
+            let elements = elements.map(|outcome| outcome.elements);
+            // What is estimated and not run is a walk over the faces.
+            let walked = entry.estimate.map(|_| polygons.face_count() as u64);
+            let elements = elements.or(walked);
+            let per_element = |ns: f64| match elements {
+                Some(n) if n > 0 => Some(ns / n as f64),
+                _ => None,
+            };
+            let interval = median.and_then(|m| m.interval);
+            let ratio = place.and_then(|p| p.ratio.interval);
+            rows.push(ResultRow {
+                backend: subjects[entry.subject].name().into(),
+                operation: entry.job.operation,
+                median_ns: median.map(|m| m.value),
+                min_ns: median.map(|m| m.least),
+                ci_low_ns: interval.map(|[low, _]| low),
+                ci_high_ns: interval.map(|[_, high]| high),
+                elements,
+                per: entry.job.operation.per(),
+                ns_per_element: median.and_then(|m| per_element(m.value)),
+                wall_median_ns: wall.map(|m| m.value),
+                wall_min_ns: wall.map(|m| m.least),
+                sampled: entry.job.sample.is_some(),
+                sample_size: entry.job.sample.map(|sample| sample.size),
+                estimated_ns: entry.estimate.map(Time::ns),
+                checksum: entry
+                    .outcome
+                    .map(|outcome| outcome.checksum)
+                    .filter(|checksum| checksum.is_finite()),
+                agreement,
+                standing: place.map(|p| p.standing),
+                ratio_to_best: place.map(|p| p.ratio.value),
+                ratio_ci_low: ratio.map(|[low, _]| low),
+                ratio_ci_high: ratio.map(|[_, high]| high),
+                samples: times.len(),
+                runs_per_sample: entry.runs,
+                warm_up_only: entry.samples.is_empty() && entry.warm_up.is_some(),
+            });
+        }
+    }
+    rows
+}

@@ -1,0 +1,250 @@
+//! What the table shows, in a few plain sentences.
+
+use sixfold::PolygonMesh;
+
+use crate::operation::Operation;
+use crate::report::{Agreement, BackendReport, ResultRow, Standing};
+use crate::statistics::Median;
+
+/// Sentences on speed, scans, memory and merging; no winner is named where it ties.
+pub(crate) fn words(
+    backends: &[BackendReport],
+    results: &[ResultRow],
+    polygons: &PolygonMesh,
+) -> Vec<String> {
+    let mut words = Vec::new();
+    words.extend(speed(backends, results));
+    for backend in backends.iter().filter(|backend| backend.holds) {
+        words.extend(scans(&backend.name, results, polygons));
+    }
+    words.extend(memory(backends));
+    words.extend(doubts(results));
+    for backend in backends {
+        words.extend(merging(backend, results));
+    }
+    let mismatches = results
+        .iter()
+        .filter(|row| row.agreement == Agreement::Mismatch);
+    for row in mismatches {
+        let ResultRow {
+            backend, operation, ..
+        } = row;
+        words.push(format!(
+            "{backend} finds something else than the others for {operation}: a fault in Sixfold; please report it."
+        ));
+    }
+    words
+}
+
+fn speed(backends: &[BackendReport], results: &[ResultRow]) -> Option<String> {
+    let rows = results.chunk_by(|a, b| a.operation == b.operation);
+    let contested: Vec<&[ResultRow]> = rows
+        .filter(|row| row.iter().filter(|r| r.median_ns.is_some()).count() > 1)
+        .collect();
+    if contested.is_empty() {
+        return None;
+    }
+    let mut winners: Vec<(usize, f64, &str)> = Vec::new();
+    for backend in backends {
+        let leads: Vec<f64> = contested
+            .iter()
+            .filter_map(|row| lead(row, &backend.name))
+            .collect();
+        let wins = leads.len();
+        if let Some(lead) = Median::of(leads) {
+            winners.push((wins, lead.value, &backend.name));
+        }
+    }
+    winners.sort_by_key(|(wins, ..)| std::cmp::Reverse(*wins));
+    let count = contested.len();
+    let ties = count - winners.iter().map(|(wins, ..)| wins).sum::<usize>();
+    let mut parts = Vec::new();
+    for (i, (wins, lead, name)) in winners.into_iter().enumerate() {
+        let lead = times(lead);
+        parts.push(match i {
+            0 => format!("{name} is fastest in {wins} (typically {lead} faster than the next)"),
+            _ => format!("{name} in {wins} ({lead})"),
+        });
+    }
+    match ties {
+        0 => {}
+        1 => parts.push("1 is a tie at the top".into()),
+        _ => parts.push(format!("{ties} are ties at the top")),
+    }
+    let operations = if count == 1 {
+        "operation"
+    } else {
+        "operations"
+    };
+    Some(format!("Of {count} {operations} {}.", parts.join(", ")))
+}
+
+/// By how much `backend` is ahead of the next in this row, if it is best beyond doubt.
+fn lead(row: &[ResultRow], backend: &str) -> Option<f64> {
+    let best = |r: &&ResultRow| r.standing == Some(Standing::Best) && r.backend == backend;
+    row.iter().find(best)?;
+    let others = row.iter().filter(|r| r.standing == Some(Standing::Slower));
+    others
+        .filter_map(|r| r.ratio_to_best)
+        .min_by(f64::total_cmp)
+}
+
+/// What asking one element costs where all faces are looked at, at the worst.
+fn scans(backend: &str, results: &[ResultRow], polygons: &PolygonMesh) -> Option<String> {
+    let of_it = |r: &&ResultRow| r.backend == backend;
+    let scanning = results
+        .iter()
+        .filter(of_it)
+        .filter(|r| r.sampled && matches!(r.operation, Operation::Relation(_)));
+    let worst = scanning.max_by(|a, b| {
+        let cost = |r: &ResultRow| r.ns_per_element.unwrap_or(0.0);
+        cost(a).total_cmp(&cost(b))
+    })?;
+    let each = duration(worst.ns_per_element?);
+    let ResultRow { operation, per, .. } = worst;
+    let faces = grouped(polygons.face_count());
+    let mut text = format!(
+        "{backend} looks at all {faces} faces to answer {operation}: {each} for each {per}"
+    );
+    if let Some(ratio) = worst.ratio_to_best.filter(|&ratio| ratio > 2.0) {
+        text += &format!(", {} as long as the fastest", times(ratio));
+    }
+    Some(text + ".")
+}
+
+fn memory(backends: &[BackendReport]) -> Option<String> {
+    let mut weighed: Vec<(f64, &str)> = backends
+        .iter()
+        .filter_map(|backend| Some((backend.bytes_per_vertex?, backend.name.as_str())))
+        .collect();
+    weighed.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let parts: Vec<String> = weighed
+        .iter()
+        .map(|(bytes, name)| format!("{name} {bytes:.0}"))
+        .collect();
+    (!parts.is_empty()).then(|| format!("Bytes per vertex: {}.", parts.join(", ")))
+}
+
+fn merging(backend: &BackendReport, results: &[ResultRow]) -> Option<String> {
+    let merged = backend.merged_vertices.filter(|&merged| merged > 0)?;
+    let name = &backend.name;
+    let vertices = if merged == 1 { "vertex" } else { "vertices" };
+    let share = if merged == 1 { "shares" } else { "share" };
+    let differs = results
+        .iter()
+        .any(|r| r.backend == *name && r.agreement == Agreement::Merged);
+    let then = if differs {
+        "; its results marked m are of that other mesh"
+    } else {
+        ""
+    };
+    Some(format!(
+        "{name} merges {merged} {vertices} that {share} coordinates with another{then}."
+    ))
+}
+
+/// Where the budget was too small for an answer.
+fn doubts(results: &[ResultRow]) -> Option<String> {
+    let measured = results.iter().filter(|r| r.median_ns.is_some());
+    let fewest = measured.map(|r| r.samples).min()?;
+    (fewest < 5).then(|| {
+        let samples = if fewest == 1 { "sample" } else { "samples" };
+        format!("Some figures rest on {fewest} {samples} only: a longer --budget makes them surer.")
+    })
+}
+
+/// `1.4 ×`, `2,100 ×`: a ratio as one says it.
+fn times(ratio: f64) -> String {
+    match ratio {
+        r if r < 1.095 => format!("{r:.2} ×"),
+        r if r < 9.95 => format!("{r:.1} ×"),
+        r => format!("{} ×", grouped(r.round() as usize)),
+    }
+}
+
+/// `1,234,567`.
+fn grouped(number: usize) -> String {
+    match number {
+        n if n < 1000 => n.to_string(),
+        n => format!("{},{:03}", grouped(n / 1000), n % 1000),
+    }
+}
+
+/// A time with the unit that suits it.
+fn duration(ns: f64) -> String {
+    match ns {
+        ns if ns < 1e3 => format!("{ns:.1} ns"),
+        ns if ns < 1e6 => format!("{:.1} µs", ns / 1e3),
+        ns if ns < 1e9 => format!("{:.1} ms", ns / 1e6),
+        ns => format!("{:.1} s", ns / 1e9),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold::shapes;
+
+    use super::*;
+    use crate::inspect::{Specimen, inspect};
+
+    fn row(backend: &str, operation: Operation, ratio: f64, standing: Standing) -> ResultRow {
+        ResultRow {
+            backend: backend.into(),
+            operation,
+            median_ns: Some(100.0 * ratio),
+            min_ns: None,
+            ci_low_ns: None,
+            ci_high_ns: None,
+            elements: Some(1),
+            per: operation.per(),
+            ns_per_element: Some(100.0 * ratio),
+            wall_median_ns: None,
+            wall_min_ns: None,
+            sampled: false,
+            sample_size: None,
+            estimated_ns: None,
+            checksum: None,
+            agreement: Agreement::Same,
+            standing: Some(standing),
+            ratio_to_best: Some(ratio),
+            ratio_ci_low: None,
+            ratio_ci_high: None,
+            samples: 9,
+            runs_per_sample: 1,
+            warm_up_only: false,
+        }
+    }
+
+    #[test]
+    fn winners_are_named_and_ties_are_not() {
+        let mesh = shapes::tetrahedron();
+        let backends = inspect(&Specimen::new("test", mesh.clone())).backends;
+        let (a, b) = (&backends[0].name, &backends[1].name);
+        let mut results = vec![
+            row(a, Operation::Build, 1.0, Standing::Best),
+            row(b, Operation::Build, 1.5, Standing::Slower),
+            row(a, Operation::Boundary, 1.0, Standing::Tied),
+            row(b, Operation::Boundary, 1.01, Standing::Tied),
+        ];
+        let said = words(&backends, &results, &mesh);
+        let expected = format!(
+            "Of 2 operations {a} is fastest in 1 (typically 1.5 × faster than the next), 1 is a tie at the top."
+        );
+        assert_eq!(said, [expected]);
+        let said = words(&backends, &results[2..], &mesh);
+        assert_eq!(said, ["Of 1 operation 1 is a tie at the top."]);
+        results[2].agreement = Agreement::Mismatch;
+        let said = words(&backends, &results, &mesh).join(" ");
+        assert!(
+            said.contains(&format!("{a} finds something else")),
+            "{said}"
+        );
+    }
+
+    #[test]
+    fn ratios_and_counts_are_short() {
+        let said = [1.034, 1.52, 9.96, 8710.4].map(times);
+        assert_eq!(said, ["1.03 ×", "1.5 ×", "10 ×", "8,710 ×"]);
+        assert_eq!(grouped(1_002_003), "1,002,003");
+    }
+}
