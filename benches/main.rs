@@ -1,1 +1,29 @@
-fn main() {}
+//! The repository's own benchmarks; one module asks one question.
+//!
+//! `cargo bench -p sixfold-benches -- zero_cost/` runs those whose name has the filter in it.
+
+mod construction;
+mod input;
+mod query;
+mod workload;
+mod zero_cost;
+
+use std::time::Duration;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+
+/// Short measurements: there are hundreds of benchmarks, and the ratios within a group settle early.
+fn short() -> Criterion {
+    Criterion::default()
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(100))
+        .measurement_time(Duration::from_millis(400))
+        .configure_from_args()
+}
+
+criterion_group! {
+    name = all;
+    config = short();
+    targets = zero_cost::define, construction::define, workload::define, query::define
+}
+criterion_main!(all);

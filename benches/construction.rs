@@ -1,0 +1,14 @@
+//! What does it cost to build each structure from flat arrays?
+
+use criterion::Criterion;
+use study::Operation;
+
+use crate::input::{every_backend, inputs};
+
+pub(crate) fn define(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("build");
+    for input in &inputs() {
+        every_backend(&mut group, Operation::Build, input);
+    }
+    group.finish();
+}

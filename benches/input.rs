@@ -1,0 +1,76 @@
+//! What the benchmarks run on, and how one backend is put under criterion's clock.
+
+use std::time::Duration;
+
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, BenchmarkId, Throughput};
+use sixfold::{Facts, PolygonMesh, roster, shapes};
+use study::{MachineClock, Operation, Solo};
+
+/// Frequencies of the geodesic spheres: 320, 1,280 and 5,120 triangles.
+const FREQUENCIES: [usize; 3] = [4, 8, 16];
+
+/// A mesh and what a benchmark calls it.
+pub(crate) struct Input {
+    /// `regular/320`.
+    pub(crate) name: String,
+    /// The mesh.
+    pub(crate) mesh: PolygonMesh,
+}
+
+/// Closed triangle meshes of three sizes: regular in order, irregular, and in random order.
+pub(crate) fn inputs() -> Vec<Input> {
+    let mut inputs = Vec::new();
+    for frequency in FREQUENCIES {
+        let regular = shapes::geodesic(frequency).expect("a small frequency");
+        let faces = regular.face_count();
+        let irregular = irregular(faces);
+        let shuffled = shapes::shuffled(&regular, 1);
+        let named = [
+            ("regular", regular),
+            ("irregular", irregular),
+            ("shuffled", shuffled),
+        ];
+        for (order, mesh) in named {
+            inputs.push(Input {
+                name: format!("{order}/{faces}"),
+                mesh,
+            });
+        }
+    }
+    inputs
+}
+
+/// A closed surface of about so many triangles whose valences vary.
+fn irregular(faces: usize) -> PolygonMesh {
+    let blobs = shapes::recipe("blobs").expect("a shape of that name");
+    let mesh = blobs
+        .make(&[("faces", faces as f64)])
+        .expect("a size within its range");
+    let valence = Facts::of(&mesh).valence.expect("edges");
+    assert!(valence.max > valence.min + 2, "{valence:?} is regular");
+    mesh
+}
+
+/// Times `operation` on every backend that holds `input`, by the very code of a study.
+pub(crate) fn every_backend(
+    group: &mut BenchmarkGroup<'_, WallTime>,
+    operation: Operation,
+    input: &Input,
+) {
+    let clock = MachineClock::start();
+    for backend in roster() {
+        let Ok(mut solo) = Solo::new(backend.name, &input.mesh) else {
+            continue; // the capability table says so; conformance holds it to that
+        };
+        let elements = solo.run(operation, &clock).elements;
+        group.throughput(Throughput::Elements(elements));
+        group.bench_function(BenchmarkId::new(backend.name, &input.name), |bench| {
+            bench.iter_custom(|runs| {
+                let wall =
+                    |_| Duration::from_nanos(solo.run(operation, &clock).time.wall_ns as u64);
+                (0..runs).map(wall).sum()
+            });
+        });
+    }
+}

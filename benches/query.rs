@@ -1,0 +1,18 @@
+//! What does each relation cost on each structure, as the mesh grows and loses its order?
+
+use criterion::Criterion;
+use sixfold::Relation;
+use study::Operation;
+
+use crate::input::{every_backend, inputs};
+
+pub(crate) fn define(criterion: &mut Criterion) {
+    let inputs = inputs();
+    for relation in Relation::ALL {
+        let mut group = criterion.benchmark_group(format!("query/{relation}"));
+        for input in &inputs {
+            every_backend(&mut group, Operation::Relation(relation), input);
+        }
+        group.finish();
+    }
+}

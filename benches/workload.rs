@@ -1,0 +1,29 @@
+//! What does each whole workload cost on each structure?
+
+use criterion::Criterion;
+use study::Operation;
+
+use crate::input::{every_backend, inputs};
+
+const WORKLOADS: [Operation; 8] = [
+    Operation::Circulate,
+    Operation::FaceBarycenter,
+    Operation::VertexNormal,
+    Operation::VvSmooth,
+    Operation::EdgeLength,
+    Operation::Boundary,
+    Operation::FfBfs,
+    Operation::AllQueries,
+];
+
+pub(crate) fn define(criterion: &mut Criterion) {
+    // The largest only: growth is what `query` shows.
+    let inputs = inputs().split_off(6);
+    for operation in WORKLOADS {
+        let mut group = criterion.benchmark_group(format!("workload/{}", operation.name()));
+        for input in &inputs {
+            every_backend(&mut group, operation, input);
+        }
+        group.finish();
+    }
+}
