@@ -1,10 +1,13 @@
-//! Does the trait cost anything? Generic code against the same loop by hand over raw tables.
+//! Does the trait cost anything? Generic code against the same loops by hand over the raw tables.
+//!
+//! Both do the same arithmetic on polygons of any degree; by hand, nothing is asked of the trait.
 
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput};
 use sixfold::{
-    FaceMap, HalfEdgeMesh, MeshQuery, Point, PolygonMesh, Representation, VertexMap, shapes,
+    CornerTable, FaceId, FaceMap, HalfEdgeMesh, MeshQuery, Point, PolygonMesh, Representation,
+    RowMap, VertexId, VertexMap, WingedEdgeMesh, shapes,
 };
 
 /// The mean of each vertex's neighbours, on any structure.
@@ -26,10 +29,10 @@ fn normals<M: MeshQuery>(
     by_vertex: &mut VertexMap<M, Point>,
 ) {
     mesh.faces().for_each(|f| {
-        let mut corners = mesh.face_vertices(f).map(|v| mesh.position(v));
-        let mut next = || corners.next().unwrap_or_default();
-        let (a, b, c) = (next(), next(), next());
-        by_face[f] = (b - a).cross(c - a);
+        let mut fan = Fan::default();
+        mesh.face_vertices(f)
+            .for_each(|v| fan.add(mesh.position(v)));
+        by_face[f] = fan.normal;
     });
     mesh.vertices().for_each(|v| {
         let mut sum = Point::ZERO;
@@ -38,100 +41,254 @@ fn normals<M: MeshQuery>(
     });
 }
 
-/// `means` by hand over the tables of a half-edge mesh.
-fn means_by_hand(mesh: &HalfEdgeMesh, means: &mut [Point]) {
-    let (positions, halves) = (mesh.positions(), mesh.half_rows());
-    for (mean, leaving) in means.iter_mut().zip(mesh.leaving_rows()) {
-        let Some(first) = leaving.get() else { continue };
-        let (mut sum, mut valence, mut h) = (Point::ZERO, 0_u32, first);
-        loop {
-            let twin = &halves[h.twin().index()];
-            sum += positions[twin.origin.index()];
-            valence += 1;
-            h = twin.next;
-            if h == first {
-                break;
-            }
+/// The cross products of a fan of triangles, corner by corner.
+#[derive(Default)]
+struct Fan {
+    first: Point,
+    spoke: Point,
+    normal: Point,
+    corners: u32,
+}
+
+impl Fan {
+    #[inline(always)]
+    fn add(&mut self, corner: Point) {
+        if self.corners == 0 {
+            self.first = corner;
+        } else {
+            let next = corner - self.first;
+            self.normal += self.spoke.cross(next);
+            self.spoke = next;
         }
-        *mean = sum * (1.0 / valence as f32);
+        self.corners += 1;
     }
 }
 
-/// `normals` by hand over the tables of a half-edge mesh.
-fn normals_by_hand(mesh: &HalfEdgeMesh, by_face: &mut [Point], by_vertex: &mut [Point]) {
-    let (positions, halves) = (mesh.positions(), mesh.half_rows());
-    for (normal, &first) in by_face.iter_mut().zip(mesh.first_rows()) {
-        let a = &halves[first.index()];
-        let b = &halves[a.next.index()];
-        let c = &halves[b.next.index()];
-        let [a, b, c] = [a, b, c].map(|half| positions[half.origin.index()]);
-        *normal = (b - a).cross(c - a);
-    }
-    for (normal, leaving) in by_vertex.iter_mut().zip(mesh.leaving_rows()) {
-        let Some(first) = leaving.get() else { continue };
-        let (mut sum, mut h) = (Point::ZERO, first);
-        loop {
-            let twin = &halves[h.twin().index()];
-            if let Some(f) = twin.face.get() {
-                sum += by_face[f.index()];
+/// The same two workloads by hand.
+trait ByHand: Representation<Vertex = VertexId, Face = FaceId> {
+    /// As [`means`].
+    fn means_by_hand(&self, means: &mut [Point]);
+    /// As [`normals`].
+    fn normals_by_hand(&self, by_face: &mut [Point], by_vertex: &mut [Point]);
+}
+
+impl ByHand for HalfEdgeMesh {
+    fn means_by_hand(&self, means: &mut [Point]) {
+        let (positions, halves) = (self.positions(), self.half_rows());
+        for (mean, leaving) in means.iter_mut().zip(self.leaving_rows()) {
+            let Some(first) = leaving.get() else { continue };
+            let (mut sum, mut valence, mut h) = (Point::ZERO, 0_u32, first);
+            loop {
+                let twin = &halves[h.twin().index()];
+                sum += positions[twin.origin.index()];
+                valence += 1;
+                h = twin.next;
+                if h == first {
+                    break;
+                }
             }
-            h = twin.next;
-            if h == first {
-                break;
-            }
+            *mean = sum * (1.0 / valence as f32);
         }
-        *normal = sum * (1.0 / sum.length());
+    }
+
+    fn normals_by_hand(&self, by_face: &mut [Point], by_vertex: &mut [Point]) {
+        let (positions, halves) = (self.positions(), self.half_rows());
+        for (normal, &first) in by_face.iter_mut().zip(self.first_rows()) {
+            let (mut fan, mut h) = (Fan::default(), first);
+            loop {
+                let half = &halves[h.index()];
+                fan.add(positions[half.origin.index()]);
+                h = half.next;
+                if h == first {
+                    break;
+                }
+            }
+            *normal = fan.normal;
+        }
+        for (normal, leaving) in by_vertex.iter_mut().zip(self.leaving_rows()) {
+            let Some(first) = leaving.get() else { continue };
+            let (mut sum, mut h) = (Point::ZERO, first);
+            loop {
+                let twin = &halves[h.twin().index()];
+                if let Some(f) = twin.face.get() {
+                    sum += by_face[f.index()];
+                }
+                h = twin.next;
+                if h == first {
+                    break;
+                }
+            }
+            *normal = sum * (1.0 / sum.length());
+        }
     }
 }
 
-fn inputs() -> [(&'static str, PolygonMesh); 2] {
-    let ordered = shapes::geodesic(64).expect("a small frequency");
-    let shuffled = shapes::shuffled(&ordered, 1);
-    [("ordered", ordered), ("shuffled", shuffled)]
+impl ByHand for CornerTable {
+    fn means_by_hand(&self, means: &mut [Point]) {
+        let (positions, vertex) = (self.positions(), CornerTable::vertex_rows(self));
+        let opposite = self.opposite_rows();
+        for (mean, corner) in means.iter_mut().zip(self.corner_rows()) {
+            let Some(first) = corner.get().map(|c| c.next()) else {
+                continue;
+            };
+            let (mut sum, mut valence, mut n) = (Point::ZERO, 0_u32, first);
+            loop {
+                sum += positions[vertex[n.index()].index()];
+                valence += 1;
+                match opposite[n.index()].get().map(|c| c.prev()) {
+                    Some(turned) if turned != first => n = turned,
+                    Some(_) => break,
+                    None => {
+                        // An open fan ends at one neighbour more.
+                        sum += positions[vertex[n.next().index()].index()];
+                        valence += 1;
+                        break;
+                    }
+                }
+            }
+            *mean = sum * (1.0 / valence as f32);
+        }
+    }
+
+    fn normals_by_hand(&self, by_face: &mut [Point], by_vertex: &mut [Point]) {
+        let (positions, opposite) = (self.positions(), self.opposite_rows());
+        let triangles = CornerTable::vertex_rows(self).as_chunks::<3>().0;
+        for (normal, triangle) in by_face.iter_mut().zip(triangles) {
+            let mut fan = Fan::default();
+            for v in triangle {
+                fan.add(positions[v.index()]);
+            }
+            *normal = fan.normal;
+        }
+        for (normal, corner) in by_vertex.iter_mut().zip(self.corner_rows()) {
+            let Some(first) = corner.get().map(|c| c.next()) else {
+                continue;
+            };
+            let (mut sum, mut n) = (Point::ZERO, first);
+            loop {
+                sum += by_face[n.triangle().index()];
+                match opposite[n.index()].get().map(|c| c.prev()) {
+                    Some(turned) if turned != first => n = turned,
+                    _ => break,
+                }
+            }
+            *normal = sum * (1.0 / sum.length());
+        }
+    }
+}
+
+impl ByHand for WingedEdgeMesh {
+    fn means_by_hand(&self, means: &mut [Point]) {
+        let (positions, edges) = (self.positions(), self.edge_records());
+        for (v, (mean, spoke)) in means.iter_mut().zip(self.spoke_rows()).enumerate() {
+            let Some(first) = spoke.get() else { continue };
+            let (mut sum, mut valence, mut e) = (Point::ZERO, 0_u32, first);
+            loop {
+                let edge = &edges[e.index()];
+                let [start, end] = edge.ends();
+                let at_end = end.index() == v;
+                let other = if at_end { start } else { end };
+                sum += positions[other.index()];
+                valence += 1;
+                e = edge.prev()[usize::from(at_end)];
+                if e == first {
+                    break;
+                }
+            }
+            *mean = sum * (1.0 / valence as f32);
+        }
+    }
+
+    fn normals_by_hand(&self, by_face: &mut [Point], by_vertex: &mut [Point]) {
+        let (positions, edges) = (self.positions(), self.edge_records());
+        for (f, (normal, &first)) in by_face.iter_mut().zip(self.side_rows()).enumerate() {
+            let (mut fan, mut e) = (Fan::default(), first);
+            loop {
+                let edge = &edges[e.index()];
+                let on_right = edge.faces()[1].is_some_and(|right| right.index() == f);
+                fan.add(positions[edge.ends()[usize::from(on_right)].index()]);
+                e = edge.next()[usize::from(on_right)];
+                if e == first {
+                    break;
+                }
+            }
+            *normal = fan.normal;
+        }
+        for (v, (normal, spoke)) in by_vertex.iter_mut().zip(self.spoke_rows()).enumerate() {
+            let Some(first) = spoke.get() else { continue };
+            let (mut sum, mut e) = (Point::ZERO, first);
+            loop {
+                let edge = &edges[e.index()];
+                let at_end = edge.ends()[1].index() == v;
+                if let Some(f) = edge.faces()[usize::from(at_end)] {
+                    sum += by_face[f.index()];
+                }
+                e = edge.prev()[usize::from(at_end)];
+                if e == first {
+                    break;
+                }
+            }
+            *normal = sum * (1.0 / sum.length());
+        }
+    }
+}
+
+fn compare<M>(criterion: &mut Criterion, order: &str, polygons: &PolygonMesh)
+where
+    M: ByHand + MeshQuery<Vertex = VertexId, Face = FaceId>,
+{
+    let mesh = M::from_polygons(polygons).expect("a closed manifold of triangles");
+    let vertices = polygons.vertex_count();
+    let mut by_face: RowMap<FaceId, Point> = mesh.face_map(Point::ZERO);
+    let mut by_vertex: RowMap<VertexId, Point> = mesh.vertex_map(Point::ZERO);
+    let mut raw_face = vec![Point::ZERO; polygons.face_count()];
+    let mut raw_vertex = vec![Point::ZERO; vertices];
+    let group = |workload| format!("zero_cost/{}/{workload}/{order}", M::NAME);
+
+    let mut group_of = criterion.benchmark_group(group("vv_smooth"));
+    group_of.throughput(Throughput::Elements(vertices as u64));
+    group_of.bench_function("generic", |bench| {
+        bench.iter(|| means(black_box(&mesh), black_box(&mut by_vertex)));
+    });
+    group_of.bench_function("by hand", |bench| {
+        bench.iter(|| black_box(&mesh).means_by_hand(black_box(&mut raw_vertex)));
+    });
+    group_of.finish();
+    let alike = |a: &[Point], b: &[Point]| a.iter().zip(b).all(|(a, b)| a.abs_diff_eq(*b, 1e-6));
+    assert!(
+        alike(by_vertex.values(), &raw_vertex),
+        "both did the same work"
+    );
+
+    let mut group_of = criterion.benchmark_group(group("vertex_normal"));
+    group_of.throughput(Throughput::Elements(vertices as u64));
+    group_of.bench_function("generic", |bench| {
+        bench.iter(|| {
+            normals(
+                black_box(&mesh),
+                black_box(&mut by_face),
+                black_box(&mut by_vertex),
+            );
+        });
+    });
+    group_of.bench_function("by hand", |bench| {
+        bench.iter(|| {
+            black_box(&mesh).normals_by_hand(black_box(&mut raw_face), black_box(&mut raw_vertex));
+        });
+    });
+    group_of.finish();
+    assert!(
+        alike(by_vertex.values(), &raw_vertex),
+        "both did the same work"
+    );
 }
 
 pub(crate) fn define(criterion: &mut Criterion) {
-    for (order, polygons) in inputs() {
-        let mesh = HalfEdgeMesh::from_polygons(&polygons).expect("a closed manifold");
-        let vertices = polygons.vertex_count();
-        let mut by_face = mesh.face_map(Point::ZERO);
-        let mut by_vertex = mesh.vertex_map(Point::ZERO);
-        let mut raw_face = vec![Point::ZERO; polygons.face_count()];
-        let mut raw_vertex = vec![Point::ZERO; vertices];
-
-        let mut group = criterion.benchmark_group(format!("zero_cost/half-edge/vv_smooth/{order}"));
-        group.throughput(Throughput::Elements(vertices as u64));
-        group.bench_function("generic", |bench| {
-            bench.iter(|| means(black_box(&mesh), black_box(&mut by_vertex)));
-        });
-        group.bench_function("by hand", |bench| {
-            bench.iter(|| means_by_hand(black_box(&mesh), black_box(&mut raw_vertex)));
-        });
-        group.finish();
-        assert_eq!(by_vertex.values(), raw_vertex, "both did the same work");
-
-        let mut group =
-            criterion.benchmark_group(format!("zero_cost/half-edge/vertex_normal/{order}"));
-        group.throughput(Throughput::Elements(vertices as u64));
-        group.bench_function("generic", |bench| {
-            bench.iter(|| {
-                normals(
-                    black_box(&mesh),
-                    black_box(&mut by_face),
-                    black_box(&mut by_vertex),
-                )
-            });
-        });
-        group.bench_function("by hand", |bench| {
-            bench.iter(|| {
-                normals_by_hand(
-                    black_box(&mesh),
-                    black_box(&mut raw_face),
-                    black_box(&mut raw_vertex),
-                )
-            });
-        });
-        group.finish();
-        assert_eq!(by_vertex.values(), raw_vertex, "both did the same work");
+    let ordered = shapes::geodesic(64).expect("a small frequency");
+    let shuffled = shapes::shuffled(&ordered, 1);
+    for (order, polygons) in [("ordered", ordered), ("shuffled", shuffled)] {
+        compare::<HalfEdgeMesh>(criterion, order, &polygons);
+        compare::<CornerTable>(criterion, order, &polygons);
+        compare::<WingedEdgeMesh>(criterion, order, &polygons);
     }
 }

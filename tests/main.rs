@@ -3,3 +3,4 @@
 mod equivalence;
 mod facts;
 mod real_meshes;
+mod seventh;

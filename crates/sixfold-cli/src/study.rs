@@ -33,6 +33,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     };
     let settings = Settings {
         backends: arguments.backends.clone(),
+        extra: Vec::new(),
         operations: arguments.operations.clone(),
         budget: arguments.budget,
         seed: arguments.seed,

@@ -48,7 +48,8 @@ pub struct BackendInfo {
 }
 
 impl BackendInfo {
-    const fn of<M: Representation>() -> Self {
+    /// The row of `M`.
+    pub const fn of<M: Representation>() -> Self {
         Self {
             name: M::NAME,
             capabilities: M::CAPABILITIES,

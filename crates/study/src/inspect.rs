@@ -1,9 +1,8 @@
 //! What a mesh is, and which backends can hold it.
 
-use sixfold::{
-    BackendInfo, BuildError, Counts, Facts, PolygonMesh, Representation, Visitor, roster, visit,
-};
+use sixfold::{BuildError, Counts, Facts, PolygonMesh};
 
+use crate::backend::Backend;
 use crate::report::{BackendReport, Inspection, MeshReport, SCHEMA};
 
 /// A mesh to be looked into.
@@ -42,8 +41,8 @@ impl Specimen {
 /// Asks each backend whether it can hold the mesh, and builds none; O(corners) expected for each.
 pub fn inspect(specimen: &Specimen) -> Inspection {
     let counts = counts(&specimen.polygons, specimen.facts.edges);
-    let backends = roster().into_iter().map(|backend| {
-        let verdict = backend.verdict(&specimen.polygons);
+    let backends = Backend::roster().into_iter().map(|backend| {
+        let verdict = backend.info.verdict(&specimen.polygons);
         unbuilt(&backend, &counts, verdict)
     });
     Inspection {
@@ -55,15 +54,15 @@ pub fn inspect(specimen: &Specimen) -> Inspection {
 
 /// What there is to say of a backend before it is built, or that refused to be.
 pub(crate) fn unbuilt(
-    backend: &BackendInfo,
+    backend: &Backend,
     counts: &Counts,
     verdict: Result<(), BuildError>,
 ) -> BackendReport {
     let reason = verdict.err().map(|refusal| refusal.to_string());
     let holds = reason.is_none();
-    let layout_bytes = holds.then(|| layout_bytes(backend.name, counts)).flatten();
+    let layout_bytes = holds.then(|| (backend.layout_bytes)(counts));
     BackendReport {
-        name: backend.name.into(),
+        name: backend.name().into(),
         holds,
         reason,
         bytes: None,
@@ -72,7 +71,7 @@ pub(crate) fn unbuilt(
         layout_bytes_per_vertex: layout_bytes.and_then(|bytes| per_vertex(bytes, counts)),
         tables: Vec::new(),
         merged_vertices: None,
-        capabilities: backend.capabilities,
+        capabilities: backend.info.capabilities,
     }
 }
 
@@ -91,18 +90,4 @@ pub(crate) fn counts(polygons: &PolygonMesh, edges: usize) -> Counts {
         corners: faces.corners().len(),
         uniform: faces.is_empty() || faces.uniform_degree().is_some(),
     }
-}
-
-fn layout_bytes(backend: &str, counts: &Counts) -> Option<usize> {
-    struct Layout<'c>(&'c Counts);
-
-    impl Visitor for Layout<'_> {
-        type Output = usize;
-
-        fn visit<M: Representation + 'static>(&mut self) -> usize {
-            M::layout_bytes(self.0)
-        }
-    }
-
-    visit(backend, &mut Layout(counts))
 }

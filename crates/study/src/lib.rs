@@ -8,6 +8,7 @@
 //! command line and prints nothing: progress goes to a closure, and a flag stops it.
 
 mod agreement;
+mod backend;
 mod candidate;
 mod clock;
 mod environment;
@@ -24,6 +25,7 @@ mod study;
 mod words;
 mod workload;
 
+pub use backend::Backend;
 pub use clock::{Clock, MachineClock, Time};
 pub use environment::Environment;
 pub use inspect::{Specimen, inspect};

@@ -1,7 +1,8 @@
 //! One backend by itself, run by run: for programs that compare it with others of their kind.
 
-use sixfold::{Facts, PolygonMesh, roster};
+use sixfold::{Facts, PolygonMesh};
 
+use crate::backend::Backend;
 use crate::candidate::{Job, Subject};
 use crate::clock::{Clock, Time};
 use crate::inspect::counts;
@@ -33,11 +34,13 @@ impl<'a> Solo<'a> {
     /// A name that no backend has, and a mesh that this one cannot hold.
     pub fn new(backend: &str, polygons: &'a PolygonMesh) -> Result<Self, StudyError> {
         let name = backend.to_owned();
-        let info = roster().into_iter().find(|info| info.name == backend);
-        let info = info.ok_or(StudyError::UnknownBackend { name })?;
+        let found = Backend::roster()
+            .into_iter()
+            .find(|found| found.name() == backend);
+        let found = found.ok_or(StudyError::UnknownBackend { name })?;
         let draw: Option<&Draw> = None;
         let counts = counts(polygons, Facts::of(polygons).edges);
-        let (report, subject) = put_on_the_bench(&info, polygons, draw, &counts);
+        let (report, subject) = put_on_the_bench(&found, polygons, draw, &counts);
         let refusals = || vec![(report.name, report.reason.unwrap_or_default())];
         let subject = subject.ok_or_else(|| StudyError::NoneHolds {
             refusals: refusals(),

@@ -5,13 +5,11 @@ use std::time::Duration;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use sixfold::{
-    BackendInfo, BuildError, Counts, MemoryFootprint, PolygonMesh, QueryCost, Representation,
-    Visitor, roster, visit,
-};
+use sixfold::{Counts, PolygonMesh, QueryCost, roster};
 
 use crate::agreement::judge;
-use crate::candidate::{Candidate, Subject};
+use crate::backend::Backend;
+use crate::candidate::Subject;
 use crate::clock::{Clock, MachineClock, Time};
 use crate::environment::Environment;
 use crate::inspect::{Specimen, counts, per_vertex, unbuilt};
@@ -28,6 +26,8 @@ use crate::words::words;
 pub struct Settings {
     /// Names of backends; empty for all.
     pub backends: Vec<String>,
+    /// Representations that take part besides those of the roster.
+    pub extra: Vec<Backend>,
     /// Operations; empty for all.
     pub operations: Vec<Operation>,
     /// How long measuring may take. One run of everything is made in any case.
@@ -40,6 +40,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             backends: Vec::new(),
+            extra: Vec::new(),
             operations: Vec::new(),
             budget: Duration::from_secs(20),
             seed: 1,
@@ -77,19 +78,20 @@ fn reasons(refusals: &[(String, String)]) -> String {
 }
 
 impl Settings {
-    /// The backends asked for, in the order of the roster.
+    /// The backends asked for, in the order of the roster, then the extra ones.
     ///
     /// # Errors
     ///
     /// [`StudyError::UnknownBackend`] for the first name that no backend has.
-    pub fn chosen_backends(&self) -> Result<Vec<BackendInfo>, StudyError> {
-        let all = roster();
-        let unknown = |name: &&String| all.iter().all(|backend| backend.name != **name);
+    pub fn chosen_backends(&self) -> Result<Vec<Backend>, StudyError> {
+        let mut all = Backend::roster();
+        all.extend(&self.extra);
+        let unknown = |name: &&String| all.iter().all(|backend| backend.name() != **name);
         if let Some(name) = self.backends.iter().find(unknown) {
             return Err(StudyError::UnknownBackend { name: name.clone() });
         }
-        let asked = |backend: &BackendInfo| {
-            self.backends.is_empty() || self.backends.iter().any(|name| name == backend.name)
+        let asked = |backend: &Backend| {
+            self.backends.is_empty() || self.backends.iter().any(|name| name == backend.name())
         };
         Ok(all.into_iter().filter(asked).collect())
     }
@@ -132,8 +134,8 @@ pub fn study(
 
     let mut backends = Vec::new();
     let mut subjects: Vec<Box<dyn Subject + '_>> = Vec::new();
-    for info in &chosen {
-        let (report, subject) = put_on_the_bench(info, polygons, draw.as_ref(), &counts);
+    for backend in &chosen {
+        let (report, subject) = put_on_the_bench(backend, polygons, draw.as_ref(), &counts);
         backends.push(report);
         subjects.extend(subject);
     }
@@ -172,40 +174,23 @@ pub fn study(
 }
 
 /// Whether some operation scans on this backend.
-fn scans(backend: &BackendInfo, operations: &[Operation]) -> bool {
-    backend.costs.contains(&QueryCost::Scan)
+fn scans(backend: &Backend, operations: &[Operation]) -> bool {
+    let costs = &backend.info.costs;
+    costs.contains(&QueryCost::Scan)
         && operations
             .iter()
-            .any(|operation| operation.scans(&backend.costs).contains(&true))
+            .any(|operation| operation.scans(costs).contains(&true))
 }
 
 /// Builds a backend, and says what it weighs or why it refuses.
 pub(crate) fn put_on_the_bench<'a>(
-    info: &BackendInfo,
+    backend: &Backend,
     polygons: &'a PolygonMesh,
     draw: Option<&'a Draw>,
     counts: &Counts,
 ) -> (BackendReport, Option<Box<dyn Subject + 'a>>) {
-    type Built<'a> = (Box<dyn Subject + 'a>, MemoryFootprint);
-    struct Build<'a> {
-        polygons: &'a PolygonMesh,
-        draw: Option<&'a Draw>,
-    }
-
-    impl<'a> Visitor for Build<'a> {
-        type Output = Result<Built<'a>, BuildError>;
-
-        fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
-            let mesh = M::from_polygons(self.polygons)?;
-            let memory = mesh.memory();
-            let candidate = Candidate::new(self.polygons, self.draw, mesh);
-            Ok((Box::new(candidate), memory))
-        }
-    }
-
-    let built = visit(info.name, &mut Build { polygons, draw }).expect("a name of the roster");
-    match built {
-        Err(refusal) => (unbuilt(info, counts, Err(refusal)), None),
+    match (backend.build)(polygons, draw) {
+        Err(refusal) => (unbuilt(backend, counts, Err(refusal)), None),
         Ok((subject, memory)) => {
             let bytes = memory.total();
             let report = BackendReport {
@@ -213,7 +198,7 @@ pub(crate) fn put_on_the_bench<'a>(
                 bytes_per_vertex: per_vertex(bytes, counts),
                 tables: memory.tables,
                 merged_vertices: Some(subject.merged_vertices()),
-                ..unbuilt(info, counts, Ok(()))
+                ..unbuilt(backend, counts, Ok(()))
             };
             (report, Some(subject))
         }

@@ -1,0 +1,76 @@
+//! A representation as a study takes it.
+
+use std::fmt;
+
+use sixfold::{
+    BackendInfo, BuildError, Counts, MemoryFootprint, PolygonMesh, Representation, Visitor,
+    visit_all,
+};
+
+use crate::candidate::{Candidate, Subject};
+use crate::sample::Draw;
+
+/// A representation, with what is known of it and how it is built and put to the test.
+///
+/// [`Backend::roster`] has those of Sixfold; [`Backend::of`] makes one of any other, which a study
+/// then measures beside them ([`Settings::extra`](crate::Settings::extra)).
+#[derive(Clone, Copy)]
+pub struct Backend {
+    pub(crate) info: BackendInfo,
+    pub(crate) layout_bytes: fn(&Counts) -> usize,
+    pub(crate) build: Build,
+}
+
+/// Builds the structure and puts it on the bench; what it weighs is asked before anything is run.
+type Build = for<'a> fn(&'a PolygonMesh, Option<&'a Draw>) -> Result<OnTheBench<'a>, BuildError>;
+
+/// A structure ready to be measured, and what it weighs.
+pub(crate) type OnTheBench<'a> = (Box<dyn Subject + 'a>, MemoryFootprint);
+
+impl Backend {
+    /// `M` as a backend.
+    pub fn of<M: Representation + 'static>() -> Self {
+        Self {
+            info: BackendInfo::of::<M>(),
+            layout_bytes: M::layout_bytes,
+            build: |polygons, draw| {
+                let mesh = M::from_polygons(polygons)?;
+                let memory = mesh.memory();
+                Ok((Box::new(Candidate::new(polygons, draw, mesh)), memory))
+            },
+        }
+    }
+
+    /// Every representation of Sixfold, in the order in which tables show them.
+    pub fn roster() -> Vec<Self> {
+        struct Row;
+
+        impl Visitor for Row {
+            type Output = Backend;
+
+            fn visit<M: Representation + 'static>(&mut self) -> Backend {
+                Backend::of::<M>()
+            }
+        }
+
+        visit_all(&mut Row)
+    }
+
+    /// What users call it.
+    pub fn name(&self) -> &'static str {
+        self.info.name
+    }
+}
+
+impl PartialEq for Backend {
+    /// Backends are told apart by name.
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name()
+    }
+}
+
+impl fmt::Debug for Backend {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

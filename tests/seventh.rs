@@ -1,0 +1,47 @@
+//! A seventh structure, written in one file, is studied beside the six.
+
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use sixfold::shapes;
+use study::{Agreement, Backend, Operation, Settings, Specimen, Standing, study};
+
+// The very file with which the suite shows that it bites; ARCHITECTURE.md walks through it.
+#[path = "../crates/conformance/tests/all/face_and_edge_lists.rs"]
+mod face_and_edge_lists;
+
+use face_and_edge_lists::FaceAndEdgeLists;
+
+#[test]
+fn one_line_puts_it_into_a_study() {
+    let specimen = Specimen::new(
+        "torus",
+        shapes::triangle_torus(6, 4).expect("a small torus"),
+    );
+    let settings = Settings {
+        extra: vec![Backend::of::<FaceAndEdgeLists>()],
+        budget: Duration::from_millis(500),
+        ..Settings::default()
+    };
+    let go_on = AtomicBool::new(false);
+    let report = study(&specimen, &settings, &go_on, &mut |_| ()).expect("all can hold a torus");
+
+    let names: Vec<&str> = report.backends.iter().map(|b| b.name.as_str()).collect();
+    assert_eq!(names.len(), 7, "{names:?}");
+    let seventh = names[6];
+    let rows: Vec<_> = report
+        .results
+        .iter()
+        .filter(|row| row.backend == seventh)
+        .collect();
+    assert_eq!(rows.len(), Operation::ALL.len());
+    for row in rows {
+        assert_eq!(row.agreement, Agreement::Same, "{}", row.operation);
+        assert_ne!(row.standing, Some(Standing::Alone), "{}", row.operation);
+        assert!(
+            row.median_ns.is_some_and(|ns| ns > 0.0),
+            "{}",
+            row.operation
+        );
+    }
+}
