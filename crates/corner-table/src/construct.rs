@@ -23,10 +23,7 @@ impl Representation for CornerTable {
     /// Pairs the sides, lets the corners that face a pair know each other, then enters every fan;
     /// O(corners + vertices), without hashing.
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
-        let refusal = || match Self::CAPABILITIES.check(polygons) {
-            Err(fault) => fault,
-            Ok(()) => unreachable!("building finds a fault in a mesh that the check finds sound"),
-        };
+        let refusal = || Self::CAPABILITIES.refusal(polygons);
         let (vertices, faces) = (polygons.vertex_count(), polygons.faces());
         if !faces.is_empty() && faces.uniform_degree() != Some(3) {
             return Err(refusal());

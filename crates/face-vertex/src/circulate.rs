@@ -1,6 +1,6 @@
 //! Walks that several queries share.
 
-use mesh_core::{FaceId, IteratorExt, Pair, Probe, VertexId, row};
+use mesh_core::{FaceId, IteratorExt, Pair, Probe, VertexId};
 use rustc_hash::FxHashSet;
 
 use crate::mesh::FaceVertexMesh;
@@ -79,13 +79,35 @@ fn keep_distinct<T: Copy + PartialEq>(items: &mut [T]) -> usize {
     kept
 }
 
+/// The vertices beside a vertex, each once: a few in place, or any number of them.
+pub(crate) struct Ring {
+    few: [VertexId; FEW],
+    /// How many of `few` there are.
+    found: usize,
+    many: Vec<VertexId>,
+}
+
+impl Ring {
+    /// Whether `v` is one of them.
+    #[inline]
+    pub(crate) fn has(&self, v: VertexId) -> bool {
+        self.few[..self.found].contains(&v) || self.many.contains(&v)
+    }
+
+    /// All of them.
+    #[inline]
+    pub(crate) fn into_vertices(self) -> impl Iterator<Item = VertexId> {
+        self.few.into_iter().take(self.found).chain(self.many)
+    }
+}
+
 impl<P: Probe> FaceVertexMesh<P> {
     /// The vertices beside `v` in its faces, each once.
     ///
     /// A small fan is answered in place; a large one through a hash set, so that a vertex of
     /// valence 100,000 stays linear.
     #[inline]
-    pub(crate) fn ring(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
+    pub(crate) fn ring(&self, v: VertexId) -> Ring {
         let fan = self.fan(v);
         let beside = |f: &FaceId| beside(self.face(*f), v);
         let mut few = [v; FEW];
@@ -98,17 +120,14 @@ impl<P: Probe> FaceVertexMesh<P> {
         } else {
             many = fan.iter().flat_map(beside).distinct().collect();
         }
-        few.into_iter().take(found).chain(many)
+        Ring { few, found, many }
     }
 
-    /// The sides of `f`: side `i` joins corners `i` and `i + 1`.
+    /// The sides of `f`, in order.
     #[inline]
     pub(crate) fn sides(&self, f: FaceId) -> impl Iterator<Item = Pair<VertexId>> {
         let face = self.face(f);
-        (0..face.len()).map(move |i| {
-            let next = if i + 1 == face.len() { 0 } else { i + 1 };
-            Pair::new(face[i], face[next])
-        })
+        Pair::sides(face.len(), |i| face[i])
     }
 
     /// The end of `e` with fewer faces, those faces, and the other end.
@@ -172,52 +191,5 @@ impl<P: Probe> FaceVertexMesh<P> {
             }
         }
         faces
-    }
-
-    /// Every edge once, at its lower end.
-    ///
-    /// The higher ends are put into one bucket for each lower end (a counting sort over all
-    /// sides); in a bucket, each is yielded when it is new. O(corners + vertices), and no faces are
-    /// searched, so that a face of very many corners costs no more than its corners.
-    pub(crate) fn all_edges(&self) -> impl Iterator<Item = Pair<VertexId>> {
-        let mut ends = vec![0_u32; self.fans.len()];
-        self.for_each_side(|low, _| ends[low.index()] += 1);
-        let mut total = 0;
-        for end in &mut ends {
-            total += std::mem::replace(end, total);
-        }
-        let mut higher = vec![VertexId::new(0); total as usize];
-        self.for_each_side(|low, high| {
-            let at = &mut ends[low.index()];
-            higher[*at as usize] = high;
-            *at += 1;
-        });
-        // By higher end: the lower end, plus one, that met it last.
-        let mut met = vec![0_u32; self.fans.len()];
-        let (mut low, mut at) = (0, 0);
-        std::iter::from_fn(move || {
-            loop {
-                let high = *higher.get(at)?;
-                while ends[low] as usize == at {
-                    low += 1;
-                }
-                at += 1;
-                let met = &mut met[high.index()];
-                let name = row(low + 1);
-                if std::mem::replace(met, name) != name {
-                    return Some(Pair::new(VertexId::new(row(low)), high));
-                }
-            }
-        })
-    }
-
-    /// Calls `visit` with the lower and the higher end of every side of every face.
-    fn for_each_side(&self, mut visit: impl FnMut(VertexId, VertexId)) {
-        for f in 0..row(self.spans.len()) {
-            for side in self.sides(FaceId::new(f)) {
-                let [low, high] = side.ends();
-                visit(low, high);
-            }
-        }
     }
 }

@@ -17,7 +17,7 @@ impl<P: Probe> MeshQuery for FaceVertexMesh<P> {
     /// By their lower ends.
     #[inline]
     fn edges(&self) -> impl Iterator<Item = Pair<VertexId>> {
-        self.all_edges()
+        self.spans.edges(&self.corners, self.fans.len())
     }
 
     #[inline]
@@ -42,12 +42,13 @@ impl<P: Probe> MeshQuery for FaceVertexMesh<P> {
 
     #[inline]
     fn vertex_vertices(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
-        self.ring(v)
+        self.ring(v).into_vertices()
     }
 
     #[inline]
     fn vertex_edges(&self, v: VertexId) -> impl Iterator<Item = Pair<VertexId>> {
-        self.ring(v).map(move |other| Pair::new(v, other))
+        let ring = self.ring(v).into_vertices();
+        ring.map(move |other| Pair::new(v, other))
     }
 
     #[inline]
@@ -60,11 +61,16 @@ impl<P: Probe> MeshQuery for FaceVertexMesh<P> {
         e.ends()
     }
 
-    /// Only `e` itself ends at both of its ends, so no other edge comes twice.
+    /// Only `e` itself ends at both of its ends, so no other edge comes twice; and if it is an edge,
+    /// either end is beside the other.
     #[inline]
     fn edge_edges(&self, e: Pair<VertexId>) -> impl Iterator<Item = Pair<VertexId>> {
-        let edges = e.ends().into_iter().flat_map(|v| self.vertex_edges(v));
-        edges.filter(move |&edge| edge != e)
+        let [a, b] = e.ends();
+        let (at_a, at_b) = (self.ring(a), self.ring(b));
+        let is_edge = at_a.has(b);
+        let at_a = at_a.into_vertices().map(move |other| Pair::new(a, other));
+        let at_b = at_b.into_vertices().map(move |other| Pair::new(b, other));
+        at_a.chain(at_b).filter(move |&edge| is_edge && edge != e)
     }
 
     #[inline]
@@ -179,6 +185,8 @@ mod tests {
         let [a, b, c] = [0, 1, 2].map(VertexId::new);
         assert_eq!(mesh.edge_faces(Pair::new(a, c)).next(), None);
         assert_eq!(mesh.edge_faces(Pair::new(a, b)).count(), 1);
+        assert_eq!(mesh.edge_edges(Pair::new(a, c)).next(), None);
+        assert_eq!(mesh.edge_edges(Pair::new(a, b)).count(), 2);
     }
 
     #[test]

@@ -1,7 +1,5 @@
 //! Walks around a vertex and along a face: ordinary iterators that end after one turn.
 
-use std::collections::HashSet;
-
 use mesh_core::{EdgeId, FaceId, Probe, Slot, VertexId};
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
@@ -53,14 +51,6 @@ impl<P: Probe> HalfEdgeMesh<P> {
         AroundFace(self.sides(f))
     }
 
-    /// The next half along the face, and the face across: one pair of rows.
-    #[inline]
-    fn next_and_across(&self, h: HalfEdgeId) -> (HalfEdgeId, Slot<FaceId>) {
-        let pair = self.halves.read_pair(h.edge().index());
-        let side = h.index() & 1;
-        (pair[side].next, pair[side ^ 1].face)
-    }
-
     #[inline]
     pub(crate) fn spokes(&self, v: VertexId) -> Spokes<'_, P> {
         let at = self.half_leaving(v);
@@ -79,6 +69,11 @@ impl<P: Probe> HalfEdgeMesh<P> {
             at: Some(first),
             first,
         }
+    }
+
+    #[inline]
+    pub(crate) fn across(&self, f: FaceId) -> Across<'_, P> {
+        Across(self.sides(f))
     }
 }
 
@@ -157,6 +152,24 @@ impl<'a, P: Probe> Iterator for Sides<'a, P> {
     }
 }
 
+/// The face across each side of a face; a step reads the two halves of an edge, which lie together.
+#[derive(Clone, Debug)]
+pub(crate) struct Across<'a, P: Probe>(Sides<'a, P>);
+
+impl<P: Probe> Iterator for Across<'_, P> {
+    type Item = Slot<FaceId>;
+
+    #[inline]
+    fn next(&mut self) -> Option<Slot<FaceId>> {
+        let h = self.0.at?;
+        let halves = self.0.mesh.halves.read_pair(h.edge().index());
+        let side = h.index() & 1;
+        let next = halves[side].next;
+        self.0.at = (next != self.0.first).then_some(next);
+        Some(halves[side ^ 1].face)
+    }
+}
+
 /// The edges at both ends of an edge, but for itself: two walks that start and end at its halves.
 #[derive(Clone, Debug)]
 pub(crate) struct EdgeEdges<'a, P: Probe> {
@@ -214,127 +227,5 @@ impl<P: Probe> Iterator for EdgeEdges<'_, P> {
                 None => return folded,
             }
         }
-    }
-}
-
-/// How many faces are told apart by walking the face once more before a set takes over.
-const FEW: usize = 32;
-
-/// The faces across the sides of a face, each once.
-///
-/// Two faces may share several sides, so every answer has to be compared with those before it. The
-/// last three are at hand, which is all that triangles and quads need; for larger faces the walk is
-/// repeated, and beyond 32 neighbours a set keeps the whole linear.
-#[derive(Clone, Debug)]
-pub(crate) struct FaceFaces<'a, P: Probe> {
-    sides: Sides<'a, P>,
-    last: [Slot<FaceId>; 3],
-    found: usize,
-    many: Option<HashSet<FaceId>>,
-}
-
-impl<'a, P: Probe> FaceFaces<'a, P> {
-    #[inline]
-    pub(crate) fn new(mesh: &'a HalfEdgeMesh<P>, f: FaceId) -> Self {
-        Self {
-            sides: mesh.sides(f),
-            last: [Slot::NONE; 3],
-            found: 0,
-            many: None,
-        }
-    }
-
-    /// The faces across the three sides, if the walk has not begun and there are three.
-    #[inline]
-    fn across_triangle(&self) -> Option<[Slot<FaceId>; 3]> {
-        let Sides { mesh, at, first } = self.sides;
-        let (second, a) = mesh.next_and_across(first);
-        let (third, b) = mesh.next_and_across(second);
-        let (fourth, c) = mesh.next_and_across(third);
-        (at == Some(first) && fourth == first).then_some([a, b, c])
-    }
-
-    /// Whether the face across `h` differs from all that were found before.
-    #[inline]
-    fn is_new(&mut self, h: HalfEdgeId, face: Slot<FaceId>) -> bool {
-        let [a, b, c] = self.last;
-        if face == a || face == b || face == c {
-            return false;
-        }
-        if self.found >= self.last.len() {
-            // By value, but for the set: the walk itself is to stay in registers.
-            let Sides { mesh, first, .. } = self.sides;
-            if !is_new_among_many(mesh, first, h, self.found, &mut self.many) {
-                return false;
-            }
-        }
-        self.last = [face, a, b];
-        self.found += 1;
-        true
-    }
-}
-
-/// Whether the face across `h` differs from those across the sides from `first` to `h`.
-#[cold]
-#[inline(never)]
-fn is_new_among_many<P: Probe>(
-    mesh: &HalfEdgeMesh<P>,
-    first: HalfEdgeId,
-    h: HalfEdgeId,
-    found: usize,
-    many: &mut Option<HashSet<FaceId>>,
-) -> bool {
-    let sides = Sides {
-        mesh,
-        at: Some(first),
-        first,
-    }
-    .map(|(k, _)| k);
-    let mut before = sides.take_while(|&k| k != h).map(|k| mesh.face(k.twin()));
-    let face = mesh.face(h.twin());
-    if found < FEW {
-        return before.all(|other| other != face);
-    }
-    let many = many.get_or_insert_with(|| before.flatten().collect());
-    face.is_some_and(|face| many.insert(face))
-}
-
-impl<P: Probe> Iterator for FaceFaces<'_, P> {
-    type Item = FaceId;
-
-    #[inline]
-    fn next(&mut self) -> Option<FaceId> {
-        loop {
-            let (h, _) = self.sides.next()?;
-            let across = self.sides.mesh.halves.read(h.twin().index()).face;
-            if let Some(face) = across.get()
-                && self.is_new(h, across)
-            {
-                return Some(face);
-            }
-        }
-    }
-
-    /// The whole answer at once, which for triangles needs three comparisons and no state.
-    #[inline]
-    fn fold<B, F: FnMut(B, FaceId) -> B>(mut self, init: B, mut f: F) -> B {
-        if let Some([a, b, c]) = self.across_triangle() {
-            let mut folded = init;
-            if let Some(a) = a.get() {
-                folded = f(folded, a);
-            }
-            if let Some(face) = b.get().filter(|_| b != a) {
-                folded = f(folded, face);
-            }
-            if let Some(face) = c.get().filter(|_| c != a && c != b) {
-                folded = f(folded, face);
-            }
-            return folded;
-        }
-        let mut folded = init;
-        for face in self.by_ref() {
-            folded = f(folded, face);
-        }
-        folded
     }
 }

@@ -1,11 +1,8 @@
-//! The scan of all corners, which answers whatever the tables do not, and the pass over all edges.
+//! The scan of all corners, which answers whatever the tables do not.
 
-use mesh_core::{FaceId, FaceSpans, Pair, Probe, VertexId, row};
+use mesh_core::{FaceId, Pair, Probe, VertexId, hits_in};
 
 use crate::mesh::IndexedFaceSet;
-
-/// How many corners one step of a scan looks at.
-const BLOCK: usize = 64;
 
 /// The vertices that a scan looks for.
 #[derive(Clone, Debug)]
@@ -32,37 +29,14 @@ impl Sought {
     #[inline]
     fn hits(&self, block: &[VertexId]) -> u64 {
         match self {
-            Self::One(v) => hits(block, |c| c == *v),
-            Self::Two([a, b]) => hits(block, |c| (c == *a) | (c == *b)),
+            Self::One(v) => hits_in(block, |c| c == v),
+            Self::Two([a, b]) => hits_in(block, |c| (c == a) | (c == b)),
             Self::Four([a, b, c, d]) => {
-                hits(block, |x| (x == *a) | (x == *b) | (x == *c) | (x == *d))
+                hits_in(block, |x| (x == a) | (x == b) | (x == c) | (x == d))
             }
-            Self::Many(set) => bits(block, |c| set.has(c)),
+            Self::Many(set) => hits_in(block, |c| set.has(*c)),
         }
     }
-}
-
-/// Which corners of a block are sought, as bits.
-///
-/// Hardly any block has such a corner. So the first question is whether there is one at all, with
-/// no branch inside, which compiles to vector instructions; only then are the corners told apart.
-#[inline]
-fn hits(block: &[VertexId], sought: impl Fn(VertexId) -> bool) -> u64 {
-    if let Ok(block) = <&[VertexId; BLOCK]>::try_from(block)
-        && !block.iter().fold(false, |any, &c| any | sought(c))
-    {
-        return 0;
-    }
-    bits(block, sought)
-}
-
-#[inline]
-fn bits(block: &[VertexId], sought: impl Fn(VertexId) -> bool) -> u64 {
-    let bits = block
-        .iter()
-        .zip(0..)
-        .map(|(&c, i)| u64::from(sought(c)) << i);
-    bits.fold(0, |mask, bit| mask | bit)
 }
 
 /// A set of vertices, a bit for each vertex of the mesh.
@@ -84,50 +58,11 @@ impl VertexSet {
     }
 }
 
-/// The corners that name a vertex sought, in order: one pass over the table of corners.
-#[derive(Clone, Debug)]
-pub(crate) struct Scan<'a, P: Probe> {
-    mesh: &'a IndexedFaceSet<P>,
-    sought: Sought,
-    /// The first corner of the present block.
-    block: usize,
-    /// The first corner that no block has covered yet.
-    next: usize,
-    /// The hits in the present block that are still to be yielded.
-    hits: u64,
-}
-
-impl<P: Probe> Iterator for Scan<'_, P> {
-    type Item = usize;
-
-    #[inline]
-    fn next(&mut self) -> Option<usize> {
-        let corners = &self.mesh.corners;
-        while self.hits == 0 {
-            if self.next == corners.len() {
-                return None;
-            }
-            self.block = self.next;
-            self.next = (self.next + BLOCK).min(corners.len());
-            self.hits = self.sought.hits(corners.read_range(self.block..self.next));
-        }
-        let corner = self.block + self.hits.trailing_zeros() as usize;
-        self.hits &= self.hits - 1;
-        Some(corner)
-    }
-}
-
 impl<P: Probe> IndexedFaceSet<P> {
-    /// Scans all corners for those that name a vertex sought.
+    /// Scans all corners for those that name a vertex sought, in order.
     #[inline]
-    pub(crate) fn scan(&self, sought: Sought) -> Scan<'_, P> {
-        Scan {
-            mesh: self,
-            sought,
-            block: 0,
-            next: 0,
-            hits: 0,
-        }
+    pub(crate) fn scan(&self, sought: Sought) -> impl Iterator<Item = usize> {
+        self.corners.scan(move |block| sought.hits(block))
     }
 
     /// The sides that end at a vertex sought, once for each face along them, or twice.
@@ -139,88 +74,11 @@ impl<P: Probe> IndexedFaceSet<P> {
         })
     }
 
-    /// The sides of `f`: side `i` joins corners `i` and `i + 1`.
+    /// The sides of `f`, in order.
     #[inline]
     pub(crate) fn sides_of(&self, f: FaceId) -> impl Iterator<Item = Pair<VertexId>> {
-        sides(self.face(f))
-    }
-
-    /// Every edge once, at its lower end.
-    ///
-    /// The higher ends are put into one bucket for each lower end (a counting sort over all sides);
-    /// in a bucket, each is yielded when it is new there. O(corners + vertices).
-    pub(crate) fn all_edges(&self) -> impl Iterator<Item = Pair<VertexId>> {
-        let vertices = self.positions.len();
-        // By vertex: how many sides have it as their lower end, then where its bucket ends.
-        let mut ends = vec![0_u32; vertices];
-        self.for_each_side(|low, _| ends[low.index()] += 1);
-        let mut total = 0;
-        for end in &mut ends {
-            total += std::mem::replace(end, total);
-        }
-        let mut higher = vec![VertexId::new(0); total as usize];
-        self.for_each_side(|low, high| {
-            let end = &mut ends[low.index()];
-            higher[*end as usize] = high;
-            *end += 1;
-        });
-        // By higher end: the lower end that met it last. No vertex is lower than itself.
-        let mut met: Vec<u32> = (0..row(vertices)).collect();
-        let (mut low, mut at) = (0_u32, 0);
-        std::iter::from_fn(move || {
-            loop {
-                let high = *higher.get(at)?;
-                while ends[low as usize] as usize == at {
-                    low += 1;
-                }
-                at += 1;
-                if std::mem::replace(&mut met[high.index()], low) != low {
-                    return Some(Pair::new(VertexId::new(low), high));
-                }
-            }
-        })
-    }
-
-    /// Calls `visit` with the lower and the higher end of every side of every face.
-    #[inline(always)]
-    fn for_each_side(&self, mut visit: impl FnMut(VertexId, VertexId)) {
-        let mut visit = |a: VertexId, b: VertexId| visit(a.min(b), a.max(b));
-        let corners = || self.corners.read_range(0..self.corners.len());
-        match &self.spans {
-            FaceSpans::Uniform { degree: 3, .. } => sides_of_uniform::<3>(corners(), visit),
-            FaceSpans::Uniform { degree: 4, .. } => sides_of_uniform::<4>(corners(), visit),
-            _ => {
-                for f in 0..row(self.spans.len()) {
-                    for side in self.sides_of(FaceId::new(f)) {
-                        let [low, high] = side.ends();
-                        visit(low, high);
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// The sides of a face with these corners: side `i` joins corners `i` and `i + 1`.
-#[inline]
-fn sides(corners: &[VertexId]) -> impl Iterator<Item = Pair<VertexId>> {
-    let last = corners.len() - 1;
-    corners.iter().enumerate().map(move |(i, &a)| {
-        let next = if i == last { 0 } else { i + 1 };
-        Pair::new(a, corners[next])
-    })
-}
-
-/// Visits the sides of faces whose degree the compiler knows: it unrolls the face.
-#[inline(always)]
-fn sides_of_uniform<const DEGREE: usize>(
-    corners: &[VertexId],
-    mut visit: impl FnMut(VertexId, VertexId),
-) {
-    for face in corners.as_chunks::<DEGREE>().0 {
-        for i in 0..DEGREE {
-            visit(face[i], face[(i + 1) % DEGREE]);
-        }
+        let corners = self.face(f);
+        Pair::sides(corners.len(), |i| corners[i])
     }
 }
 
@@ -273,7 +131,7 @@ mod tests {
             let sought = Sought::every_second(face, face.len());
             let hits = sought.hits(face);
             let is_hit = |v: VertexId| hits >> v.index() & 1 == 1;
-            let mut sides = sides(face).map(Pair::ends);
+            let mut sides = Pair::sides(degree, |i| face[i]).map(Pair::ends);
             assert!(
                 sides.all(|[a, b]| is_hit(a) || is_hit(b)),
                 "degree {degree}"

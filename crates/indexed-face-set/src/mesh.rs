@@ -1,6 +1,6 @@
 //! The structure itself.
 
-use mesh_core::{FaceId, FaceSpans, Point, Probe, Table, Untraced, VertexId, row};
+use mesh_core::{FaceId, FaceSpans, Point, Probe, Table, Untraced, VertexId};
 
 /// Vertices with positions, and faces as lists of vertices.
 ///
@@ -81,34 +81,9 @@ impl<P: Probe> IndexedFaceSet<P> {
         v
     }
 
-    /// The face of a corner: a division, or a binary search where degrees are mixed.
-    pub(crate) fn face_of(&self, corner: usize) -> FaceId {
-        let face = match &self.spans {
-            FaceSpans::Uniform { degree, .. } => corner / *degree as usize,
-            FaceSpans::Mixed(offsets) => {
-                let (mut low, mut high) = (0, offsets.len() - 1);
-                while high - low > 1 {
-                    let middle = low.midpoint(high);
-                    if *offsets.read(middle) as usize <= corner {
-                        low = middle;
-                    } else {
-                        high = middle;
-                    }
-                }
-                low
-            }
-        };
-        FaceId::new(row(face))
-    }
-
     /// The face of a corner, and the vertices before, at and after it there.
     pub(crate) fn around(&self, corner: usize) -> (FaceId, [VertexId; 3]) {
-        let f = self.face_of(corner);
-        let range = self.spans.range(f);
-        let (first, last) = (range.start, range.end - 1);
-        let before = if corner == first { last } else { corner - 1 };
-        let after = if corner == last { first } else { corner + 1 };
-        let at = |corner| *self.corners.read(corner);
-        (f, [at(before), at(corner), at(after)])
+        let (face, corners) = self.spans.around(corner);
+        (face, corners.map(|corner| *self.corners.read(corner)))
     }
 }

@@ -17,7 +17,7 @@ impl<P: Probe> MeshQuery for IndexedFaceSet<P> {
 
     /// By their lower ends.
     fn edges(&self) -> impl Iterator<Item = Pair<VertexId>> {
-        self.all_edges()
+        self.spans.edges(&self.corners, self.positions.len())
     }
 
     #[inline]
@@ -58,7 +58,7 @@ impl<P: Probe> MeshQuery for IndexedFaceSet<P> {
     #[inline]
     fn vertex_faces(&self, v: VertexId) -> impl Iterator<Item = FaceId> {
         let corners = self.scan(Sought::One(self.existing(v)));
-        corners.map(|corner| self.face_of(corner))
+        corners.map(|corner| self.spans.face_of(corner))
     }
 
     #[inline]

@@ -52,9 +52,6 @@ impl Capabilities {
 
     /// Whether a structure with these capabilities holds `polygons`; O(corners) expected.
     ///
-    /// Constructors that come upon a fault ask here for its name, so that a verdict and a refusal
-    /// can never differ.
-    ///
     /// # Errors
     ///
     /// The first fault, in the order that [`BuildError`] fixes.
@@ -95,6 +92,20 @@ impl Capabilities {
             check_coincident_corners(polygons)?;
         }
         Ok(())
+    }
+
+    /// Why a structure with these capabilities refuses `polygons`, in which it has come upon a fault.
+    ///
+    /// Constructors ask here for the fault's name, so that a verdict and a refusal never differ.
+    ///
+    /// # Panics
+    ///
+    /// If [`check`](Self::check) finds nothing: one of the two is wrong.
+    pub fn refusal(&self, polygons: &PolygonMesh) -> BuildError {
+        match self.check(polygons) {
+            Err(fault) => fault,
+            Ok(()) => panic!("building found a fault in a mesh that the check finds sound"),
+        }
     }
 }
 

@@ -4,6 +4,8 @@ use std::hash::Hash;
 
 use rustc_hash::FxHashSet;
 
+use crate::row_id::{RowId, Slot};
+
 /// How many items are compared one by one before a hash set takes over.
 const FEW: usize = 16;
 
@@ -89,9 +91,169 @@ where
     }
 }
 
+/// How many steps of a walk are repeated for each item before a hash set takes over.
+const FEW_STEPS: usize = 32;
+
+/// The items of a walk that can be repeated, each at its first occurrence; empty slots are left out.
+///
+/// It is made for the faces across the sides of a face. Two faces may share several sides, so every
+/// answer has to be compared with those before it. The last three are at hand, which is all that
+/// triangles and quads need; for larger faces the walk is repeated, and beyond 32 steps a hash set
+/// keeps the whole linear. So an answer stays in registers, where [`Distinct`] has a place in memory
+/// to fill. O(1) expected per step.
+///
+/// ```
+/// use mesh_core::{DistinctWalk, FaceId, Slot};
+/// let faces = [4, 9, 4].map(|f| Slot::some(FaceId::new(f)));
+/// let across = [faces[0], Slot::NONE, faces[1], faces[2]];
+/// let neighbours = DistinctWalk::new(across.into_iter());
+/// assert!(neighbours.eq([4, 9].map(FaceId::new)));
+/// ```
+#[derive(Clone, Debug)]
+pub struct DistinctWalk<W, H: RowId> {
+    start: W,
+    walk: W,
+    /// How many steps of the walk have been taken.
+    steps: usize,
+    /// The items found last.
+    last: [Slot<H>; 3],
+    many: Option<FxHashSet<H>>,
+}
+
+impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> DistinctWalk<W, H> {
+    /// Takes a walk at its start.
+    #[inline]
+    pub fn new(walk: W) -> Self {
+        Self {
+            start: walk.clone(),
+            walk,
+            steps: 0,
+            last: [Slot::NONE; 3],
+            many: None,
+        }
+    }
+
+    /// The whole walk, if it has not begun and has three steps.
+    #[inline]
+    fn whole_of_three(&self) -> Option<[Slot<H>; 3]> {
+        let mut walk = self.walk.clone();
+        let items = [walk.next()?, walk.next()?, walk.next()?];
+        (self.steps == 0 && walk.next().is_none()).then_some(items)
+    }
+
+    /// Whether `item`, met after `steps` steps, differs from all that were found before.
+    #[inline]
+    fn is_new(&mut self, item: Slot<H>, steps: usize) -> bool {
+        let [a, b, c] = self.last;
+        if item == a || item == b || item == c {
+            return false;
+        }
+        if steps > self.last.len() {
+            // By value, but for the set: the walk itself is to stay in registers.
+            if !is_new_among_many(self.start.clone(), steps, item, &mut self.many) {
+                return false;
+            }
+        }
+        self.last = [item, a, b];
+        true
+    }
+}
+
+/// Whether `item` differs from all that a walk meets in so many steps.
+#[cold]
+#[inline(never)]
+fn is_new_among_many<H: RowId>(
+    walk: impl Iterator<Item = Slot<H>>,
+    steps: usize,
+    item: Slot<H>,
+    many: &mut Option<FxHashSet<H>>,
+) -> bool {
+    let mut before = walk.take(steps);
+    if steps < FEW_STEPS {
+        return before.all(|other| other != item);
+    }
+    let many = many.get_or_insert_with(|| before.filter_map(Slot::get).collect());
+    item.get().is_some_and(|item| many.insert(item))
+}
+
+impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> Iterator for DistinctWalk<W, H> {
+    type Item = H;
+
+    #[inline]
+    fn next(&mut self) -> Option<H> {
+        loop {
+            let slot = self.walk.next()?;
+            let steps = self.steps;
+            self.steps += 1;
+            if let Some(item) = slot.get()
+                && self.is_new(slot, steps)
+            {
+                return Some(item);
+            }
+        }
+    }
+
+    /// The whole answer at once, which for triangles needs three comparisons and no state.
+    #[inline]
+    fn fold<B, F: FnMut(B, H) -> B>(self, init: B, mut f: F) -> B {
+        let mut folded = init;
+        if let Some([a, b, c]) = self.whole_of_three() {
+            if let Some(item) = a.get() {
+                folded = f(folded, item);
+            }
+            if let Some(item) = b.get().filter(|_| b != a) {
+                folded = f(folded, item);
+            }
+            if let Some(item) = c.get().filter(|_| c != a && c != b) {
+                folded = f(folded, item);
+            }
+            return folded;
+        }
+        for item in self {
+            folded = f(folded, item);
+        }
+        folded
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::row_id::FaceId;
+
+    #[test]
+    fn a_walk_yields_each_item_once_from_any_step_on() {
+        let few = FEW_STEPS as u32;
+        for distinct in [1, 2, 3, 4, 5, few - 1, few, few + 1, few + 2, 200] {
+            for steps in [0, 1, 2, 3, 4, 5, few, few + 1, 3 * distinct] {
+                // Every fourth step is empty; the others come back to each item again and again.
+                let slot = |i: u32| match i % 4 {
+                    1 => Slot::NONE,
+                    _ => Slot::some(FaceId::new(i * 7 % distinct)),
+                };
+                let slots: Vec<Slot<FaceId>> = (0..steps).map(slot).collect();
+                let mut expected: Vec<FaceId> = Vec::new();
+                for item in slots.iter().copied().filter_map(Slot::get) {
+                    if !expected.contains(&item) {
+                        expected.push(item);
+                    }
+                }
+                let walk = || DistinctWalk::new(slots.iter().copied());
+                for taken in [0, 1, 2, expected.len()] {
+                    let mut rest = walk();
+                    let mut items: Vec<FaceId> = rest.by_ref().take(taken).collect();
+                    rest.for_each(|item| items.push(item));
+                    assert_eq!(items, expected, "{taken} taken of {steps} steps");
+                }
+                let one_by_one: Vec<FaceId> = std::iter::from_fn({
+                    let mut walk = walk();
+                    move || walk.next()
+                })
+                .collect();
+                assert_eq!(one_by_one, expected);
+            }
+        }
+    }
 
     #[test]
     fn order_and_content_hold_across_the_change_of_method() {

@@ -207,6 +207,46 @@ impl<P: Probe> FaceSpans<P> {
         }
     }
 
+    /// The face of a corner: a division, or a binary search where degrees are mixed.
+    ///
+    /// Of a corner that is not there it says nothing of use.
+    ///
+    /// # Panics
+    ///
+    /// If there is no face at all.
+    pub fn face_of(&self, corner: usize) -> FaceId {
+        let face = match self {
+            Self::Uniform { degree, .. } => corner / *degree as usize,
+            Self::Mixed(offsets) => {
+                let (mut low, mut high) = (0, offsets.len() - 1);
+                while high - low > 1 {
+                    let middle = low.midpoint(high);
+                    if *offsets.read(middle) as usize <= corner {
+                        low = middle;
+                    } else {
+                        high = middle;
+                    }
+                }
+                low
+            }
+        };
+        FaceId::new(row(face))
+    }
+
+    /// The face of a corner, and the corners before, at and after it there.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such corner.
+    pub fn around(&self, corner: usize) -> (FaceId, [usize; 3]) {
+        let face = self.face_of(corner);
+        let range = self.range(face);
+        let (first, last) = (range.start, range.end - 1);
+        let before = if corner == first { last } else { corner - 1 };
+        let after = if corner == last { first } else { corner + 1 };
+        (face, [before, corner, after])
+    }
+
     /// Whether the spans divide `corners` corners into faces of three or more: what is wrong if not.
     ///
     /// # Errors
@@ -294,6 +334,24 @@ mod tests {
     #[should_panic(expected = "no face f2: there are 2")]
     fn a_missing_face_panics_by_name_among_mixed_degrees_too() {
         list(&[3, 4]).spans().range(FaceId::new(2));
+    }
+
+    #[test]
+    fn a_corner_knows_its_face_and_those_beside_it() {
+        for degrees in [&[3, 3, 3][..], &[4, 3, 5], &[3, 3, 4, 3, 6, 3]] {
+            let spans = list(degrees).spans();
+            let faces = (0..row(degrees.len())).map(FaceId::new);
+            for (face, corners) in faces.map(|f| (f, spans.range(f))) {
+                let (first, last) = (corners.start, corners.end - 1);
+                assert_eq!(spans.around(first), (face, [last, first, first + 1]));
+                assert_eq!(spans.around(last), (face, [last - 1, last, first]));
+                for corner in first + 1..last {
+                    let beside = [corner - 1, corner, corner + 1];
+                    assert_eq!(spans.around(corner), (face, beside));
+                    assert_eq!(spans.face_of(corner), face);
+                }
+            }
+        }
     }
 
     #[test]

@@ -124,6 +124,23 @@ impl<V: Handle> Pair<V> {
         Self(if a < b { [a, b] } else { [b, a] })
     }
 
+    /// The sides of a face of `degree` corners: side `i` joins corners `i` and `i + 1`.
+    ///
+    /// ```
+    /// use mesh_core::{Pair, VertexId};
+    /// let face = [4, 9, 6].map(VertexId::new);
+    /// let mut sides = Pair::sides(face.len(), |i| face[i]);
+    /// assert_eq!(sides.next(), Some(Pair::new(face[0], face[1])));
+    /// assert_eq!(sides.last(), Some(Pair::new(face[2], face[0])));
+    /// ```
+    #[inline]
+    pub fn sides(degree: usize, corner: impl Fn(usize) -> V) -> impl Iterator<Item = Self> {
+        (0..degree).map(move |i| {
+            let next = if i + 1 == degree { 0 } else { i + 1 };
+            Self::new(corner(i), corner(next))
+        })
+    }
+
     /// The two ends, the lower first.
     #[inline]
     pub fn ends(self) -> [V; 2] {

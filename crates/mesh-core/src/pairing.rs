@@ -2,6 +2,7 @@
 
 use crate::face_list::FaceList;
 use crate::row_id::VertexId;
+use crate::sides::Buckets;
 
 /// The most corners that [`TwinPairs`] can number: a corner and a direction share 32 bits.
 pub(crate) const MAX_CORNERS: usize = (u32::MAX / 2) as usize;
@@ -33,13 +34,13 @@ impl TwinPairs {
         if corners > MAX_CORNERS {
             return None;
         }
-        let buckets = Buckets::of(vertices, faces);
+        let buckets = Buckets::of(vertices, faces, Bucketed::of);
         // By higher end: the bucket that wrote here last; its edge, and the directions seen of it.
         let mut last = vec![(u32::MAX, 0_u32); vertices];
         let mut half_of_corner = vec![0_u32; corners];
         let (mut edges, mut clash, mut start) = (0_u32, 0, 0);
         for (low, &end) in (0_u32..).zip(&buckets.ends) {
-            for side in &buckets.sides[start..end as usize] {
+            for side in &buckets.entries[start..end as usize] {
                 let row = &mut last[side.high as usize];
                 let (corner, direction) = (side.tag >> 1, side.tag & 1);
                 let new = row.0 != low;
@@ -64,13 +65,6 @@ impl TwinPairs {
     }
 }
 
-/// Sides bucketed by their lower end.
-struct Buckets {
-    sides: Vec<Bucketed>,
-    /// By vertex: where its bucket ends.
-    ends: Vec<u32>,
-}
-
 /// A side in the bucket of its lower end.
 #[derive(Clone, Copy, Default)]
 struct Bucketed {
@@ -80,58 +74,12 @@ struct Bucketed {
     tag: u32,
 }
 
-impl Buckets {
-    fn of(vertices: usize, faces: &FaceList) -> Self {
-        let mut ends = vec![0_u32; vertices];
-        for_each_side(faces, |a, b, _| ends[a.min(b).index()] += 1);
-        let mut total = 0;
-        for end in &mut ends {
-            total += std::mem::replace(end, total);
-        }
-        let mut sides = vec![Bucketed::default(); total as usize];
-        for_each_side(faces, |a, b, corner| {
-            let at = &mut ends[a.min(b).index()];
-            let high = a.max(b).index() as u32;
-            sides[*at as usize] = Bucketed {
-                high,
-                tag: corner << 1 | u32::from(a > b),
-            };
-            *at += 1;
-        });
-        Self { sides, ends }
-    }
-}
-
-/// Calls `visit` with the two ends of every side and the corner where it starts.
-#[inline(always)]
-fn for_each_side(faces: &FaceList, mut visit: impl FnMut(VertexId, VertexId, u32)) {
-    match faces.uniform_degree() {
-        Some(3) => sides_of_uniform::<3>(faces.corners(), visit),
-        Some(4) => sides_of_uniform::<4>(faces.corners(), visit),
-        _ => {
-            let mut corner = 0;
-            for (_, face) in faces.iter() {
-                for (i, &a) in face.iter().enumerate() {
-                    let b = face[if i + 1 == face.len() { 0 } else { i + 1 }];
-                    visit(a, b, corner);
-                    corner += 1;
-                }
-            }
-        }
-    }
-}
-
-/// The same with the degree known to the compiler, which then unrolls the face.
-#[inline(always)]
-fn sides_of_uniform<const DEGREE: usize>(
-    corners: &[VertexId],
-    mut visit: impl FnMut(VertexId, VertexId, u32),
-) {
-    let mut corner = 0;
-    for face in corners.as_chunks::<DEGREE>().0 {
-        for i in 0..DEGREE {
-            visit(face[i], face[(i + 1) % DEGREE], corner);
-            corner += 1;
+impl Bucketed {
+    #[inline(always)]
+    fn of(a: VertexId, b: VertexId, corner: u32) -> Self {
+        Self {
+            high: a.max(b).index() as u32,
+            tag: corner << 1 | u32::from(a > b),
         }
     }
 }

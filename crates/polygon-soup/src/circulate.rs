@@ -1,13 +1,10 @@
 //! The sweep over all corners, which answers whatever the tables do not.
 
-use mesh_core::{FaceId, Pair, Point, Probe};
+use mesh_core::{FaceId, Pair, Point, Probe, hits_in};
 use rustc_hash::FxHashSet;
 
 use crate::mesh::PolygonSoup;
 use crate::vertex::SoupVertex;
-
-/// How many corners one step of a sweep looks at.
-const BLOCK: usize = 32;
 
 /// The vertices that a sweep looks for.
 #[derive(Clone, Debug)]
@@ -20,81 +17,20 @@ pub(crate) enum Sought {
 impl Sought {
     /// Which corners of a block are at one of the vertices, as bits.
     #[inline]
-    fn hits(&self, block: &[Point]) -> u32 {
+    fn hits(&self, block: &[Point]) -> u64 {
         match self {
-            Self::One(v) => hits(block, *v),
-            Self::Two([a, b]) => hits(block, *a) | hits(block, *b),
-            Self::Many(vertices) => mask(block, |p| vertices.contains(&SoupVertex::at(*p))),
+            Self::One(v) => hits_in(block, |p| v.holds(p)),
+            Self::Two([a, b]) => hits_in(block, |p| a.holds(p) | b.holds(p)),
+            Self::Many(vertices) => hits_in(block, |p| vertices.contains(&SoupVertex::at(*p))),
         }
-    }
-}
-
-/// Which corners of a block are at `v`, as bits.
-///
-/// Hardly any block has such a corner. So the first question is whether there is one at all, with no
-/// branch inside, which compiles to vector instructions; only then are the corners told apart.
-#[inline]
-fn hits(block: &[Point], v: SoupVertex) -> u32 {
-    if let Ok(block) = <&[Point; BLOCK]>::try_from(block) {
-        let any = block.iter().fold(false, |any, p| any | v.holds(p));
-        if !any {
-            return 0;
-        }
-    }
-    mask(block, |p| v.holds(p))
-}
-
-#[inline]
-fn mask(block: &[Point], holds: impl Fn(&Point) -> bool) -> u32 {
-    let bits = block.iter().zip(0..).map(|(p, i)| u32::from(holds(p)) << i);
-    bits.fold(0, |mask, bit| mask | bit)
-}
-
-/// The corners at the vertices sought, in order: one sweep over the corner table.
-#[derive(Clone, Debug)]
-pub(crate) struct Sweep<'a, P: Probe> {
-    mesh: &'a PolygonSoup<P>,
-    sought: Sought,
-    /// The first corner that no block has covered yet.
-    next: usize,
-    /// The first corner of the present block.
-    block: usize,
-    /// The hits in the present block that are still to be yielded.
-    hits: u32,
-}
-
-impl<P: Probe> Iterator for Sweep<'_, P> {
-    type Item = usize;
-
-    #[inline]
-    fn next(&mut self) -> Option<usize> {
-        let corners = &self.mesh.corners;
-        while self.hits == 0 {
-            if self.next == corners.len() {
-                return None;
-            }
-            self.block = self.next;
-            self.next = (self.next + BLOCK).min(corners.len());
-            let block = corners.read_range(self.block..self.next);
-            self.hits = self.sought.hits(block);
-        }
-        let corner = self.block + self.hits.trailing_zeros() as usize;
-        self.hits &= self.hits - 1;
-        Some(corner)
     }
 }
 
 impl<P: Probe> PolygonSoup<P> {
-    /// Sweeps over all corners for those at the vertices sought.
+    /// Sweeps over all corners for those at the vertices sought, in order.
     #[inline]
-    pub(crate) fn sweep(&self, sought: Sought) -> Sweep<'_, P> {
-        Sweep {
-            mesh: self,
-            sought,
-            next: 0,
-            block: 0,
-            hits: 0,
-        }
+    pub(crate) fn sweep(&self, sought: Sought) -> impl Iterator<Item = usize> {
+        self.corners.scan(move |block| sought.hits(block))
     }
 
     /// The sides that end at the vertices sought, one for each face along them.
@@ -106,15 +42,11 @@ impl<P: Probe> PolygonSoup<P> {
         })
     }
 
-    /// The sides of `f`: side `i` joins corners `i` and `i + 1`.
+    /// The sides of `f`, in order.
     #[inline]
     pub(crate) fn sides_of(&self, f: FaceId) -> impl Iterator<Item = Pair<SoupVertex>> {
         let corners = self.face_positions(f);
-        let vertex = |i: usize| SoupVertex::at(corners[i]);
-        (0..corners.len()).map(move |i| {
-            let next = if i + 1 == corners.len() { 0 } else { i + 1 };
-            Pair::new(vertex(i), vertex(next))
-        })
+        Pair::sides(corners.len(), |i| SoupVertex::at(corners[i]))
     }
 }
 

@@ -80,41 +80,10 @@ impl<P: Probe> PolygonSoup<P> {
         self.corners.read_range(self.spans.range(f))
     }
 
-    /// The face of a corner: a division, or a binary search where degrees are mixed.
-    pub(crate) fn face_of(&self, corner: usize) -> FaceId {
-        let face = match &self.spans {
-            FaceSpans::Uniform { degree, .. } => corner / *degree as usize,
-            FaceSpans::Mixed(offsets) => {
-                let (mut low, mut high) = (0, offsets.len() - 1);
-                while high - low > 1 {
-                    let middle = low.midpoint(high);
-                    if *offsets.read(middle) as usize <= corner {
-                        low = middle;
-                    } else {
-                        high = middle;
-                    }
-                }
-                low
-            }
-        };
-        FaceId::new(mesh_core::row(face))
-    }
-
-    /// The vertices before, at and after a corner in its face, and the face.
+    /// The face of a corner, and the vertices before, at and after it there.
     pub(crate) fn around(&self, corner: usize) -> (FaceId, [SoupVertex; 3]) {
-        let face = self.face_of(corner);
-        let range = self.spans.range(face);
-        let before = if corner == range.start {
-            range.end
-        } else {
-            corner
-        } - 1;
-        let after = if corner + 1 == range.end {
-            range.start
-        } else {
-            corner + 1
-        };
-        let at = |corner| SoupVertex::at(*self.corners.read(corner));
-        (face, [at(before), at(corner), at(after)])
+        let (face, corners) = self.spans.around(corner);
+        let vertices = corners.map(|corner| SoupVertex::at(*self.corners.read(corner)));
+        (face, vertices)
     }
 }

@@ -52,7 +52,7 @@ impl<P: Probe> MeshQuery for PolygonSoup<P> {
     #[inline]
     fn vertex_faces(&self, v: SoupVertex) -> impl Iterator<Item = FaceId> {
         self.sweep(Sought::One(v))
-            .map(|corner| self.face_of(corner))
+            .map(|corner| self.spans.face_of(corner))
     }
 
     #[inline]
@@ -60,9 +60,15 @@ impl<P: Probe> MeshQuery for PolygonSoup<P> {
         e.ends()
     }
 
+    /// Whether there is such an edge at all, only the end of the sweep can tell.
     fn edge_edges(&self, e: Pair<SoupVertex>) -> impl Iterator<Item = Pair<SoupVertex>> {
         let sides = self.sides_at(Sought::Two(e.ends()));
-        sides.filter(move |&side| side != e).distinct()
+        let mut edges: Vec<_> = sides.distinct().collect();
+        match edges.iter().position(|&edge| edge == e) {
+            Some(itself) => drop(edges.swap_remove(itself)),
+            None => edges.clear(),
+        }
+        edges.into_iter()
     }
 
     /// One corner of a face at most is at the first end (I3), so no face comes twice.

@@ -22,10 +22,7 @@ impl Representation for WingedEdgeMesh {
     /// Pairs the sides, writes each side into its edge, then closes each hole with a boundary loop;
     /// O(corners + vertices), without hashing.
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
-        let refusal = || match Self::CAPABILITIES.check(polygons) {
-            Err(fault) => fault,
-            Ok(()) => unreachable!("the draft finds a fault in a mesh that the check finds sound"),
-        };
+        let refusal = || Self::CAPABILITIES.refusal(polygons);
         let faces = polygons.faces();
         let pairs = TwinPairs::of(polygons.vertex_count(), faces).ok_or_else(refusal)?;
         let mut draft = Draft::link(polygons.vertex_count(), faces, &pairs);

@@ -1,8 +1,8 @@
 //! The nine relations.
 
-use mesh_core::{EdgeId, FaceId, MeshQuery, Point, Probe, VertexId, row};
+use mesh_core::{DistinctWalk, EdgeId, FaceId, MeshQuery, Point, Probe, VertexId, row};
 
-use crate::circulate::{EdgeEdges, FaceFaces};
+use crate::circulate::EdgeEdges;
 use crate::mesh::WingedEdgeMesh;
 
 impl<P: Probe> MeshQuery for WingedEdgeMesh<P> {
@@ -86,7 +86,7 @@ impl<P: Probe> MeshQuery for WingedEdgeMesh<P> {
 
     #[inline]
     fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
-        FaceFaces::new(self, f)
+        DistinctWalk::new(self.runs_along(f).map(|(_, run)| run.across()))
     }
 
     fn vertex_rows(&self) -> usize {

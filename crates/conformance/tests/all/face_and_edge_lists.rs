@@ -2,8 +2,8 @@
 
 use mesh_core::{
     BuildError, Capabilities, Counts, EdgeId, FaceId, FaceList, FaceSpans, InvariantError,
-    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, Table,
-    Untraced, VertexId, VertexMap, row,
+    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
+    Table, Untraced, VertexId, VertexMap, row,
 };
 
 /// The corners of every face and the ends of every edge.

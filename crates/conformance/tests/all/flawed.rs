@@ -3,8 +3,8 @@
 use std::marker::PhantomData;
 
 use mesh_core::{
-    BuildError, Capabilities, Counts, EdgeId, FaceId, InvariantError, MemoryFootprint, MeshQuery, MoveError,
-    Point, PolygonMesh, Probe, QueryCost, Representation, Untraced, VertexId, VertexMap,
+    BuildError, Capabilities, Counts, EdgeId, FaceId, InvariantError, MemoryFootprint, MeshQuery,
+    MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, Untraced, VertexId, VertexMap,
 };
 
 use crate::face_and_edge_lists::FaceAndEdgeLists;

@@ -1,0 +1,188 @@
+//! The sides of all faces, in buckets by their lower end: how edges are found without hashing.
+
+use crate::face_list::{FaceList, FaceSpans};
+use crate::handle::Pair;
+use crate::probe::Probe;
+use crate::row_id::{FaceId, VertexId, row};
+use crate::table::Table;
+
+/// Faces whose sides can be gone through, as often as it takes.
+pub(crate) trait Sides {
+    /// Calls `visit` with the two ends of every side and the corner where it starts.
+    fn for_each_side(&self, visit: impl FnMut(VertexId, VertexId, u32));
+}
+
+impl Sides for FaceList {
+    #[inline(always)]
+    fn for_each_side(&self, visit: impl FnMut(VertexId, VertexId, u32)) {
+        match self.uniform_degree() {
+            Some(3) => sides_of_uniform::<3>(self.corners(), visit),
+            Some(4) => sides_of_uniform::<4>(self.corners(), visit),
+            _ => sides_of_each(self.iter().map(|(_, face)| face), visit),
+        }
+    }
+}
+
+impl<P: Probe> Sides for (&FaceSpans<P>, &Table<VertexId, P>) {
+    #[inline(always)]
+    fn for_each_side(&self, visit: impl FnMut(VertexId, VertexId, u32)) {
+        let (spans, corners) = *self;
+        let all = || corners.read_range(0..corners.len());
+        match spans {
+            FaceSpans::Uniform { degree: 3, .. } => sides_of_uniform::<3>(all(), visit),
+            FaceSpans::Uniform { degree: 4, .. } => sides_of_uniform::<4>(all(), visit),
+            _ => {
+                let faces = (0..row(spans.len())).map(FaceId::new);
+                sides_of_each(faces.map(|f| corners.read_range(spans.range(f))), visit);
+            }
+        }
+    }
+}
+
+/// Visits the sides of one face after another: side `i` joins corners `i` and `i + 1`.
+#[inline(always)]
+fn sides_of_each<'a>(
+    faces: impl Iterator<Item = &'a [VertexId]>,
+    mut visit: impl FnMut(VertexId, VertexId, u32),
+) {
+    let mut corner = 0;
+    for face in faces {
+        for (i, &a) in face.iter().enumerate() {
+            let b = face[if i + 1 == face.len() { 0 } else { i + 1 }];
+            visit(a, b, corner);
+            corner += 1;
+        }
+    }
+}
+
+/// The same with the degree known to the compiler, which then unrolls the face.
+#[inline(always)]
+fn sides_of_uniform<const DEGREE: usize>(
+    corners: &[VertexId],
+    mut visit: impl FnMut(VertexId, VertexId, u32),
+) {
+    let mut corner = 0;
+    for face in corners.as_chunks::<DEGREE>().0 {
+        for i in 0..DEGREE {
+            visit(face[i], face[(i + 1) % DEGREE], corner);
+            corner += 1;
+        }
+    }
+}
+
+/// One entry for each side, bucketed by the lower end: a counting sort.
+pub(crate) struct Buckets<T> {
+    pub(crate) entries: Vec<T>,
+    /// By vertex: where its bucket ends.
+    pub(crate) ends: Vec<u32>,
+}
+
+impl<T: Copy + Default> Buckets<T> {
+    /// Goes through the sides twice, to count and to place what `entry` makes of each side's two
+    /// ends and corner; O(corners + vertices).
+    #[inline(always)]
+    pub(crate) fn of(
+        vertices: usize,
+        faces: &impl Sides,
+        entry: impl Fn(VertexId, VertexId, u32) -> T,
+    ) -> Self {
+        let mut ends = vec![0_u32; vertices];
+        faces.for_each_side(|a, b, _| ends[a.min(b).index()] += 1);
+        let mut total = 0;
+        for end in &mut ends {
+            total += std::mem::replace(end, total);
+        }
+        let mut entries = vec![T::default(); total as usize];
+        faces.for_each_side(|a, b, corner| {
+            let at = &mut ends[a.min(b).index()];
+            entries[*at as usize] = entry(a, b, corner);
+            *at += 1;
+        });
+        Self { entries, ends }
+    }
+}
+
+impl<P: Probe> FaceSpans<P> {
+    /// Every edge of the faces that have these corners, once, by the lower end.
+    ///
+    /// The higher ends are put into one bucket for each lower end (a counting sort over all sides);
+    /// in a bucket, each is yielded when it is new there. O(corners + vertices), and no faces are
+    /// searched, so that a face of very many corners costs no more than its corners.
+    ///
+    /// # Panics
+    ///
+    /// If a corner names a vertex beyond `vertices`.
+    pub fn edges(
+        &self,
+        corners: &Table<VertexId, P>,
+        vertices: usize,
+    ) -> impl Iterator<Item = Pair<VertexId>> + use<P> {
+        let higher_end = |a: VertexId, b: VertexId, _| a.max(b).index() as u32;
+        let Buckets { entries, ends } = Buckets::of(vertices, &(self, corners), higher_end);
+        // By higher end: the lower end that met it last. No vertex is lower than itself.
+        let mut met: Vec<u32> = (0..row(vertices)).collect();
+        let (mut low, mut at) = (0_u32, 0);
+        std::iter::from_fn(move || {
+            loop {
+                let high = *entries.get(at)?;
+                while ends[low as usize] as usize == at {
+                    low += 1;
+                }
+                at += 1;
+                if std::mem::replace(&mut met[high as usize], low) != low {
+                    return Some(Pair::new(VertexId::new(low), VertexId::new(high)));
+                }
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::probe::Traced;
+
+    /// The edges of these faces, and how often their corners were read.
+    fn edges(vertices: usize, faces: &[&[u32]]) -> (Vec<[usize; 2]>, usize) {
+        let mut list = FaceList::default();
+        for face in faces {
+            list.push(face.iter().copied().map(VertexId::new))
+                .expect("small");
+        }
+        let probe = Traced::default();
+        let corners = Table::new("corners", "corner", list.corners().to_vec());
+        let (spans, corners) = (
+            list.spans().probed(probe.clone()),
+            corners.probed(probe.clone()),
+        );
+        let edges = spans.edges(&corners, vertices);
+        let ends = edges.map(|edge| edge.ends().map(VertexId::index)).collect();
+        let log = probe.take();
+        (
+            ends,
+            log.iter().filter(|read| read.table == "corners").count(),
+        )
+    }
+
+    #[test]
+    fn every_edge_comes_once_whatever_the_degrees() {
+        let triangles = edges(6, &[&[4, 1, 2], &[2, 1, 4], &[1, 4, 5]]);
+        let expected = vec![[1, 2], [1, 4], [1, 5], [2, 4], [4, 5]];
+        assert_eq!(sorted(triangles.0), expected, "v0 and v3 are isolated");
+        assert_eq!(triangles.1, 2 * 9, "counted and placed");
+        let quads = edges(4, &[&[0, 1, 2, 3], &[3, 2, 1, 0]]);
+        assert_eq!(sorted(quads.0), [[0, 1], [0, 3], [1, 2], [2, 3]]);
+        let mixed = edges(5, &[&[0, 1, 2, 3], &[1, 0, 4]]);
+        let expected = [[0, 1], [0, 3], [0, 4], [1, 2], [1, 4], [2, 3]];
+        assert_eq!(sorted(mixed.0), expected);
+        assert_eq!(mixed.1, 2 * 7);
+        assert_eq!(edges(2, &[]), (vec![], 0));
+    }
+
+    /// The same edges in order, having seen that they came by their lower ends.
+    fn sorted(mut edges: Vec<[usize; 2]>) -> Vec<[usize; 2]> {
+        assert!(edges.is_sorted_by_key(|&[low, _]| low), "{edges:?}");
+        edges.sort_unstable();
+        edges
+    }
+}

@@ -1,0 +1,358 @@
+//! Draws every shape of [`shapes::RECIPES`], and the orders of one mesh, into one SVG.
+//!
+//! Orthographic, by the painter's algorithm: far faces first, near ones over them (Newell, Newell
+//! and Sancha 1972). Coordinates are rounded to a tenth of a pixel, and only + − × ÷ √ are used, so
+//! the picture is the same on every machine.
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::io::Write as _;
+
+use mesh_core::{Facts, PolygonMesh, VertexId};
+use shapes::{Order, RECIPES, Recipe};
+
+/// The picture's first line. No comment, for XML allows none with two hyphens inside.
+const COMMAND: &str = "<?made-by cargo run --release -p shapes --example contact_sheet > reports/shapes/contact-sheet.svg?>";
+
+/// Parameters that suit a cell, where the defaults are too dense for one or hide what matters.
+const SMALLER: &[(&str, &[(&str, f64)])] = &[
+    ("grid", &[("m", 8.0), ("n", 8.0)]),
+    ("triangle-grid", &[("m", 8.0), ("n", 8.0)]),
+    ("mixed-grid", &[("m", 8.0), ("n", 8.0)]),
+    ("grid-with-hole", &[("m", 9.0), ("n", 9.0)]),
+    ("grid-with-holes", &[("m", 13.0), ("n", 13.0)]),
+    ("triangle-tiling", &[("m", 8.0), ("n", 8.0)]),
+    ("hexagon-tiling", &[("m", 8.0), ("n", 8.0)]),
+    ("torus", &[("m", 32.0), ("n", 14.0)]),
+    ("triangle-torus", &[("m", 32.0), ("n", 14.0)]),
+    ("uv-sphere", &[("m", 24.0), ("n", 12.0)]),
+    ("bezier-patch", &[("m", 14.0), ("n", 14.0)]),
+    ("b-spline-patch", &[("m", 18.0), ("n", 18.0)]),
+    ("blobs", &[("faces", 1_500.0)]),
+    ("csg", &[("faces", 1_500.0)]),
+    ("smooth-union", &[("faces", 1_500.0)]),
+];
+
+/// Above so many faces a cell has no room for the edges of each.
+const MOST_EDGED: usize = 2_000;
+
+const COLUMNS: usize = 6;
+const CELL: [f64; 2] = [190.0, 226.0];
+/// The square of a cell in which the mesh is drawn: its side, and its centre in the cell.
+const PICTURE: f64 = 158.0;
+const CENTRE: [f64; 2] = [95.0, 94.0];
+const GAP: f64 = 10.0;
+
+/// How many tones each ramp has.
+const TONES: usize = 24;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    if let Some((name, _)) = SMALLER
+        .iter()
+        .find(|(name, _)| shapes::recipe(name).is_none())
+    {
+        return Err(format!("no shape is called {name}").into());
+    }
+    let mut cells = Vec::new();
+    for recipe in RECIPES {
+        let given = SMALLER.iter().find(|(name, _)| *name == recipe.name);
+        let given = given.map_or(&[][..], |(_, parameters)| parameters);
+        let mesh = recipe.make(given)?;
+        cells.push(cell(
+            recipe.name,
+            &settings(recipe, given, mesh.face_count()),
+            &mesh,
+            Paint::Light,
+        ));
+    }
+    let ordered = shapes::triangle_torus(32, 14)?;
+    for order in Order::ALL {
+        let mesh = order.of(&ordered, 1);
+        cells.push(cell(
+            "triangle-torus",
+            &format!("order: {order}"),
+            &mesh,
+            Paint::Order,
+        ));
+    }
+    std::io::stdout().write_all(sheet(&cells)?.as_bytes())?;
+    Ok(())
+}
+
+/// The parameters of a shape as drawn, `m 8 · n 8`; of one that takes none, what it is.
+fn settings(recipe: &Recipe, given: &[(&str, f64)], faces: usize) -> String {
+    if faces > MOST_EDGED {
+        return "edges not drawn".to_owned();
+    }
+    if recipe.parameters.is_empty() {
+        return recipe.summary.to_owned();
+    }
+    let shown = recipe.parameters.iter().map(|parameter| {
+        let given = given.iter().find(|(name, _)| *name == parameter.name);
+        let value = given.map_or(parameter.default, |(_, value)| *value);
+        format!("{} {value}", parameter.name)
+    });
+    shown.collect::<Vec<_>>().join(" · ")
+}
+
+/// The cells row by row, on a ground of their own that follows the reader's theme.
+fn sheet(cells: &[String]) -> Result<String, std::fmt::Error> {
+    let rows = cells.len().div_ceil(COLUMNS);
+    let width = COLUMNS as f64 * (CELL[0] + GAP) + GAP;
+    let height = rows as f64 * (CELL[1] + GAP) + GAP + 24.0;
+    let mut svg = String::new();
+    writeln!(svg, "{COMMAND}")?;
+    writeln!(
+        svg,
+        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" role="img" aria-label="All shapes of Sixfold">"#
+    )?;
+    svg.push_str(&style()?);
+    writeln!(svg, r#"<rect class="ground" width="100%" height="100%"/>"#)?;
+    for (i, cell) in cells.iter().enumerate() {
+        let x = GAP + (i % COLUMNS) as f64 * (CELL[0] + GAP);
+        let y = GAP + (i / COLUMNS) as f64 * (CELL[1] + GAP);
+        writeln!(svg, r#"<g transform="translate({x} {y})">"#)?;
+        svg.push_str(cell);
+        svg.push_str("</g>\n");
+    }
+    writeln!(
+        svg,
+        r#"<text class="note" x="{}" y="{}">blue: the front of a face · ochre: its back · the last four: faces coloured by their row in the list, from pale to dark</text>"#,
+        GAP + 2.0,
+        height - 14.0
+    )?;
+    svg.push_str("</svg>\n");
+    Ok(svg)
+}
+
+/// How the faces of a cell are coloured.
+#[derive(Clone, Copy, PartialEq)]
+enum Paint {
+    /// By the light that falls on them.
+    Light,
+    /// By their row in the list.
+    Order,
+}
+
+/// From dark to light, for each ramp: its letter, and its first and last colour.
+const RAMPS: [(char, [f64; 3], [f64; 3]); 3] = [
+    ('a', [44.0, 66.0, 92.0], [190.0, 212.0, 232.0]),
+    ('b', [112.0, 72.0, 34.0], [238.0, 208.0, 160.0]),
+    ('c', [62.0, 26.0, 84.0], [246.0, 226.0, 170.0]),
+];
+
+/// One class for each tone of each ramp, and the colours of ground and text in both themes.
+fn style() -> Result<String, std::fmt::Error> {
+    let mut css = String::from(
+        "<style>
+.ground{fill:#eceae5}.card{fill:#fbfaf8}.name{fill:#1f2429;font-weight:600;font-size:13px}.note{fill:#5d666f;font-size:10.5px}
+@media(prefers-color-scheme:dark){.ground{fill:#15181b}.card{fill:#22272c}.name{fill:#eceff1}.note{fill:#a3adb6}}
+text{font-family:system-ui,-apple-system,'Segoe UI','DejaVu Sans',sans-serif}
+path{stroke-linejoin:round}.fine{stroke-width:3}.bold{stroke-width:6}
+",
+    );
+    for (letter, dark, light) in RAMPS {
+        for tone in 0..TONES {
+            let t = tone as f64 / (TONES - 1) as f64;
+            let fill = std::array::from_fn(|i| dark[i] + t * (light[i] - dark[i]));
+            let line = fill.map(|channel: f64| 0.62 * channel);
+            // Without edges the stroke only closes the hairlines between faces.
+            writeln!(
+                css,
+                ".{letter}{tone}{{fill:{fill};stroke:{line}}}.plain .{letter}{tone}{{stroke:{fill}}}",
+                fill = hex(fill),
+                line = hex(line)
+            )?;
+        }
+    }
+    css.push_str("</style>\n");
+    Ok(css)
+}
+
+fn hex(colour: [f64; 3]) -> String {
+    let [r, g, b] = colour.map(|channel| channel.round() as u8);
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+type Vector = [f64; 3];
+
+fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn minus(a: Vector, b: Vector) -> Vector {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+fn cross([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
+    [b * z - c * y, c * x - a * z, a * y - b * x]
+}
+
+fn unit(a: Vector) -> Vector {
+    let length = dot(a, a).sqrt();
+    if length > 0.0 {
+        a.map(|x| x / length)
+    } else {
+        a
+    }
+}
+
+/// Where we look from: the directions to the right, upwards, and towards us.
+struct View([Vector; 3]);
+
+impl View {
+    /// From above for what lies in a plane; else from a corner and above.
+    fn of(mesh: &PolygonMesh) -> Self {
+        let mut heights = mesh.positions().iter().map(|p| p.z);
+        let flat = heights
+            .next()
+            .is_none_or(|first| heights.all(|z| z == first));
+        if flat {
+            return Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+        }
+        // Pythagorean triples, for whole-number cosines and sines: about 28° and 37°.
+        let [ca, sa] = [8.0 / 17.0, 15.0 / 17.0];
+        let [ce, se] = [4.0 / 5.0, 3.0 / 5.0];
+        let towards = [ce * ca, ce * sa, se];
+        let right = [-sa, ca, 0.0];
+        Self([right, cross(towards, right), towards])
+    }
+
+    fn see(&self, p: Vector) -> Vector {
+        self.0.map(|axis| dot(axis, p))
+    }
+}
+
+/// A face as seen: its corners on the picture, its depth, and its tone.
+struct Seen {
+    corners: Vec<[i64; 2]>,
+    depth: f64,
+    ramp: char,
+    tone: usize,
+}
+
+/// One cell: the mesh, its name, its parameters and its counts.
+fn cell(name: &str, settings: &str, mesh: &PolygonMesh, paint: Paint) -> String {
+    let facts = Facts::of(mesh);
+    let weight = match mesh.face_count() {
+        0..=100 => "bold",
+        101..=MOST_EDGED => "fine",
+        _ => "fine plain",
+    };
+    let mut svg = format!(
+        "<rect class=\"card\" width=\"{}\" height=\"{}\" rx=\"6\"/>\n<g class=\"{weight}\" transform=\"translate({} {}) scale(.1)\">\n",
+        CELL[0], CELL[1], CENTRE[0], CENTRE[1]
+    );
+    for face in seen(mesh, facts.closed, paint) {
+        svg.push_str(&path(&face));
+        svg.push('\n');
+    }
+    let counts = format!(
+        "V {} · E {} · F {}",
+        facts.vertices, facts.edges, facts.faces
+    );
+    svg.push_str("</g>\n");
+    for (class, y, text) in [
+        ("name", 188.0, name),
+        ("note", 203.0, settings),
+        ("note", 217.0, &counts),
+    ] {
+        svg.push_str(&format!(
+            "<text class=\"{class}\" x=\"12\" y=\"{y}\">{text}</text>\n"
+        ));
+    }
+    svg
+}
+
+/// The faces from far to near; of a closed mesh, whose faces look outward, those that face us.
+fn seen(mesh: &PolygonMesh, closed: bool, paint: Paint) -> Vec<Seen> {
+    let view = View::of(mesh);
+    let points: Vec<Vector> = mesh
+        .positions()
+        .iter()
+        .map(|p| view.see(p.as_dvec3().to_array()))
+        .collect();
+    let (middle, scale) = frame(&points);
+    let light = unit([-0.45, 0.6, 0.75]);
+    let mut faces = Vec::new();
+    for (f, face) in mesh.faces().iter() {
+        let corner = |v: &VertexId| points[v.index()];
+        let normal = unit(area(face.iter().map(corner)));
+        let front = normal[2] >= 0.0;
+        if closed && normal[2] <= 0.0 {
+            continue;
+        }
+        let towards_us = if front { normal } else { normal.map(|x| -x) };
+        let (ramp, brightness) = match paint {
+            Paint::Light => {
+                let lit = dot(towards_us, light).max(0.0);
+                (if front { 'a' } else { 'b' }, 0.15 + 0.85 * lit)
+            }
+            Paint::Order => ('c', 1.0 - f.index() as f64 / mesh.face_count() as f64),
+        };
+        let depth: f64 = face.iter().map(|v| corner(v)[2]).sum();
+        faces.push(Seen {
+            corners: face
+                .iter()
+                .map(|v| {
+                    let [x, y, _] = corner(v);
+                    let tenths = |x: f64| (10.0 * scale * x).round() as i64;
+                    [tenths(x - middle[0]), tenths(middle[1] - y)]
+                })
+                .collect(),
+            depth: depth / face.len() as f64,
+            ramp,
+            tone: ((TONES - 1) as f64 * brightness.clamp(0.0, 1.0)).round() as usize,
+        });
+    }
+    faces.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+    faces
+}
+
+/// The middle of the points as seen, and the scale at which they fill the picture.
+fn frame(points: &[Vector]) -> ([f64; 2], f64) {
+    let side = |i: usize| {
+        let low = points.iter().map(|p| p[i]).fold(f64::INFINITY, f64::min);
+        let high = points
+            .iter()
+            .map(|p| p[i])
+            .fold(f64::NEG_INFINITY, f64::max);
+        (low.midpoint(high), high - low)
+    };
+    let [(x, wide), (y, high)] = [side(0), side(1)];
+    ([x, y], PICTURE / wide.max(high))
+}
+
+/// Twice the area of a polygon, as a vector along its normal (Newell).
+fn area(mut corners: impl Iterator<Item = Vector>) -> Vector {
+    let Some(first) = corners.next() else {
+        return [0.0; 3];
+    };
+    let spokes: Vec<Vector> = corners.map(|p| minus(p, first)).collect();
+    let mut sum = [0.0; 3];
+    for pair in spokes.windows(2) {
+        let part = cross(pair[0], pair[1]);
+        sum = std::array::from_fn(|i| sum[i] + part[i]);
+    }
+    sum
+}
+
+/// A face as a path in tenths of a pixel, every corner but the first relative to the one before.
+fn path(face: &Seen) -> String {
+    let mut path = format!("<path class=\"{}{}\" d=\"M", face.ramp, face.tone);
+    let mut last = [0, 0];
+    for (i, corner) in face.corners.iter().enumerate() {
+        let step = [corner[0] - last[0], corner[1] - last[1]];
+        let before = match i {
+            0 => "",
+            1 => "l",
+            _ if step[0] >= 0 => " ",
+            _ => "",
+        };
+        let between = if step[1] >= 0 { " " } else { "" };
+        path.push_str(&format!("{before}{}{between}{}", step[0], step[1]));
+        last = *corner;
+    }
+    path.push_str("z\"/>");
+    path
+}
