@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use sixfold::shapes;
-use study::{Agreement, Backend, Operation, Settings, Specimen, Standing, study};
+use study::{Agreement, Backend, Operation, Settings, Specimen, Standing, StudyError, study};
 
 // The very file with which the suite shows that it bites; ARCHITECTURE.md walks through it.
 #[path = "../crates/conformance/tests/all/face_and_edge_lists.rs"]
@@ -44,4 +44,17 @@ fn one_line_puts_it_into_a_study() {
             row.operation
         );
     }
+}
+
+#[test]
+fn a_name_that_is_taken_is_refused() {
+    let twice = Settings {
+        extra: vec![Backend::of::<FaceAndEdgeLists>(); 2],
+        ..Settings::default()
+    };
+    let refusal = twice.chosen_backends().expect_err("two of one name");
+    assert!(
+        matches!(refusal, StudyError::RepeatedBackend { .. }),
+        "{refusal}"
+    );
 }

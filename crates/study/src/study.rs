@@ -56,6 +56,9 @@ pub enum StudyError {
     /// A name that no backend has.
     #[error("no backend is called `{name}`: choose from {}", all_names())]
     UnknownBackend { name: String },
+    /// Two representations of one name.
+    #[error("two backends are called `{name}`: give each a name of its own")]
+    RepeatedBackend { name: String },
     /// The mesh has vertices at most.
     #[error("the mesh has no faces, so there is nothing to study: `inspect` shows its facts")]
     NoFaces,
@@ -82,10 +85,17 @@ impl Settings {
     ///
     /// # Errors
     ///
-    /// [`StudyError::UnknownBackend`] for the first name that no backend has.
+    /// [`StudyError::UnknownBackend`] for the first name that no backend has, and
+    /// [`StudyError::RepeatedBackend`] for an extra one with the name of another.
     pub fn chosen_backends(&self) -> Result<Vec<Backend>, StudyError> {
         let mut all = Backend::roster();
-        all.extend(&self.extra);
+        for &extra in &self.extra {
+            if all.contains(&extra) {
+                let name = extra.name().to_owned();
+                return Err(StudyError::RepeatedBackend { name });
+            }
+            all.push(extra);
+        }
         let unknown = |name: &&String| all.iter().all(|backend| backend.name() != **name);
         if let Some(name) = self.backends.iter().find(unknown) {
             return Err(StudyError::UnknownBackend { name: name.clone() });
