@@ -59,7 +59,7 @@ impl<H: RowId, T> Index<H> for RowMap<H, T> {
     fn index(&self, handle: H) -> &T {
         match self.values.get(handle.row() as usize) {
             Some(value) => value,
-            None => no_such_row(&handle, self.values.len()),
+            None => no_such_row(handle, self.values.len()),
         }
     }
 }
@@ -70,14 +70,15 @@ impl<H: RowId, T> IndexMut<H> for RowMap<H, T> {
         let rows = self.values.len();
         match self.values.get_mut(handle.row() as usize) {
             Some(value) => value,
-            None => no_such_row(&handle, rows),
+            None => no_such_row(handle, rows),
         }
     }
 }
 
+/// By value: a reference would keep the handle in memory on the way that never comes here.
 #[cold]
 #[inline(never)]
-fn no_such_row(handle: &dyn Debug, rows: usize) -> ! {
+fn no_such_row<H: Debug>(handle: H, rows: usize) -> ! {
     panic!("no {handle:?} in this map: it has {rows} rows")
 }
 

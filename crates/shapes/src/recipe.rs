@@ -137,13 +137,11 @@ const TORUS: &[Parameter] = &[
 
 const STEPS_M: Parameter = Parameter::count("m", "cells from left to right", 20, 1, MAX_AROUND);
 const STEPS_N: Parameter = Parameter::count("n", "cells from bottom to top", 20, 1, MAX_AROUND);
-const FACES: Parameter = Parameter::count(
-    "faces",
-    "triangles, met within 5 %",
-    5_000,
-    MIN_FACES,
-    MAX_FACES,
-);
+/// A target of at least `least` triangles: below it, the lattice is too wide for the thin parts.
+const fn faces(least: usize) -> Parameter {
+    let meaning = "triangles, met within 5 % or 20";
+    Parameter::count("faces", meaning, 5_000, least, MAX_FACES)
+}
 
 /// Every shape, in the order in which help lists them.
 pub const RECIPES: &[Recipe] = &[
@@ -330,20 +328,20 @@ pub const RECIPES: &[Recipe] = &[
     Recipe {
         name: "blobs",
         summary: "a sum of bells, closed triangles of marching tetrahedra",
-        parameters: &[FACES],
+        parameters: &[faces(MIN_FACES)],
         build: |v| blobs()?.polygonised(count(v[0])),
     },
     Recipe {
         name: "csg",
         summary: "a cube and a ball in one, without three bars through both: genus 5",
-        parameters: &[FACES],
+        parameters: &[faces(1_000)],
         build: |v| csg()?.polygonised(count(v[0])),
     },
     Recipe {
         name: "smooth-union",
         summary: "two linked rings that blend where they meet",
         parameters: &[
-            FACES,
+            faces(1_000),
             Parameter {
                 name: "alpha",
                 meaning: "sharpness of the blend",

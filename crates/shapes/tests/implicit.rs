@@ -196,3 +196,25 @@ fn a_long_chain_of_blends_is_a_worm() {
     let facts = check("worm", &mesh, 5_000);
     assert_eq!((facts.components, facts.genus), (1, Some(0)));
 }
+
+#[test]
+fn small_targets_keep_the_topology_that_the_recipe_promises() {
+    for (name, genus, targets) in [
+        ("csg", 5, [1_000.0, 1_111.0, 1_500.0, 2_345.0]),
+        ("smooth-union", 2, [1_000.0, 1_111.0, 1_500.0, 2_345.0]),
+    ] {
+        for target in targets {
+            let recipe = shapes::recipe(name).expect("listed");
+            let mesh = recipe.make(&[("faces", target)]).expect("within its range");
+            let facts = Facts::of(&mesh);
+            assert_eq!(facts.genus, Some(genus), "{name} faces={target}");
+            assert_eq!(facts.components, 1, "{name} faces={target}");
+            let off = (facts.faces as f64 - target).abs();
+            assert!(
+                off <= 20.0_f64.max(0.05 * target),
+                "{name}: {} for {target}",
+                facts.faces
+            );
+        }
+    }
+}
