@@ -341,7 +341,7 @@ pub const RECIPES: &[Recipe] = &[
         name: "smooth-union",
         summary: "two linked rings that blend where they meet",
         parameters: &[
-            faces(1_000),
+            faces(1_500),
             Parameter {
                 name: "alpha",
                 meaning: "sharpness of the blend",
