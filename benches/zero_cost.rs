@@ -3,8 +3,10 @@
 //! Both do the same arithmetic on polygons of any degree; by hand, nothing is asked of the trait.
 
 use std::hint::black_box;
+use std::time::{Duration, Instant};
 
-use criterion::{Criterion, Throughput};
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, Criterion, Throughput};
 use sixfold::{
     CornerTable, FaceId, FaceMap, HalfEdgeMesh, MeshQuery, Point, PolygonMesh, Representation,
     RowMap, VertexId, VertexMap, WingedEdgeMesh, shapes,
@@ -247,12 +249,11 @@ where
 
     let mut group_of = criterion.benchmark_group(group("vv_smooth"));
     group_of.throughput(Throughput::Elements(vertices as u64));
-    group_of.bench_function("generic", |bench| {
-        bench.iter(|| means(black_box(&mesh), black_box(&mut by_vertex)));
-    });
-    group_of.bench_function("by hand", |bench| {
-        bench.iter(|| black_box(&mesh).means_by_hand(black_box(&mut raw_vertex)));
-    });
+    in_turn(
+        &mut group_of,
+        || means(black_box(&mesh), black_box(&mut by_vertex)),
+        || black_box(&mesh).means_by_hand(black_box(&mut raw_vertex)),
+    );
     group_of.finish();
     let alike = |a: &[Point], b: &[Point]| a.iter().zip(b).all(|(a, b)| a.abs_diff_eq(*b, 1e-6));
     assert!(
@@ -262,25 +263,53 @@ where
 
     let mut group_of = criterion.benchmark_group(group("vertex_normal"));
     group_of.throughput(Throughput::Elements(vertices as u64));
-    group_of.bench_function("generic", |bench| {
-        bench.iter(|| {
+    in_turn(
+        &mut group_of,
+        || {
             normals(
                 black_box(&mesh),
                 black_box(&mut by_face),
                 black_box(&mut by_vertex),
-            );
-        });
-    });
-    group_of.bench_function("by hand", |bench| {
-        bench.iter(|| {
-            black_box(&mesh).normals_by_hand(black_box(&mut raw_face), black_box(&mut raw_vertex));
-        });
-    });
+            )
+        },
+        || black_box(&mesh).normals_by_hand(black_box(&mut raw_face), black_box(&mut raw_vertex)),
+    );
     group_of.finish();
     assert!(
         alike(by_vertex.values(), &raw_vertex),
         "both did the same work"
     );
+}
+
+/// Both under criterion's clock; then by turns, for a ratio that a noisy machine does not blur.
+fn in_turn(
+    group: &mut BenchmarkGroup<'_, WallTime>,
+    mut generic: impl FnMut(),
+    mut by_hand: impl FnMut(),
+) {
+    group.bench_function("generic", |bench| bench.iter(&mut generic));
+    group.bench_function("by hand", |bench| bench.iter(&mut by_hand));
+    let mut ratios = Vec::new();
+    group.bench_function("by turns", |bench| {
+        bench.iter_custom(|rounds| {
+            let mut total = Duration::ZERO;
+            for _ in 0..rounds {
+                let start = Instant::now();
+                generic();
+                let between = Instant::now();
+                by_hand();
+                let [one, other] = [between - start, between.elapsed()];
+                ratios.push(one.as_secs_f64() / other.as_secs_f64());
+                total += one + other;
+            }
+            total
+        });
+    });
+    ratios.sort_unstable_by(f64::total_cmp);
+    if let Some(median) = ratios.get(ratios.len() / 2) {
+        let rounds = ratios.len();
+        println!("generic / by hand: {median:.3}, the median of {rounds} rounds by turns");
+    }
 }
 
 pub(crate) fn define(criterion: &mut Criterion) {
