@@ -1,5 +1,7 @@
 //! Whether all backends did the same work.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use sixfold::{Point, PolygonMesh};
 
 use crate::candidate::{Job, Outcome, Subject};
@@ -14,12 +16,14 @@ const TOLERANCE: f64 = 1e-4;
 
 /// Compares the checksum of every entry with that of a backend which keeps the mesh as it is.
 ///
-/// A sample is compared with the same sample run on that backend, untimed.
+/// Where one of the two has a sample, the other runs the same, untimed: the smaller of two samples,
+/// and never the whole of what is sampled for its cost. Nothing more is run after `stop`.
 pub(crate) fn judge(
     entries: &[Entry],
     subjects: &mut [Box<dyn Subject + '_>],
     polygons: &PolygonMesh,
     clock: &dyn Clock,
+    stop: &AtomicBool,
 ) -> Vec<Agreement> {
     let faithful =
         |subjects: &[Box<dyn Subject + '_>], s: usize| subjects[s].merged_vertices() == 0;
@@ -36,20 +40,29 @@ pub(crate) fn judge(
         // Whoever went through all of it comes first, for a sample costs it little.
         let mut others: Vec<&Entry> = others.collect();
         others.sort_by_key(|other| other.job.sample.is_some());
-        let reference = match others.first() {
-            Some(other) if other.job == entry.job => other.outcome,
-            Some(other) if entry.job.sample.is_some() || other.job.sample.is_some() => {
-                let job = entry.job;
-                rerun(&mut subjects[other.subject], &job, clock)
-            }
-            _ => None,
+        let Some(other) = others.first() else {
+            return Agreement::Unchecked;
         };
-        let Some(reference) = reference else {
+        let pair = if other.job == entry.job {
+            Some(outcome).zip(other.outcome)
+        } else if stop.load(Ordering::Relaxed) {
+            None
+        } else if size(&entry.job) <= size(&other.job) {
+            let reference = rerun(&mut subjects[other.subject], &entry.job, clock);
+            Some(outcome).zip(reference)
+        } else {
+            rerun(&mut subjects[entry.subject], &other.job, clock).zip(other.outcome)
+        };
+        let Some((outcome, reference)) = pair else {
             return Agreement::Unchecked;
         };
         let operation = entry.job.operation;
         if agree(operation, outcome.checksum, reference.checksum, polygons) {
-            Agreement::Same
+            // As many corners in all, maybe, but handed out by fewer vertices.
+            match outcome.elements == reference.elements || faithful(subjects, entry.subject) {
+                true => Agreement::Same,
+                false => Agreement::Merged,
+            }
         } else if !faithful(subjects, entry.subject) {
             Agreement::Merged
         } else if !(outcome.checksum.is_finite() && reference.checksum.is_finite()) {
@@ -59,6 +72,11 @@ pub(crate) fn judge(
         }
     };
     entries.iter().map(verdict).collect()
+}
+
+/// How much of the mesh `job` goes through.
+fn size(job: &Job) -> usize {
+    job.sample.map_or(usize::MAX, |sample| sample.size)
 }
 
 fn rerun(subject: &mut Box<dyn Subject + '_>, job: &Job, clock: &dyn Clock) -> Option<Outcome> {
@@ -137,6 +155,8 @@ mod tests {
     struct Fixed {
         checksum: f64,
         merged: usize,
+        /// It would not end.
+        no_whole: bool,
     }
 
     impl Subject for Fixed {
@@ -154,10 +174,11 @@ mod tests {
         }
         fn run(&mut self, job: &Job, _: u32, clock: &dyn Clock, _: bool) -> Run {
             // A sample finds half as much as the whole.
+            assert!(!self.no_whole || job.sample.is_some(), "run in full");
             let part = if job.sample.is_some() { 0.5 } else { 1.0 };
             let outcome = Outcome {
                 checksum: self.checksum * part,
-                elements: 1,
+                elements: 10 - self.merged as u64,
             };
             Run {
                 time: clock.now(),
@@ -175,12 +196,18 @@ mod tests {
                 scanned: [true; 3],
                 size: 4,
             });
-            let mut subject = Fixed { checksum, merged };
+            let no_whole = sampled;
+            let mut subject = Fixed {
+                checksum,
+                merged,
+                no_whole,
+            };
             entry.outcome = subject.run(&entry.job, 1, &clock, true).outcome;
             boxed.push(Box::new(subject));
             entries.push(entry);
         }
-        judge(&entries, &mut boxed, &pillow(), &clock)
+        let stop = AtomicBool::new(false);
+        judge(&entries, &mut boxed, &pillow(), &clock, &stop)
     }
 
     #[test]
@@ -197,6 +224,11 @@ mod tests {
             [Merged, Unchecked]
         );
         assert_eq!(judged(&[(8.0, 0, false)]), [Unchecked]);
+        // As much found in all, but of fewer elements.
+        assert_eq!(
+            judged(&[(8.0, 2, false), (8.0, 0, false), (8.0, 0, false)]),
+            [Merged, Same, Same]
+        );
     }
 
     #[test]

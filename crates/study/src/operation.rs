@@ -170,6 +170,16 @@ impl Operation {
         })
     }
 
+    /// By kind: whether its cost grows with the square of the valences or degrees on some structure.
+    ///
+    /// All relations but the two that yield the corners of an element: an edge has two, and the
+    /// faces have together no more than the mesh stores. The others meet a vertex of valence n from
+    /// each of its n edges, or look for a side in a face of n sides n times.
+    pub fn walks_around(self) -> [bool; 3] {
+        let corners = [Relation::EdgeVertices, Relation::FaceVertices];
+        Kind::ALL.map(|kind| self.relations(kind).iter().any(|r| !corners.contains(r)))
+    }
+
     /// Whether some of its elements can stand for all.
     pub const fn can_be_sampled(self) -> bool {
         !matches!(self, Self::Build | Self::FfBfs)
@@ -253,5 +263,8 @@ mod tests {
         costs[Relation::VertexFaces as usize] = QueryCost::Scan;
         assert_eq!(Operation::VertexNormal.scans(&costs), [true, false, false]);
         assert_eq!(Operation::FaceBarycenter.scans(&costs), [false; 3]);
+        assert_eq!(Operation::VertexNormal.walks_around(), [true, false, false]);
+        assert_eq!(Operation::EdgeLength.walks_around(), [false; 3]);
+        assert_eq!(Operation::AllQueries.walks_around(), [true; 3]);
     }
 }

@@ -14,12 +14,15 @@ const LONGEST_SAMPLE_NS: f64 = 2_000_000.0;
 const SELDOM: u32 = 4;
 /// A sample stands on at least so many elements, whatever the budget says.
 pub(crate) const FEWEST_ELEMENTS: usize = 16;
+/// What an operation that cannot be sampled may take of the time left, to be run just once.
+const ONCE: f64 = 0.5;
 /// Structures that one sample may build or copy, in bytes.
 const MOST_BYTES: usize = 64 << 20;
 
 impl Bench<'_, '_> {
     /// Runs everything once and plans samples that fit the budget: first what does not scan, then,
-    /// in what is left, what does.
+    /// in what is left, what does, or might on a skewed mesh. What was put off at first is run once
+    /// at the end if there is time.
     pub(crate) fn warm_up(&mut self, entries: &mut [Entry], deadline: f64) {
         let scans: Vec<[bool; 3]> = entries.iter().map(|entry| self.scans(entry)).collect();
         let count = entries.len() as f64;
@@ -47,11 +50,39 @@ impl Bench<'_, '_> {
                 }
             }
         }
+        self.catch_up(entries, deadline);
     }
 
+    /// Runs once, the shortest first, what was only estimated and yet fits into the time left.
+    fn catch_up(&mut self, entries: &mut [Entry], deadline: f64) {
+        let mut put_off: Vec<(f64, &mut Entry)> = entries
+            .iter_mut()
+            .filter_map(|entry| Some((entry.estimate?.wall_ns, entry)))
+            .collect();
+        put_off.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        for (wall_ns, entry) in put_off {
+            let left = deadline - self.clock.now().wall_ns;
+            if self.stopped() || wall_ns > ONCE * left {
+                return;
+            }
+            self.report(0.1, "warming up", entry);
+            let run = self.run(entry.subject, &entry.job, 1, true);
+            entry.warm_up = Some(run.time);
+            entry.outcome = run.outcome;
+            entry.estimate = None;
+            entry.every = 0;
+        }
+    }
+
+    /// By kind: whether a query may cost far more than what it yields.
     fn scans(&self, entry: &Entry) -> [bool; 3] {
-        let costs = self.subjects[entry.subject].costs();
-        entry.job.operation.scans(&costs)
+        let operation = entry.job.operation;
+        let scanned = operation.scans(&self.subjects[entry.subject].costs());
+        let walked = operation.walks_around();
+        Kind::ALL.map(|kind| {
+            let k = kind.index();
+            scanned[k] || (self.skewed && walked[k])
+        })
     }
 
     fn plan_whole(&mut self, entry: &mut Entry, share: f64) {
@@ -60,6 +91,9 @@ impl Bench<'_, '_> {
         entry.warm_up = Some(run.time);
         entry.outcome = run.outcome;
         let mut ns = run.time.ns().max(1.0);
+        if self.stopped() {
+            return;
+        }
         if ns < SHORTEST_SAMPLE_NS {
             // The first run paid for cold caches and page faults; a second series says more.
             let runs = (SHORTEST_SAMPLE_NS / 4.0 / ns).clamp(1.0, self.most_runs(entry));
@@ -96,7 +130,8 @@ impl Bench<'_, '_> {
             &[relation] if !operation.can_be_sampled() => Operation::Relation(relation),
             _ => operation,
         };
-        let all = self.population.into_iter().max().unwrap_or(0);
+        let asked = (0..3).filter(|&k| scanned[k]);
+        let all = asked.map(|k| self.population[k]).max().unwrap_or(0);
         let (mut size, mut whole, mut cost);
         size = 4;
         loop {
@@ -115,8 +150,12 @@ impl Bench<'_, '_> {
         let seldom = left * f64::from(SELDOM) / f64::from(ROUNDS) / 2.0;
         let fits = match operation.can_be_sampled() {
             true => whole.ns() <= share || all <= FEWEST_ELEMENTS,
-            false => whole.ns() <= seldom,
+            // What takes no longer than one sample is run whatever is left.
+            false => whole.ns() <= seldom.max(LONGEST_SAMPLE_NS),
         };
+        if self.stopped() {
+            return;
+        }
         if fits {
             return self.plan_whole(entry, share);
         }

@@ -129,9 +129,36 @@ pub struct ResultRow {
     pub samples: usize,
     /// How many runs in a row make one.
     pub runs_per_sample: u32,
-    /// The budget was gone after the warm-up: that one run, with its cold caches, is the sample.
+    /// There was time for no more than the warm-up: that one run, with its cold caches, is the sample.
     pub warm_up_only: bool,
 }
+
+/// The fields of a row, for a file without any.
+const COLUMNS: [&str; 23] = [
+    "backend",
+    "operation",
+    "median_ns",
+    "min_ns",
+    "ci_low_ns",
+    "ci_high_ns",
+    "elements",
+    "per",
+    "ns_per_element",
+    "wall_median_ns",
+    "wall_min_ns",
+    "sampled",
+    "sample_size",
+    "estimated_ns",
+    "checksum",
+    "agreement",
+    "standing",
+    "ratio_to_best",
+    "ratio_ci_low",
+    "ratio_ci_high",
+    "samples",
+    "runs_per_sample",
+    "warm_up_only",
+];
 
 /// What the checksums of one operation say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -192,6 +219,9 @@ impl Report {
     /// What `writer` reports.
     pub fn write_csv(&self, writer: impl io::Write) -> io::Result<()> {
         let mut lines = csv::Writer::from_writer(writer);
+        if self.results.is_empty() {
+            lines.write_record(COLUMNS).map_err(io::Error::from)?;
+        }
         for row in &self.results {
             lines.serialize(row).map_err(io::Error::from)?;
         }

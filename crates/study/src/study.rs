@@ -5,12 +5,12 @@ use std::time::Duration;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use sixfold::{Counts, PolygonMesh, QueryCost, roster};
+use sixfold::{Counts, Facts, PolygonMesh, QueryCost, Relation, Spread, roster};
 
 use crate::agreement::judge;
 use crate::backend::Backend;
 use crate::candidate::Subject;
-use crate::clock::{Clock, MachineClock, Time};
+use crate::clock::{MachineClock, Time};
 use crate::environment::Environment;
 use crate::inspect::{Specimen, counts, per_vertex, unbuilt};
 use crate::measure::{Bench, Entry, Progress};
@@ -21,6 +21,9 @@ use crate::standing::places;
 use crate::statistics::Median;
 use crate::words::words;
 
+/// Beyond this a valence or a degree makes a mesh skewed: its square is a millisecond's work.
+const MOST_NEIGHBOURS: usize = 1000;
+
 /// What to study, and for how long.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -30,9 +33,11 @@ pub struct Settings {
     pub extra: Vec<Backend>,
     /// Operations; empty for all.
     pub operations: Vec<Operation>,
-    /// How long measuring may take. One run of everything is made in any case.
+    /// How long measuring may take. One run of everything, or of a small sample where the whole may
+    /// be long, is made in any case.
     pub budget: Duration,
-    /// Decides samples and orders.
+    /// Decides the order in which elements are drawn for samples, and the order of measurement; how
+    /// large samples are follows the clock.
     pub seed: u64,
 }
 
@@ -137,9 +142,10 @@ pub fn study(
     }
     let environment = Environment::here(settings.seed, settings.budget.as_secs_f64());
     let counts = counts(polygons, specimen.facts.edges);
+    let skewed = is_skewed(&specimen.facts);
     let draw = chosen
         .iter()
-        .any(|backend| scans(backend, &operations))
+        .any(|backend| skewed || scans(backend, &operations))
         .then(|| Draw::of(polygons, settings.seed));
 
     let mut backends = Vec::new();
@@ -162,6 +168,7 @@ pub fn study(
     let mut bench = Bench {
         subjects: &mut subjects,
         population: [counts.vertices, counts.edges, counts.faces],
+        skewed,
         clock: &clock,
         budget: settings.budget,
         random: ChaCha8Rng::seed_from_u64(settings.seed),
@@ -170,8 +177,13 @@ pub fn study(
     };
     let entries = bench.measure(&operations);
     let interrupted = stop.load(Ordering::Relaxed);
-    let results = results(&entries, &mut subjects, polygons, &clock);
-    let words = words(&backends, &results, polygons);
+    let agreements = judge(&entries, &mut subjects, polygons, &clock, stop);
+    let results = results(&entries, agreements, &subjects, polygons);
+    let scanning = |backend: &str, relation: Relation| {
+        let costs = chosen.iter().find(|b| b.name() == backend);
+        costs.is_some_and(|b| b.info.costs[relation as usize] == QueryCost::Scan)
+    };
+    let words = words(&backends, &results, polygons, &scanning);
     Ok(Report {
         schema: SCHEMA,
         mesh: specimen.report(),
@@ -181,6 +193,13 @@ pub fn study(
         interrupted,
         environment,
     })
+}
+
+/// Whether some vertex or face has so many neighbours that to walk around it once for each of them
+/// may outlast any budget.
+fn is_skewed(facts: &Facts) -> bool {
+    let most = |spread: &Option<Spread>| spread.as_ref().map_or(0, |s| s.max);
+    most(&facts.valence).max(most(&facts.face_degree)) > MOST_NEIGHBOURS
 }
 
 /// Whether some operation scans on this backend.
@@ -218,11 +237,10 @@ pub(crate) fn put_on_the_bench<'a>(
 /// One row for each entry that was measured or estimated.
 fn results(
     entries: &[Entry],
-    subjects: &mut [Box<dyn Subject + '_>],
+    agreements: Vec<Agreement>,
+    subjects: &[Box<dyn Subject + '_>],
     polygons: &PolygonMesh,
-    clock: &dyn Clock,
 ) -> Vec<ResultRow> {
-    let agreements = judge(entries, subjects, polygons, clock);
     let mut rows = Vec::new();
     let mut agreements = agreements.into_iter();
     for group in entries.chunk_by(|a, b| a.job.operation == b.job.operation) {

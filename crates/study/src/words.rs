@@ -1,6 +1,6 @@
 //! What the table shows, in a few plain sentences.
 
-use sixfold::PolygonMesh;
+use sixfold::{PolygonMesh, Relation};
 
 use crate::operation::Operation;
 use crate::report::{Agreement, BackendReport, ResultRow, Standing};
@@ -11,11 +11,12 @@ pub(crate) fn words(
     backends: &[BackendReport],
     results: &[ResultRow],
     polygons: &PolygonMesh,
+    scanning: &dyn Fn(&str, Relation) -> bool,
 ) -> Vec<String> {
     let mut words = Vec::new();
     words.extend(speed(backends, results));
     for backend in backends.iter().filter(|backend| backend.holds) {
-        words.extend(scans(&backend.name, results, polygons));
+        words.extend(scans(&backend.name, results, polygons, scanning));
     }
     words.extend(memory(backends));
     words.extend(doubts(results));
@@ -90,13 +91,22 @@ fn lead(row: &[ResultRow], backend: &str) -> Option<f64> {
 }
 
 /// What asking one element costs where all faces are looked at, at the worst.
-fn scans(backend: &str, results: &[ResultRow], polygons: &PolygonMesh) -> Option<String> {
+fn scans(
+    backend: &str,
+    results: &[ResultRow],
+    polygons: &PolygonMesh,
+    scanning: &dyn Fn(&str, Relation) -> bool,
+) -> Option<String> {
     let of_it = |r: &&ResultRow| r.backend == backend;
-    let scanning = results
+    let is_scan = |operation| match operation {
+        Operation::Relation(relation) => scanning(backend, relation),
+        _ => false,
+    };
+    let scans = results
         .iter()
         .filter(of_it)
-        .filter(|r| r.sampled && matches!(r.operation, Operation::Relation(_)));
-    let worst = scanning.max_by(|a, b| {
+        .filter(|r| r.sampled && is_scan(r.operation));
+    let worst = scans.max_by(|a, b| {
         let cost = |r: &ResultRow| r.ns_per_element.unwrap_or(0.0);
         cost(a).total_cmp(&cost(b))
     })?;
@@ -226,15 +236,15 @@ mod tests {
             row(a, Operation::Boundary, 1.0, Standing::Tied),
             row(b, Operation::Boundary, 1.01, Standing::Tied),
         ];
-        let said = words(&backends, &results, &mesh);
+        let said = words(&backends, &results, &mesh, &|_, _| false);
         let expected = format!(
             "Of 2 operations {a} is fastest in 1 (typically 1.5 × faster than the next), 1 is a tie at the top."
         );
         assert_eq!(said, [expected]);
-        let said = words(&backends, &results[2..], &mesh);
+        let said = words(&backends, &results[2..], &mesh, &|_, _| false);
         assert_eq!(said, ["Of 1 operation 1 is a tie at the top."]);
         results[2].agreement = Agreement::Mismatch;
-        let said = words(&backends, &results, &mesh).join(" ");
+        let said = words(&backends, &results, &mesh, &|_, _| false).join(" ");
         assert!(
             said.contains(&format!("{a} finds something else")),
             "{said}"

@@ -53,13 +53,69 @@ fn scans_are_sampled_alike_and_what_takes_too_long_is_estimated() {
         // One scan of 3,600 faces takes a microsecond at the very least.
         assert!(row.ns_per_element > Some(1000.0), "{row:?}");
     }
-    assert!(soup(Operation::FfBfs).estimated_ns > Some(1e6));
+    let search = soup(Operation::FfBfs);
+    assert!(search.estimated_ns.or(search.median_ns) > Some(1e6));
     assert!(!soup(Operation::FaceBarycenter).sampled);
     let words = report.words.join(" ");
     assert!(
         words.contains("polygon-soup looks at all 3,600 faces"),
         "{words}"
     );
+}
+
+#[test]
+fn a_vertex_of_many_faces_does_not_outlast_the_budget() {
+    let rim = (0..10_000).map(|i| {
+        let (y, x) = (i as f32 * 6.283e-4).sin_cos();
+        sixfold::Point::new(x, y, 0.0)
+    });
+    let corners: Vec<_> = rim.chain([sixfold::Point::Z]).collect();
+    let fan = (0..10_000).map(|i| [10_000, i, (i + 1) % 10_000]);
+    let mesh = sixfold::PolygonMesh::new(corners, fan).expect("valid");
+    let specimen = Specimen::new("fan", mesh);
+    let settings = Settings {
+        budget: Duration::from_millis(200),
+        ..Settings::default()
+    };
+    let start = std::time::Instant::now();
+    let report = quick(&specimen, &settings).expect("everybody holds it");
+    // In full, the edges around that vertex alone are 10⁸ neighbours for each backend.
+    assert!(start.elapsed() < Duration::from_secs(15));
+    assert_eq!(report.mismatches().count(), 0, "{:?}", report.words);
+    let edges = Operation::Relation(Relation::EdgeEdges);
+    for row in report.rows(edges) {
+        assert!(row.sampled, "{row:?}");
+        assert_eq!(row.agreement, Agreement::Same, "{row:?}");
+    }
+    for row in report.rows(Operation::EdgeLength) {
+        assert!(!row.sampled, "{row:?}");
+    }
+    // A sample is no scan.
+    for walker in ["half-edge", "winged-edge", "corner-table", "face-vertex"] {
+        let scans = format!("{walker} looks at all");
+        let said = report.words.iter().any(|words| words.contains(&scans));
+        assert!(!said, "{:?}", report.words);
+    }
+}
+
+#[test]
+fn a_csv_without_rows_has_the_same_first_line() {
+    let specimen = Specimen::new("cube", shapes::cube());
+    let settings = Settings {
+        budget: Duration::ZERO,
+        ..Settings::default()
+    };
+    let first_line = |stopped: bool| {
+        let stop = AtomicBool::new(stopped);
+        let report = study(&specimen, &settings, &stop, &mut |_| ()).expect("a cube");
+        assert_eq!(report.results.is_empty(), stopped);
+        let mut csv = Vec::new();
+        report.write_csv(&mut csv).expect("memory");
+        let text = String::from_utf8(csv).expect("text");
+        text.lines().next().map(str::to_owned)
+    };
+    assert!(first_line(false).is_some());
+    assert_eq!(first_line(true), first_line(false));
 }
 
 #[test]
