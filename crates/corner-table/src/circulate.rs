@@ -125,18 +125,24 @@ impl<P: Probe> Iterator for Neighbours<'_, P> {
         Some(self.fan.mesh.vertex(at))
     }
 
+    /// One loop of its own: over the fan's, whether it is open would be asked twice a step.
     #[inline]
     fn fold<B, F: FnMut(B, VertexId) -> B>(self, init: B, mut f: F) -> B {
-        let (mesh, mut last) = (self.fan.mesh, self.last);
-        let folded = self.fan.fold(init, |folded, (n, across)| {
-            if across.get().is_none() {
-                last = Some(n.next());
+        let Fan { mesh, at, first } = self.fan;
+        let (Some(mut n), Some(first)) = (at, first) else {
+            return match self.last {
+                Some(last) => f(init, mesh.vertex(last)),
+                None => init,
+            };
+        };
+        let mut folded = init;
+        loop {
+            folded = f(folded, mesh.vertex(n));
+            match mesh.opposite(n).map(CornerId::prev) {
+                Some(turned) if turned == first => return folded,
+                Some(turned) => n = turned,
+                None => return f(folded, mesh.vertex(n.next())),
             }
-            f(folded, mesh.vertex(n))
-        });
-        match last {
-            Some(at) => f(folded, mesh.vertex(at)),
-            None => folded,
         }
     }
 }
