@@ -24,7 +24,8 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study bunny.obj --json - --csv bunny.csv
 
 How it measures: every round runs each operation on each backend, one after the other, in random
-order, on the processor time of the thread; the table shows medians. Ctrl-C ends it between two
+order, on the processor time of the thread; the table shows medians. The seed decides that order
+and which elements are sampled; how many is decided by the clock. Ctrl-C ends it between two
 samples and keeps what is finished. A second Ctrl-C ends it at once, with code 130.
 
 Exit codes: 0 done; 1 backends found different results, a fault in Sixfold; 2 wrong usage or
@@ -34,7 +35,7 @@ const INSPECT_EXAMPLES: &str = "Examples:
   sixfold inspect bunny.obj
   sixfold inspect bunny.obj --json -         for machines
 
-Exit codes: 0 done; 2 wrong usage or unusable input.";
+Exit codes: 0 done; 2 wrong usage or unusable input; 4 interrupted.";
 
 /// Which mesh data structure fits this mesh and this workload? Measured, with evidence.
 ///
@@ -74,10 +75,10 @@ pub(crate) struct Study {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
     pub(crate) operations: Vec<Operation>,
     /// How long to measure: 20s, 500ms, 2m
-    #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration)]
+    #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
-    /// What decides samples and the order of measuring
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    /// What decides the order, and which elements are sampled
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
     /// Cut every polygon into a fan of triangles first
     #[arg(long)]
@@ -137,7 +138,7 @@ pub(crate) struct Generate {
     #[arg(long, value_name = "ORDER", default_value = "given")]
     pub(crate) order: Order,
     /// What decides the order `shuffled`
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
     /// Where to write it (- for standard output)
     #[arg(short, long, value_name = "FILE.obj")]
@@ -175,6 +176,11 @@ fn duration(text: &str) -> Result<Duration, String> {
         Some(_) => Err("a budget is more than nothing and at most a week".into()),
         None => Err("write a budget as 20s, 500ms or 2m".into()),
     }
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    let parsed = text.trim().parse();
+    parsed.map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
 }
 
 fn setting(text: &str) -> Result<(String, f64), String> {

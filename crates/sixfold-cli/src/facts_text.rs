@@ -4,12 +4,12 @@ use ::study::{BackendReport, MeshReport};
 use sixfold::{Facts, Spread};
 
 use crate::numbers::{counted, grouped};
-use crate::text::hanging;
+use crate::text::{hanging, tame};
 
 /// The mesh in a compact block of lines.
 pub(crate) fn facts_text(mesh: &MeshReport) -> String {
     let facts = &mesh.facts;
-    let mut lines = vec![hanging("mesh         ", &mesh.name)];
+    let mut lines = vec![hanging("mesh         ", &tame(&mesh.name))];
     if !mesh.changes.is_empty() {
         lines.push(hanging("changed      ", &mesh.changes.join(", ")));
     }

@@ -9,10 +9,12 @@ use crate::arguments::Generate;
 use crate::failure::Failure;
 use crate::numbers::counted;
 use crate::output::{Output, is_stdout};
-use crate::text::{Text, hanging};
+use crate::progress::end_on_interrupt;
+use crate::text::{Text, hanging, tame};
 
 /// Writes the shape asked for.
 pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
+    end_on_interrupt();
     let shape = &arguments.shape;
     let recipe = recipe(shape).ok_or_else(|| {
         let names: Vec<&str> = RECIPES.iter().map(|recipe| recipe.name).collect();
@@ -29,9 +31,10 @@ pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
     output.finish(|writer| write_obj(&mesh, writer))?;
     let vertices = counted(mesh.vertex_count(), "vertex", "vertices");
     let faces = counted(mesh.face_count(), "face", "faces");
-    let place = arguments.output.display();
+    let place = tame(&arguments.output.display().to_string());
     let mut text = Text::shown(!is_stdout(&arguments.output));
     text.say(&format!("{place}: {shape}, {vertices}, {faces}"));
+    text.finish()?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -43,7 +46,7 @@ pub(crate) fn help() -> String {
         "  sixfold generate geodesic frequency=20 -o ball.obj".into(),
         "  sixfold generate torus m=256 n=128 --order shuffled --seed 7 -o - | head".into(),
         String::new(),
-        "Exit codes: 0 done; 2 wrong usage.".into(),
+        "Exit codes: 0 done; 2 wrong usage; 4 interrupted, nothing written.".into(),
         String::new(),
         "Shapes:".into(),
     ];

@@ -6,20 +6,29 @@ use crate::arguments::Inspect;
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::load;
-use crate::output::{Output, is_stdout};
+use crate::output::{Output, check_places, is_stdout};
+use crate::progress::end_on_interrupt;
 use crate::text::Text;
 
 /// Says what the mesh is and who can hold it.
 pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
+    end_on_interrupt();
+    check_places(
+        Some(&arguments.mesh),
+        &[("--json", arguments.json.as_ref())],
+    )?;
     let specimen = load::specimen(&arguments.mesh)?;
     let inspection = ::study::inspect(&specimen);
-    if let Some(path) = &arguments.json {
-        let output = Output::open(path)?;
-        output.finish(|writer| inspection.write_json(writer))?;
-    }
+    let json = Output::open_if(arguments.json.as_ref())?;
     let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
     text.say(&facts_text(&inspection.mesh));
     text.say("");
     text.say(&verdicts_text(&inspection.mesh, &inspection.backends));
+    // The text is out before a file can fail.
+    let mut done = text.finish();
+    if let Some(output) = json {
+        done = done.and(output.finish(|writer| inspection.write_json(writer)));
+    }
+    done?;
     Ok(ExitCode::SUCCESS)
 }

@@ -4,17 +4,25 @@ use std::path::Path;
 
 use ::study::Specimen;
 use sixfold::mesh_io::{LeftOut, ObjMesh, read_obj};
-use sixfold::{Facts, shapes};
+use sixfold::shapes;
 
 use crate::failure::Failure;
 use crate::numbers::counted;
+use crate::output::is_stdout;
 use crate::text::complain;
+use crate::triangulate::triangulated;
 
 /// How many of the faces that were left out are shown with their place.
 const SHOWN: usize = 5;
 
 /// Reads an OBJ file, and says what of it is passed over.
 pub(crate) fn read(path: &Path) -> Result<ObjMesh, Failure> {
+    // What means standard output elsewhere would be a file called `-` here.
+    if is_stdout(path) {
+        return Err(Failure::usage(
+            "-: standard input is not read: write the mesh to a file and name that",
+        ));
+    }
     let mesh = read_obj(path).map_err(Failure::usage)?;
     for notice in &mesh.notices {
         complain(&format!("note: {}: {notice}", path.display()));
@@ -24,7 +32,9 @@ pub(crate) fn read(path: &Path) -> Result<ObjMesh, Failure> {
 
 /// The mesh of the file at `path`, without its degenerate faces; these are named.
 pub(crate) fn specimen(path: &Path) -> Result<Specimen, Failure> {
-    Ok(from_file(path)?.0)
+    let (specimen, left_out) = from_file(path)?;
+    tell(path, &left_out);
+    Ok(specimen)
 }
 
 /// The same for a study: nothing is left out if `strict`, and polygons are cut up on demand.
@@ -50,16 +60,7 @@ pub(crate) fn for_study(path: &Path, strict: bool, triangulate: bool) -> Result<
             "{file}: {what}, so there is nothing to study: try `sixfold inspect`"
         )));
     }
-    if !left_out.is_empty() {
-        let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
-        complain(&format!("note: {file}: left out {faces}:"));
-        for left_out in left_out.iter().take(SHOWN) {
-            complain(&format!("note:   {left_out}"));
-        }
-        if left_out.len() > SHOWN {
-            complain(&format!("note:   and {} more", left_out.len() - SHOWN));
-        }
-    }
+    tell(path, &left_out);
     if triangulate {
         specimen = triangulated(specimen)?;
     }
@@ -71,32 +72,19 @@ pub(crate) fn built_in() -> Specimen {
     Specimen::new("default study (built in)", shapes::default_study())
 }
 
-/// The mesh with every polygon cut into a fan.
-pub(crate) fn triangulated(specimen: Specimen) -> Result<Specimen, Failure> {
-    let before = specimen.polygons.face_count();
-    let polygons = specimen.polygons.fan_triangulated();
-    let polygons =
-        polygons.map_err(|error| Failure::usage(format!("{}: {error}", specimen.name)))?;
-    let after = polygons.face_count();
-    if after == before {
-        return Ok(specimen);
+/// Says which faces were left out of the file, and where they are.
+fn tell(path: &Path, left_out: &[LeftOut]) {
+    if left_out.is_empty() {
+        return;
     }
-    let cut = counted(before, "face", "faces");
-    let triangles = counted(after, "triangle", "triangles");
-    let mut changes = specimen.changes;
-    changes.push(format!("cut {cut} into {triangles}"));
-    // The facts are those of the mesh that is studied; what was left out stays on record.
-    let degenerate_faces = specimen.facts.degenerate_faces;
-    let facts = Facts {
-        degenerate_faces,
-        ..Facts::of(&polygons)
-    };
-    Ok(Specimen {
-        name: specimen.name,
-        facts,
-        polygons,
-        changes,
-    })
+    let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
+    complain(&format!("note: {}: left out {faces}:", path.display()));
+    for left_out in left_out.iter().take(SHOWN) {
+        complain(&format!("note:   {left_out}"));
+    }
+    if left_out.len() > SHOWN {
+        complain(&format!("note:   and {} more", left_out.len() - SHOWN));
+    }
 }
 
 fn from_file(path: &Path) -> Result<(Specimen, Vec<LeftOut>), Failure> {

@@ -22,9 +22,13 @@ mod progress;
 mod results_table;
 mod study;
 mod text;
+mod triangulate;
 
+use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches};
 
 use arguments::{Arguments, Command};
@@ -35,13 +39,15 @@ fn main() -> ExitCode {
     let command = Arguments::command()
         .mut_subcommand("study", |study| study.after_help(study::help()))
         .mut_subcommand("generate", |generate| generate.after_help(generate::help()));
-    let arguments = Arguments::from_arg_matches(&command.get_matches());
-    let arguments = arguments.unwrap_or_else(|error| error.exit());
-    let done = match arguments.command {
-        None => study::run(&arguments::Study::default()),
-        Some(Command::Study(arguments)) => study::run(&arguments),
-        Some(Command::Inspect(arguments)) => inspect::run(&arguments),
-        Some(Command::Generate(arguments)) => generate::run(&arguments),
+    let arguments = command
+        .try_get_matches()
+        .and_then(|matches| Arguments::from_arg_matches(&matches));
+    let done = match arguments.map(|arguments| arguments.command) {
+        Err(error) => told(&error),
+        Ok(None) => study::run(&arguments::Study::default()),
+        Ok(Some(Command::Study(arguments))) => study::run(&arguments),
+        Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
+        Ok(Some(Command::Generate(arguments))) => generate::run(&arguments),
     };
     match done {
         Ok(code) => code,
@@ -49,5 +55,31 @@ fn main() -> ExitCode {
             text::complain(&format!("error: {message}"));
             ExitCode::from(code)
         }
+    }
+}
+
+/// Prints what clap has to say: help and version, or what is wrong with the arguments.
+fn told(error: &clap::Error) -> Result<ExitCode, Failure> {
+    if let (ErrorKind::InvalidSubcommand, Some(ContextValue::String(word))) =
+        (error.kind(), error.get(ContextKind::InvalidSubcommand))
+        && Path::new(word)
+            .extension()
+            .is_some_and(|ending| ending.eq_ignore_ascii_case("obj"))
+    {
+        return Err(Failure::usage(format!(
+            "`{word}` is a file and no command: did you mean `sixfold study {word}`?"
+        )));
+    }
+    let mut typed = std::env::args_os().map(|typed| typed.to_string_lossy().into_owned());
+    if error.use_stderr() && typed.any(|typed| text::tame(&typed) != typed) {
+        // What was typed comes back in the message, and must not steer the terminal: no colours then.
+        let plain = error.render().to_string();
+        plain.lines().for_each(text::complain);
+        return Ok(ExitCode::from(2));
+    }
+    let printed = error.print().and_then(|()| io::stdout().flush());
+    match error.exit_code() {
+        0 => text::all_out(printed).map(|()| ExitCode::SUCCESS),
+        _ => Ok(ExitCode::from(2)),
     }
 }

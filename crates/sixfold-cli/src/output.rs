@@ -4,8 +4,13 @@ use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::process::exit;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::failure::Failure;
+
+/// Drafts that are neither files yet nor cleared away. Whoever holds the lock decides about them.
+static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// A place for data, opened before the work begins so that nobody waits for a failure.
 ///
@@ -32,19 +37,74 @@ pub(crate) fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
+/// Refuses two outputs to one place, and an output in the place of the input.
+pub(crate) fn check_places(
+    mesh: Option<&Path>,
+    outputs: &[(&str, Option<&PathBuf>)],
+) -> Result<(), Failure> {
+    let asked = outputs
+        .iter()
+        .filter_map(|&(option, path)| Some((option, path?)));
+    let mut taken: Vec<(&str, PathBuf)> = Vec::new();
+    let mesh = mesh.map(place);
+    for (option, path) in asked {
+        let (place, shown) = (place(path), path.display());
+        if mesh.as_ref() == Some(&place) && !is_stdout(path) {
+            return Err(Failure::usage(format!(
+                "{option} would overwrite the mesh {shown}: name another place"
+            )));
+        }
+        if let Some((other, _)) = taken.iter().find(|(_, there)| *there == place) {
+            return Err(Failure::usage(format!(
+                "{other} and {option} both write to {shown}: name two places"
+            )));
+        }
+        taken.push((option, place));
+    }
+    Ok(())
+}
+
+/// One name for a file, however it is written, and whether or not it is there.
+fn place(path: &Path) -> PathBuf {
+    let known = || {
+        if is_stdout(path) {
+            return None;
+        }
+        if let Ok(there) = fs::canonicalize(path) {
+            return Some(there);
+        }
+        let folder = path.parent().filter(|folder| *folder != Path::new(""));
+        let folder = fs::canonicalize(folder.unwrap_or(Path::new("."))).ok()?;
+        Some(folder.join(path.file_name()?))
+    };
+    known().unwrap_or_else(|| path.to_owned())
+}
+
+/// Clears all drafts away and ends the program: what a signal may call while others write.
+pub(crate) fn exit_without_drafts(code: i32) -> ! {
+    // Held to the end, so that no draft becomes a file or begins meanwhile.
+    let drafts = drafts();
+    for draft in drafts.iter() {
+        let _ = fs::remove_file(draft);
+    }
+    exit(code)
+}
+
+fn drafts() -> MutexGuard<'static, Vec<PathBuf>> {
+    DRAFTS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 impl Output {
     /// Opens `path`, or standard output for `-`.
     pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
         let shown = path.display().to_string();
-        let failed = |cause: io::Error| {
-            Failure::usage(format!(
-                "{shown}: cannot be written ({cause}): choose another place"
-            ))
-        };
         if is_stdout(path) {
-            let target = Target::Stdout;
-            return Ok(Self { shown, target });
+            return Ok(Self {
+                shown: "standard output".into(),
+                target: Target::Stdout,
+            });
         }
+        let failed = |cause: io::Error| cannot_write(&shown, &cause);
         // A link stays a link: what it points at is replaced.
         let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let target = match fs::metadata(&path) {
@@ -55,10 +115,24 @@ impl Output {
             Ok(there) if !there.is_file() => {
                 Target::Stream(File::options().write(true).open(&path).map_err(failed)?)
             }
-            _ => {
+            old => {
+                if old.is_ok() {
+                    // A file that may not be written may not be replaced either.
+                    File::options().write(true).open(&path).map_err(failed)?;
+                }
                 let draft = draft_of(&path);
+                let mut drafts = drafts();
                 let file = File::create(&draft).map_err(failed)?;
-                Target::File { file, draft, path }
+                drafts.push(draft.clone());
+                drop(drafts);
+                let target = Target::File { file, draft, path };
+                let output = Self { shown, target };
+                if let (Ok(old), Target::File { file, .. }) = (old, &output.target) {
+                    // Before there is anything to read: who might not read the old may not read this.
+                    let kept = file.set_permissions(old.permissions());
+                    kept.map_err(|cause| output.failure(&cause))?;
+                }
+                return Ok(output);
             }
         };
         Ok(Self { shown, target })
@@ -77,20 +151,21 @@ impl Output {
         let done = match &mut self.target {
             Target::Stdout => written(io::stdout().lock(), write),
             Target::Stream(file) => written(file, write),
-            Target::File { file, draft, path } => {
-                written(file, write).and_then(|()| fs::rename(draft, path))
-            }
+            Target::File { file, draft, path } => written(file, write).and_then(|()| {
+                let _held = drafts();
+                fs::rename(draft, path)
+            }),
         };
         match done {
             // Whoever read standard output has seen enough.
             Err(cause) if cause.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-            Err(cause) => {
-                let shown = &self.shown;
-                let message = format!("{shown}: cannot be written ({cause}): choose another place");
-                Err(Failure::usage(message))
-            }
+            Err(cause) => Err(self.failure(&cause)),
             Ok(()) => Ok(()),
         }
+    }
+
+    fn failure(&self, cause: &io::Error) -> Failure {
+        cannot_write(&self.shown, cause)
     }
 }
 
@@ -98,9 +173,18 @@ impl Drop for Output {
     /// Clears the draft away, unless it has become the file.
     fn drop(&mut self) {
         if let Target::File { draft, .. } = &self.target {
+            let mut drafts = drafts();
             let _ = fs::remove_file(draft);
+            drafts.retain(|other| other != draft);
         }
     }
+}
+
+/// The failure of writing to the place `shown`.
+pub(crate) fn cannot_write(shown: &str, cause: &io::Error) -> Failure {
+    Failure::usage(format!(
+        "{shown}: cannot be written ({cause}): choose another place"
+    ))
 }
 
 fn written(to: impl Write, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {

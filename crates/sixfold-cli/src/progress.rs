@@ -1,12 +1,14 @@
 //! Progress on a terminal, and what Ctrl-C does.
 
 use std::io::{self, IsTerminal};
-use std::process::exit;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use ::study::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::output::exit_without_drafts;
+use crate::text::complain;
 
 /// How finely the bar moves.
 const STEPS: u64 = 1000;
@@ -46,16 +48,28 @@ impl Bar {
     }
 }
 
+/// The exit code of a command that was ended before its time.
+pub(crate) const INTERRUPTED: u8 = 4;
+
+/// Ends the program at the first Ctrl-C, for commands with no part worth keeping.
+pub(crate) fn end_on_interrupt() {
+    // Where there can be no handler, Ctrl-C does what it always did.
+    let _ = ctrlc::set_handler(|| {
+        complain("interrupted");
+        exit_without_drafts(INTERRUPTED.into());
+    });
+}
+
 /// A flag that the first Ctrl-C sets; the second ends the program at once.
 pub(crate) fn interrupt_flag() -> Arc<AtomicBool> {
     /// What shells expect of a program that was interrupted.
-    const INTERRUPTED: i32 = 130;
+    const AT_ONCE: i32 = 130;
     let flag = Arc::new(AtomicBool::new(false));
     let set = Arc::clone(&flag);
     // Where there can be no handler, Ctrl-C does what it always did.
     let _ = ctrlc::set_handler(move || {
         if set.swap(true, Ordering::Relaxed) {
-            exit(INTERRUPTED);
+            exit_without_drafts(AT_ONCE);
         }
     });
     flag

@@ -178,7 +178,7 @@ impl Signs {
             ('*', "best"),
             (
                 '=',
-                "tied for best: no difference beyond the noise, or less than 2 %",
+                "tied for best: no difference beyond the noise, or less than 2 % (2 × below three samples)",
             ),
             ('~', "from a sample of the elements"),
             ('?', "estimated, not run"),
@@ -206,7 +206,7 @@ impl Signs {
                 } = row;
                 let time = duration(ns);
                 let text = format!(
-                    "? {operation} on {backend} was not run: one run would take about {time}, too long to repeat in the budget"
+                    "? {operation} on {backend} was not run: one run would take about {time}, too long for the budget"
                 );
                 lines.extend(wrapped(&text, WIDTH));
             }

@@ -1,28 +1,31 @@
 //! `sixfold study`: measure and show.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
-use ::study::{Environment, Operation, Report, Settings, StudyError};
+use ::study::{Environment, Operation, Report, SCHEMA, Settings, Specimen, StudyError};
 
 use crate::arguments::{STUDY_EXAMPLES, Study};
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::load;
 use crate::numbers::counted;
-use crate::output::{Output, is_stdout};
-use crate::progress::{Bar, interrupt_flag};
+use crate::output::{Output, check_places, is_stdout};
+use crate::progress::{Bar, INTERRUPTED, interrupt_flag};
 use crate::results_table::results_table;
 use crate::text::{Text, complain, hanging};
 
 /// The study found that backends disagree.
 const MISMATCH: u8 = 1;
-/// The study was ended before its time.
-const INTERRUPTED: u8 = 4;
 
-/// Measures what was asked for; files first, then text.
+/// Measures what was asked for; text first, so that no file that fails can take it along.
 pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
-    check_outputs(arguments)?;
+    check_places(
+        arguments.mesh.as_deref(),
+        &[
+            ("--json", arguments.json.as_ref()),
+            ("--csv", arguments.csv.as_ref()),
+        ],
+    )?;
     // Before the drafts of the outputs, so that Ctrl-C can leave none behind.
     let stop = interrupt_flag();
     let json = Output::open_if(arguments.json.as_ref())?;
@@ -44,18 +47,22 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     let bar = Bar::new();
     let report = ::study::study(&specimen, &settings, &stop, &mut |at| bar.show(at));
     bar.clear();
-    let report = report.map_err(failure)?;
+    let report = match report {
+        Ok(report) => report,
+        // That is an answer: who was asked, and why each refuses.
+        Err(error @ StudyError::NoneHolds { .. }) => {
+            let refusals = refusals(&specimen, &settings)?;
+            write_files(&refusals, json, csv)?;
+            return Err(Failure::unsupported(error));
+        }
+        Err(error) => return Err(Failure::usage(error)),
+    };
 
-    if let Some(output) = json {
-        output.finish(|writer| report.write_json(writer))?;
-    }
-    if let Some(output) = csv {
-        output.finish(|writer| report.write_csv(writer))?;
-    }
     let data = [&arguments.json, &arguments.csv];
     let data_on_stdout = data.into_iter().flatten().any(|path| is_stdout(path));
     let mut text = Text::shown(!data_on_stdout);
     print(&report, &mut text);
+    let done = text.finish().and(write_files(&report, json, csv));
 
     let mismatches = report.mismatches().count();
     if mismatches > 0 {
@@ -63,8 +70,10 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         complain(&format!(
             "error: {results} from those of other backends for the same work: a fault in Sixfold, please report it"
         ));
+        done?;
         return Ok(ExitCode::from(MISMATCH));
     }
+    done?;
     if report.interrupted {
         complain("interrupted: what was finished is kept");
         return Ok(ExitCode::from(INTERRUPTED));
@@ -82,25 +91,33 @@ pub(crate) fn help() -> String {
     format!("{STUDY_EXAMPLES}\n\n{backends}\n{operations}")
 }
 
-/// Refuses two outputs to one place.
-fn check_outputs(arguments: &Study) -> Result<(), Failure> {
-    let same = |a: &PathBuf, b: &PathBuf| a == b;
-    match (&arguments.json, &arguments.csv) {
-        (Some(json), Some(csv)) if same(json, csv) => {
-            let place = json.display();
-            Err(Failure::usage(format!(
-                "--json and --csv both write to {place}: name two places"
-            )))
-        }
-        _ => Ok(()),
+/// Writes the files asked for; each is tried, whatever comes of the other.
+fn write_files(report: &Report, json: Option<Output>, csv: Option<Output>) -> Result<(), Failure> {
+    let mut done = Ok(());
+    if let Some(output) = json {
+        done = done.and(output.finish(|writer| report.write_json(writer)));
     }
+    if let Some(output) = csv {
+        done = done.and(output.finish(|writer| report.write_csv(writer)));
+    }
+    done
 }
 
-fn failure(error: StudyError) -> Failure {
-    match error {
-        StudyError::NoneHolds { .. } => Failure::unsupported(error),
-        _ => Failure::usage(error),
-    }
+/// The report on a mesh that no backend asked for can hold: their reasons, and no results.
+fn refusals(specimen: &Specimen, settings: &Settings) -> Result<Report, Failure> {
+    let asked = settings.chosen_backends().map_err(Failure::usage)?;
+    let inspection = ::study::inspect(specimen);
+    let mut backends = inspection.backends;
+    backends.retain(|backend| asked.iter().any(|one| one.name() == backend.name));
+    Ok(Report {
+        schema: SCHEMA,
+        mesh: inspection.mesh,
+        backends,
+        results: Vec::new(),
+        words: Vec::new(),
+        interrupted: false,
+        environment: Environment::here(settings.seed, settings.budget.as_secs_f64()),
+    })
 }
 
 fn print(report: &Report, text: &mut Text) {

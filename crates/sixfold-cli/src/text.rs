@@ -2,6 +2,9 @@
 
 use std::io::{self, IsTerminal, Write};
 
+use crate::failure::Failure;
+use crate::output::cannot_write;
+
 /// How many columns text may take.
 pub(crate) const WIDTH: usize = 100;
 
@@ -9,6 +12,7 @@ pub(crate) const WIDTH: usize = 100;
 pub(crate) struct Text {
     shown: bool,
     bold: bool,
+    failed: Option<io::Error>,
 }
 
 impl Text {
@@ -19,6 +23,7 @@ impl Text {
         Self {
             shown,
             bold: io::stdout().is_terminal() && !no_colour && !dumb,
+            failed: None,
         }
     }
 
@@ -27,18 +32,55 @@ impl Text {
         self.bold
     }
 
-    /// Prints `text` and ends the line. A reader that has gone away is no error: nobody is there to
-    /// be told, and files are still to be written.
+    /// Prints `text` and ends the line. After a failure it prints no more: files are still to be
+    /// written, and [`Text::finish`] tells.
     pub(crate) fn say(&mut self, text: &str) {
-        if self.shown && writeln!(io::stdout().lock(), "{text}").is_err() {
+        if self.shown
+            && let Err(cause) = writeln!(io::stdout().lock(), "{text}")
+        {
             self.shown = false;
+            self.failed = Some(cause);
         }
+    }
+
+    /// Whether all the text got out.
+    pub(crate) fn finish(self) -> Result<(), Failure> {
+        let done = self.failed.map_or_else(|| io::stdout().flush(), Err);
+        all_out(done)
     }
 }
 
-/// Prints a line on standard error, if anybody is there.
+/// What came of printing. A reader that has gone away is no error: nobody is there to be told.
+pub(crate) fn all_out(done: io::Result<()>) -> Result<(), Failure> {
+    match done {
+        Err(cause) if cause.kind() != io::ErrorKind::BrokenPipe => {
+            Err(cannot_write("standard output", &cause))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Prints a line on standard error, if anybody is there. It stays one line, whatever file names and
+/// files put into it.
 pub(crate) fn complain(line: &str) {
-    let _ = writeln!(io::stderr().lock(), "{line}");
+    let _ = writeln!(io::stderr().lock(), "{}", tame(line));
+}
+
+/// `text` without the characters that steer a terminal or turn the direction of writing: escapes
+/// stand for them, `\u{1b}`.
+pub(crate) fn tame(text: &str) -> String {
+    let steers = |c: char| {
+        c.is_control()
+            || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    let mut tamed = String::with_capacity(text.len());
+    for c in text.chars() {
+        match steers(c) {
+            true => tamed.extend(c.escape_default()),
+            false => tamed.push(c),
+        }
+    }
+    tamed
 }
 
 /// `text` in lines of at most `width` columns, broken at blanks; a longer word has its own line.
@@ -67,6 +109,12 @@ pub(crate) fn hanging(first: &str, text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_steers_a_terminal_is_escaped() {
+        assert_eq!(tame("a\u{1b}[2Jb\nc\u{202e}"), "a\\u{1b}[2Jb\\nc\\u{202e}");
+        assert_eq!(tame("Hügel – 山.obj"), "Hügel – 山.obj");
+    }
 
     #[test]
     fn lines_break_at_blanks() {

@@ -72,6 +72,9 @@ fn degenerate_faces_are_left_out_aloud_or_refused() {
     );
     assert!(run.stdout.contains("2 degenerate faces"), "{run:?}");
     let run = sixfold.run(&["inspect", "degenerate.obj"]);
+    for place in ["line 9", "line 10"] {
+        assert!(run.stderr.contains(place), "{run:?}");
+    }
     assert!(run.stdout.contains("2 degenerate faces"), "{run:?}");
     refused(
         &sixfold,
@@ -132,14 +135,7 @@ fn a_mesh_that_nobody_asked_for_can_hold_has_its_own_code() {
     let sixfold = Sixfold::new();
     let book = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
     sixfold.file("book.obj", book);
-    let arguments = [
-        "study",
-        "book.obj",
-        "--backends",
-        "half-edge",
-        "--json",
-        "x.json",
-    ];
+    let arguments = ["study", "book.obj", "--backends", "half-edge"];
     refused(&sixfold, &arguments, 3, "f0, f1, f2");
     // Others can, and that is no error.
     let run = sixfold.run(&["study", "book.obj", "--budget", "50ms"]);

@@ -53,3 +53,62 @@ fn an_interrupted_study_keeps_what_is_finished() {
     );
     assert_eq!(sixfold.names(), ["grid.obj", "kept.json"]);
 }
+
+#[test]
+fn no_draft_outlives_an_interrupt() {
+    let sixfold = Sixfold::new();
+    for signal in ["-INT", "-TERM"] {
+        let arguments = ["generate", "grid", "m=1500", "n=1500", "-o", "big.obj"];
+        let mut command = sixfold.command(&arguments);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let child = command.spawn().expect("the binary runs");
+        let start = Instant::now();
+        while sixfold.names().is_empty() && start.elapsed() < Duration::from_secs(60) {
+            sleep(Duration::from_millis(5));
+        }
+        let sent = Command::new("kill")
+            .args([signal, child.id().to_string().as_str()])
+            .status();
+        assert!(sent.expect("kill runs").success());
+        let output = child.wait_with_output().expect("it ends");
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(4), "{stderr}");
+        assert!(stderr.contains("interrupted"), "{stderr}");
+        assert!(sixfold.names().is_empty(), "{:?}", sixfold.names());
+    }
+}
+
+#[test]
+fn no_draft_outlives_two_interrupts_of_a_study() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 40);
+    let arguments = [
+        "study", "grid.obj", "--budget", "10m", "--json", "x.json", "--csv", "x.csv",
+    ];
+    let mut command = sixfold.command(&arguments);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the binary runs");
+    let start = Instant::now();
+    while sixfold.names().len() < 3 && start.elapsed() < Duration::from_secs(60) {
+        sleep(Duration::from_millis(5));
+    }
+    // Two that come as one are one: until it ends, another follows.
+    let status = loop {
+        if let Some(status) = child.try_wait().expect("our child") {
+            break status;
+        }
+        let sent = Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .status();
+        assert!(sent.expect("kill runs").success());
+        assert!(start.elapsed() < Duration::from_secs(120), "it goes on");
+        sleep(Duration::from_millis(1));
+    };
+    // The first may have been enough.
+    assert!(matches!(status.code(), Some(4 | 130)), "{status}");
+    let names = sixfold.names();
+    assert!(
+        names.iter().all(|name| !name.ends_with(".draft")),
+        "{names:?}"
+    );
+}

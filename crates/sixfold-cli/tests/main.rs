@@ -5,4 +5,5 @@ mod golden;
 mod interrupt;
 mod machine;
 mod outputs;
+mod places;
 mod run;
