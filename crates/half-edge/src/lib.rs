@@ -21,6 +21,15 @@
 //! not stored: it is O(degree) along a face and O(valence) along a boundary. Stored, it made every
 //! sweep slower (one-rings 6 to 20 %, by the wider record) and nothing here faster.
 //!
+//! # What the sweeps are bound by
+//!
+//! A step around a vertex is some nine instructions and one load that the next step waits for. On
+//! 82,000 triangles in a good order a one-ring sweep takes 12 ns a vertex, two a step: the records
+//! come from the nearer caches and several walks run at once, so instructions are the limit. In
+//! random order it takes 26 ns: each vertex touches some ten cache lines, of half-edges and of
+//! positions, that lie in no nearer cache. FF asks of each side two records and whether its face
+//! was met before: about 110 instructions a face in a breadth-first search, its real limit.
+//!
 //! # Examples
 //!
 //! ```
