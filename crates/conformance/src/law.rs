@@ -11,12 +11,14 @@
 mod corner_cases;
 mod cost;
 mod elements;
+mod refine;
 mod relations;
 mod structure;
 
 pub use corner_cases::corner_cases;
 pub use cost::{costs, memory};
 pub use elements::{elements, maps, missing_handles, names, positions};
+pub use refine::{refine, refine_in_parallel};
 pub use relations::{
     edge_edges, edge_faces, edge_vertices, face_edges, face_faces, face_vertices, one_ring,
     symmetry, vertex_edges, vertex_faces, vertex_vertices,

@@ -41,6 +41,22 @@ macro_rules! suite_of_laws {
     };
 }
 
+/// The laws of structures that refine themselves: `conformance::refine_suite!(half_edge::HalfEdgeMesh);`
+#[macro_export]
+macro_rules! refine_suite {
+    ($mesh:ty) => {
+        #[test]
+        fn refine() {
+            $crate::hold::<$mesh>("refine", $crate::law::refine::<$mesh>);
+        }
+
+        #[test]
+        fn refine_in_parallel() {
+            $crate::law::refine_in_parallel::<$mesh>();
+        }
+    };
+}
+
 /// How many random meshes a law sees where the environment does not say.
 const CASES: u32 = 192;
 

@@ -1,5 +1,6 @@
 //! What can be wrong with a face list, and what a structure refuses.
 
+use crate::refine::Split;
 use crate::row_id::{FaceId, VertexId};
 
 /// Why a list of faces is no [`PolygonMesh`](crate::PolygonMesh).
@@ -94,6 +95,55 @@ pub enum MoveError {
     /// Positions for another number of vertices.
     #[error("{given} positions for {vertices} vertices: the map is of another mesh")]
     OtherMesh { given: usize, vertices: usize },
+}
+
+/// Why a structure cannot refine itself; nothing has changed then.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum RefineError {
+    /// A split that is none of the structure's.
+    #[error(
+        "{structure} cannot split its own tables into {split}: build it from the refined polygons, or choose another structure"
+    )]
+    Unsupported {
+        structure: &'static str,
+        split: Split,
+    },
+    /// A polygon where only triangles can be split.
+    #[error(
+        "face {face} has {degree} corners, and only triangles can be split so: triangulate the mesh"
+    )]
+    NotATriangle { face: FaceId, degree: usize },
+    /// More elements than a handle can name.
+    #[error(
+        "the refined mesh would have {number} {elements}, and handles are 32 bits, for at most {limit}: refine fewer levels, or split the mesh"
+    )]
+    TooMany {
+        elements: &'static str,
+        number: usize,
+        limit: usize,
+    },
+}
+
+/// Why sharpness cannot be that of a mesh; `entry` counts the edges, or the vertices, as given, from 0.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum CreaseError {
+    /// A vertex that is not there.
+    #[error("vertex {vertex} is not there: the mesh has {vertices}, counted from 0")]
+    MissingVertex {
+        entry: usize,
+        vertex: u32,
+        vertices: usize,
+    },
+    /// Two vertices that no face has beside each other.
+    #[error("{0} and {1} are the ends of no edge: name two vertices that follow each other in a face", .ends[0], .ends[1])]
+    NotAnEdge { entry: usize, ends: [VertexId; 2] },
+    /// A sharpness below 0 or NaN.
+    #[error("sharpness {sharpness} is no number from 0 to inf")]
+    BadSharpness { entry: usize, sharpness: f32 },
 }
 
 /// The names of `faces`, at most eight of them.

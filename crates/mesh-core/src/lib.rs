@@ -6,11 +6,14 @@
 //! - [`Handle`] and [`HandleMap`]: how a structure names its elements, and data kept by name.
 //! - [`BuildError`]: why a structure refuses a mesh; [`Capabilities`] decides it in one place.
 //! - [`Table`] and [`Probe`]: storage whose reads and writes can be watched.
+//! - [`Refine`] and [`Split`]: structures that split every face in their own tables.
+//! - [`Creases`]: how sharp edges and vertices stay under subdivision.
 //! - [`Facts`]: the topology of a face list, exact and independent of any structure.
 //!
 //! Nothing here knows any one of the six structures.
 
 mod capability;
+mod creases;
 mod distinct;
 mod error;
 mod face_list;
@@ -23,6 +26,7 @@ mod partition;
 mod polygon_mesh;
 mod probe;
 mod query;
+mod refine;
 mod representation;
 mod row_id;
 mod scan;
@@ -30,8 +34,9 @@ mod sides;
 mod table;
 
 pub use capability::Capabilities;
+pub use creases::{Creases, SHARP_FOR_EVER};
 pub use distinct::{Distinct, DistinctWalk, IteratorExt};
-pub use error::{BuildError, InvariantError, MoveError, PolygonError};
+pub use error::{BuildError, CreaseError, InvariantError, MoveError, PolygonError, RefineError};
 pub use face_list::{FaceList, FaceSpans};
 pub use facts::{Facts, Spread};
 pub use glam::Vec3 as Point;
@@ -41,6 +46,7 @@ pub use pairing::TwinPairs;
 pub use polygon_mesh::PolygonMesh;
 pub use probe::{Access, AccessKind, Probe, Traced, Untraced};
 pub use query::{EdgeMap, FaceMap, MeshQuery, VertexMap};
+pub use refine::{PART, Refine, Split, check_split, in_given_parts, in_parts};
 pub use representation::{Counts, QueryCost, Relation, Representation};
 pub use row_id::{EdgeId, FaceId, MAX_ROWS, RowId, Slot, VertexId, row};
 pub use scan::hits_in;

@@ -135,6 +135,20 @@ impl<T, P: Probe> Table<T, P> {
         &mut self.rows
     }
 
+    /// Makes the table have `len` rows, to be overwritten: whatever they hold, without moving what is
+    /// large enough already. Unwatched.
+    pub fn resize(&mut self, len: usize, blank: T)
+    where
+        T: Copy,
+    {
+        if len > self.rows.capacity() {
+            // Nothing of the old rows is of use: let them go before the new ones are asked for.
+            self.rows = Vec::new();
+            self.rows.reserve_exact(len);
+        }
+        self.rows.resize(len, blank);
+    }
+
     /// The name and the bytes really held, capacity included.
     pub fn bytes(&self) -> TableBytes {
         TableBytes {

@@ -1,0 +1,269 @@
+//! Structures that split every face in their own tables.
+
+use std::collections::BTreeMap;
+
+use mesh_core::{Counts, FaceId, Point, PolygonMesh, Refine, RefineError, Split, VertexId};
+
+use crate::subject::Subject;
+
+/// Every split of the structure, both kinds of √3 among them.
+fn splits<M: Refine>() -> Vec<Split> {
+    let mut splits = Vec::new();
+    for &split in M::SPLITS {
+        match split {
+            Split::Sqrt3 { .. } => {
+                splits.extend([false, true].map(|trisect| Split::Sqrt3 { trisect }));
+            }
+            _ => splits.push(split),
+        }
+    }
+    splits
+}
+
+/// The child of every split is the mesh that the split draws, sound, with the parents told; a child
+/// that cannot be is refused by name. Edges have the numbers of their places in `edges()`.
+pub fn refine<M: Refine>(polygons: &PolygonMesh) {
+    let Some(Subject { mesh, input, .. }) = Subject::<M>::of(polygons) else {
+        return;
+    };
+    let mut numbers = M::EdgeNumbers::default();
+    mesh.number_edges(&mut numbers);
+    edges_are_numbered(&mesh, &numbers);
+    // Filled once with something else, so that what is overwritten is not blank.
+    let mut used = M::empty();
+    assert_eq!(used.to_polygons(), PolygonMesh::default());
+    for split in splits::<M>() {
+        let before = format!("{used:?}", used = Shown(&used));
+        let done = mesh.split_into(split, &numbers, &mut used);
+        let odd = input.faces().iter().find(|(_, face)| face.len() != 3);
+        if let (true, Some((face, corners))) = (split.needs_triangles(), odd) {
+            let degree = corners.len();
+            assert_eq!(done, Err(RefineError::NotATriangle { face, degree }));
+            assert_eq!(before, format!("{:?}", Shown(&used)), "a refused {split}");
+            continue;
+        }
+        done.unwrap_or_else(|e| panic!("{}: {split} refused: {e}", M::NAME));
+        let expected = Child::of(&mesh, &input, split);
+        expected.check(&mesh, &mut used, split);
+        let mut fresh = M::empty();
+        let done = mesh.split_into(split, &numbers, &mut fresh);
+        done.expect("done a moment ago");
+        expected.check(&mesh, &mut fresh, split);
+        assert_eq!(
+            format!("{:?}", Shown(&fresh)),
+            format!("{:?}", Shown(&used)),
+            "{}: {split} into a fresh mesh, and into a used one",
+            M::NAME
+        );
+    }
+}
+
+/// Meshes of many parts come out the same, byte for byte, on one thread and on three.
+pub fn refine_in_parallel<M: Refine>() {
+    let pool = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("threads can be had")
+    };
+    let small = "shapes of this size can be made";
+    let mut specimens = vec![
+        shapes::geodesic(24).expect(small),
+        shapes::triangle_grid(70, 81).expect(small),
+    ];
+    if M::CAPABILITIES.polygons {
+        specimens.push(shapes::mixed_grid(60, 77).expect(small));
+    }
+    for polygons in &specimens {
+        let Some(Subject { mesh, input, .. }) = Subject::<M>::of(polygons) else {
+            panic!("{} holds manifolds", M::NAME);
+        };
+        for split in splits::<M>() {
+            let refined = |threads| {
+                pool(threads).install(|| {
+                    let mut numbers = M::EdgeNumbers::default();
+                    mesh.number_edges(&mut numbers);
+                    edges_are_numbered(&mesh, &numbers);
+                    let mut child = M::empty();
+                    let done = mesh.split_into(split, &numbers, &mut child);
+                    done.ok()?;
+                    child.positions_mut().fill(Point::ZERO);
+                    Some(child)
+                })
+            };
+            let (Some(mut one), Some(three)) = (refined(1), refined(3)) else {
+                assert!(split.needs_triangles(), "{}: {split} refused", M::NAME);
+                continue;
+            };
+            let same = format!("{one:?}", one = Shown(&one)) == format!("{:?}", Shown(&three));
+            assert!(same, "{}: {split} on one thread and on three", M::NAME);
+            Child::of(&mesh, &input, split).check(&mesh, &mut one, split);
+        }
+    }
+}
+
+/// A mesh with all it holds, as text, positions included.
+struct Shown<'a, M>(&'a M);
+
+impl<M: Refine> std::fmt::Debug for Shown<'_, M> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let polygons = self.0.to_polygons();
+        let edges: Vec<_> = self.0.edges().collect();
+        let ends = edges.iter().map(|&e| self.0.edge_vertices(e));
+        let leaving: Vec<Vec<_>> = self
+            .0
+            .vertices()
+            .map(|v| self.0.vertex_edges(v).collect())
+            .collect();
+        let ends: Vec<_> = ends.collect();
+        write!(f, "{polygons:?} {edges:?} {ends:?} {leaving:?}")
+    }
+}
+
+fn edges_are_numbered<M: Refine>(mesh: &M, numbers: &M::EdgeNumbers) {
+    let edges: Vec<M::Edge> = mesh.edges().collect();
+    let parts = mesh.edge_parts(numbers);
+    assert_eq!(parts.first(), Some(&0), "{}: the first part", M::NAME);
+    assert_eq!(parts.last(), Some(&edges.len()), "{}: the last", M::NAME);
+    let mut again = Vec::with_capacity(edges.len());
+    for (part, &start) in parts.iter().enumerate().take(parts.len() - 1) {
+        assert_eq!(start, again.len(), "{}: part {part}", M::NAME);
+        again.extend(mesh.edges_of_part(numbers, part));
+    }
+    assert_eq!(again, edges, "{}: the edges of all parts", M::NAME);
+    for (number, &e) in edges.iter().enumerate() {
+        assert_eq!(mesh.edge_number(numbers, e), number, "{}: {e:?}", M::NAME);
+    }
+}
+
+/// What a split must make, worked out from the faces of the input.
+struct Child {
+    /// Every face from its lowest vertex on, and the face that it is a part of; sorted.
+    faces: Vec<(Vec<usize>, FaceId)>,
+    vertices: usize,
+    edges: usize,
+}
+
+impl Child {
+    fn of<M: Refine>(mesh: &M, input: &PolygonMesh, split: Split) -> Self {
+        let vertices = input.vertex_count();
+        let faces = input.face_count();
+        let mut edges: BTreeMap<[VertexId; 2], (usize, Vec<FaceId>)> = BTreeMap::new();
+        for (number, e) in mesh.edges().enumerate() {
+            let mut ends = mesh.edge_vertices(e);
+            ends.sort_unstable();
+            edges.insert(ends, (number, Vec::new()));
+        }
+        let pair = |a: VertexId, b: VertexId| [a.min(b), a.max(b)];
+        for (f, face) in input.faces().iter() {
+            for (i, &a) in face.iter().enumerate() {
+                let side = pair(a, face[(i + 1) % face.len()]);
+                edges.get_mut(&side).expect("an edge").1.push(f);
+            }
+        }
+        let mut boundary: Vec<usize> = Vec::new();
+        let alone = edges.values().filter(|(_, faces)| faces.len() == 1);
+        boundary.extend(alone.map(|&(number, _)| number));
+        boundary.sort_unstable();
+        let face_point = |f: FaceId| vertices + f.index();
+        let mut made = Vec::new();
+        for (f, face) in input.faces().iter() {
+            let degree = face.len();
+            let side = |i: usize| &edges[&pair(face[i % degree], face[(i + 1) % degree])];
+            let corner = |i: usize| face[i % degree].index();
+            let first = match split {
+                Split::Quads => vertices + faces,
+                _ => vertices,
+            };
+            let middle = |i: usize| first + side(i).0;
+            for i in 0..degree {
+                let before = i + degree - 1;
+                match split {
+                    Split::Quads => {
+                        let quad = [corner(i), middle(i), face_point(f), middle(before)];
+                        made.push((quad.to_vec(), f));
+                    }
+                    Split::Triangles => {
+                        made.push((vec![corner(i), middle(i), middle(before)], f));
+                    }
+                    Split::Sqrt3 { trisect } => {
+                        let (number, along) = side(i);
+                        let other = along.iter().find(|&&g| g != f);
+                        let (a, b) = (corner(i), corner(i + 1));
+                        match (other, trisect) {
+                            (Some(&g), _) => {
+                                made.push((vec![a, face_point(g), face_point(f)], f));
+                            }
+                            (None, false) => made.push((vec![a, b, face_point(f)], f)),
+                            (None, true) => {
+                                let rank = boundary.binary_search(number).expect("a boundary edge");
+                                let near = vertices + faces + 2 * rank;
+                                for side in [[a, near], [near, near + 1], [near + 1, b]] {
+                                    made.push((vec![side[0], side[1], face_point(f)], f));
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+            if split == Split::Triangles {
+                made.push(((0..3).map(middle).collect(), f));
+            }
+        }
+        let counts = Counts {
+            vertices,
+            edges: edges.len(),
+            faces,
+            corners: input.corner_count(),
+            uniform: true,
+        };
+        let grown = split.grown(&counts, boundary.len());
+        assert_eq!(grown.faces, made.len(), "the closed form of {split}");
+        for (face, _) in &mut made {
+            from_the_lowest(face);
+        }
+        made.sort();
+        Self {
+            faces: made,
+            vertices: grown.vertices,
+            edges: grown.edges,
+        }
+    }
+
+    /// Holds `child` to it.
+    fn check<M: Refine>(&self, mesh: &M, child: &mut M, split: Split) {
+        let name = M::NAME;
+        child.positions_mut().fill(Point::ZERO);
+        assert_eq!(
+            child.position_rows().len(),
+            self.vertices,
+            "{name}: {split}"
+        );
+        if let Err(fault) = child.validate() {
+            panic!("{name}: after {split} {fault}");
+        }
+        assert_eq!(
+            child.edge_count(),
+            self.edges,
+            "{name}: edges after {split}"
+        );
+        let polygons = child.to_polygons();
+        let mut faces: Vec<(Vec<usize>, FaceId)> = Vec::new();
+        for (f, face) in polygons.faces().iter() {
+            let mut corners: Vec<usize> = face.iter().map(|v| v.index()).collect();
+            from_the_lowest(&mut corners);
+            faces.push((corners, mesh.parent(split, f)));
+        }
+        faces.sort();
+        for (got, expected) in faces.iter().zip(&self.faces) {
+            assert_eq!(
+                got, expected,
+                "{name}: a face after {split}, and its parent"
+            );
+        }
+        assert_eq!(faces.len(), self.faces.len(), "{name}: faces after {split}");
+    }
+}
+
+fn from_the_lowest(face: &mut [usize]) {
+    let lowest = (0..face.len()).min_by_key(|&i| face[i]).unwrap_or(0);
+    face.rotate_left(lowest);
+}
