@@ -2,5 +2,7 @@
 
 mod equivalence;
 mod facts;
+mod operators;
 mod real_meshes;
 mod seventh;
+mod subdivision;

@@ -24,6 +24,7 @@
 //! | FE, FF | O(1) | three rows of `opposite`, side by side |
 //! | the edges, their number | O(corners) | `opposite` once through |
 //! | building | O(corners + vertices) | |
+//! | refining (triangles, √3) | O(corners + vertices) | each row once, in closed form |
 //!
 //! Corner `c` belongs to triangle `c / 3`, and `next` and `prev` are arithmetic: what a half-edge
 //! mesh stores for each half, this one computes. An edge is named by the corner that faces it, of
@@ -66,7 +67,9 @@ mod circulate;
 mod construct;
 mod mesh;
 mod query;
+mod refine;
 mod validate;
 
 pub use circulate::CornersAt;
 pub use mesh::{CornerId, CornerTable, EdgeCorner};
+pub use refine::EdgeNumbers;

@@ -1,3 +1,4 @@
 //! The corner table keeps every law of the trait.
 
 conformance::suite!(corner_table::CornerTable);
+conformance::refine_suite!(corner_table::CornerTable);

@@ -132,7 +132,7 @@ impl<P: Probe> FaceVertexMesh<P> {
 
     /// The end of `e` with fewer faces, those faces, and the other end.
     #[inline]
-    fn shorter_fan(&self, e: Pair<VertexId>) -> (VertexId, &[FaceId], VertexId) {
+    pub(crate) fn shorter_fan(&self, e: Pair<VertexId>) -> (VertexId, &[FaceId], VertexId) {
         let [a, b] = e.ends();
         let [at_a, at_b] = [a, b].map(|v| *self.fans.read(v.index()));
         if at_a.len <= at_b.len {

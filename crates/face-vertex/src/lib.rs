@@ -8,8 +8,12 @@
 
 mod circulate;
 mod construct;
+mod edge_numbers;
 mod mesh;
 mod query;
+mod refine;
+mod splitting;
 mod validate;
 
+pub use edge_numbers::EdgeNumbers;
 pub use mesh::{FaceVertexMesh, Fan};

@@ -46,6 +46,9 @@ use mesh_core::{FaceId, FaceSpans, Point, Probe, Table, Untraced, VertexId};
 /// then compare what they found: VV is bound by these comparisons in a well ordered mesh, by the
 /// latency of the jumps in a shuffled one.
 ///
+/// Splitting every face ([`Refine`](mesh_core::Refine)) takes O(corners · d + vertices), and as much
+/// again to number the edges, for the vertex of a fan is looked for in each face of it.
+///
 /// # Examples
 ///
 /// ```

@@ -1,3 +1,4 @@
 //! The laws of `conformance`, on this structure.
 
 conformance::suite!(face_vertex::FaceVertexMesh);
+conformance::refine_suite!(face_vertex::FaceVertexMesh);

@@ -17,6 +17,10 @@
 //! | FV, FE | O(degree) | `first`, then one half a corner |
 //! | FF | O(degree) | `first`, then two halves a side, side by side |
 //!
+//! | refinement ([`Refine`](mesh_core::Refine)) | cost | reads |
+//! |---|---|---|
+//! | quads, triangles, √3: all faces split | O(halves) | along a face from each half: its next, and on to its prev |
+//!
 //! Vertices, edges and faces are rows, so that counting and listing them reads nothing. `prev` is
 //! not stored: it is O(degree) along a face and O(valence) along a boundary. Stored, it made every
 //! sweep slower (one-rings 6 to 20 %, by the wider record) and nothing here faster.
@@ -52,6 +56,7 @@ mod circulate;
 mod construct;
 mod mesh;
 mod query;
+mod refine;
 mod validate;
 
 pub use circulate::{AroundFace, Leaving};

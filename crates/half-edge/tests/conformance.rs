@@ -1,3 +1,4 @@
 //! The laws of `conformance`, on this structure.
 
 conformance::suite!(half_edge::HalfEdgeMesh);
+conformance::refine_suite!(half_edge::HalfEdgeMesh);

@@ -8,7 +8,6 @@ use crate::error::BuildError;
 use crate::incidence::Incidence;
 use crate::pairing::{MAX_CORNERS, MAX_EDGES};
 use crate::polygon_mesh::PolygonMesh;
-use crate::row_id::{FaceId, VertexId};
 
 /// What a structure can hold beyond closed, oriented triangle manifolds.
 ///
@@ -156,22 +155,9 @@ fn check_orientation(incidence: &Incidence) -> Result<(), BuildError> {
 }
 
 fn check_vertices(polygons: &PolygonMesh, incidence: &Incidence) -> Result<(), BuildError> {
-    let faces = polygons.faces();
-    let mut fans = incidence.fans(faces);
-    // By vertex: the first face there and its fan; and the lowest vertex with a second fan.
-    let mut first: Vec<Option<(FaceId, usize)>> = vec![None; polygons.vertex_count()];
-    let mut fault: Option<(VertexId, FaceId, FaceId)> = None;
-    for (f, face) in faces.iter() {
-        for (corner, &v) in faces.range(f).zip(face) {
-            let (fan, _) = fans.root(corner);
-            let (first, first_fan) = *first[v.index()].get_or_insert((f, fan));
-            if fan != first_fan && fault.is_none_or(|(lowest, ..)| v < lowest) {
-                fault = Some((v, first, f));
-            }
-        }
-    }
-    match fault {
-        Some((vertex, first, second)) => Err(BuildError::NonManifoldVertex {
+    let faults = incidence.several_fans(polygons.faces());
+    match faults.into_iter().min_by_key(|&(vertex, _)| vertex) {
+        Some((vertex, [first, second])) => Err(BuildError::NonManifoldVertex {
             vertex,
             first,
             second,

@@ -83,6 +83,12 @@ impl Creases {
         Self { edges, corners }
     }
 
+    /// These creases, and those of `later`, which count where both speak of one edge or vertex.
+    pub fn with(&self, later: &Self) -> Self {
+        let edges = [&self.edges[..], &later.edges].concat();
+        Self::sorted(edges, [&self.corners[..], &later.corners].concat())
+    }
+
     /// Whether nothing is sharp.
     pub fn is_empty(&self) -> bool {
         self.edges.is_empty() && self.corners.is_empty()

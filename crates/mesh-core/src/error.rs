@@ -115,6 +115,11 @@ pub enum RefineError {
         "face {face} has {degree} corners, and only triangles can be split so: triangulate the mesh"
     )]
     NotATriangle { face: FaceId, degree: usize },
+    /// Two triangles with two edges in common, whose midpoints or face points the split would join twice.
+    #[error(
+        "faces {first} and {second} share two edges, so the refined mesh would have two edges with the same ends: cut one of the two faces first, or choose a structure that holds edges with more than two faces"
+    )]
+    DoubleEdge { first: FaceId, second: FaceId },
     /// More elements than a handle can name.
     #[error(
         "the refined mesh would have {number} {elements}, and handles are 32 bits, for at most {limit}: refine fewer levels, or split the mesh"

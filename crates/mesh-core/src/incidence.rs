@@ -26,6 +26,39 @@ pub(crate) struct EdgeSides<'a> {
     pub(crate) sides: &'a [Side],
 }
 
+/// How faces use an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EdgeUse {
+    /// The two ends, the lower first.
+    pub ends: [VertexId; 2],
+    /// How many faces run along it; one on a boundary.
+    pub faces: usize,
+    /// Whether no two of them run the same way.
+    pub opposed: bool,
+}
+
+impl EdgeUse {
+    pub(crate) fn of(edge: EdgeSides<'_>) -> Self {
+        let faces = edge.sides.len();
+        let down = edge.sides.iter().filter(|side| side.downward).count();
+        Self {
+            ends: edge.ends,
+            faces,
+            opposed: down <= 1 && faces - down <= 1,
+        }
+    }
+
+    /// Whether it has one face.
+    pub fn is_boundary(&self) -> bool {
+        self.faces == 1
+    }
+
+    /// Whether it has at most two faces, which run along it in opposite directions.
+    pub fn is_manifold(&self) -> bool {
+        self.opposed
+    }
+}
+
 /// The sides of all faces by edge; O(corners), and O(n log n) in the sides of one vertex.
 pub(crate) struct Incidence {
     sides: Vec<Side>,
@@ -95,6 +128,26 @@ impl Incidence {
             }
         }
         fans
+    }
+
+    /// The vertices whose faces form more than one fan, each with a face of the first fan and the
+    /// first face of another; in the order in which these other faces come.
+    pub(crate) fn several_fans(&self, faces: &FaceList) -> Vec<(VertexId, [FaceId; 2])> {
+        let mut fans = self.fans(faces);
+        // By vertex: the first face there, its fan, and whether another fan has been met.
+        let mut first: Vec<Option<(FaceId, usize, bool)>> = vec![None; self.ends.len()];
+        let mut found = Vec::new();
+        for (f, face) in faces.iter() {
+            for (corner, &v) in faces.range(f).zip(face) {
+                let (fan, _) = fans.root(corner);
+                let known = first[v.index()].get_or_insert((f, fan, false));
+                if known.1 != fan && !known.2 {
+                    known.2 = true;
+                    found.push((v, [known.0, f]));
+                }
+            }
+        }
+        found
     }
 }
 

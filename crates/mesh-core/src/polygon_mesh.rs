@@ -4,6 +4,8 @@ use crate::Point;
 use crate::distinct::IteratorExt;
 use crate::error::PolygonError;
 use crate::face_list::FaceList;
+use crate::incidence::{EdgeUse, Incidence};
+use crate::representation::Counts;
 use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
 
 /// Positions and polygons: the mesh as a list of faces, before any structure.
@@ -84,6 +86,18 @@ impl PolygonMesh {
         self.faces.corners().len()
     }
 
+    /// Its sizes; O(corners) expected, to count the edges.
+    pub fn counts(&self) -> Counts {
+        let incidence = Incidence::of(self.vertex_count(), &self.faces, |_| true);
+        Counts {
+            vertices: self.vertex_count(),
+            edges: incidence.edges().count(),
+            faces: self.face_count(),
+            corners: self.corner_count(),
+            uniform: self.faces.uniform_degree().is_some(),
+        }
+    }
+
     /// Every vertex.
     pub fn vertices(&self) -> impl ExactSizeIterator<Item = VertexId> + Clone {
         let vertices = row(self.positions.len());
@@ -107,6 +121,24 @@ impl PolygonMesh {
     /// The faces as lists of vertices.
     pub fn faces(&self) -> &FaceList {
         &self.faces
+    }
+
+    /// The vertices whose faces form more than one fan, in their order; O(corners) expected.
+    ///
+    /// Faces are of one fan where a chain of faces leads from one to the other, each along an edge
+    /// at the vertex. Orientation does not matter.
+    pub fn vertices_of_several_fans(&self) -> Vec<VertexId> {
+        let incidence = Incidence::of(self.vertex_count(), &self.faces, |_| true);
+        let fans = incidence.several_fans(&self.faces).into_iter();
+        let mut vertices: Vec<VertexId> = fans.map(|(v, _)| v).collect();
+        vertices.sort_unstable();
+        vertices
+    }
+
+    /// Every edge once, in the order of the ends; O(corners) expected.
+    pub fn edge_uses(&self) -> Vec<EdgeUse> {
+        let incidence = Incidence::of(self.vertex_count(), &self.faces, |_| true);
+        incidence.edges().map(EdgeUse::of).collect()
     }
 
     /// The mesh with vertex `v` called `names[v]`; the faces stay in their order.
@@ -233,6 +265,37 @@ mod tests {
         let square = PolygonMesh::new(SQUARE, [[0, 1, 2, 3]]).expect("valid");
         let fan = PolygonMesh::new(SQUARE, [[0, 1, 2], [0, 2, 3]]).expect("valid");
         assert_eq!(square.fan_triangulated(), Ok(fan));
+    }
+
+    #[test]
+    fn edges_say_how_faces_use_them() {
+        let corners = [0.0, 1.0, 2.0, 3.0, 4.0].map(Point::splat);
+        let mesh = PolygonMesh::new(corners, [[0, 1, 2], [1, 0, 3], [2, 0, 4]]).expect("valid");
+        let uses = mesh.edge_uses();
+        assert_eq!(uses.len(), mesh.counts().edges);
+        let of = |a: u32, b: u32| {
+            let ends = [a, b].map(VertexId::new);
+            let found = uses.iter().find(|edge| edge.ends == ends).expect("an edge");
+            (found.faces, found.is_manifold())
+        };
+        assert_eq!(
+            [of(0, 1), of(0, 3), of(0, 2)],
+            [(2, true), (1, true), (2, true)]
+        );
+        let book = PolygonMesh::new(corners, [[0, 1, 2], [1, 0, 3], [0, 1, 4]]).expect("valid");
+        let spine = book.edge_uses()[0];
+        assert_eq!((spine.faces, spine.is_manifold()), (3, false));
+        let turned = PolygonMesh::new(corners, [[0, 1, 2], [0, 1, 3]]).expect("valid");
+        assert!(!turned.edge_uses()[0].is_manifold());
+    }
+
+    #[test]
+    fn a_vertex_of_several_fans_is_found_whichever_way_faces_run() {
+        let corners = [0.0, 1.0, 2.0, 3.0, 4.0].map(Point::splat);
+        let mesh = |faces: &[[u32; 3]]| PolygonMesh::new(corners, faces).expect("valid");
+        let fans = |faces: &[[u32; 3]]| mesh(faces).vertices_of_several_fans();
+        assert_eq!(fans(&[[0, 1, 2], [0, 3, 4]]), [VertexId::new(0)]);
+        assert_eq!(fans(&[[0, 1, 2], [0, 1, 3]]), []);
     }
 
     #[test]

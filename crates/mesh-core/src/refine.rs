@@ -129,14 +129,14 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
     /// The splits that the structure can do. `Sqrt3` stands for both of its kinds.
     const SPLITS: &'static [Split];
 
-    /// The numbers of the edges, worked out once per mesh and used again for the next: nothing where
-    /// an edge is a row, else a table by corner.
+    /// The numbers of the edges, worked out once per mesh and used again for the next: a table by
+    /// corner, or, where an edge is a row, no more than `split_into` and `parent` have to look up.
     type EdgeNumbers: Default + Send + Sync;
 
     /// A mesh without any element, to be refined into.
     fn empty() -> Self;
 
-    /// Numbers the edges in the order of `edges()`; O(corners) or nothing.
+    /// Numbers the edges in the order of `edges()`; O(corners) or less.
     fn number_edges(&self, numbers: &mut Self::EdgeNumbers);
 
     /// How the numbered edges fall into parts of a few thousand, for passes that share the work: the
@@ -160,8 +160,9 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
     /// # Errors
     ///
     /// [`RefineError`], and `child` is as it was: the split is none of [`SPLITS`](Self::SPLITS), a
-    /// face is no triangle where only triangles can be split, or the child would have too many
-    /// elements for its handles, which is found out before anything is allocated.
+    /// face is no triangle where only triangles can be split, two triangles share two edges where no
+    /// edge may have more than two faces, or the child would have too many elements for its handles,
+    /// which is found out before anything is allocated.
     fn split_into(
         &self,
         split: Split,
@@ -170,9 +171,10 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
     ) -> Result<(), RefineError>;
 
     /// The face that `child`, a face of the mesh after `split`, is a part of; O(1), or O(log faces)
-    /// where degrees are mixed. A triangle of the √3 split across an old inner edge belongs to the
-    /// face whose side its first old vertex starts.
-    fn parent(&self, split: Split, child: FaceId) -> FaceId;
+    /// where degrees are mixed or there is a boundary. A triangle of the √3 split across an old inner
+    /// edge belongs to the face whose side its first old vertex starts. `numbers` are those of this
+    /// mesh.
+    fn parent(&self, numbers: &Self::EdgeNumbers, split: Split, child: FaceId) -> FaceId;
 
     /// All positions by vertex, to be overwritten.
     fn positions_mut(&mut self) -> &mut [Point];
@@ -235,16 +237,17 @@ pub fn in_parts<T: Send>(rows: &mut [T], part: usize, work: impl Fn(usize, &mut 
 }
 
 /// The same for rows that fall into parts of different lengths: part `i` has the rows
-/// `starts[i]..starts[i + 1]`; `work` gets the number of the part.
+/// `starts[i]..starts[i + 1]`; `work` gets the number of the part, and what it yields for each part
+/// comes back in their order.
 ///
 /// # Panics
 ///
 /// If `starts` do not rise from 0 to the number of rows.
-pub fn in_given_parts<T: Send>(
+pub fn in_given_parts<T: Send, R: Send>(
     rows: &mut [T],
     starts: &[usize],
-    work: impl Fn(usize, Range<usize>, &mut [T]) + Sync,
-) {
+    work: impl Fn(usize, Range<usize>, &mut [T]) -> R + Sync,
+) -> Vec<R> {
     use rayon::prelude::*;
     let mut parts = Vec::with_capacity(starts.len());
     let mut rest = rows;
@@ -254,13 +257,24 @@ pub fn in_given_parts<T: Send>(
         rest = after;
     }
     assert!(rest.is_empty(), "the parts leave {} rows over", rest.len());
+    let work = |(number, range, rows)| work(number, range, rows);
     if parts.len() == 1 || rayon::current_num_threads() == 1 {
-        for (number, range, rows) in parts {
-            work(number, range, rows);
-        }
+        parts.into_iter().map(work).collect()
     } else {
-        let each = parts.into_par_iter();
-        each.for_each(|(number, range, rows)| work(number, range, rows));
+        parts.into_par_iter().map(work).collect()
+    }
+}
+
+/// Whether `is` holds for all `rows`, which the threads of the current rayon pool share.
+///
+/// There is no early way out inside a part of [`PART`] rows, so that it can be vectorised.
+pub fn all_rows<T: Sync>(rows: &[T], is: impl Fn(&T) -> bool + Sync) -> bool {
+    use rayon::prelude::*;
+    let whole = |rows: &[T]| rows.iter().fold(true, |all, row| all & is(row));
+    if rows.len() <= PART || rayon::current_num_threads() == 1 {
+        rows.chunks(PART).all(whole)
+    } else {
+        rows.par_chunks(PART).all(whole)
     }
 }
 

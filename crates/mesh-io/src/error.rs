@@ -3,6 +3,8 @@
 use std::fmt;
 use std::io;
 
+use crate::tags::TagFault;
+
 /// A line of a file; prints as `bunny.obj:17`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
@@ -21,7 +23,8 @@ impl fmt::Display for Place {
 /// Why a file is no mesh, where, and what to do.
 ///
 /// The first fault of the file is reported; only what cannot be known before the end waits for it,
-/// first faces that name a vertex beyond the last, then coordinates that are not finite.
+/// first faces that name a vertex beyond the last, then coordinates that are not finite, then tags of
+/// vertices and edges that are not there.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -98,6 +101,9 @@ pub enum ObjError {
         index: i64,
         before: usize,
     },
+    /// A `t crease` or `t corner` tag is not what it should be.
+    #[error("{at}: {fault}")]
+    Tag { at: Place, fault: TagFault },
     /// The parser refuses a statement that we find nothing wrong with.
     #[error("{at}: the parser refuses {text:?} ({reason}): rewrite the line in plain form")]
     Refused {

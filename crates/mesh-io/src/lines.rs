@@ -1,6 +1,6 @@
 //! Bytes as logical lines.
 
-use std::io::{self, BufRead};
+use std::io::{self, BufRead, Read};
 
 /// The logical lines of a file: comments cut off, continued lines joined by a blank.
 ///
@@ -15,6 +15,8 @@ pub(crate) struct Lines<R> {
     next: Option<usize>,
     /// How many lines were given out.
     count: u64,
+    /// The most bytes of a line, or of lines that end in a lone CR together.
+    longest: u64,
 }
 
 /// How a file starts.
@@ -33,7 +35,14 @@ impl<R: BufRead> Lines<R> {
             chunk: Vec::new(),
             next: None,
             count: 0,
+            longest: u64::MAX,
         }
+    }
+
+    /// The same with an end to every line: beyond `longest` bytes reading fails with
+    /// [`io::ErrorKind::FileTooLarge`].
+    pub(crate) fn of_at_most(self, longest: u64) -> Self {
+        Self { longest, ..self }
     }
 
     /// Reads the first line ahead and looks for a byte order mark.
@@ -55,20 +64,19 @@ impl<R: BufRead> Lines<R> {
     /// Reads the next logical line into `statement`; the number of its first physical line.
     pub(crate) fn read(&mut self, statement: &mut Vec<u8>) -> io::Result<Option<u64>> {
         statement.clear();
-        let first = self.count + 1;
+        let (first, longest) = (self.count + 1, self.longest);
         while let Some(line) = self.physical()? {
             let comment = line.iter().position(|&byte| byte == b'#');
             let text = line[..comment.unwrap_or(line.len())].trim_ascii_end();
-            match text.strip_suffix(b"\\") {
-                Some(continued) if comment.is_none() => {
-                    statement.extend_from_slice(continued);
-                    statement.push(b' ');
-                }
-                _ => {
-                    statement.extend_from_slice(text);
-                    return Ok(Some(first));
-                }
+            let continued = text.strip_suffix(b"\\").filter(|_| comment.is_none());
+            statement.extend_from_slice(continued.unwrap_or(text));
+            if statement.len() as u64 > longest {
+                return Err(io::ErrorKind::FileTooLarge.into());
             }
+            if continued.is_none() {
+                return Ok(Some(first));
+            }
+            statement.push(b' ');
         }
         // The file may end in a continued line.
         Ok((self.count >= first).then_some(first))
@@ -95,7 +103,12 @@ impl<R: BufRead> Lines<R> {
     /// Reads up to the next LF and cuts the line end off; whether there was anything.
     fn read_chunk(&mut self) -> io::Result<bool> {
         self.chunk.clear();
-        let read = self.source.read_until(b'\n', &mut self.chunk)?;
+        let most = self.longest.saturating_add(1);
+        let mut source = self.source.by_ref().take(most);
+        let read = source.read_until(b'\n', &mut self.chunk)?;
+        if read as u64 > self.longest && self.chunk.last() != Some(&b'\n') {
+            return Err(io::ErrorKind::FileTooLarge.into());
+        }
         for end in [b'\n', b'\r'] {
             if self.chunk.last() == Some(&end) {
                 self.chunk.pop();
@@ -144,6 +157,29 @@ mod tests {
         assert_lines("a \\ # b\nc", &[(1, "a \\"), (2, "c")]);
         assert_lines("a \\\nb # c \\\nd", &[(1, "a  b"), (3, "d")]);
         assert_lines("a\n\\\n\\\n\\", &[(1, "a"), (2, "   ")]);
+    }
+
+    #[test]
+    fn a_line_may_have_an_end_to_its_length() {
+        for (text, fits) in [
+            ("abcd\nabcd\n", true),
+            ("abcd\nabcd", true),
+            ("abcd\nabcde", false),
+            ("ab\\\nab", false),
+            ("a\\\na", true),
+        ] {
+            let mut lines = Lines::new(text.as_bytes()).of_at_most(4);
+            let mut statement = Vec::new();
+            let mut read = || lines.read(&mut statement);
+            let end = std::iter::repeat_with(&mut read).find(|line| !matches!(line, Ok(Some(_))));
+            match end.expect("the text ends") {
+                Err(error) => {
+                    assert!(!fits, "{text:?}");
+                    assert_eq!(error.kind(), io::ErrorKind::FileTooLarge);
+                }
+                Ok(_) => assert!(fits, "{text:?}"),
+            }
+        }
     }
 
     #[test]

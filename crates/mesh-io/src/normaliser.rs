@@ -8,6 +8,7 @@ use crate::error::{ObjError, Place, shown};
 use crate::lines::{Lines, Start};
 use crate::notice::{Notice, Passed, note};
 use crate::obj_mesh::ShortFace;
+use crate::tags::{Tag, Tags};
 
 /// Reads a file and hands it on as plain text, statement by statement.
 ///
@@ -42,6 +43,7 @@ pub(crate) struct Normaliser<'a, R> {
     /// By face of three corners or more: the line.
     pub(crate) face_lines: Vec<u32>,
     pub(crate) short_faces: Vec<ShortFace>,
+    pub(crate) tags: Tags,
     pub(crate) notices: Vec<Notice>,
 }
 
@@ -70,6 +72,7 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
             vertex_lines: Vec::new(),
             face_lines: Vec::new(),
             short_faces: Vec::new(),
+            tags: Tags::default(),
             notices: Vec::new(),
         }
     }
@@ -141,11 +144,30 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
             b"" => Ok(()),
             b"v" => self.read_vertex(self.decoded(rest)?),
             b"f" | b"fo" => self.read_face(self.decoded(rest)?),
+            b"t" => self.read_tag(rest),
             _ => {
                 note(&mut self.notices, Passed::of(keyword), self.line);
                 Ok(())
             }
         }
+    }
+
+    /// Keeps what makes something sharp; other tags are passed over.
+    fn read_tag(&mut self, tag: &[u8]) -> Result<(), ObjError> {
+        let tag = tag.trim_ascii_start();
+        let end = tag.iter().position(u8::is_ascii_whitespace);
+        let (name, values) = tag.split_at(end.unwrap_or(tag.len()));
+        let Some(tag) = Tag::named(name) else {
+            note(&mut self.notices, Passed::of_tag(name), self.line);
+            return Ok(());
+        };
+        let values = self.decoded(values)?;
+        let read = self.tags.read(tag, values, self.line);
+        read.map_err(|fault| ObjError::Tag {
+            at: self.at(self.line),
+            fault,
+        })?;
+        self.check_limit("sharp edges and vertices", self.tags.len())
     }
 
     fn decoded<'b>(&self, bytes: &'b [u8]) -> Result<&'b str, ObjError> {

@@ -28,6 +28,14 @@ pub enum Passed {
     FreeForm,
     /// How to draw it: `bevel`, `lod` and their kin.
     Display,
+    /// `t interpolateboundary` and its kin: how subdivision treats boundaries.
+    BoundaryTags,
+    /// `t creasemethod`: how sharpness wears off.
+    CreaseMethodTags,
+    /// `t hole`: faces that are not drawn.
+    HoleTags,
+    /// `t` with another name.
+    OtherTags,
     /// A keyword that OBJ does not have.
     Unknown,
 }
@@ -53,6 +61,18 @@ impl Passed {
         }
     }
 
+    /// What a `t` statement with this name is; neither `crease` nor `corner`.
+    pub(crate) fn of_tag(name: &[u8]) -> Self {
+        match name {
+            b"interpolateboundary"
+            | b"facevaryinginterpolateboundary"
+            | b"facevaryingpropagatecorners" => Self::BoundaryTags,
+            b"creasemethod" => Self::CreaseMethodTags,
+            b"hole" => Self::HoleTags,
+            _ => Self::OtherTags,
+        }
+    }
+
     /// What one and what several of them are called.
     const fn names(self) -> [&'static str; 2] {
         match self {
@@ -70,6 +90,10 @@ impl Passed {
             Self::Points => ["point statement", "point statements"],
             Self::FreeForm => ["free-form statement", "free-form statements"],
             Self::Display => ["display attribute", "display attributes"],
+            Self::BoundaryTags => ["tag of boundary rules", "tags of boundary rules"],
+            Self::CreaseMethodTags => ["tag of the crease method", "tags of the crease method"],
+            Self::HoleTags => ["tag of holes", "tags of holes"],
+            Self::OtherTags => ["tag of another kind", "tags of another kind"],
             Self::Unknown => ["unknown statement", "unknown statements"],
         }
     }

@@ -2,9 +2,10 @@
 
 use std::fmt;
 
-use mesh_core::{FaceList, Facts, IteratorExt, Point, PolygonMesh, VertexId};
+use mesh_core::{Creases, FaceList, Facts, IteratorExt, Point, PolygonMesh, VertexId};
 
 use crate::notice::Notice;
+use crate::tags::{CornerTag, CreaseTag, LooseCrease, on_polygons};
 
 /// The vertices and faces of a file, numbered as the file numbers them.
 ///
@@ -20,6 +21,11 @@ pub struct ObjMesh {
     pub face_lines: Vec<u32>,
     /// Faces of fewer than three corners.
     pub short_faces: Vec<ShortFace>,
+    /// The edges that `t crease` tags make sharp, in file order; all of them are sides of faces, which
+    /// need not be polygons.
+    pub crease_tags: Vec<CreaseTag>,
+    /// The vertices that `t corner` tags make sharp, in file order.
+    pub corner_tags: Vec<CornerTag>,
     /// What was passed over, in the order of the first of each kind.
     pub notices: Vec<Notice>,
 }
@@ -65,6 +71,25 @@ impl ObjMesh {
         let mut facts = facts.unwrap_or_else(|error| panic!("{error}"));
         facts.degenerate_faces += self.short_faces.len();
         facts
+    }
+
+    /// How sharp the tags make the edges and vertices of [`into_polygons`](Self::into_polygons), which
+    /// keeps all vertices and their numbers; and the creases that have no edge there, because
+    /// degenerate and short faces are left out. Of two tags for one element the later counts.
+    ///
+    /// O(corners · log tags), nothing where there are no tags.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nt crease 3/1/0 2 0 1 4.7\nt corner 1/1/0 1 inf\n";
+    /// let obj = mesh_io::parse_obj("triangle.obj", text.as_bytes())?;
+    /// let (creases, loose) = obj.creases();
+    /// assert_eq!((creases.edges().len(), creases.corners().len(), loose.len()), (2, 1, 0));
+    /// # Ok::<(), mesh_io::ObjError>(())
+    /// ```
+    pub fn creases(&self) -> (Creases, Vec<LooseCrease>) {
+        on_polygons(&self.crease_tags, &self.corner_tags, &self.faces)
     }
 
     /// The mesh without its degenerate and short faces, and these by line; O(corners).
@@ -139,7 +164,7 @@ fn number(vertex: VertexId) -> u32 {
 }
 
 /// The first vertex that `face` names for the second time; O(corners) expected.
-fn repeated(face: &[VertexId]) -> Option<VertexId> {
+pub(crate) fn repeated(face: &[VertexId]) -> Option<VertexId> {
     let mut distinct = face.iter().copied().distinct();
     face.iter().copied().find(|&v| distinct.next() != Some(v))
 }

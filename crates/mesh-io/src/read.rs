@@ -1,7 +1,7 @@
 //! OBJ in.
 
 use std::fs::{self, File};
-use std::io::{BufRead, BufReader};
+use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 
 use mesh_core::{FaceList, Point, VertexId, row};
@@ -25,16 +25,34 @@ const AS_IT_IS: tobj::LoadOptions = tobj::LoadOptions {
 /// A path that is no readable file, and what [`parse_obj`] finds; errors call the file by `path`.
 pub fn read_obj(path: &Path) -> Result<ObjMesh, ObjError> {
     let file = path.display().to_string();
-    let unopened = |cause| ObjError::Open {
-        file: file.clone(),
-        cause,
-    };
-    // Opening a directory succeeds on some systems and is a misleading error on others.
-    if fs::metadata(path).map_err(unopened)?.is_dir() {
-        return Err(ObjError::Directory { file });
+    match opened(path) {
+        Ok(source) => parse_obj(&file, source),
+        Err(Unopened::Directory) => Err(ObjError::Directory { file }),
+        Err(Unopened::Failed(cause)) => Err(ObjError::Open { file, cause }),
     }
-    let source = File::open(path).map_err(unopened)?;
-    parse_obj(&file, BufReader::with_capacity(1 << 16, source))
+}
+
+/// Why a file is not open.
+pub(crate) enum Unopened {
+    /// A directory stands there.
+    Directory,
+    /// The system will not.
+    Failed(io::Error),
+}
+
+impl From<io::Error> for Unopened {
+    fn from(cause: io::Error) -> Self {
+        Self::Failed(cause)
+    }
+}
+
+/// The file at `path`, open.
+pub(crate) fn opened(path: &Path) -> Result<BufReader<File>, Unopened> {
+    // Opening a directory succeeds on some systems and is a misleading error on others.
+    if fs::metadata(path)?.is_dir() {
+        return Err(Unopened::Directory);
+    }
+    Ok(BufReader::with_capacity(1 << 16, File::open(path)?))
 }
 
 /// Reads OBJ text from `source`; errors call it `name`; O(bytes).
@@ -74,11 +92,18 @@ pub fn parse_obj(name: &str, source: impl BufRead) -> Result<ObjMesh, ObjError> 
     }
     let (positions, faces) = as_numbered(models, text.vertex_lines.len());
     check_finite(&text, &positions)?;
+    let tags = text.tags.check(positions.len(), &faces, &text.short_faces);
+    tags.map_err(|(line, fault)| ObjError::Tag {
+        at: text.at(line),
+        fault,
+    })?;
     Ok(ObjMesh {
         positions,
         faces,
         face_lines: text.face_lines,
         short_faces: text.short_faces,
+        crease_tags: text.tags.creases,
+        corner_tags: text.tags.corners,
         notices: text.notices,
     })
 }

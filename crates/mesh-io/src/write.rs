@@ -55,7 +55,7 @@ pub fn write_obj(polygons: &PolygonMesh, out: impl Write) -> io::Result<()> {
 }
 
 /// The fewest digits that read back as the same number; powers of ten where zeros would fill the line.
-struct Shortest(f32);
+pub(crate) struct Shortest(pub(crate) f32);
 
 impl fmt::Display for Shortest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

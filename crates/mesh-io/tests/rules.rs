@@ -99,7 +99,7 @@ fn weights_and_colours_are_passed_over_and_change_nothing() {
 #[test]
 fn every_kind_passed_over_has_its_notice() {
     let text = "v 0 0 0\nvt 0 0\nvn\nvn 0 0 1\no\ng a b\nusemtl m\nmtllib m\ns off\nl 1 1\np 1\n\
-                curv 0 1 1 1\nbevel on\nV 1 2 3\nt crease\n#g\n\ng\\\nv 1 1 1\n";
+                curv 0 1 1 1\nbevel on\nV 1 2 3\ncall b.obj\n#g\n\ng\\\nv 1 1 1\n";
     let obj = read(text);
     assert_eq!(obj.positions.len(), 1, "a continued group is one statement");
     let notices: Vec<String> = obj.notices.iter().map(ToString::to_string).collect();

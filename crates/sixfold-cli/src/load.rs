@@ -4,7 +4,7 @@ use std::path::Path;
 
 use ::study::Specimen;
 use sixfold::mesh_io::{LeftOut, ObjMesh, read_obj};
-use sixfold::shapes;
+use sixfold::{Creases, PolygonMesh, shapes};
 
 use crate::failure::Failure;
 use crate::numbers::counted;
@@ -65,6 +65,19 @@ pub(crate) fn for_study(path: &Path, strict: bool, triangulate: bool) -> Result<
         specimen = triangulated(specimen)?;
     }
     Ok(specimen)
+}
+
+/// The mesh of the file at `path`, without its degenerate faces, and the sharpness that the file
+/// tells.
+pub(crate) fn with_creases(path: &Path) -> Result<(PolygonMesh, Creases), Failure> {
+    let mesh = read(path)?;
+    let (creases, loose) = mesh.creases();
+    for crease in &loose {
+        complain(&format!("note: {}: {crease}", path.display()));
+    }
+    let (polygons, left_out) = mesh.into_polygons();
+    tell(path, &left_out);
+    Ok((polygons, creases))
 }
 
 /// The built-in mesh.

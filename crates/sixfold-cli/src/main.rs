@@ -19,8 +19,11 @@ mod load;
 mod numbers;
 mod output;
 mod progress;
+mod render;
 mod results_table;
+mod schemes;
 mod study;
+mod subdivide;
 mod text;
 mod triangulate;
 
@@ -48,6 +51,9 @@ fn main() -> ExitCode {
         Ok(Some(Command::Study(arguments))) => study::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
         Ok(Some(Command::Generate(arguments))) => generate::run(&arguments),
+        Ok(Some(Command::Schemes(arguments))) => schemes::run(&arguments),
+        Ok(Some(Command::Subdivide(arguments))) => subdivide::run(&arguments),
+        Ok(Some(Command::Render(arguments))) => render::run(&arguments),
     };
     match done {
         Ok(code) => code,

@@ -30,6 +30,16 @@ pub(crate) fn counted(number: usize, singular: &str, plural: &str) -> String {
     format!("{} {word}", grouped(number))
 }
 
+/// A number of bytes with the unit that suits it, a thousand of each to the next.
+pub(crate) fn bytes(number: usize) -> String {
+    match number as f64 {
+        n if n < 1e3 => counted(number, "byte", "bytes"),
+        n if n < 1e6 => format!("{} kB", figure(n / 1e3)),
+        n if n < 1e9 => format!("{} MB", figure(n / 1e6)),
+        n => format!("{} GB", figure(n / 1e9)),
+    }
+}
+
 /// A time with the unit that suits it.
 pub(crate) fn duration(ns: f64) -> String {
     match ns {

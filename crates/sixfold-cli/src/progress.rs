@@ -3,6 +3,7 @@
 use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use ::study::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -44,6 +45,60 @@ impl Bar {
     pub(crate) fn clear(&self) {
         if let Self(Some(bar)) = self {
             bar.finish_and_clear();
+        }
+    }
+}
+
+/// A bar of faces that have been made, on standard error if that is a terminal.
+pub(crate) struct Faces(Option<ProgressBar>);
+
+impl Faces {
+    /// A bar for work that makes `faces` in all.
+    pub(crate) fn of(faces: usize) -> Self {
+        if !io::stderr().is_terminal() {
+            return Self(None);
+        }
+        let style =
+            ProgressStyle::with_template("{bar:30} {human_pos} faces, {per_sec} {msg}");
+        let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+        let bar = ProgressBar::new(faces as u64).with_style(style);
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Self(Some(bar))
+    }
+
+    /// Counts `faces` more, made by level `level`.
+    pub(crate) fn made(&self, level: u32, faces: usize) {
+        let Self(Some(bar)) = self else { return };
+        bar.inc(faces as u64);
+        bar.set_message(format!("level {level} done"));
+    }
+
+    /// Takes the bar away.
+    pub(crate) fn clear(&self) {
+        if let Self(Some(bar)) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// A line that turns while something takes a while, on standard error if that is a terminal.
+pub(crate) struct Waiting(Option<ProgressBar>);
+
+impl Waiting {
+    /// Says what is being done.
+    pub(crate) fn shown(what: String) -> Self {
+        if !io::stderr().is_terminal() {
+            return Self(None);
+        }
+        let line = ProgressBar::new_spinner().with_message(what);
+        line.enable_steady_tick(Duration::from_millis(100));
+        Self(Some(line))
+    }
+
+    /// Takes the line away.
+    pub(crate) fn clear(&self) {
+        if let Self(Some(line)) = self {
+            line.finish_and_clear();
         }
     }
 }

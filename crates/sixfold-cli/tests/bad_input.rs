@@ -3,7 +3,7 @@
 use crate::run::{Run, Sixfold, TETRAHEDRON};
 
 /// One `error:` line that says `says`, nothing on standard output, and no new file.
-fn refused(sixfold: &Sixfold, arguments: &[&str], code: i32, says: &str) -> Run {
+pub(crate) fn refused(sixfold: &Sixfold, arguments: &[&str], code: i32, says: &str) -> Run {
     let before = sixfold.names();
     let run = sixfold.run(arguments);
     assert_eq!(run.code, Some(code), "{arguments:?}: {run:?}");

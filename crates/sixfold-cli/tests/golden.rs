@@ -37,6 +37,7 @@ fn help() {
         ("help_study.txt", &["study", "--help"]),
         ("help_inspect.txt", &["inspect", "--help"]),
         ("help_generate.txt", &["generate", "--help"]),
+        ("help_render.txt", &["render", "--help"]),
     ] {
         golden(name, &printed(&sixfold, arguments));
     }

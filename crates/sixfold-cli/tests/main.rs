@@ -6,4 +6,5 @@ mod interrupt;
 mod machine;
 mod outputs;
 mod places;
+mod render;
 mod run;

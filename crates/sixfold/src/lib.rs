@@ -9,13 +9,19 @@ pub use half_edge::{self, HalfEdgeMesh};
 pub use indexed_face_set::{self, IndexedFaceSet};
 pub use mesh_core::{self, *};
 pub use mesh_io;
+pub use operators;
 pub use polygon_soup::{self, PolygonSoup};
 pub use shapes;
+pub use subdivision;
 pub use winged_edge::{self, WingedEdgeMesh};
 
 mod roster;
+mod support;
 
-pub use roster::{BackendInfo, Visitor, roster, visit, visit_all};
+pub use roster::{
+    BackendInfo, RefineVisitor, Visitor, roster, visit, visit_all, visit_refinable,
+};
+pub use support::{Support, support};
 
 /// The examples of the README, compiled and run as tests.
 #[cfg(doctest)]

@@ -1,6 +1,6 @@
 //! The one list of all representations.
 
-use mesh_core::{BuildError, Capabilities, PolygonMesh, QueryCost, Representation};
+use mesh_core::{BuildError, Capabilities, PolygonMesh, QueryCost, Refine, Representation};
 
 /// Work that is the same for every representation, chosen at run time.
 ///
@@ -33,6 +33,28 @@ macro_rules! for_each_representation {
             type $mesh = $representation;
             $body
         })+
+    };
+}
+
+/// Work that is the same for every structure that refines its own tables, chosen at run time.
+pub trait RefineVisitor {
+    /// What the work yields.
+    type Output;
+
+    /// Does the work on `M`.
+    fn visit<M: Refine + 'static>(&mut self) -> Self::Output;
+}
+
+/// As [`for_each_representation!`](crate::for_each_representation), for those that refine their own tables.
+#[macro_export]
+macro_rules! for_each_refinable {
+    ($mesh:ident => $body:block) => {
+        $crate::for_each_representation!(@each $mesh $body
+            $crate::FaceVertexMesh,
+            $crate::WingedEdgeMesh,
+            $crate::HalfEdgeMesh,
+            $crate::CornerTable,
+        );
     };
 }
 
@@ -92,6 +114,17 @@ pub fn visit_all<V: Visitor>(visitor: &mut V) -> Vec<V::Output> {
 /// Does the work of `visitor` on the representation called `name`; `None` if there is none.
 pub fn visit<V: Visitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     for_each_representation!(M => {
+        if name == M::NAME {
+            return Some(visitor.visit::<M>());
+        }
+    });
+    None
+}
+
+/// Does the work of `visitor` on the representation called `name`; `None` if there is none, or it
+/// does not refine its own tables.
+pub fn visit_refinable<V: RefineVisitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
+    for_each_refinable!(M => {
         if name == M::NAME {
             return Some(visitor.visit::<M>());
         }

@@ -3,18 +3,26 @@
 //! `peer --mesh FILE.obj [--op NAME …] [--reps N] [--budget SECONDS] [--backend NAME]` prints one
 //! JSON object a line. Every operation runs once to warm up and then `N` times, alone; the code is
 //! that of a study. Processor time is that of the only thread.
+//!
+//! Subdivision is called `catmull_clark_2`, `loop_1`, `sqrt3_1` and so on, the scheme and the steps;
+//! `--way` is gather, scatter, native_fresh or native. With `--threads` beyond 1 all times of it are
+//! wall times.
 
 use std::path::Path;
 use std::process::ExitCode;
 
 use serde_json::json;
 use sixfold::mesh_io::read_obj;
-use study::{MachineClock, Operation, Solo};
+use sixfold::subdivision::{Boundary, Scheme};
+use sixfold::{Creases, PolygonMesh};
+use study::{Clock, MachineClock, Operation, Refining, Solo, Time, Way};
 
 struct Arguments {
     mesh: String,
     backend: String,
     operations: Vec<String>,
+    way: Way,
+    threads: usize,
     reps: usize,
     budget_s: f64,
 }
@@ -34,6 +42,8 @@ fn arguments() -> Result<Arguments, String> {
         mesh: String::new(),
         backend: "half-edge".into(),
         operations: Vec::new(),
+        way: Way::Native,
+        threads: 1,
         reps: 11,
         budget_s: 20.0,
     };
@@ -44,6 +54,12 @@ fn arguments() -> Result<Arguments, String> {
         match word.as_str() {
             "--mesh" => found.mesh = value()?,
             "--backend" => found.backend = value()?,
+            "--way" => {
+                let name = value()?;
+                let way = Way::ALL.into_iter().find(|way| way.name() == name);
+                found.way = way.ok_or(format!("{name} is no way to subdivide"))?;
+            }
+            "--threads" => found.threads = number(value()?)? as usize,
             "--reps" => found.reps = number(value()?)? as usize,
             "--budget" => found.budget_s = number(value()?)?,
             "--op" => {
@@ -83,31 +99,115 @@ fn run(arguments: &Arguments) -> Result<(), String> {
             continue;
         }
         let clock = MachineClock::start();
-        let (mut wall, mut cpu, mut total) = (Vec::new(), Vec::new(), 0.0);
-        let mut last = solo.run(operation, &clock);
-        while wall.len() < arguments.reps.max(1) {
-            last = solo.run(operation, &clock);
-            wall.push(last.time.wall_ns);
-            cpu.push(last.time.ns());
-            total += last.time.wall_ns * 1e-9;
-            if wall.len() >= 3 && total > arguments.budget_s {
+        let row = Row::of(arguments, operation.name(), || {
+            let run = solo.run(operation, &clock);
+            (run.time, run.checksum, run.elements)
+        });
+        row.print(&peer, &mesh);
+    }
+    for name in &arguments.operations {
+        if let Some((scheme, levels)) = subdivision(name) {
+            let row = refined(arguments, &polygons, name, scheme, levels)?;
+            row.print(&format!("{peer} {}", arguments.way), &mesh);
+        }
+    }
+    Ok(())
+}
+
+/// The scheme and the steps of `catmull_clark_2`.
+fn subdivision(name: &str) -> Option<(Scheme, u32)> {
+    let (scheme, levels) = name.rsplit_once('_')?;
+    let scheme = Scheme::named(&scheme.replace('_', "-"))?;
+    let levels = levels.parse().ok()?;
+    (1..=16).contains(&levels).then_some((scheme, levels))
+}
+
+/// A subdivision, on threads of its own.
+fn refined(
+    arguments: &Arguments,
+    polygons: &PolygonMesh,
+    name: &str,
+    scheme: Scheme,
+    levels: u32,
+) -> Result<Row, String> {
+    let mut job = Refining::new(scheme, arguments.way, levels);
+    // What the other libraries do.
+    job.subdivision.boundary = Boundary::EdgeOnly;
+    let refiner = job.on(&arguments.backend, polygons, &Creases::default());
+    let refiner = refiner.ok_or(format!("{name} does not run this way here"))?;
+    let mut refiner = refiner.map_err(|e| e.to_string())?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads);
+    let pool = pool.build().map_err(|e| e.to_string())?;
+    pool.install(|| {
+        refiner.run().map_err(|e| e.to_string())?;
+        // On a thread of the pool: alone there, its clock is that of all the work.
+        let clock = MachineClock::start();
+        Ok(Row::of(arguments, name, || {
+            let began = clock.now();
+            refiner.run().expect("it has run before");
+            let mut time = clock.now() - began;
+            if arguments.threads > 1 {
+                time.cpu_ns = None;
+            }
+            let (faces, checksum) = refiner.result();
+            (time, checksum, faces as u64)
+        }))
+    })
+}
+
+/// What the runs of one operation came to.
+struct Row {
+    operation: String,
+    wall: Vec<f64>,
+    cpu: Vec<f64>,
+    checksum: f64,
+    elements: u64,
+}
+
+impl Row {
+    /// Runs it once to warm up, and then as often as it is asked for and the budget allows.
+    fn of(arguments: &Arguments, operation: &str, mut run: impl FnMut() -> (Time, f64, u64)) -> Self {
+        let (_, checksum, elements) = run();
+        let mut row = Self {
+            operation: operation.to_owned(),
+            wall: Vec::new(),
+            cpu: Vec::new(),
+            checksum,
+            elements,
+        };
+        let mut total = 0.0;
+        while row.wall.len() < arguments.reps.max(1) {
+            let (time, ..) = run();
+            row.wall.push(time.wall_ns);
+            row.cpu.push(time.ns());
+            total += time.wall_ns * 1e-9;
+            if row.wall.len() >= 3 && total > arguments.budget_s {
                 break;
             }
         }
-        for times in [&mut wall, &mut cpu] {
-            times.sort_by(f64::total_cmp);
-        }
+        row.wall.sort_by(f64::total_cmp);
+        row.cpu.sort_by(f64::total_cmp);
+        row
+    }
+
+    fn print(&self, peer: &str, mesh: &str) {
+        let Self {
+            operation,
+            wall,
+            cpu,
+            checksum,
+            elements,
+        } = self;
         let median =
             |times: &[f64]| f64::midpoint(times[(times.len() - 1) / 2], times[times.len() / 2]);
         println!(
             "{}",
-            json!({"peer": peer, "mesh": mesh, "op": operation.name(), "reps": wall.len(),
-                   "min_ns": wall[0], "median_ns": median(&wall),
-                   "cpu_min_ns": cpu[0], "cpu_median_ns": median(&cpu),
-                   "checksum": last.checksum, "elements": last.elements,
-                   "ns_per_element": median(&wall) / last.elements as f64,
-                   "cpu_min_ns_per_element": cpu[0] / last.elements as f64})
+            json!({"peer": peer, "mesh": mesh, "op": operation, "reps": wall.len(),
+                   "min_ns": wall[0], "median_ns": median(wall),
+                   "cpu_min_ns": cpu[0], "cpu_median_ns": median(cpu),
+                   "checksum": checksum, "elements": elements,
+                   "ns_per_element": median(wall) / *elements as f64,
+                   "cpu_min_ns_per_element": cpu[0] / *elements as f64})
         );
     }
-    Ok(())
 }

@@ -16,6 +16,7 @@ mod inspect;
 mod measure;
 mod operation;
 mod plan;
+mod refining;
 mod report;
 mod sample;
 mod solo;
@@ -31,6 +32,7 @@ pub use environment::Environment;
 pub use inspect::{Specimen, inspect};
 pub use measure::Progress;
 pub use operation::{Kind, Operation, UnknownOperation};
+pub use refining::{Refiner, Refining, Way};
 pub use report::{
     Agreement, BackendReport, Inspection, MeshReport, Report, ResultRow, SCHEMA, Standing,
 };

@@ -16,6 +16,7 @@
 //! | EV, EF | O(1) | one edge |
 //! | EE | O(valence) of both ends | its edge, then one edge a neighbour |
 //! | FV, FE, FF | O(degree) | `sides`, then one edge a side |
+//! | refining (quads, triangles) | O(edges + vertices) | each edge and its four wings, in closed form |
 //!
 //! Vertices, edges and faces are rows, so that counting and listing them reads nothing.
 //!
@@ -65,6 +66,7 @@ mod construct;
 mod edge;
 mod mesh;
 mod query;
+mod refine;
 mod validate;
 mod wings;
 

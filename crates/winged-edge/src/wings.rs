@@ -52,6 +52,12 @@ impl Wings {
     /// Nothing linked on either side.
     pub(crate) const BLANK: Self = Self(0);
 
+    /// The left wing, and the right one.
+    #[inline(always)]
+    pub(crate) fn of([left, right]: [EdgeId; 2]) -> Self {
+        Self(u64::from(left.row()) | u64::from(right.row()) << 32)
+    }
+
     #[inline(always)]
     pub(crate) fn on(self, side: Side) -> EdgeId {
         let turned = self.0.rotate_left(32);
@@ -91,6 +97,7 @@ mod tests {
             assert_eq!(wings.both(), [EdgeId::new(0), right]);
             wings.link(Side::LEFT, left);
             assert_eq!(wings.both(), [left, right]);
+            assert_eq!(Wings::of([left, right]), wings);
             assert_eq!(wings.on(Side::RIGHT.other()), left);
         }
     }

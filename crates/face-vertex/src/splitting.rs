@@ -1,0 +1,315 @@
+//! The tables of the child, filled: [`refine`](crate::refine) draws what goes where.
+
+use std::ops::Range;
+
+use mesh_core::{FaceId, PART, VertexId, in_given_parts, in_parts, row};
+
+use crate::edge_numbers::{EdgeNumbers, EdgePart};
+use crate::mesh::{FaceVertexMesh, Fan};
+
+/// How many sides are found before they are filed: so many at a time that loops do not end all the
+/// time, which costs a wrong guess each.
+const ROOM: usize = 512;
+
+/// A mesh while it is split; `DEGREE` is that of all its faces, or 0.
+#[derive(Clone, Copy)]
+pub(crate) struct Splitting<'a, const DEGREE: usize, const QUADS: bool> {
+    mesh: &'a FaceVertexMesh,
+    by_corner: &'a [u32],
+    parts: &'a [EdgePart],
+    /// The middle of the first edge.
+    middle: u32,
+}
+
+impl FaceVertexMesh {
+    /// This mesh, whose faces have `DEGREE` corners each if that is not 0, about to be split.
+    pub(crate) fn splitting<'a, const DEGREE: usize, const QUADS: bool>(
+        &'a self,
+        numbers: &'a EdgeNumbers,
+    ) -> Splitting<'a, DEGREE, QUADS> {
+        let (vertices, faces) = (self.fans.len(), self.spans.len());
+        Splitting {
+            mesh: self,
+            by_corner: &numbers.by_corner,
+            parts: &numbers.parts,
+            middle: row(vertices + if QUADS { faces } else { 0 }),
+        }
+    }
+}
+
+/// What some vertices in a row, and the edges of which they are the lower ends, give to the child.
+struct Part<'a> {
+    vertices: Range<usize>,
+    /// The number of the first edge.
+    first: usize,
+    /// Where the rows of `pool` are in the pool.
+    start: usize,
+    /// The parts of faces around the vertices.
+    around: &'a mut [FaceId],
+    /// The fans of the middles, and what they have in the pool.
+    fans: &'a mut [Fan],
+    pool: &'a mut [FaceId],
+}
+
+/// A side along an edge, and the parts of its face at both of its ends.
+#[derive(Clone, Copy, Default)]
+struct Side {
+    edge: u32,
+    parts: [u32; 2],
+}
+
+impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
+    /// How many parts of a face touch the middle of a side.
+    const ALONG: usize = if QUADS { 2 } else { 3 };
+
+    /// Overwrites the tables of `child`, which have their lengths already.
+    pub(crate) fn fill(self, child: &mut FaceVertexMesh) {
+        self.fill_corners(child.corners.rows_mut());
+        let (old, fans) = child.fans.rows_mut().split_at_mut(self.mesh.fans.len());
+        let (around, pool) = child.pool.rows_mut().split_at_mut(self.by_corner.len());
+        let mut start = 0;
+        for (new, old) in old.iter_mut().zip(self.mesh.fans.rows()) {
+            let len = old.len;
+            *new = Fan { start, len };
+            start += len;
+        }
+        let points = if QUADS { self.mesh.spans.len() } else { 0 };
+        let (face_fans, edge_fans) = fans.split_at_mut(points);
+        let (face_pool, edge_pool) = pool.split_at_mut(if QUADS { around.len() } else { 0 });
+        self.fill_face_points(face_fans, face_pool);
+        self.fill_fans(old, around, edge_fans, edge_pool);
+    }
+
+    /// The part at corner `corner` of face `f`.
+    #[inline(always)]
+    fn part(self, f: FaceId, corner: u32) -> u32 {
+        if QUADS {
+            corner
+        } else {
+            corner + f.index() as u32
+        }
+    }
+
+    fn fill_corners(self, child: &mut [VertexId]) {
+        let faces = self.mesh.spans.len();
+        let first = |f: usize| match f {
+            _ if f == faces => self.by_corner.len(),
+            _ => self.mesh.corners_of::<DEGREE>(FaceId::new(row(f))).start,
+        };
+        let cut = (0..faces).step_by(PART).chain([faces]);
+        // Four a corner: a quad, or a triangle and a third of the inner one.
+        let starts: Vec<usize> = cut.map(|f| 4 * first(f)).collect();
+        in_given_parts(child, &starts, |part, _, child| {
+            let faces = part * PART..faces.min((part + 1) * PART);
+            self.fill_corners_of(faces, child);
+        });
+    }
+
+    /// The corners of the parts of some faces in a row.
+    fn fill_corners_of(self, faces: Range<usize>, child: &mut [VertexId]) {
+        let corners = self.mesh.corners.rows();
+        let mut at = 0;
+        for f in faces {
+            let range = self.mesh.corners_of::<DEGREE>(FaceId::new(f as u32));
+            let child = &mut child[at..at + 4 * range.len()];
+            at += child.len();
+            let middle = |&number: &u32| VertexId::new(self.middle + number);
+            let numbers = &self.by_corner[range.clone()];
+            let mut before = middle(&numbers[numbers.len() - 1]);
+            let sides = corners[range].iter().zip(numbers.iter().map(middle));
+            if QUADS {
+                let face_point = VertexId::new((self.mesh.fans.len() + f) as u32);
+                for ((&corner, middle), quad) in sides.zip(child.as_chunks_mut::<4>().0) {
+                    *quad = [corner, middle, face_point, before];
+                    before = middle;
+                }
+            } else {
+                let [parts @ .., inner] = child.as_chunks_mut::<3>().0 else {
+                    unreachable!("four triangles a face")
+                };
+                for (((&corner, middle), part), inner) in sides.zip(parts).zip(inner) {
+                    *part = [corner, middle, before];
+                    *inner = middle;
+                    before = middle;
+                }
+            }
+        }
+    }
+
+    /// The parts of a face are around its point, one after the other.
+    fn fill_face_points(self, fans: &mut [Fan], pool: &mut [FaceId]) {
+        // The fans of the old vertices come before, as long as all corners.
+        let start = self.by_corner.len();
+        in_parts(fans, PART, |first, fans| {
+            for (f, fan) in (first..).zip(fans) {
+                let range = self.mesh.corners_of::<DEGREE>(FaceId::new(f as u32));
+                *fan = Fan {
+                    start: (start + range.start) as u32,
+                    len: range.len() as u32,
+                };
+            }
+        });
+        in_parts(pool, PART, |first, pool| {
+            for (part, place) in (first as u32..).zip(pool) {
+                *place = FaceId::new(part);
+            }
+        });
+    }
+
+    fn fill_fans(
+        self,
+        old: &[Fan],
+        mut around: &mut [FaceId],
+        mut fans: &mut [Fan],
+        mut pool: &mut [FaceId],
+    ) {
+        let places = if QUADS { 2 } else { 1 } * around.len();
+        let ends_at = around.len();
+        let place = |v: usize| old.get(v).map_or(ends_at, |fan| fan.start as usize);
+        let mut parts = Vec::with_capacity(self.parts.len());
+        for bounds in self.parts.windows(2) {
+            let [from, to] = [bounds[0], bounds[1]];
+            let (here, middles, along);
+            (here, around) = around.split_at_mut(place(to.vertex) - place(from.vertex));
+            (middles, fans) = fans.split_at_mut(to.edge - from.edge);
+            (along, pool) = pool.split_at_mut(Self::ALONG * (to.side - from.side));
+            parts.push(Part {
+                vertices: from.vertex..to.vertex,
+                first: from.edge,
+                start: places + Self::ALONG * from.side,
+                around: here,
+                fans: middles,
+                pool: along,
+            });
+        }
+        in_parts(&mut parts, 1, |_, parts| {
+            for part in parts {
+                self.fill_part(part);
+            }
+        });
+    }
+
+    /// Finds the sides of the edges of some vertices, counts them by edge, and files them.
+    fn fill_part(self, part: &mut Part<'_>) {
+        let mut sides = [Side::default(); ROOM];
+        let mut around = std::mem::take(&mut part.around);
+        let (mut v, mut known, mut end) = (part.vertices.start, part.first, part.start);
+        part.fans.fill(Fan::default());
+        while v < part.vertices.end {
+            let (first, mut found) = (known, 0);
+            while v < part.vertices.end {
+                let vertex = VertexId::new(v as u32);
+                let fan = self.mesh.fan(vertex);
+                let Some(room) = sides.get_mut(found..found + 2 * fan.len()) else {
+                    break;
+                };
+                let (here, after) = std::mem::take(&mut around).split_at_mut(fan.len());
+                around = after;
+                let upward = self.find_sides(vertex, fan, known, here, room);
+                found += upward.found;
+                known = upward.known;
+                v += 1;
+            }
+            if known == first && found == 0 && v < part.vertices.end {
+                // A fan for which there is no room: in pieces, and once more after they are counted.
+                let vertex = VertexId::new(v as u32);
+                let fan = self.mesh.fan(vertex);
+                let (here, after) = std::mem::take(&mut around).split_at_mut(fan.len());
+                around = after;
+                for (faces, here) in fan.chunks(ROOM / 2).zip(here.chunks_mut(ROOM / 2)) {
+                    let upward = self.find_sides(vertex, faces, first, here, &mut sides);
+                    part.count(&sides[..upward.found], Self::ALONG);
+                    known = known.max(upward.known);
+                }
+                end = part.open(first..known, end);
+                for (faces, here) in fan.chunks(ROOM / 2).zip(here.chunks_mut(ROOM / 2)) {
+                    let upward = self.find_sides(vertex, faces, first, here, &mut sides);
+                    self.file(&sides[..upward.found], part);
+                }
+                v += 1;
+                continue;
+            }
+            part.count(&sides[..found], Self::ALONG);
+            end = part.open(first..known, end);
+            self.file(&sides[..found], part);
+        }
+    }
+
+    /// Puts the sides of `v` in these faces of its fan whose edge has the number `known` or a later
+    /// one into `sides`, and the part of each face at `v` into `around`.
+    #[inline(always)]
+    fn find_sides(
+        self,
+        v: VertexId,
+        faces: &[FaceId],
+        known: usize,
+        around: &mut [FaceId],
+        sides: &mut [Side],
+    ) -> Upward {
+        let (mut found, mut end) = (0, known as u32);
+        for (&f, place) in faces.iter().zip(around) {
+            let corners = self.mesh.around::<DEGREE>(f, v);
+            let [before, at, after] = corners.map(|corner| self.part(f, corner));
+            *place = FaceId::new(at);
+            for (corner, parts) in [(corners[0], [before, at]), (corners[1], [at, after])] {
+                let edge = self.by_corner[corner as usize];
+                sides[found] = Side { edge, parts };
+                // No branch, for it would follow no pattern.
+                found += usize::from(edge as usize >= known);
+                end = end.max(edge + 1);
+            }
+        }
+        Upward {
+            found,
+            known: end as usize,
+        }
+    }
+
+    /// Adds the parts along these sides to the fans of the middles.
+    #[inline(always)]
+    fn file(self, sides: &[Side], part: &mut Part<'_>) {
+        for side in sides {
+            let fan = &mut part.fans[side.edge as usize - part.first];
+            let places = fan.range().end - part.start;
+            let [first, second] = side.parts;
+            let pool = &mut part.pool[places..places + Self::ALONG];
+            // In the order of faces, as all fans are that no edit has touched.
+            pool[0] = FaceId::new(first.min(second));
+            pool[1] = FaceId::new(first.max(second));
+            if !QUADS {
+                // The middle of triangles.
+                pool[2] = FaceId::new(first | 3);
+            }
+            fan.len += Self::ALONG as u32;
+        }
+    }
+}
+
+/// Sides between a vertex and higher ones.
+struct Upward {
+    found: usize,
+    /// One more than the last number of an edge seen.
+    known: usize,
+}
+
+impl Part<'_> {
+    /// Makes the fans of the middles longer, by `along` for each side.
+    #[inline(always)]
+    fn count(&mut self, sides: &[Side], along: usize) {
+        for side in sides {
+            self.fans[side.edge as usize - self.first].len += along as u32;
+        }
+    }
+
+    /// Puts the fans of these edges one behind another, still empty, from place `start` of the pool
+    /// on; where the next begins.
+    #[inline(always)]
+    fn open(&mut self, edges: Range<usize>, start: usize) -> usize {
+        let mut start = start as u32;
+        for fan in &mut self.fans[edges.start - self.first..edges.end - self.first] {
+            fan.start = start;
+            start += std::mem::take(&mut fan.len);
+        }
+        start as usize
+    }
+}

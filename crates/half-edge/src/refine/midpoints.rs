@@ -1,0 +1,241 @@
+//! Faces split at the midpoints of their edges: into quads, or a triangle into four.
+//!
+//! Half `h` runs from vertex `v` along face `f`; `p` and `n` are the halves before and after it, `t` is
+//! its twin, and `#h` the number of its corner. It is cut in two at the midpoint m(h): e(h) comes early
+//! and l(h) late. Its corner adds one edge inside the face, i(h) and its twin j(h).
+//!
+//! ```text
+//!   Quads                                  Triangles
+//!                                          m(p)
+//!    m(p) ◄─ j(p) ── f                      │ ▲ ╲
+//!     │              ▲ │                    │   ╲ ╲ j(h)
+//!    l(p)       i(h) │ │ j(h)              l(p)   ╲ ╲
+//!     ▼              │ ▼                    ▼   i(h)╲ ▼
+//!     v ─── e(h) ──► m(h) ── l(h) ─►        v ─ e(h) ─► m(h) ── l(h) ─►
+//! ```
+//!
+//! With E edges and C corners in the parent, and the face point of `f` called f:
+//!
+//! | half of the child | its row | next | origin | face |
+//! |---|---|---|---|---|
+//! | e(h) | 2h | i(h) | v | #h |
+//! | l(h) | 2t + 1 | e(n) | m(h) | #n |
+//! | i(h), quads | 4E + 2#h | j(p) | m(h) | #h |
+//! | j(h), quads | 4E + 2#h + 1 | l(h) | f | #n |
+//! | i(h), triangles | 4E + 2#h | l(p) | m(h) | #h |
+//! | j(h), triangles | 4E + 2#h + 1 | j(n) | m(p) | C + f |
+//! | e(b), on the boundary | 2b | l(b) | v | none |
+//! | l(b), on the boundary | 2(b ^ 1) + 1 | e(n) | m(b) | none |
+//!
+//! So edge e becomes the edges 2e and 2e + 1, whose four rows lie together, as do those of i and j for
+//! the halves of an edge: a thread takes some edges, and writes two runs of rows.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use mesh_core::{FaceId, MeshQuery, Slot};
+
+use super::{Corners, fill, for_parts, half};
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+
+/// How far [`previous`] walks: what the corners of a face cost is the square of its degree.
+const REACH: usize = 8;
+
+/// The numbers of the parent's rows that the names of the child's are made of.
+#[derive(Clone, Copy)]
+struct Sizes {
+    vertices: u32,
+    faces: u32,
+    edges: u32,
+    /// The first edge point.
+    midpoints: u32,
+}
+
+impl Sizes {
+    fn of(mesh: &HalfEdgeMesh, face_points: bool) -> Self {
+        let [vertices, faces, edges] =
+            [mesh.vertex_count(), mesh.face_count(), mesh.edge_count()].map(|n| n as u32);
+        let midpoints = if face_points {
+            vertices + faces
+        } else {
+            vertices
+        };
+        Self {
+            vertices,
+            faces,
+            edges,
+            midpoints,
+        }
+    }
+}
+
+/// Splits every face into quads.
+pub(super) fn quads<const CLOSED: bool>(
+    mesh: &HalfEdgeMesh,
+    corners: &Corners<CLOSED>,
+    child: &mut HalfEdgeMesh,
+) {
+    let sizes = Sizes::of(mesh, true);
+    let rows = mesh.half_rows();
+    let inner = |h: u32| 4 * sizes.edges + 2 * corners.number(h);
+    let far = AtomicBool::new(false);
+    split(mesh, corners, sizes, child, |h, record, n| {
+        let (sizes, corners) = (sizes, *corners);
+        let p = previous(rows, h, n).unwrap_or_else(|| {
+            // Never wrong in the end: large faces are linked once all rows are there.
+            far.store(true, Ordering::Relaxed);
+            h
+        });
+        let face = record.face.get().map_or(0, |f| f.index() as u32);
+        [
+            half(inner(p) + 1, sizes.midpoints + h / 2, corners.face(h)),
+            half(late(h), sizes.vertices + face, corners.face(n)),
+        ]
+    });
+    if far.into_inner() {
+        link_large_faces(mesh, child, inner);
+    }
+    let first = mesh.first_rows();
+    let points = &mut child.leaving.rows_mut()[sizes.vertices as usize..];
+    fill(&mut points[..first.len()], |f| {
+        Slot::some(HalfEdgeId::new(inner(first[f].index() as u32) + 1))
+    });
+}
+
+/// Splits every triangle into four.
+pub(super) fn triangles<const CLOSED: bool>(
+    mesh: &HalfEdgeMesh,
+    corners: &Corners<CLOSED>,
+    child: &mut HalfEdgeMesh,
+) {
+    let sizes = Sizes::of(mesh, false);
+    let rows = mesh.half_rows();
+    let inner = |h: u32| 4 * sizes.edges + 2 * corners.number(h);
+    split(mesh, corners, sizes, child, |h, record, n| {
+        let p = rows[n as usize].next.index() as u32;
+        let face = record.face.get().map_or(0, |f| f.index() as u32);
+        let middle = FaceId::new(3 * sizes.faces + face);
+        [
+            half(late(p), sizes.midpoints + h / 2, corners.face(h)),
+            half(inner(n) + 1, sizes.midpoints + p / 2, Slot::some(middle)),
+        ]
+    });
+    let first = mesh.first_rows();
+    let middles = &mut child.first.rows_mut()[3 * first.len()..];
+    fill(middles, |f| {
+        HalfEdgeId::new(inner(first[f].index() as u32) + 1)
+    });
+}
+
+/// Cuts every edge in two, and joins the midpoints inside the faces as `inner` says.
+#[inline(always)]
+fn split<const CLOSED: bool>(
+    mesh: &HalfEdgeMesh,
+    corners: &Corners<CLOSED>,
+    sizes: Sizes,
+    child: &mut HalfEdgeMesh,
+    inner_pair: impl Fn(u32, &Half, u32) -> [Half; 2] + Sync,
+) {
+    let edges = mesh.half_rows().as_chunks::<2>().0;
+    for_parts(edges.len(), corners, 4, child, |part| {
+        // Copies, which no write through the tables can change.
+        let (sizes, corners) = (sizes, *corners);
+        let pairs = &edges[part.edges.start as usize..part.edges.end as usize];
+        let along = part.along.as_chunks_mut::<4>().0;
+        let children = |h: u32, record: &Half| {
+            let n = record.next.index() as u32;
+            let point = sizes.midpoints + h / 2;
+            let to_midpoint = 4 * sizes.edges + 2 * corners.number(h);
+            [
+                half(to_midpoint, record.origin.index() as u32, corners.face(h)),
+                half(2 * n, point, corners.face(n)),
+            ]
+        };
+        if CLOSED {
+            let inner = part.inner.as_chunks_mut::<4>().0;
+            let rows = pairs.iter().zip(along).zip(inner);
+            for (e, (([one, other], along), inner)) in part.edges.clone().zip(rows) {
+                let (h, t) = (2 * e, 2 * e + 1);
+                let ([a, b], [c, d]) = (children(h, one), children(t, other));
+                *along = [a, d, c, b];
+                let [a, b] = inner_pair(h, one, one.next.index() as u32);
+                let [c, d] = inner_pair(t, other, other.next.index() as u32);
+                *inner = [a, b, c, d];
+            }
+            for (h, first) in (2 * part.edges.start..).zip(part.first.iter_mut()) {
+                *first = HalfEdgeId::new(2 * h);
+            }
+            return;
+        }
+        let inner = part.inner.as_chunks_mut::<2>().0;
+        let mut inner = inner.iter_mut().zip(part.first.iter_mut());
+        for ((e, pair), along) in part.edges.clone().zip(pairs).zip(along) {
+            let [one, other] = [0, 1].map(|side| {
+                let (h, record) = (2 * e + side, &pair[side as usize]);
+                let (n, origin) = (record.next.index() as u32, record.origin.index() as u32);
+                if !corners.is_one(h) {
+                    let point = sizes.midpoints + e;
+                    return [(late(h), origin), (2 * n, point)]
+                        .map(|(next, origin)| half(next, origin, Slot::NONE));
+                }
+                if let Some((inner, first)) = inner.next() {
+                    *inner = inner_pair(h, record, n);
+                    *first = HalfEdgeId::new(2 * h);
+                }
+                children(h, record)
+            });
+            *along = [one[0], other[1], other[0], one[1]];
+        }
+    });
+    let (old, points) = child
+        .leaving
+        .rows_mut()
+        .split_at_mut(sizes.vertices as usize);
+    let leaving = mesh.leaving_rows();
+    fill(old, |v| {
+        leaving[v]
+            .get()
+            .map(|h| HalfEdgeId::new(2 * h.index() as u32))
+            .into()
+    });
+    let points = &mut points[(sizes.midpoints - sizes.vertices) as usize..];
+    fill(points, |e| {
+        // The boundary half if there is one.
+        let h = 2 * e as u32;
+        let outer = if corners.is_one(h + 1) { h } else { h + 1 };
+        Slot::some(HalfEdgeId::new(late(outer)))
+    });
+}
+
+/// The half of the child from the midpoint of `h` to its target.
+#[inline(always)]
+fn late(h: u32) -> u32 {
+    2 * (h ^ 1) + 1
+}
+
+/// The half before `h`, whose next is `n`, along a face; none if the face is too large.
+#[inline(always)]
+fn previous(rows: &[Half], h: u32, n: u32) -> Option<u32> {
+    let mut at = n;
+    for _ in 0..REACH {
+        let after = rows[at as usize].next.index() as u32;
+        if after == h {
+            return Some(at);
+        }
+        at = after;
+    }
+    None
+}
+
+/// Links what [`previous`] did not reach, by one walk along each large face; O(corners).
+#[cold]
+fn link_large_faces(mesh: &HalfEdgeMesh, child: &mut HalfEdgeMesh, inner: impl Fn(u32) -> u32) {
+    let rows = child.halves.rows_mut();
+    for f in mesh.faces() {
+        if mesh.around_face(f).nth(REACH + 1).is_some() {
+            for h in mesh.around_face(f) {
+                let [h, n] = [h, mesh.next(h)].map(|h| inner(h.index() as u32));
+                rows[n as usize].next = HalfEdgeId::new(h + 1);
+            }
+        }
+    }
+}

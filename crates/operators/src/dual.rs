@@ -1,0 +1,349 @@
+//! The dual of a closed mesh.
+
+use glam::DVec3;
+use mesh_core::{Capabilities, FaceId, FaceList, MeshQuery, PolygonMesh, TwinPairs, VertexId, row};
+
+use crate::error::DualError;
+
+/// The dual of a closed oriented manifold: a vertex for each face, and a face for each vertex.
+///
+/// ```text
+///     ╲       │       ╱        vertex i of the dual: the mean of the corners of face i
+///      ● ─────┼───── ●         face j of the dual: the faces around vertex j, counter-clockwise
+///      │ ╲    │    ╱ │           as seen from outside, from the lowest on
+///      │   ╲  │  ╱   │         edges cross: v – e + f becomes f – e + v
+///   ───┼───── v ─────┼───
+///      │   ╱  │  ╲   │         tetrahedron ↔ itself, cube ↔ octahedron,
+///      ● ─────┼───── ●         dodecahedron ↔ icosahedron
+/// ```
+///
+/// Vertices and faces are numbered in the order of `faces()` and `vertices()`, so the dual of the
+/// dual has the faces of the mesh again, each from a start of its own. Two faces that share several
+/// edges become the ends of several edges, which share one name: structures for manifolds then
+/// refuse the dual, though they hold the mesh.
+///
+/// # Errors
+///
+/// A [`DualError`] that names a boundary edge, an isolated vertex, a vertex of valence 2, or what
+/// keeps the mesh from being an oriented manifold.
+///
+/// # Complexity
+///
+/// O(corners), of which it asks FV of each face once.
+///
+/// # Examples
+///
+/// ```
+/// use half_edge::HalfEdgeMesh;
+/// use mesh_core::Representation;
+///
+/// let cube = HalfEdgeMesh::from_polygons(&shapes::cube())?;
+/// let octahedron = operators::dual(&cube)?;
+/// assert_eq!((octahedron.vertex_count(), octahedron.face_count()), (6, 8));
+/// assert_eq!(octahedron.faces().uniform_degree(), Some(3));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn dual<M: MeshQuery>(mesh: &M) -> Result<PolygonMesh, DualError> {
+    let rows = Rows::of(mesh);
+    let walk = Walk::of(&rows)?;
+    let faces = walk.dual_faces(&rows)?;
+    Ok(rows.dual_mesh(faces))
+}
+
+/// A mesh by rows: positions in the order of `vertices()`, faces in the order of `faces()`.
+struct Rows {
+    positions: Vec<DVec3>,
+    faces: FaceList,
+}
+
+impl Rows {
+    /// One pass over the vertices and one over FV.
+    fn of<M: MeshQuery>(mesh: &M) -> Self {
+        let mut numbers = mesh.vertex_map(VertexId::new(0));
+        let mut positions = Vec::new();
+        mesh.vertices().for_each(|v| {
+            numbers[v] = VertexId::new(row(positions.len()));
+            positions.push(mesh.position(v).as_dvec3());
+        });
+        let mut faces = FaceList::default();
+        mesh.faces().for_each(|f| {
+            let corners = mesh.face_vertices(f).map(|v| numbers[v]);
+            faces.push(corners).expect("as many corners as the mesh");
+        });
+        Self { positions, faces }
+    }
+
+    /// The faces of the dual, with a vertex in the middle of each face of this mesh.
+    fn dual_mesh(&self, faces: FaceList) -> PolygonMesh {
+        let middles = self.faces.iter().map(|(_, corners)| {
+            let sum: DVec3 = corners.iter().map(|v| self.positions[v.index()]).sum();
+            (sum / corners.len() as f64).as_vec3()
+        });
+        PolygonMesh::from_faces(middles.collect(), faces)
+            .expect("around a manifold vertex, three faces or more, each once")
+    }
+
+    /// Why this is no oriented manifold, which it has been found not to be.
+    fn refusal(&self) -> DualError {
+        let positions = self.positions.iter().map(|p| p.as_vec3()).collect();
+        let polygons = PolygonMesh::from_faces(positions, self.faces.clone())
+            .expect("faces of a mesh name at least three vertices, each once");
+        Capabilities::ORIENTED_MANIFOLDS.refusal(&polygons).into()
+    }
+}
+
+/// How to walk around the vertices of a closed oriented manifold.
+struct Walk {
+    /// By vertex: its corner in the lowest face.
+    first: Vec<Option<u32>>,
+    /// By vertex: how many corners are there.
+    valence: Vec<u32>,
+    /// By corner: the face it is in.
+    face: Vec<FaceId>,
+    /// By corner: the next one around its vertex, counter-clockwise.
+    turned: Vec<u32>,
+}
+
+impl Walk {
+    /// ```text
+    ///       ╲  turned(c)          the side that comes in to v runs from prev(c);
+    ///        ╲    ╱               its twin leaves v in the next face
+    ///   prev(c) ─ v
+    ///            ╱ c
+    /// ```
+    fn of(rows: &Rows) -> Result<Self, DualError> {
+        let (vertices, faces) = (rows.positions.len(), &rows.faces);
+        let corners = faces.corners();
+        let pairs = TwinPairs::of(vertices, faces).ok_or_else(|| rows.refusal())?;
+        if 2 * pairs.edge_count != corners.len() {
+            return Err(boundary_edge(faces, &pairs));
+        }
+        let mut corner_of_half = vec![0_u32; corners.len()];
+        for (corner, &half) in (0_u32..).zip(&pairs.half_of_corner) {
+            corner_of_half[half as usize] = corner;
+        }
+        let mut walk = Self {
+            first: vec![None; vertices],
+            valence: vec![0; vertices],
+            face: Vec::with_capacity(corners.len()),
+            turned: Vec::with_capacity(corners.len()),
+        };
+        for (f, face) in faces.iter() {
+            let range = faces.range(f);
+            let mut before = range.end - 1;
+            for (corner, v) in range.zip(face) {
+                walk.first[v.index()].get_or_insert(row(corner));
+                walk.valence[v.index()] += 1;
+                walk.face.push(f);
+                let twin = pairs.half_of_corner[before] ^ 1;
+                walk.turned.push(corner_of_half[twin as usize]);
+                before = corner;
+            }
+        }
+        Ok(walk)
+    }
+
+    /// Walks around every vertex.
+    fn dual_faces(&self, rows: &Rows) -> Result<FaceList, DualError> {
+        let mut faces = FaceList::with_capacity(self.face.len());
+        let mut ring = Vec::new();
+        for (vertex, (first, &valence)) in self.first.iter().zip(&self.valence).enumerate() {
+            let vertex = VertexId::new(row(vertex));
+            let first = first.ok_or(DualError::IsolatedVertex { vertex })?;
+            ring.clear();
+            self.around(first, &mut ring);
+            if ring.len() < valence as usize {
+                return Err(rows.refusal()); // a second fan
+            }
+            if ring.len() < 3 {
+                let valence = ring.len();
+                return Err(DualError::LowValence { vertex, valence });
+            }
+            let face = ring.iter().copied();
+            faces.push(face).expect("as many corners as the mesh");
+        }
+        Ok(faces)
+    }
+
+    /// The faces around the vertex of corner `first`, as vertices of the dual.
+    fn around(&self, first: u32, ring: &mut Vec<VertexId>) {
+        let mut corner = first;
+        loop {
+            ring.push(VertexId::new(row(self.face[corner as usize].index())));
+            corner = self.turned[corner as usize];
+            if corner == first {
+                return;
+            }
+        }
+    }
+}
+
+/// The lowest edge with one side.
+fn boundary_edge(faces: &FaceList, pairs: &TwinPairs) -> DualError {
+    let mut sides = vec![0_u8; pairs.edge_count];
+    for half in &pairs.half_of_corner {
+        sides[(half >> 1) as usize] += 1;
+    }
+    let ends = faces.iter().flat_map(|(f, face)| {
+        let next = face.iter().cycle().skip(1);
+        let sides = &sides;
+        faces
+            .range(f)
+            .zip(face.iter().zip(next))
+            .filter_map(move |(corner, (&a, &b))| {
+                let edge = pairs.half_of_corner[corner] >> 1;
+                (sides[edge as usize] == 1).then(|| [a.min(b), a.max(b)])
+            })
+    });
+    let ends = ends.min().expect("fewer sides than two an edge");
+    DualError::BoundaryEdge { ends }
+}
+
+#[cfg(test)]
+mod tests {
+    use half_edge::HalfEdgeMesh;
+    use indexed_face_set::IndexedFaceSet;
+    use mesh_core::{BuildError, Point, Representation};
+
+    use super::*;
+
+    fn dual_of(polygons: &PolygonMesh) -> Result<PolygonMesh, DualError> {
+        dual(&IndexedFaceSet::from_polygons(polygons).expect("it holds everything"))
+    }
+
+    fn mesh(vertices: u32, faces: &[&[u32]]) -> PolygonMesh {
+        let spots: Vec<Point> = (0..vertices).map(|i| Point::splat(i as f32)).collect();
+        PolygonMesh::new(spots, faces).expect("valid")
+    }
+
+    /// The corners of a face from the lowest on.
+    fn cycle(face: &[VertexId]) -> Vec<VertexId> {
+        let lowest = (0..face.len()).min_by_key(|&i| face[i]).unwrap_or(0);
+        [&face[lowest..], &face[..lowest]].concat()
+    }
+
+    fn cycles(polygons: &PolygonMesh) -> Vec<Vec<VertexId>> {
+        polygons
+            .faces()
+            .iter()
+            .map(|(_, face)| cycle(face))
+            .collect()
+    }
+
+    #[test]
+    fn platonic_solids_are_duals_of_each_other() {
+        let duals = [
+            (shapes::tetrahedron(), shapes::tetrahedron()),
+            (shapes::cube(), shapes::octahedron()),
+            (shapes::octahedron(), shapes::cube()),
+            (shapes::dodecahedron(), shapes::icosahedron()),
+            (shapes::icosahedron(), shapes::dodecahedron()),
+        ];
+        for (solid, expected) in duals {
+            let dual = dual_of(&solid).expect("closed");
+            assert_eq!(dual.vertex_count(), expected.vertex_count());
+            assert_eq!(dual.face_count(), expected.face_count());
+            assert_eq!(
+                dual.faces().uniform_degree(),
+                expected.faces().uniform_degree()
+            );
+            let built = HalfEdgeMesh::from_polygons(&dual).expect("a manifold");
+            // Regular again: vertices on one sphere, and faces that face outward.
+            let radius = dual.positions()[0].length();
+            assert!(
+                dual.positions()
+                    .iter()
+                    .all(|p| (p.length() - radius).abs() < 1e-6)
+            );
+            let normals = crate::face_normals(&built);
+            for (f, corners) in dual.faces().iter() {
+                let middle: Point = corners.iter().map(|&v| dual.position(v)).sum();
+                assert!(normals[f].distance(middle.normalize()) < 1e-5, "{f}");
+            }
+        }
+        let axes = dual_of(&shapes::cube()).expect("closed");
+        let expected = [
+            Point::NEG_Z,
+            Point::NEG_Y,
+            Point::X,
+            Point::Y,
+            Point::NEG_X,
+            Point::Z,
+        ];
+        assert_eq!(axes.positions(), expected);
+    }
+
+    #[test]
+    fn the_dual_of_the_dual_has_the_faces_of_the_mesh() {
+        let tori = [
+            shapes::torus(5, 4),
+            shapes::triangle_torus(4, 5),
+            shapes::antiprism(6),
+        ];
+        for closed in tori.map(|shape| shape.expect("small")).into_iter().chain([
+            shapes::cube(),
+            shapes::dodecahedron(),
+            shapes::shuffled(&shapes::icosahedron(), 3),
+            shapes::geodesic(3).expect("small"),
+        ]) {
+            let dual = dual_of(&closed).expect("closed");
+            let again = dual_of(&dual).expect("closed");
+            assert_eq!(cycles(&again), cycles(&closed));
+        }
+    }
+
+    #[test]
+    fn an_empty_mesh_is_its_own_dual() {
+        assert_eq!(dual_of(&PolygonMesh::default()), Ok(PolygonMesh::default()));
+    }
+
+    #[test]
+    fn each_refusal_names_the_element() {
+        let v = VertexId::new;
+        let open = mesh(4, &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3]]);
+        let ends = [v(0), v(2)];
+        assert_eq!(dual_of(&open), Err(DualError::BoundaryEdge { ends }));
+
+        let lone = mesh(5, &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]]);
+        assert_eq!(
+            dual_of(&lone),
+            Err(DualError::IsolatedVertex { vertex: v(4) })
+        );
+
+        let pillow = mesh(3, &[&[0, 1, 2], &[2, 1, 0]]);
+        let low = DualError::LowValence {
+            vertex: v(0),
+            valence: 2,
+        };
+        assert_eq!(dual_of(&pillow), Err(low));
+
+        let tetrahedra: [&[u32]; 8] = [
+            &[0, 2, 1],
+            &[0, 1, 3],
+            &[1, 2, 3],
+            &[2, 0, 3],
+            &[0, 5, 4],
+            &[0, 4, 6],
+            &[4, 5, 6],
+            &[5, 0, 6],
+        ];
+        assert!(matches!(
+            dual_of(&mesh(7, &tetrahedra)),
+            Err(DualError::NoOrientedManifold(BuildError::NonManifoldVertex { vertex, .. })) if vertex == v(0)
+        ));
+        let book = mesh(5, &[&[0, 1, 2], &[1, 0, 3], &[0, 1, 4]]);
+        assert!(matches!(
+            dual_of(&book),
+            Err(DualError::NoOrientedManifold(
+                BuildError::NonManifoldEdge { .. }
+            ))
+        ));
+        let turned = mesh(4, &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[0, 2, 3]]);
+        assert!(matches!(
+            dual_of(&turned),
+            Err(DualError::NoOrientedManifold(
+                BuildError::RepeatedSide { .. }
+            ))
+        ));
+    }
+}

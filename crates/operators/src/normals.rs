@@ -1,0 +1,257 @@
+//! Normals of faces and of vertices.
+
+use glam::DVec3;
+use mesh_core::{FaceMap, MeshQuery, Point, VertexMap};
+
+/// How much each face around a vertex counts in its normal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NormalWeights {
+    /// By its area: what comes for nothing, for Newell's vector is as long as the area.
+    #[default]
+    Area,
+    /// By its angle at the vertex (Thürmer & Wüthrich 1998): the same however the surface is cut.
+    Angle,
+}
+
+/// The unit normal of every face, by Newell's method; O(corners).
+///
+/// ```text
+///        p2               n = Σ (pᵢ − p₀) × (pᵢ₊₁ − p₀)
+///       ╱  ╲
+///     p3    ╲             twice the area long, on the side from which
+///      │     p1           the corners run counter-clockwise; right for
+///      └── p0             polygons of any shape, and bent ones have the mean
+/// ```
+///
+/// A face without area has the normal zero. After Newell, in Sutherland, Sproull & Schumacker (1974).
+pub fn face_normals<M: MeshQuery>(mesh: &M) -> FaceMap<M, Point> {
+    let mut normals = mesh.face_map(Point::ZERO);
+    mesh.faces().for_each(|f| {
+        let mut newell = Newell::default();
+        mesh.face_vertices(f)
+            .for_each(|v| newell.corner(mesh.position(v).as_dvec3()));
+        normals[f] = unit(newell.normal);
+    });
+    normals
+}
+
+/// The unit normal of every vertex: the mean of those of its faces, by `weights`; O(corners).
+///
+/// ```text
+///           n                 area    n ∝ Σ A(f) n(f)
+///       ╲   ↑   ╱             angle   n ∝ Σ α(f) n(f),  α the angle of f at the vertex
+///     f1 ╲  │  ╱ f2
+///         ╲ │ ╱               three squares meet in the corner of a cube: both give the diagonal;
+///     ─────╲│╱─────           cut one square in two, and only the angles still do
+///       f0  v
+/// ```
+///
+/// A vertex without a face, or whose faces cancel out, has the normal zero. Faces add their share
+/// to their corners, one after the other: no structure has to look for the faces of a vertex.
+pub fn vertex_normals<M: MeshQuery>(mesh: &M, weights: NormalWeights) -> VertexMap<M, Point> {
+    let mut sums = mesh.vertex_map(DVec3::ZERO);
+    let mut corners = Vec::new();
+    mesh.faces().for_each(|f| {
+        let mut newell = Newell::default();
+        corners.clear();
+        mesh.face_vertices(f).for_each(|v| {
+            let at = mesh.position(v).as_dvec3();
+            newell.corner(at);
+            corners.push((v, at));
+        });
+        match weights {
+            NormalWeights::Area => corners.iter().for_each(|&(v, _)| sums[v] += newell.normal),
+            NormalWeights::Angle => {
+                let normal = newell.normal.normalize_or_zero();
+                let Some(&(_, mut before)) = corners.last() else {
+                    return; // a face has three corners: never
+                };
+                for (i, &(v, at)) in corners.iter().enumerate() {
+                    let (_, after) = corners[if i + 1 == corners.len() { 0 } else { i + 1 }];
+                    sums[v] += angle(before - at, after - at, normal) * normal;
+                    before = at;
+                }
+            }
+        }
+    });
+    let mut normals = mesh.vertex_map(Point::ZERO);
+    mesh.vertices().for_each(|v| normals[v] = unit(sums[v]));
+    normals
+}
+
+/// The angle from `after` to `before`, counter-clockwise about `normal`: above π at a reflex corner.
+fn angle(before: DVec3, after: DVec3, normal: DVec3) -> f64 {
+    let sine = after.cross(before).dot(normal);
+    let angle = sine.atan2(after.dot(before));
+    if angle < 0.0 {
+        angle + std::f64::consts::TAU
+    } else {
+        angle
+    }
+}
+
+/// `vector` one long, or zero where it has no direction.
+fn unit(vector: DVec3) -> Point {
+    vector.normalize_or_zero().as_vec3()
+}
+
+/// Newell's vector of a polygon, corner by corner.
+///
+/// Corners are taken from the first, which costs no accuracy far from the origin.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Newell {
+    /// The sum so far: twice the area long.
+    pub(crate) normal: DVec3,
+    first: Option<DVec3>,
+    spoke: DVec3,
+}
+
+impl Newell {
+    /// Takes the next corner.
+    #[inline(always)]
+    pub(crate) fn corner(&mut self, at: DVec3) {
+        let first = *self.first.get_or_insert(at);
+        let next = at - first;
+        self.normal += self.spoke.cross(next);
+        self.spoke = next;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use half_edge::HalfEdgeMesh;
+    use indexed_face_set::IndexedFaceSet;
+    use mesh_core::{PolygonMesh, Representation};
+
+    use super::*;
+
+    const BOTH: [NormalWeights; 2] = [NormalWeights::Area, NormalWeights::Angle];
+
+    fn set(polygons: &PolygonMesh) -> IndexedFaceSet {
+        IndexedFaceSet::from_polygons(polygons).expect("it holds everything")
+    }
+
+    fn set_of(points: &[[f32; 3]], faces: &[&[u32]]) -> IndexedFaceSet {
+        let points: Vec<Point> = points.iter().copied().map(Point::from_array).collect();
+        set(&PolygonMesh::new(points, faces).expect("valid"))
+    }
+
+    #[test]
+    fn normals_of_platonic_solids_point_from_the_centre() {
+        for solid in [
+            shapes::tetrahedron(),
+            shapes::cube(),
+            shapes::octahedron(),
+            shapes::dodecahedron(),
+            shapes::icosahedron(),
+        ] {
+            let mesh = HalfEdgeMesh::from_polygons(&solid).expect("a manifold");
+            let faces = face_normals(&mesh);
+            for f in mesh.faces() {
+                let centre: Point = mesh.face_vertices(f).map(|v| mesh.position(v)).sum();
+                assert!(faces[f].distance(centre.normalize()) < 1e-6, "{f}");
+            }
+            for weights in BOTH {
+                let normals = vertex_normals(&mesh, weights);
+                for v in mesh.vertices() {
+                    let radial = mesh.position(v).normalize();
+                    assert!(normals[v].distance(radial) < 1e-6, "{v}, {weights:?}");
+                }
+            }
+        }
+    }
+
+    /// The corner of a cube whose three squares are cut in two: below along the diagonal through the
+    /// corner, so that its whole area is around it, and of the others one half.
+    #[test]
+    fn angles_do_not_see_how_a_surface_is_cut() {
+        let points = [
+            [0.0; 3],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 1.0],
+            [1.0, 0.0, 1.0],
+        ];
+        let mesh = set_of(
+            &points,
+            &[
+                &[0, 1, 4],
+                &[0, 4, 2],
+                &[0, 2, 3],
+                &[2, 5, 3],
+                &[0, 3, 1],
+                &[3, 6, 1],
+            ],
+        );
+        let v = mesh.vertices().next().expect("v0");
+        let diagonal = Point::ONE.normalize();
+        let by_angle = vertex_normals(&mesh, NormalWeights::Angle)[v];
+        assert!(by_angle.distance(diagonal) < 1e-6, "{by_angle}");
+        // Whole area 1 against halves of 1/2: (1/2, 1/2, 1).
+        let by_area = vertex_normals(&mesh, NormalWeights::Area)[v];
+        assert!(
+            by_area.distance(Point::new(1.0, 1.0, 2.0).normalize()) < 1e-6,
+            "{by_area}"
+        );
+    }
+
+    /// An L, whose corner v3 is reflex: three of the angles around it are right, one is 3π/2.
+    #[test]
+    fn a_reflex_corner_counts_with_its_whole_angle() {
+        let points = [
+            [0.0, 0.0, 0.0],
+            [2.0, 0.0, 0.0],
+            [2.0, 1.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [1.0, 2.0, 0.0],
+            [0.0, 2.0, 0.0],
+            [1.0, 1.0, 1.0],
+            [2.0, 1.0, 1.0],
+        ];
+        let mesh = set_of(&points, &[&[0, 1, 2, 3, 4, 5], &[3, 2, 7, 6]]);
+        let faces = face_normals(&mesh);
+        let normals: Vec<Point> = mesh.faces().map(|f| faces[f]).collect();
+        assert_eq!(normals, [Point::Z, Point::NEG_Y]);
+        let v = mesh.vertices().nth(3).expect("v3");
+        let expected = Point::new(0.0, -1.0, 3.0).normalize();
+        let got = vertex_normals(&mesh, NormalWeights::Angle)[v];
+        assert!(got.distance(expected) < 1e-6, "{got}");
+    }
+
+    #[test]
+    fn what_has_no_normal_has_zero_and_never_nan() {
+        // A face on a line, a pillow whose sides cancel out, an isolated vertex.
+        let points = [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let mesh = set_of(&points, &[&[0, 1, 2]]);
+        let faces = face_normals(&mesh);
+        assert!(mesh.faces().all(|f| faces[f] == Point::ZERO));
+        for weights in BOTH {
+            let normals = vertex_normals(&mesh, weights);
+            assert!(mesh.vertices().all(|v| normals[v] == Point::ZERO));
+        }
+        let pillow = set_of(&points, &[&[0, 1, 3], &[3, 1, 0]]);
+        for weights in BOTH {
+            let normals = vertex_normals(&pillow, weights);
+            assert!(pillow.vertices().all(|v| normals[v] == Point::ZERO));
+        }
+    }
+
+    /// The squares of such lengths overflow or vanish in singles.
+    #[test]
+    fn meshes_huge_tiny_or_far_away_have_normals_as_any_other() {
+        let triangle = [Point::ZERO, Point::X, Point::Y];
+        for (scale, shift) in [(1e30, 0.0), (1e-30, 0.0), (1.0, 4096.0)] {
+            let points = triangle.map(|p| p * scale + Point::splat(shift));
+            let mesh = set(&PolygonMesh::new(points, [[0, 1, 2]]).expect("valid"));
+            for weights in BOTH {
+                let normals = vertex_normals(&mesh, weights);
+                assert!(
+                    mesh.vertices().all(|v| normals[v] == Point::Z),
+                    "{scale} {shift}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! Projection to a sphere.
+
+use mesh_core::{MeshQuery, Point, VertexId, VertexMap, row};
+
+use crate::error::SphereError;
+
+/// Every vertex pushed along its ray from `centre` to the sphere of `radius` around it; O(vertices).
+///
+/// ```text
+///         ╭───●───╮          p' = c + r (p − c) / |p − c|
+///       ╭─╯   ↑   ╰─╮
+///       │     p     │        Only positions change: a mesh that sees the centre from all sides
+///       │     │     │        covers the sphere once, others fold over.
+///       │     c     │
+/// ```
+///
+/// # Errors
+///
+/// [`SphereError::NoSphere`] for a radius that is not above 0 or anything not finite;
+/// [`SphereError::NoDirection`] for the first vertex at the centre.
+///
+/// # Examples
+///
+/// An icosahedron divided with frequency 6 — every edge into six, every triangle into thirty-six —
+/// and projected to its sphere, as domes are built. Points of the planar division are named by what
+/// they are made of, so that faces share those on their common edges.
+///
+/// ```
+/// use std::collections::BTreeMap;
+///
+/// use indexed_face_set::IndexedFaceSet;
+/// use mesh_core::{MeshQuery, Point, PolygonMesh, Representation};
+/// use operators::projected_to_sphere;
+///
+/// let icosahedron = shapes::icosahedron();
+/// let radius = icosahedron.positions()[0].length();
+/// let frequency = 6;
+///
+/// let (mut names, mut points, mut faces) = (BTreeMap::new(), Vec::new(), Vec::new());
+/// for (_, corners) in icosahedron.faces().iter() {
+///     let &[a, b, c] = corners else { unreachable!("triangles") };
+///     // The point i steps from a towards b and j steps towards c.
+///     let mut point = |i: u32, j: u32| {
+///         let mut parts = vec![(a, frequency - i - j), (b, i), (c, j)];
+///         parts.retain(|&(_, weight)| weight > 0);
+///         parts.sort();
+///         *names.entry(parts.clone()).or_insert_with(|| {
+///             let at = |(v, weight)| icosahedron.position(v) * (weight as f32 / frequency as f32);
+///             points.push(parts.into_iter().map(at).sum::<Point>());
+///             points.len() as u32 - 1
+///         })
+///     };
+///     for j in 0..frequency {
+///         for i in 0..frequency - j {
+///             faces.push([point(i, j), point(i + 1, j), point(i, j + 1)]);
+///             if i + j + 1 < frequency {
+///                 faces.push([point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)]);
+///             }
+///         }
+///     }
+/// }
+///
+/// let mut dome = IndexedFaceSet::from_polygons(&PolygonMesh::new(points, faces)?)?;
+/// let on_sphere = projected_to_sphere(&dome, Point::ZERO, radius)?;
+/// dome.set_positions(&on_sphere)?;
+/// // V = 10f² + 2, E = 30f², F = 20f²; twelve vertices of valence 5, all others 6.
+/// assert_eq!([dome.vertex_count(), dome.edge_count(), dome.face_count()], [362, 1080, 720]);
+/// assert!(dome.vertices().all(|v| (dome.position(v).length() - radius).abs() < 1e-6));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn projected_to_sphere<M: MeshQuery>(
+    mesh: &M,
+    centre: Point,
+    radius: f32,
+) -> Result<VertexMap<M, Point>, SphereError> {
+    if !(centre.is_finite() && radius.is_finite() && radius > 0.0) {
+        let centre = centre.to_array();
+        return Err(SphereError::NoSphere { centre, radius });
+    }
+    let (from, length) = (centre.as_dvec3(), f64::from(radius));
+    let mut projected = mesh.vertex_map(Point::ZERO);
+    for (i, v) in mesh.vertices().enumerate() {
+        let ray = mesh.position(v).as_dvec3() - from;
+        let Some(direction) = ray.try_normalize() else {
+            let vertex = VertexId::new(row(i));
+            return Err(SphereError::NoDirection { vertex });
+        };
+        projected[v] = (from + length * direction).as_vec3();
+    }
+    Ok(projected)
+}
+
+#[cfg(test)]
+mod tests {
+    use half_edge::HalfEdgeMesh;
+    use mesh_core::{PolygonMesh, Representation};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn mesh(polygons: &PolygonMesh) -> HalfEdgeMesh {
+        HalfEdgeMesh::from_polygons(polygons).expect("a manifold")
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn vertices_come_to_the_sphere_along_their_rays(
+            centre in prop::array::uniform3(-5.0_f32..5.0),
+            radius in 0.01_f32..100.0,
+        ) {
+            let torus = mesh(&shapes::torus(7, 5).expect("small"));
+            let centre = Point::from_array(centre);
+            let moved = projected_to_sphere(&torus, centre, radius).expect("off the centre");
+            for v in torus.vertices() {
+                let (ray, arm) = (torus.position(v) - centre, moved[v] - centre);
+                prop_assert!((arm.length() - radius).abs() < 1e-5 * (radius + 5.0));
+                prop_assert!(ray.normalize().distance(arm / radius) < 1e-5 * (1.0 + 5.0 / radius));
+            }
+        }
+    }
+
+    #[test]
+    fn each_refusal_is_named() {
+        let grid = mesh(&shapes::grid(2, 2).expect("small"));
+        let project = |centre, radius| projected_to_sphere(&grid, centre, radius);
+        let middle = Point::new(1.0, 1.0, 0.0);
+        let vertex = VertexId::new(4);
+        assert_eq!(
+            project(middle, 1.0).err(),
+            Some(SphereError::NoDirection { vertex })
+        );
+        for (centre, radius) in [
+            (Point::NAN, 1.0),
+            (Point::ZERO, 0.0),
+            (Point::ZERO, -1.0),
+            (Point::ZERO, f32::INFINITY),
+            (Point::ZERO, f32::NAN),
+        ] {
+            let refusal = project(centre, radius).err();
+            assert!(
+                matches!(refusal, Some(SphereError::NoSphere { .. })),
+                "{refusal:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Colours and light.
+
+use glam::DVec3;
+
+/// A colour in shares of red, green and blue light, not of their codes: sums and means are right.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Colour(pub(crate) DVec3);
+
+/// What is behind the meshes.
+pub(crate) const BACKGROUND: Colour = Colour(DVec3::new(0.965, 0.965, 0.958));
+/// The outer side of a surface.
+const OUTSIDE: Colour = Colour(DVec3::new(0.30, 0.42, 0.60));
+/// The side that a closed mesh never shows.
+const INSIDE: Colour = Colour(DVec3::new(0.66, 0.47, 0.26));
+/// Edges.
+pub(crate) const EDGE: Colour = Colour(DVec3::new(0.018, 0.030, 0.055));
+/// Sharp edges and corners.
+pub(crate) const CREASE: Colour = Colour(DVec3::new(0.86, 0.075, 0.020));
+
+impl Colour {
+    /// As much of `other` as `share` says, and the rest of this.
+    pub(crate) fn mixed(self, other: Self, share: f64) -> Self {
+        Self(self.0.lerp(other.0, share))
+    }
+
+    /// As the codes that screens take (sRGB, IEC 61966-2-1).
+    pub(crate) fn codes(self) -> [u8; 3] {
+        self.0.to_array().map(|light| {
+            let light = light.clamp(0.0, 1.0);
+            let code = if light <= 0.003_130_8 {
+                12.92 * light
+            } else {
+                1.055 * light.powf(1.0 / 2.4) - 0.055
+            };
+            (code * 255.0).round() as u8
+        })
+    }
+
+    /// `#9fb4c8`.
+    pub(crate) fn web(self) -> String {
+        let [r, g, b] = self.codes();
+        format!("#{r:02x}{g:02x}{b:02x}")
+    }
+}
+
+/// The colour of a surface that looks along `normal`, in the axes of the picture; of its inner side
+/// if `inside`.
+///
+/// Lambert's law (1760) for a key light from the upper left and a weak one from the right, the sky
+/// above, a soft highlight after Blinn (1977), and light along the rim, where the surface turns away.
+pub(crate) fn lit(normal: DVec3, inside: bool) -> Colour {
+    let normal = normal.normalize_or(DVec3::Z);
+    let (normal, base) = if inside {
+        (-normal, INSIDE)
+    } else {
+        (normal, OUTSIDE)
+    };
+    let key = DVec3::new(-0.46, 0.62, 0.64).normalize();
+    let fill = DVec3::new(0.84, 0.05, 0.54).normalize();
+    let sky = 0.5 + 0.5 * normal.y;
+    let light =
+        0.16 + 0.20 * sky + 0.92 * normal.dot(key).max(0.0) + 0.20 * normal.dot(fill).max(0.0);
+    let half = (key + DVec3::Z).normalize();
+    let highlight = 0.10 * normal.dot(half).max(0.0).powi(24);
+    let rim = 0.16 * (1.0 - normal.z.clamp(0.0, 1.0)).powi(3) * sky;
+    Colour(base.0 * light + DVec3::splat(highlight + rim))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_is_coded_as_screens_take_it() {
+        let grey = |light| Colour(DVec3::splat(light)).codes()[0];
+        // Half the light is code 188, by the standard; and it ends at both ends.
+        let codes = [-1.0, 0.0, 0.002, 0.215_861, 0.5, 1.0, 7.0].map(grey);
+        assert_eq!(codes, [0, 0, 7, 128, 188, 255, 255]);
+        assert_eq!(Colour(DVec3::X).web(), "#ff0000");
+    }
+
+    #[test]
+    fn light_comes_from_the_upper_left_and_a_surface_has_two_sides() {
+        let bright = |x, y, z| lit(DVec3::new(x, y, z), false).0.element_sum();
+        assert!(bright(-1.0, 1.0, 1.0) > bright(1.0, 1.0, 1.0));
+        assert!(bright(0.0, 1.0, 1.0) > bright(0.0, -1.0, 1.0));
+        let inside = lit(DVec3::NEG_Z, true);
+        assert!(inside.0.x > inside.0.z && lit(DVec3::Z, false).0.z > lit(DVec3::Z, false).0.x);
+        assert!(lit(DVec3::ZERO, false).0.is_finite());
+    }
+}

@@ -1,0 +1,121 @@
+//! In which order polygons are painted over each other.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use mesh_core::{FaceId, PolygonMesh, row};
+
+use crate::fill::{Corner, Filler};
+use crate::layout::Panel;
+
+/// The most samples to look at; what is beyond goes by depth alone.
+const MOST_SAMPLES: usize = 1 << 24;
+
+/// How much nearer, in pixels, a face must be to have to come later.
+const NEARER: f32 = 0.25;
+
+/// A surface at a pixel.
+struct Layer {
+    pixel: u32,
+    depth: f32,
+    face: u32,
+}
+
+/// The faces that are marked `visible`, from back to front; O(samples · log samples).
+///
+/// Sorting by one depth for each face is wrong for long faces beside short ones. Here each pixel
+/// says which of its faces must come before which, and those rules are obeyed in the manner of Kahn
+/// (1962), the farthest first where there is a choice. Faces that run through each other have no
+/// order; then the farthest of those left goes first.
+pub(crate) fn back_to_front(mesh: &PolygonMesh, panel: &Panel, visible: &[bool]) -> Vec<FaceId> {
+    let mut layers: Vec<Layer> = Vec::new();
+    let mut filler = Filler::new(panel.width, panel.height);
+    // By mean depth: the choice where no rule decides.
+    let mut ranked: Vec<(f64, FaceId)> = Vec::new();
+    for (f, face) in mesh.faces().iter().filter(|(f, _)| visible[f.index()]) {
+        let depths = face.iter().map(|&v| panel.place(v).z);
+        ranked.push((depths.sum::<f64>() / face.len() as f64, f));
+    }
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut corners = Vec::new();
+    for (rank, &(_, f)) in ranked.iter().enumerate() {
+        if layers.len() > MOST_SAMPLES {
+            break;
+        }
+        corners.clear();
+        corners.extend(mesh.faces().face(f).iter().map(|&v| Corner {
+            place: panel.place(v),
+            normal: glam::DVec3::Z,
+        }));
+        filler.fill(&corners, |sample| {
+            layers.push(Layer {
+                pixel: row(sample.row * panel.width + sample.column),
+                depth: sample.depth as f32,
+                face: row(rank),
+            });
+        });
+    }
+    layers.sort_by(|a, b| {
+        let by_depth = || a.depth.total_cmp(&b.depth);
+        a.pixel.cmp(&b.pixel).then_with(by_depth)
+    });
+    let rules = layers.windows(2).filter_map(|pair| {
+        let [far, near] = [&pair[0], &pair[1]];
+        let rule = far.pixel == near.pixel && near.depth - far.depth > NEARER;
+        (rule && far.face != near.face).then_some((far.face, near.face))
+    });
+    let order = obeying(ranked.len(), rules.collect());
+    order.into_iter().map(|rank| ranked[rank].1).collect()
+}
+
+/// The numbers below `count` in an order in which the first of each rule comes before the second, the
+/// lowest where there is a choice.
+fn obeying(count: usize, mut rules: Vec<(u32, u32)>) -> Vec<usize> {
+    rules.sort_unstable();
+    rules.dedup();
+    let mut waits = vec![0_usize; count];
+    for &(_, later) in &rules {
+        waits[later as usize] += 1;
+    }
+    let mut free: BinaryHeap<Reverse<usize>> = BinaryHeap::new();
+    free.extend((0..count).filter(|&n| waits[n] == 0).map(Reverse));
+    let mut placed = vec![false; count];
+    let mut order = Vec::with_capacity(count);
+    let mut lowest = 0;
+    while order.len() < count {
+        let next = free.pop().map(|Reverse(next)| next);
+        let next = next.unwrap_or_else(|| {
+            // All that are left wait for each other.
+            while placed[lowest] {
+                lowest += 1;
+            }
+            lowest
+        });
+        placed[next] = true;
+        order.push(next);
+        let start = rules.partition_point(|&(first, _)| (first as usize) < next);
+        let of_next = rules[start..].iter();
+        for &(_, later) in of_next.take_while(|&&(first, _)| first as usize == next) {
+            let later = later as usize;
+            waits[later] = waits[later].saturating_sub(1);
+            if waits[later] == 0 && !placed[later] {
+                free.push(Reverse(later));
+            }
+        }
+    }
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rules_are_obeyed_and_knots_are_cut() {
+        assert_eq!(obeying(3, vec![]), [0, 1, 2]);
+        assert_eq!(obeying(4, vec![(3, 0), (0, 1)]), [2, 3, 0, 1]);
+        assert_eq!(obeying(3, vec![(2, 1), (2, 1), (1, 0)]), [2, 1, 0]);
+        // 1 and 2 wait for each other, and 0 for both.
+        assert_eq!(obeying(3, vec![(1, 2), (2, 1), (2, 0)]), [0, 1, 2]);
+    }
+}

@@ -1,0 +1,507 @@
+//! What pictures show: nothing too much, nothing too little, and the same each time.
+
+use mesh_core::{Creases, Point, PolygonMesh, VertexId};
+use render::{
+    MAX_PIXELS, MAX_SIDE, MeshFault, Picture, RenderError, Settings, Shading, Size, Subject, Up,
+    View, draw, draw_svg,
+};
+
+/// The corners of a cube from −1 to 1, by the bits of their number: 1 is x, 2 is y, 4 is z.
+const CUBE: [[u32; 4]; 6] = [
+    [0, 2, 3, 1],
+    [4, 5, 7, 6],
+    [0, 1, 5, 4],
+    [2, 6, 7, 3],
+    [0, 4, 6, 2],
+    [1, 3, 7, 5],
+];
+
+fn cube(half: f32) -> PolygonMesh {
+    let coordinate = |n: u32, bit: u32| if n & bit == 0 { -half } else { half };
+    let place = |n| Point::new(coordinate(n, 1), coordinate(n, 2), coordinate(n, 4));
+    PolygonMesh::new((0..8).map(place).collect::<Vec<_>>(), CUBE).expect("valid")
+}
+
+/// From the front, the right and above: of the cube all is seen but vertex 0 and what is at it.
+fn settings() -> Settings {
+    Settings {
+        size: Size {
+            width: 120,
+            height: 100,
+        },
+        view: View::new(30.0, 25.0, Up::Y).expect("a view"),
+        shading: Shading::Smooth,
+        edges: false,
+        wireframe: false,
+    }
+}
+
+fn edges(mesh: &PolygonMesh, edges: &[[u32; 2]]) -> Creases {
+    Creases::new(mesh, edges.iter().map(|&ends| (ends, 2.0)), []).expect("edges")
+}
+
+fn drawn(mesh: &PolygonMesh, creases: &Creases, settings: &Settings) -> Picture {
+    draw(&[Subject { mesh, creases }], settings).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn svg(mesh: &PolygonMesh, creases: &Creases, settings: &Settings) -> String {
+    draw_svg(&[Subject { mesh, creases }], settings).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What a pixel shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shows {
+    Background,
+    Outside,
+    Inside,
+    Crease,
+    Other,
+}
+
+fn shows(picture: &Picture) -> Vec<Shows> {
+    let background = &picture.bytes()[..3];
+    let pixels = picture.bytes().chunks_exact(3);
+    pixels
+        .map(|pixel| {
+            let [r, g, b] = [pixel[0], pixel[1], pixel[2]].map(i32::from);
+            match () {
+                () if pixel == background => Shows::Background,
+                () if r > g + 70 && r > b + 70 && g < 140 => Shows::Crease,
+                () if b > r + 12 => Shows::Outside,
+                () if r > b + 12 => Shows::Inside,
+                () => Shows::Other,
+            }
+        })
+        .collect()
+}
+
+fn count(picture: &Picture, what: Shows) -> usize {
+    shows(picture)
+        .iter()
+        .filter(|&&shown| shown == what)
+        .count()
+}
+
+/// The lines of an SVG in this colour, as places of their ends.
+fn lines<'a>(svg: &'a str, colour: &str) -> Vec<&'a str> {
+    let stroke = format!("fill=\"none\" stroke=\"{colour}\"");
+    let paths = svg.lines().filter(|line| line.contains(&stroke));
+    paths
+        .filter_map(|line| line.split('"').nth(1))
+        .flat_map(|path| path.split('M').skip(1))
+        .collect()
+}
+
+fn faces(svg: &str) -> Vec<&str> {
+    svg.lines().filter(|line| line.contains("Z\"")).collect()
+}
+
+const EDGE: &str = "#243042";
+const CREASE: &str = "#ef4d27";
+
+#[test]
+fn a_picture_has_its_size_a_frame_of_background_and_no_chance_in_it() {
+    let (mesh, creases) = (cube(1.0), Creases::default());
+    let picture = drawn(&mesh, &creases, &settings());
+    assert_eq!(picture.size(), settings().size);
+    assert_eq!(picture.bytes().len(), 120 * 100 * 3);
+    let shown = shows(&picture);
+    let rim = |i: usize| i % 120 < 4 || i % 120 >= 116 || i / 120 < 4 || i / 120 >= 96;
+    let outside = (0..shown.len()).filter(|&i| rim(i));
+    assert!(outside.clone().count() > 500);
+    assert!(outside.into_iter().all(|i| shown[i] == Shows::Background));
+    assert_eq!(count(&picture, Shows::Inside), 0, "a cube is closed");
+    let covered = count(&picture, Shows::Outside);
+    assert!(covered > 3000, "only {covered} pixels");
+    assert_eq!(picture, drawn(&mesh, &creases, &settings()));
+    assert_eq!(
+        svg(&mesh, &creases, &settings()),
+        svg(&mesh, &creases, &settings())
+    );
+    let png = || {
+        let mut bytes = Vec::new();
+        picture.write_png(&mut bytes).expect("memory does not fail");
+        bytes
+    };
+    assert_eq!(png(), png());
+    // What is written reads back as it was.
+    let mut reader = png::Decoder::new(std::io::Cursor::new(png()))
+        .read_info()
+        .expect("a PNG");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
+    reader.next_frame(&mut bytes).expect("pixels");
+    assert_eq!(bytes, picture.bytes());
+}
+
+#[test]
+fn three_faces_and_nine_edges_of_a_cube_are_seen() {
+    let mesh = cube(1.0);
+    let all = Settings {
+        edges: true,
+        ..settings()
+    };
+    let text = svg(&mesh, &Creases::default(), &all);
+    assert_eq!(faces(&text).len(), 3, "{text}");
+    assert_eq!(lines(&text, EDGE).len(), 9, "{text}");
+    let wireframe = Settings {
+        wireframe: true,
+        ..settings()
+    };
+    let text = svg(&mesh, &Creases::default(), &wireframe);
+    assert_eq!(
+        (faces(&text).len(), lines(&text, EDGE).len()),
+        (0, 12),
+        "{text}"
+    );
+    let none = svg(&mesh, &Creases::default(), &settings());
+    assert_eq!(lines(&none, EDGE), [""; 0]);
+    let picture = drawn(&mesh, &Creases::default(), &wireframe);
+    let background = count(&picture, Shows::Background);
+    assert!((5000..11_500).contains(&background), "{background}");
+}
+
+#[test]
+fn creases_are_red_where_they_are_seen() {
+    let mesh = cube(1.0);
+    let seen = edges(&mesh, &[[7, 5], [7, 6], [7, 3]]);
+    let hidden = edges(&mesh, &[[0, 1], [0, 2], [0, 4]]);
+    assert!(count(&drawn(&mesh, &seen, &settings()), Shows::Crease) > 60);
+    assert_eq!(count(&drawn(&mesh, &hidden, &settings()), Shows::Crease), 0);
+    assert_eq!(lines(&svg(&mesh, &seen, &settings()), CREASE).len(), 3);
+    assert_eq!(lines(&svg(&mesh, &hidden, &settings()), CREASE).len(), 0);
+    let corner = |v| Creases::new(&mesh, [], [(v, 1.0)]).expect("a vertex");
+    let of_corner = |v| count(&drawn(&mesh, &corner(v), &settings()), Shows::Crease);
+    assert!(of_corner(7) > 0);
+    assert_eq!(of_corner(0), 0);
+}
+
+#[test]
+fn a_line_ends_where_something_else_hides_it() {
+    // A square in the middle, before a larger one: seen from the front it hides the middle third of
+    // the diagonal of the other.
+    let positions = [
+        [-3.0, -3.0, 0.0],
+        [3.0, -3.0, 0.0],
+        [3.0, 3.0, 0.0],
+        [-3.0, 3.0, 0.0],
+        [-1.0, -1.0, 2.0],
+        [1.0, -1.0, 2.0],
+        [1.0, 1.0, 2.0],
+        [-1.0, 1.0, 2.0],
+    ];
+    let faces: [&[u32]; 3] = [&[0, 1, 2], &[0, 2, 3], &[4, 5, 6, 7]];
+    let mesh = PolygonMesh::new(positions.map(Point::from_array), faces).expect("valid");
+    let front = Settings {
+        view: View::new(0.0, 0.0, Up::Y).expect("a view"),
+        size: Size {
+            width: 200,
+            height: 200,
+        },
+        ..settings()
+    };
+    let diagonal = edges(&mesh, &[[0, 2]]);
+    let text = svg(&mesh, &diagonal, &front);
+    let lines = lines(&text, CREASE);
+    assert_eq!(lines.len(), 2, "{text}");
+    // The scale is 200 · 0.86 / 6: from the margin of 14 to a third of 172 beyond.
+    let numbers = |line: &str| -> Vec<f64> {
+        let numbers = line.split(['L', ' ']);
+        numbers
+            .map(|number| number.parse().expect("a number"))
+            .collect()
+    };
+    let mut ends: Vec<f64> = lines.iter().flat_map(|line| numbers(line)).collect();
+    ends.sort_by(f64::total_cmp);
+    let third = 172.0 / 3.0;
+    let expected = [14.0, 14.0 + third, 186.0 - third, 186.0];
+    for (pair, expected) in ends.chunks(2).zip(expected) {
+        for end in pair {
+            assert!((end - expected).abs() < 1.0, "{ends:?}");
+        }
+    }
+}
+
+#[test]
+fn a_surface_has_two_sides() {
+    let corners = [Point::ZERO, Point::X, Point::Y];
+    let triangle = PolygonMesh::new(corners, [[0, 1, 2]]).expect("valid");
+    let from = |azimuth| {
+        let view = View::new(azimuth, 0.0, Up::Y).expect("a view");
+        drawn(
+            &triangle,
+            &Creases::default(),
+            &Settings { view, ..settings() },
+        )
+    };
+    let (front, back) = (from(0.0), from(180.0));
+    assert!(count(&front, Shows::Outside) > 1000);
+    assert_eq!(count(&front, Shows::Inside), 0);
+    assert!(count(&back, Shows::Inside) > 1000);
+    assert_eq!(count(&back, Shows::Outside), 0);
+}
+
+#[test]
+fn meshes_in_a_row_have_one_scale() {
+    let (small, large, creases) = (cube(1.0), cube(2.0), Creases::default());
+    let subject = |mesh| Subject {
+        mesh,
+        creases: &creases,
+    };
+    let row = Settings {
+        size: Size {
+            width: 300,
+            height: 100,
+        },
+        ..settings()
+    };
+    let subjects = [subject(&small), subject(&large), subject(&small)];
+    let picture = draw(&subjects, &row).expect("a picture");
+    let shown = shows(&picture);
+    let height = |columns: std::ops::Range<usize>| {
+        let filled = |row: &usize| {
+            let mut columns = columns.clone();
+            columns.any(|column| shown[row * 300 + column] != Shows::Background)
+        };
+        (0..100).filter(filled).count()
+    };
+    let [first, second, third] = [0..100, 100..200, 200..300].map(height);
+    assert_eq!(first, third);
+    assert!(second.abs_diff(2 * first) <= 2, "{first} {second}");
+    assert!(second > 75, "the largest fills its panel: {second}");
+}
+
+#[test]
+fn shading_is_smooth_unless_an_angle_or_a_crease_breaks_it() {
+    // A roof of two slopes that meet at 30°.
+    let slope = 15_f32.to_radians().tan();
+    let positions = [
+        [-1.0, 0.0, -slope],
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, -slope],
+        [-1.0, 1.0, -slope],
+        [0.0, 1.0, 0.0],
+        [1.0, 1.0, -slope],
+    ];
+    let positions = positions.map(Point::from_array);
+    let roof = PolygonMesh::new(positions, [[0, 1, 4, 3], [1, 2, 5, 4]]).expect("valid");
+    let front = Settings {
+        view: View::new(0.0, 0.0, Up::Y).expect("a view"),
+        ..settings()
+    };
+    let flat = Settings {
+        shading: Shading::Flat,
+        ..front
+    };
+    // How many colours faces have, apart from where they end.
+    let colours = |creases: &Creases, settings: &Settings| {
+        let picture = drawn(&roof, creases, settings);
+        let mut colours: Vec<&[u8]> = (0..120)
+            .map(|column| &picture.bytes()[3 * (60 * 120 + column)..][..3])
+            .collect();
+        colours.dedup();
+        colours.len()
+    };
+    let none = Creases::default();
+    let weak = Creases::new(&roof, [([1, 4], 0.5)], []).expect("an edge");
+    assert!(colours(&none, &front) > 12);
+    assert!(colours(&none, &flat) <= 7);
+    let paths = |creases, settings| {
+        let text = svg(&roof, creases, settings);
+        let faces = faces(&text).into_iter().map(|face| face.split('"').nth(3));
+        faces
+            .map(|colour| colour.expect("a colour").to_owned())
+            .collect::<Vec<_>>()
+    };
+    let sharp = edges(&roof, &[[1, 4]]);
+    assert_eq!(paths(&sharp, &front), paths(&none, &flat));
+    assert_ne!(paths(&none, &front), paths(&none, &flat));
+    assert_eq!(paths(&weak, &front), paths(&none, &front));
+    // The edges of a cube are too steep to be smoothed.
+    let cube = cube(1.0);
+    let flat = Settings {
+        shading: Shading::Flat,
+        ..settings()
+    };
+    assert_eq!(svg(&cube, &none, &settings()), svg(&cube, &none, &flat));
+}
+
+#[test]
+fn polygons_are_painted_from_back_to_front() {
+    // A long strip that runs away from us, and a small square close above its far end: on the mean
+    // the strip is nearer.
+    let positions = [
+        [0.0, -0.5, 10.0],
+        [1.0, -0.5, 10.0],
+        [1.0, 1.0, -10.0],
+        [0.0, 1.0, -10.0],
+        [0.3, 0.6, -3.0],
+        [0.6, 0.6, -3.0],
+        [0.6, 0.8, -3.0],
+        [0.3, 0.8, -3.0],
+    ];
+    let positions = positions.map(Point::from_array);
+    let front = Settings {
+        view: View::new(0.0, 0.0, Up::Y).expect("a view"),
+        shading: Shading::Flat,
+        ..settings()
+    };
+    for faces_of in [[[0, 1, 2, 3], [4, 5, 6, 7]], [[4, 5, 6, 7], [0, 1, 2, 3]]] {
+        let mesh = PolygonMesh::new(positions, faces_of).expect("valid");
+        let text = svg(&mesh, &Creases::default(), &front);
+        let widths = faces(&text).into_iter().map(|face| {
+            let path = face
+                .split('"')
+                .nth(1)
+                .expect("a path")
+                .trim_end_matches('Z');
+            let columns = path.trim_start_matches('M').split('L');
+            let columns = columns.map(|place| place.split(' ').next().map(str::parse::<f64>));
+            let columns: Vec<f64> = columns.map(|x| x.expect("x").expect("a number")).collect();
+            columns
+                .iter()
+                .fold(0.0, |most, x| f64::max(most, x - columns[0]))
+        });
+        let widths: Vec<f64> = widths.collect();
+        assert_eq!(widths.len(), 2, "{text}");
+        assert!(widths[0] > widths[1], "the strip comes first: {text}");
+    }
+}
+
+#[test]
+fn extreme_meshes_have_pictures() {
+    let triangle = |scale: f32| {
+        let corners = [Point::ZERO, Point::X, Point::Y].map(|p| p * scale);
+        PolygonMesh::new(corners, [[0, 1, 2]]).expect("valid")
+    };
+    for scale in [1e-44, 1e-20, 1.0, 3e38] {
+        let mesh = triangle(scale);
+        let all = Settings {
+            edges: true,
+            ..settings()
+        };
+        let picture = drawn(&mesh, &edges(&mesh, &[[0, 1]]), &all);
+        assert!(count(&picture, Shows::Crease) > 20, "{scale}");
+        assert!(count(&picture, Shows::Outside) > 500, "{scale}");
+    }
+    // Seen from its edge, from its end, and without area.
+    let line = [Point::ZERO, Point::X, Point::X * 2.0];
+    let line = PolygonMesh::new(line, [[0, 1, 2]]).expect("valid");
+    for mesh in [triangle(1.0), line] {
+        for (azimuth, elevation) in [(0.0, 90.0), (90.0, 0.0), (0.0, 0.0), (270.0, -90.0)] {
+            let view = View::new(azimuth, elevation, Up::Z).expect("a view");
+            let all = Settings {
+                edges: true,
+                view,
+                ..settings()
+            };
+            let picture = drawn(&mesh, &Creases::default(), &all);
+            assert!(
+                count(&picture, Shows::Background) < 120 * 100,
+                "{azimuth} {elevation}"
+            );
+            svg(&mesh, &Creases::default(), &all);
+        }
+    }
+    // A vertex that no face has may be anywhere, even where a corner is told to be.
+    let corners = [Point::ZERO, Point::X, Point::Y, Point::NAN, Point::MAX];
+    let mesh = PolygonMesh::new(corners, [[0, 1, 2]]).expect("valid");
+    let creases = Creases::new(&mesh, [], [(3, 1.0), (4, 1.0)]).expect("vertices");
+    let picture = drawn(&mesh, &creases, &settings());
+    assert_eq!(count(&picture, Shows::Crease), 0);
+    let svg = svg(&mesh, &creases, &settings());
+    assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused() {
+    let (mesh, creases) = (cube(1.0), Creases::default());
+    let subject = Subject {
+        mesh: &mesh,
+        creases: &creases,
+    };
+    let of_size = |width, height, panels| {
+        let size = Size { width, height };
+        let wanted = Settings { size, ..settings() };
+        draw(&vec![subject; panels], &wanted).expect_err("refused")
+    };
+    for (width, height) in [
+        (MAX_SIDE + 1, 16),
+        (16, u32::MAX),
+        (4096, 4096),
+        (u32::MAX, u32::MAX),
+    ] {
+        let error = of_size(width, height, 1);
+        assert_eq!(error, RenderError::TooLarge { width, height });
+        assert!(error.to_string().contains(&MAX_PIXELS.to_string()));
+    }
+    for (width, height, panels) in [(0, 0, 1), (15, 100, 1), (100, 15, 1), (100, 100, 7)] {
+        let error = of_size(width, height, panels);
+        assert_eq!(
+            error,
+            RenderError::TooSmall {
+                width,
+                height,
+                panels
+            }
+        );
+    }
+    assert_eq!(draw(&[], &settings()), Err(RenderError::NoMesh));
+    for (azimuth, elevation) in [
+        (f64::NAN, 0.0),
+        (0.0, 90.5),
+        (f64::INFINITY, 0.0),
+        (0.0, f64::NAN),
+    ] {
+        let error = View::new(azimuth, elevation, Up::Y).expect_err("no view");
+        assert!(matches!(error, RenderError::View { .. }));
+    }
+    let fault = |places: [Point; 3], faces: Vec<[u32; 3]>| {
+        let mesh = PolygonMesh::new(places, faces).expect("valid");
+        let creases = Creases::default();
+        let subjects = [
+            subject,
+            Subject {
+                mesh: &mesh,
+                creases: &creases,
+            },
+        ];
+        let error = draw(&subjects, &settings()).expect_err("refused");
+        assert_eq!(draw_svg(&subjects, &settings()), Err(error.clone()));
+        match error {
+            RenderError::Mesh { mesh: 1, fault } => fault,
+            other => panic!("{other}"),
+        }
+    };
+    let triangle = [Point::ZERO, Point::X, Point::Y];
+    assert_eq!(fault(triangle, vec![]), MeshFault::NoFaces);
+    assert_eq!(fault([Point::ONE; 3], vec![[0, 1, 2]]), MeshFault::NoExtent);
+    let infinite = [Point::ZERO, Point::X, Point::new(0.0, f32::INFINITY, 0.0)];
+    let vertex = VertexId::new(2);
+    assert_eq!(
+        fault(infinite, vec![[0, 1, 2]]),
+        MeshFault::NotFinite { vertex }
+    );
+}
+
+#[test]
+fn an_svg_has_an_end_to_its_faces() {
+    let (mesh, creases) = (shapes::grid(300, 300).expect("valid"), Creases::default());
+    let view = View::new(0.0, 0.0, Up::Y).expect("a view");
+    let size = Size {
+        width: 640,
+        height: 640,
+    };
+    let settings = Settings {
+        size,
+        view,
+        ..settings()
+    };
+    let subject = Subject {
+        mesh: &mesh,
+        creases: &creases,
+    };
+    let error = draw_svg(&[subject], &settings).expect_err("too many");
+    let message =
+        "mesh 1 of the row: 90000 faces are to be seen, and an SVG holds 50000: write a PNG";
+    assert_eq!(error.to_string(), message);
+}

@@ -1,0 +1,115 @@
+//! What `sixfold render` can be asked for.
+
+use std::path::PathBuf;
+
+use ::render::{Shading, Size, Up, View};
+use clap::Args;
+
+const EXAMPLES: &str = "Examples:
+  sixfold render bunny.obj -o bunny.png
+  sixfold render cage.obj level1.obj level2.obj -o row.svg --edges --size 1200x400
+  sixfold render part.obj --creases part.creases -o part.png --view iso --up z
+  sixfold render part.obj -o part.svg --wireframe --view=-20,10
+
+Several meshes stand in a row, all at one scale. Sharp edges and corners are red: those of the tags
+t crease and t corner in an OBJ file, and those of --creases, which may be given once for each mesh,
+in the same order. Blue is the side from which a face runs counter-clockwise; the other side is
+sand-coloured. A PNG is shaded sample by sample; an SVG has one colour for each face.
+
+Exit codes: 0 done; 2 wrong usage or unusable input; 3 too many faces for an SVG; 4 interrupted,
+nothing written.";
+
+/// Draw meshes with their edges and creases, as PNG or SVG.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Render {
+    /// The meshes, OBJ files
+    #[arg(value_name = "IN.obj", required = true)]
+    pub(crate) meshes: Vec<PathBuf>,
+    /// Where to write the picture; its ending says in which format
+    #[arg(short, long, value_name = "OUT.png|OUT.svg")]
+    pub(crate) output: PathBuf,
+    /// Pixels of the whole picture; without it 480 × 480 for each mesh
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(crate) size: Option<Size>,
+    /// Where to look from, in degrees: around to the right and up; or iso
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", default_value = "30,22", value_parser = view, allow_hyphen_values = true)]
+    pub(crate) view: [f64; 2],
+    /// Which axis points up: y or z
+    #[arg(long, value_name = "AXIS", default_value = "y", value_parser = up)]
+    pub(crate) up: Up,
+    /// Draw the edges that are not sharp, too
+    #[arg(long)]
+    pub(crate) edges: bool,
+    /// Draw all edges, also the hidden ones, and no faces
+    #[arg(long)]
+    pub(crate) wireframe: bool,
+    /// Sharp edges and corners, beside those that the mesh file tells
+    #[arg(long, value_name = "FILE")]
+    pub(crate) creases: Vec<PathBuf>,
+    /// smooth or flat
+    #[arg(long, value_name = "KIND", default_value = "smooth", value_parser = shading)]
+    pub(crate) shade: Shading,
+}
+
+/// `640x480`.
+fn size(text: &str) -> Result<Size, String> {
+    let sides = text.trim().split_once(['x', '×']);
+    let parsed = sides.and_then(|(width, height)| {
+        let (width, height) = (width.trim().parse().ok()?, height.trim().parse().ok()?);
+        Some(Size { width, height })
+    });
+    parsed.ok_or_else(|| "write a size in pixels as 640x480".into())
+}
+
+/// `30,20` or `iso`.
+fn view(text: &str) -> Result<[f64; 2], String> {
+    if text.trim() == "iso" {
+        return Ok(View::ISO);
+    }
+    let angles = text.split_once(',').and_then(|(azimuth, elevation)| {
+        Some([azimuth.trim().parse().ok()?, elevation.trim().parse().ok()?])
+    });
+    let wrong = || "write a view in degrees as 30,20, or as iso".to_owned();
+    let [azimuth, elevation] = angles.ok_or_else(wrong)?;
+    // Which axis is up does not matter to angles.
+    let checked = View::new(azimuth, elevation, Up::Y);
+    checked.map_err(|error| error.to_string())?;
+    Ok([azimuth, elevation])
+}
+
+fn up(text: &str) -> Result<Up, String> {
+    match text.trim() {
+        "y" => Ok(Up::Y),
+        "z" => Ok(Up::Z),
+        _ => Err("choose from y, z".into()),
+    }
+}
+
+fn shading(text: &str) -> Result<Shading, String> {
+    match text.trim() {
+        "smooth" => Ok(Shading::Smooth),
+        "flat" => Ok(Shading::Flat),
+        _ => Err("choose from smooth, flat".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_and_views_are_read() {
+        let (width, height) = (640, 48);
+        assert_eq!(size("640x48"), Ok(Size { width, height }));
+        assert_eq!(size(" 640 × 48 "), Ok(Size { width, height }));
+        for text in ["", "640", "640x", "x48", "-1x4", "6.5x4", "1x2x3", "99999999999x4"] {
+            assert!(size(text).is_err(), "{text}");
+        }
+        assert_eq!(view("-30, 20.5"), Ok([-30.0, 20.5]));
+        assert_eq!(view("iso"), Ok(View::ISO));
+        for text in ["", "30", "30,", "30,91", "nan,0", "inf,0", "1,2,3"] {
+            assert!(view(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! `sixfold render`: pictures of meshes.
+
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+
+use ::render::{MeshFault, Picture, RenderError, Settings, Size, Subject, View, draw, draw_svg};
+use sixfold::mesh_io::read_creases;
+use sixfold::{Creases, PolygonMesh};
+
+use crate::arguments::Render;
+use crate::failure::Failure;
+use crate::load;
+use crate::numbers::counted;
+use crate::output::{Output, check_places};
+use crate::progress::{Waiting, end_on_interrupt};
+use crate::text::{Text, tame};
+
+/// Draws the meshes into one picture.
+pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
+    end_on_interrupt();
+    let format = Format::of(&arguments.output)?;
+    let inputs = arguments.meshes.iter().chain(&arguments.creases);
+    for input in inputs {
+        check_places(Some(input), &[("--output", Some(&arguments.output))])?;
+    }
+    let settings = settings(arguments)?;
+    let loaded = loaded(arguments)?;
+    let subject = |(mesh, creases)| Subject { mesh, creases };
+    let subjects: Vec<Subject<'_>> = loaded.iter().map(|(m, c)| subject((m, c))).collect();
+    // Opened before the work, so that nobody waits for a failure.
+    let output = Output::open(&arguments.output)?;
+    let faces: usize = loaded.iter().map(|(mesh, _)| mesh.face_count()).sum();
+    let waiting = Waiting::shown(format!("drawing {}", counted(faces, "face", "faces")));
+    let drawn = match format {
+        Format::Png => draw(&subjects, &settings).map(Drawn::Pixels),
+        Format::Svg => draw_svg(&subjects, &settings).map(Drawn::Lines),
+    };
+    waiting.clear();
+    let drawn = drawn.map_err(|error| failure(arguments, &error))?;
+    output.finish(|writer| match &drawn {
+        Drawn::Pixels(picture) => picture.write_png(writer),
+        Drawn::Lines(svg) => writer.write_all(svg.as_bytes()),
+    })?;
+    let mut text = Text::shown(true);
+    let place = tame(&arguments.output.display().to_string());
+    let meshes = counted(loaded.len(), "mesh", "meshes");
+    let faces = counted(faces, "face", "faces");
+    let Size { width, height } = settings.size;
+    text.say(&format!(
+        "{place}: {meshes}, {faces}, {width} × {height} pixels"
+    ));
+    text.finish()?;
+    Ok(ExitCode::SUCCESS)
+}
+
+enum Format {
+    Png,
+    Svg,
+}
+
+enum Drawn {
+    Pixels(Picture),
+    Lines(String),
+}
+
+impl Format {
+    /// What the ending of `path` says.
+    fn of(path: &Path) -> Result<Self, Failure> {
+        let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+        match ending.as_ref().and_then(|ending| ending.to_str()) {
+            Some("png") => Ok(Self::Png),
+            Some("svg") => Ok(Self::Svg),
+            _ => Err(Failure::usage(format!(
+                "--output {}: a picture is called OUT.png or OUT.svg",
+                path.display()
+            ))),
+        }
+    }
+}
+
+fn settings(arguments: &Render) -> Result<Settings, Failure> {
+    let [azimuth, elevation] = arguments.view;
+    let view = View::new(azimuth, elevation, arguments.up).map_err(Failure::usage)?;
+    let panels = arguments.meshes.len();
+    Ok(Settings {
+        size: arguments.size.unwrap_or_else(|| Size::of_row(panels)),
+        view,
+        shading: arguments.shade,
+        edges: arguments.edges,
+        wireframe: arguments.wireframe,
+    })
+}
+
+/// The meshes, each with the creases of its file and of the crease file that goes with it.
+fn loaded(arguments: &Render) -> Result<Vec<(PolygonMesh, Creases)>, Failure> {
+    let (meshes, files) = (&arguments.meshes, &arguments.creases);
+    if files.len() > meshes.len() {
+        let files = counted(files.len(), "crease file", "crease files");
+        let meshes = counted(meshes.len(), "mesh", "meshes");
+        return Err(Failure::usage(format!(
+            "{files} for {meshes}: --creases goes with the meshes in their order, one for each"
+        )));
+    }
+    let mut loaded = Vec::with_capacity(meshes.len());
+    for (i, path) in meshes.iter().enumerate() {
+        let (polygons, mut creases) = load::with_creases(path)?;
+        if let Some(file) = files.get(i) {
+            let told = read_creases(file, &polygons).map_err(Failure::usage)?;
+            creases = creases.with(&told);
+        }
+        loaded.push((polygons, creases));
+    }
+    Ok(loaded)
+}
+
+/// A mesh is called by its file.
+fn failure(arguments: &Render, error: &RenderError) -> Failure {
+    match error {
+        RenderError::Mesh { mesh, fault } => {
+            let file = arguments.meshes[*mesh].display();
+            let message = format!("{file}: {fault}");
+            match fault {
+                MeshFault::TooManyFaces { .. } => Failure::unsupported(message),
+                _ => Failure::usage(message),
+            }
+        }
+        _ => Failure::usage(error),
+    }
+}

@@ -1,0 +1,124 @@
+//! `sixfold schemes`: what kinds of subdivision there are, and what runs where.
+
+use std::process::ExitCode;
+
+use comfy_table::{Cell, ContentArrangement, LineStyle, Table, TableStyle};
+use serde_json::json;
+use sixfold::subdivision::{Kind, Method, Primitive, Scheme};
+use sixfold::{Support, roster, support};
+
+use crate::arguments::Schemes;
+use crate::failure::Failure;
+use crate::output::{Output, is_stdout};
+use crate::text::Text;
+
+/// Two blanks between columns, and one line under the header.
+const STYLE: TableStyle =
+    TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
+
+/// Prints the classification, and the table of schemes and backends.
+pub(crate) fn run(arguments: &Schemes) -> Result<ExitCode, Failure> {
+    let json = Output::open_if(arguments.json.as_ref())?;
+    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
+    text.say(&classification());
+    text.say("");
+    text.say(&matrix());
+    let mut done = text.finish();
+    if let Some(output) = json {
+        let rows = Scheme::ALL.map(|scheme| {
+            json!({ "scheme": scheme, "kind": scheme.kind(), "backends": support(scheme) })
+        });
+        done = done.and(output.finish(|writer| {
+            serde_json::to_writer_pretty(&mut *writer, &rows)?;
+            writeln!(writer)
+        }));
+    }
+    done?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn table(header: Vec<Cell>) -> Table {
+    let mut table = Table::new();
+    table
+        .load_style(STYLE)
+        .set_content_arrangement(ContentArrangement::Disabled)
+        .force_no_tty()
+        .set_header(header);
+    table
+}
+
+/// One row for each scheme: what kind it is.
+fn classification() -> String {
+    let heads = ["scheme", "splits", "faces", "old vertices", "growth", "limit"];
+    let mut kinds = table(heads.map(Cell::new).to_vec());
+    let mut notes = Vec::new();
+    for scheme in Scheme::ALL {
+        let Kind {
+            primitive,
+            takes,
+            makes,
+            interpolating,
+            continuity,
+            growth,
+            boundary,
+            source,
+            ..
+        } = scheme.kind();
+        let primitive = match primitive {
+            Primitive::FaceSplit => "faces",
+            Primitive::VertexSplit => "vertices",
+        };
+        let faces = match takes == makes {
+            true => takes.to_owned(),
+            false => format!("{takes} to {makes}"),
+        };
+        let stay = match interpolating {
+            true => "stay",
+            false => "move",
+        };
+        let row = [scheme.name(), primitive, &faces, stay, &format!("× {growth}"), continuity];
+        kinds.add_row(row.map(Cell::new).to_vec());
+        notes.push((scheme.name(), boundary, source));
+    }
+    let heads = ["scheme", "boundary", "source"];
+    let mut sources = table(heads.map(Cell::new).to_vec());
+    for (name, boundary, source) in notes {
+        sources.add_row([name, boundary, source].map(Cell::new).to_vec());
+    }
+    format!("{}\n\n{}", kinds.trim_fmt(), sources.trim_fmt())
+}
+
+/// One row for each scheme, one column for each backend: the methods there are.
+fn matrix() -> String {
+    let backends = roster();
+    let mut header = vec![Cell::new("methods")];
+    header.extend(backends.iter().map(|backend| Cell::new(backend.name.replace('-', "\n"))));
+    let mut methods = table(header);
+    let mut once = false;
+    for scheme in Scheme::ALL {
+        let mut row = vec![Cell::new(scheme.name())];
+        for support in support(scheme) {
+            once |= !support.holds_result;
+            row.push(Cell::new(letters(&support)));
+        }
+        methods.add_row(row);
+    }
+    let mut text = methods.trim_fmt();
+    text += "\n\nG gather: the neighbourhood is asked for at each new point. S scatter: one pass over the";
+    text += "\nfaces. N native: the structure splits its own tables, on all threads; the others rebuild it.";
+    if once {
+        text += "\n1  one step only: the structure cannot hold what it makes.";
+    }
+    text
+}
+
+fn letters(support: &Support) -> String {
+    let letter = |method: &Method| match method {
+        Method::Gather => "G",
+        Method::Scatter => "S",
+        Method::Native => "N",
+    };
+    let letters: Vec<&str> = support.methods.iter().map(letter).collect();
+    let once = if support.holds_result { "" } else { " 1" };
+    letters.join(" ") + once
+}

@@ -1,0 +1,233 @@
+//! `sixfold subdivide`: a mesh refined by a scheme.
+
+mod forecast;
+
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use rayon::ThreadPoolBuilder;
+use sixfold::mesh_io::{read_creases, write_creases, write_obj};
+use sixfold::subdivision::{
+    Boundary, Method, Scheme, Step, Subdivision, SubdivisionError, subdivide, subdivide_native,
+};
+use sixfold::{
+    Creases, PolygonMesh, PolygonSoup, Refine, RefineVisitor, Representation, Visitor, support,
+    visit, visit_refinable,
+};
+
+use crate::arguments::Subdivide;
+use crate::failure::Failure;
+use crate::load;
+use crate::numbers::{counted, duration, figure, grouped};
+use crate::output::{Output, check_places, is_stdout};
+use crate::progress::{Faces, end_on_interrupt};
+use crate::text::{Text, complain, tame};
+use forecast::Forecast;
+
+/// Refines the mesh and writes it.
+pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
+    end_on_interrupt();
+    let places = [
+        ("--output", Some(&arguments.output)),
+        ("--limit", arguments.limit.as_ref()),
+        ("--creases-left", arguments.creases_left.as_ref()),
+    ];
+    check_places(Some(&arguments.mesh), &places)?;
+    let data = places.iter().filter_map(|&(_, path)| path);
+    let mut text = Text::shown(!data.into_iter().any(|path| is_stdout(path)));
+    let subdivision = options(arguments)?;
+    let method = method(arguments)?;
+    let (polygons, mut creases) = load::with_creases(&arguments.mesh)?;
+    if let Some(path) = &arguments.creases {
+        let told = read_creases(path, &polygons).map_err(Failure::usage)?;
+        creases = creases.with(&told);
+    }
+    let forecast = Forecast::of(
+        &subdivision,
+        method,
+        &arguments.backend,
+        &polygons,
+        arguments.levels,
+    )?;
+    text.say(&forecast.told());
+    forecast.check(arguments.force)?;
+    // Opened before the work, so that nobody waits for a failure.
+    let output = Output::open(&arguments.output)?;
+    let left = Output::open_if(arguments.creases_left.as_ref())?;
+    let mut job = Job {
+        subdivision,
+        method,
+        polygons: &polygons,
+        creases: &creases,
+        levels: arguments.levels,
+        bar: Faces::of(forecast.faces_in_all()),
+        done: Vec::new(),
+    };
+    let step = job.run(&arguments.backend, arguments.threads)?;
+    for line in &job.done {
+        text.say(&line.told());
+    }
+    output.finish(|writer| write_obj(&step.polygons, writer))?;
+    if let Some(left) = left {
+        left.finish(|writer| write_creases(&step.creases, writer))?;
+    }
+    let place = tame(&arguments.output.display().to_string());
+    let vertices = counted(step.polygons.vertex_count(), "vertex", "vertices");
+    let faces = counted(step.polygons.face_count(), "face", "faces");
+    let (scheme, backend) = (subdivision.scheme, &arguments.backend);
+    text.say(&format!(
+        "{place}: {vertices}, {faces}; {scheme} by {method} on {backend}"
+    ));
+    text.finish()?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The scheme with its options; one that the scheme does not look at is refused.
+fn options(arguments: &Subdivide) -> Result<Subdivision, Failure> {
+    let scheme = arguments.scheme;
+    let kind = scheme.kind();
+    let foreign = |option: &str, schemes: &str| {
+        Failure::unsupported(format!(
+            "{scheme} does not know {option}: leave it out, or choose {schemes}"
+        ))
+    };
+    let creases = "catmull-clark or loop";
+    if arguments.boundary.is_some() && !kind.creases {
+        return Err(foreign("--boundary", creases));
+    }
+    if arguments.creasing.is_some() && !kind.creases {
+        return Err(foreign("--creasing", creases));
+    }
+    if arguments.creases.is_some() && !kind.creases {
+        return Err(foreign("--creases", creases));
+    }
+    if arguments.loop_weights.is_some() && scheme != Scheme::Loop {
+        return Err(foreign("--loop-weights", "loop"));
+    }
+    if arguments.limit.is_some() && !kind.creases {
+        return Err(foreign("--limit", creases));
+    }
+    let usual = Subdivision::new(scheme);
+    Ok(Subdivision {
+        boundary: arguments.boundary.unwrap_or(usual.boundary),
+        creasing: arguments.creasing.unwrap_or(usual.creasing),
+        loop_weights: arguments.loop_weights.unwrap_or(usual.loop_weights),
+        ..usual
+    })
+}
+
+/// The method asked for, or the best that the backend has for the scheme; checked before any work.
+fn method(arguments: &Subdivide) -> Result<Method, Failure> {
+    let Subdivide {
+        scheme, backend, ..
+    } = arguments;
+    let rows = support(*scheme);
+    let row = rows.iter().find(|row| row.backend == backend);
+    let row = row.ok_or_else(|| Failure::usage(format!("no backend is called `{backend}`")))?;
+    let names: Vec<&str> = row.methods.iter().map(|method| method.name()).collect();
+    let names = names.join(" or ");
+    let best = row.best().filter(|&best| {
+        // A native step keeps no order of faces that others could follow, and needs a fitting result.
+        best != Method::Native || row.holds_result
+    });
+    match arguments.method {
+        None => best.ok_or_else(|| {
+            Failure::unsupported(format!("{scheme} does not run on {backend}"))
+        }),
+        Some(method) if row.methods.contains(&method) => Ok(method),
+        Some(method) => Err(Failure::unsupported(format!(
+            "{scheme} does not run by {method} on {backend}: choose {names}, or see `sixfold schemes`"
+        ))),
+    }
+}
+
+/// A subdivision to be done with a structure that is chosen at run time.
+struct Job<'a> {
+    subdivision: Subdivision,
+    method: Method,
+    polygons: &'a PolygonMesh,
+    creases: &'a Creases,
+    levels: u32,
+    bar: Faces,
+    done: Vec<Done>,
+}
+
+/// One level that has been made.
+struct Done {
+    level: u32,
+    faces: usize,
+    time: Duration,
+}
+
+impl Done {
+    fn told(&self) -> String {
+        let Self { level, faces, time } = self;
+        let ns = time.as_nanos() as f64;
+        let each = figure(ns / (*faces).max(1) as f64);
+        let (faces, time) = (grouped(*faces), duration(ns));
+        format!("level {level:<3} {faces:>14} faces  {time:>9}  {each:>6} ns a face")
+    }
+}
+
+impl Job<'_> {
+    fn run(&mut self, backend: &str, threads: usize) -> Result<Step, Failure> {
+        let done = match self.method {
+            Method::Native => {
+                let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+                let pool = pool.map_err(|error| {
+                    Failure::usage(format!("{threads} threads cannot be had ({error}): take fewer"))
+                })?;
+                pool.install(|| visit_refinable(backend, self))
+            }
+            _ => visit(backend, self),
+        };
+        self.bar.clear();
+        match done {
+            Some(Ok(step)) => Ok(step),
+            Some(Err(refusal)) => Err(Failure::unsupported(refusal)),
+            None => Err(Failure::usage(format!("no backend is called `{backend}`"))),
+        }
+    }
+
+    /// What is told the levels as they are made.
+    fn watch<'b>(bar: &'b Faces, done: &'b mut Vec<Done>) -> impl FnMut(u32, usize) + 'b {
+        let mut began = Instant::now();
+        move |level, faces| {
+            let time = began.elapsed();
+            bar.made(level, faces);
+            done.push(Done { level, faces, time });
+            began = Instant::now();
+        }
+    }
+}
+
+impl Visitor for Job<'_> {
+    type Output = Result<Step, SubdivisionError>;
+
+    fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
+        let watch = Self::watch(&self.bar, &mut self.done);
+        let Self {
+            method,
+            polygons,
+            creases,
+            levels,
+            ..
+        } = *self;
+        subdivide::<M>(&self.subdivision, method, polygons, creases, levels, watch)
+    }
+}
+
+impl RefineVisitor for Job<'_> {
+    type Output = Result<Step, SubdivisionError>;
+
+    fn visit<M: Refine + 'static>(&mut self) -> Self::Output {
+        let watch = Self::watch(&self.bar, &mut self.done);
+        let Self {
+            polygons,
+            creases,
+            levels,
+            ..
+        } = *self;
+        subdivide_native::<M>(&self.subdivision, polygons, creases, levels, watch)
+    }
+}

@@ -1,0 +1,120 @@
+//! How large the result of a subdivision will be, and whether the machine has room for it.
+
+use sixfold::subdivision::{Method, Subdivision};
+use sixfold::{Counts, MAX_ROWS, Point, PolygonMesh, Representation, VertexId, Visitor, visit};
+use sysinfo::{MemoryRefreshKind, System};
+
+use crate::failure::Failure;
+use crate::numbers::{bytes, counted};
+
+/// The sizes of all levels, and the most memory that making them takes.
+pub(crate) struct Forecast {
+    /// Of the control mesh and of each level.
+    levels: Vec<Counts>,
+    /// Bytes at the worst moment.
+    peak: usize,
+}
+
+impl Forecast {
+    /// What `levels` steps make of `polygons`.
+    pub(crate) fn of(
+        subdivision: &Subdivision,
+        method: Method,
+        backend: &str,
+        polygons: &PolygonMesh,
+        levels: u32,
+    ) -> Result<Self, Failure> {
+        let edges = polygons.edge_uses();
+        let mut boundary = edges.iter().filter(|edge| edge.is_boundary()).count();
+        let mut counts = vec![polygons.counts()];
+        for level in 0..levels {
+            let Some(&last) = counts.last() else { break };
+            let (next, edges) = subdivision.grown(&last, boundary, level);
+            boundary = edges;
+            let names = [
+                ("vertices", next.vertices),
+                ("half-edges", next.edges.saturating_mul(2)),
+                ("corners", next.corners),
+            ];
+            if let Some((elements, _)) = names.iter().find(|(_, number)| *number > MAX_ROWS) {
+                return Err(Failure::unsupported(format!(
+                    "level {} of {levels} would have more than {MAX_ROWS} {elements}, and handles are 32 bits: take fewer levels, or split the mesh",
+                    level + 1
+                )));
+            }
+            counts.push(next);
+        }
+        let peak = counts.windows(2).map(|pair| {
+            let before = held(backend, &pair[0]) + flat(&pair[0]);
+            match method {
+                // Two meshes, and at the end the polygons that are written.
+                Method::Native => held(backend, &pair[1]) + before.max(flat(&pair[1])),
+                // The polygons of both, the structure, and data by handle beside it.
+                _ => before + flat(&pair[1]) + 2 * held(backend, &pair[0]),
+            }
+        });
+        Ok(Self {
+            peak: peak.max().unwrap_or_else(|| flat(&counts[0])),
+            levels: counts,
+        })
+    }
+
+    /// Faces of all levels but the first.
+    pub(crate) fn faces_in_all(&self) -> usize {
+        self.levels.iter().skip(1).map(|counts| counts.faces).sum()
+    }
+
+    /// What to expect, in a line.
+    pub(crate) fn told(&self) -> String {
+        let result = &self.levels[self.levels.len() - 1];
+        format!(
+            "to make: {}, {}; some {} of memory",
+            counted(result.vertices, "vertex", "vertices"),
+            counted(result.faces, "face", "faces"),
+            bytes(self.peak)
+        )
+    }
+
+    /// Refuses what the machine has no room for, unless told to go on.
+    pub(crate) fn check(&self, force: bool) -> Result<(), Failure> {
+        match free_memory() {
+            Some(free) if self.peak as u64 > free && !force => Err(Failure::usage(format!(
+                "the result takes some {}, and {} are free: take fewer levels, or go on with --force",
+                bytes(self.peak),
+                bytes(free as usize)
+            ))),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Bytes of the positions and faces of a polygon mesh.
+fn flat(counts: &Counts) -> usize {
+    let positions = counts.vertices.saturating_mul(size_of::<Point>());
+    positions.saturating_add(counts.corners.saturating_mul(size_of::<VertexId>()))
+}
+
+/// Bytes of the structure called `backend`.
+fn held(backend: &str, counts: &Counts) -> usize {
+    struct Layout<'a>(&'a Counts);
+
+    impl Visitor for Layout<'_> {
+        type Output = usize;
+
+        fn visit<M: Representation + 'static>(&mut self) -> usize {
+            M::layout_bytes(self.0)
+        }
+    }
+
+    visit(backend, &mut Layout(counts)).unwrap_or(0)
+}
+
+/// Bytes of memory that programs can still have, where the system tells.
+fn free_memory() -> Option<u64> {
+    let mut system = System::new();
+    system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
+    let free = system.available_memory();
+    let allowed = system.cgroup_limits().map(|limits| limits.free_memory);
+    let free = allowed.map_or(free, |allowed| free.min(allowed));
+    (free > 0).then_some(free)
+}

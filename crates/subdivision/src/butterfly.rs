@@ -1,0 +1,432 @@
+//! Modified butterfly: every triangle into four, interpolating, C¹.
+//!
+//! Zorin, Schröder & Sweldens (1996); the stencil between regular vertices is that of Dyn, Levin &
+//! Gregory (1990) with w = 0. Old vertices stay. A vertex is regular if it has six triangles around
+//! it, or three at a boundary.
+//!
+//! ```text
+//!   both ends regular                    one end extraordinary, valence K: around this end v
+//!
+//!     −1/16 ── 1/8 ── −1/16                  s₂ ── s₁        v    3/4
+//!         ╲    ╱ ╲    ╱                      ╱ ╲  ╱ ╲        sⱼ   (1/4 + cos(2πj/K) + cos(4πj/K)/2)/K
+//!          ╲  ╱   ╲  ╱                      s₃ ─ v ─•─ s₀    K=3  5/12, −1/12, −1/12
+//!          1/2 ─•─ 1/2                       ╲ ╱  ╲ ╱        K=4  3/8, 0, −1/8, 0
+//!          ╱  ╲   ╱  ╲                       s₄ ── s₅
+//!         ╱    ╲ ╱    ╲
+//!     −1/16 ── 1/8 ── −1/16              both extraordinary: the mean of the two points
+//! ```
+//!
+//! At boundaries:
+//!
+//! - A boundary edge is a curve of its own: (−1/16, 9/16, 9/16, −1/16) along the boundary (Dyn, Gregory
+//!   & Levin 1987), so that two pieces with the same boundary still fit.
+//! - Where a corner of the regular stencil would lie beyond a boundary edge, it is the reflection of
+//!   the triangle's third vertex there (Zorin, Schröder & Sweldens 1996):
+//!
+//! ```text
+//!        a ───── b      a boundary edge, c inside:  ghost = a + b − c
+//!         ╲     ╱
+//!          ╲   ╱
+//!            c
+//! ```
+//!
+//! - An extraordinary boundary vertex, of k ≠ 3 triangles, has the masks of Zorin & Schröder (2000),
+//!   whose leading eigenvectors are those of a half-plane ([`rim_weights`]).
+//! - An inner vertex of valence 2 has no mask in the paper: a midpoint.
+
+use std::borrow::Cow;
+use std::f64::consts::{PI, TAU};
+
+use mesh_core::{Creases, MeshQuery, Point, Refine, Split, in_given_parts};
+
+use crate::error::SubdivisionError;
+use crate::manifold;
+use crate::mask::midpoint;
+use crate::native::{keep, place};
+use crate::scheme::Scheme;
+use crate::sheet::vertex_numbers;
+use crate::step::{Outline, Step};
+
+/// Valences whose weights are looked up; few vertices have more.
+const LOOKED_UP: usize = 16;
+
+/// The weights around extraordinary vertices.
+struct Butterfly {
+    rings: [Vec<f32>; LOOKED_UP],
+}
+
+/// One step, by queries for each new point.
+pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
+    manifold::check(mesh, Scheme::Butterfly)?;
+    let scheme = Butterfly::new();
+    let mut outline = Outline::of(Split::Triangles, mesh);
+    let numbers = vertex_numbers(mesh);
+    let mut regular = mesh.vertex_map(false);
+    mesh.vertices().for_each(|v| {
+        regular[v] = is_regular(mesh, v);
+        outline.points.push(mesh.position(v));
+    });
+    let mut edge_points = mesh.edge_map(0_u32);
+    mesh.edges().for_each(|e| {
+        edge_points[e] = outline.points.len() as u32;
+        let point = scheme.edge(mesh, e, |v| regular[v]);
+        outline.points.push(point);
+    });
+    outline.split_faces(mesh, |v| numbers[v], |e| edge_points[e])?;
+    outline.finish(Creases::default())
+}
+
+/// One step in the structure's own tables.
+pub(crate) fn native<M: Refine>(
+    mesh: &M,
+    numbers: &M::EdgeNumbers,
+    child: &mut M,
+) -> Result<Creases, SubdivisionError> {
+    if !manifold::is_sure::<M>() {
+        manifold::check(mesh, Scheme::Butterfly)?;
+    }
+    mesh.split_into(Split::Triangles, numbers, child)?;
+    let scheme = Butterfly::new();
+    let mut regular = vec![false; mesh.vertex_count()];
+    place(&mut regular, |v| is_regular(mesh, v));
+    let (vertices, points) = child.positions_mut().split_at_mut(mesh.vertex_count());
+    keep(vertices, mesh.position_rows());
+    in_given_parts(points, &mesh.edge_parts(numbers), |part, _, points| {
+        let mut points = points.iter_mut();
+        mesh.edges_of_part(numbers, part).for_each(|e| {
+            if let Some(point) = points.next() {
+                *point = scheme.edge(mesh, e, |v| regular[v.index()]);
+            }
+        });
+    });
+    Ok(Creases::default())
+}
+
+/// Whether a vertex of one fan has six triangles around it, or three at a boundary.
+fn is_regular<M: MeshQuery>(mesh: &M, v: M::Vertex) -> bool {
+    let sizes = (
+        mesh.vertex_vertices(v).count(),
+        mesh.vertex_faces(v).count(),
+    );
+    matches!(sizes, (6, 6) | (4, 3))
+}
+
+impl Butterfly {
+    fn new() -> Self {
+        Self {
+            rings: std::array::from_fn(ring_weights),
+        }
+    }
+
+    /// The point of `e`, an edge of one face, or of two that run along it in opposite directions.
+    fn edge<M: MeshQuery>(
+        &self,
+        mesh: &M,
+        e: M::Edge,
+        is_regular: impl Fn(M::Vertex) -> bool,
+    ) -> Point {
+        let [a, b] = mesh.edge_vertices(e);
+        let (mut first, mut second) = (None, None);
+        mesh.edge_faces(e)
+            .for_each(|f| second = first.replace(f).or(second));
+        let (Some(first), Some(second)) = (first, second) else {
+            return boundary_point(mesh, [a, b]);
+        };
+        match [a, b].map(is_regular) {
+            [true, true] => regular_point(mesh, e, [first, second]),
+            [false, true] => self.extraordinary_point(mesh, a, b),
+            [true, false] => self.extraordinary_point(mesh, b, a),
+            [false, false] => midpoint([
+                self.extraordinary_point(mesh, a, b),
+                self.extraordinary_point(mesh, b, a),
+            ]),
+        }
+    }
+
+    /// The point of the inner edge from `v` to `to`, by the neighbours of `v`; O(valence) beyond the
+    /// cost of the ring.
+    fn extraordinary_point<M: MeshQuery>(&self, mesh: &M, v: M::Vertex, to: M::Vertex) -> Point {
+        let ring = ring(mesh, v);
+        let start = ring.iter().position(|&w| w == to).unwrap_or(0);
+        let at = mesh.position(v);
+        let is_open = mesh.vertex_faces(v).count() < ring.len();
+        let (weights, start) = match (is_open, self.rings.get(ring.len())) {
+            (true, _) => (Cow::Owned(rim_weights(ring.len() - 1, start)), 0),
+            (false, Some(weights)) => (Cow::Borrowed(weights), start),
+            (false, None) => (Cow::Owned(ring_weights(ring.len())), start),
+        };
+        let turned = ring[start..].iter().chain(&ring[..start]);
+        // What is over for the vertex is told by differences: then constants are kept exactly.
+        turned.zip(&*weights).fold(at, |point, (&w, &weight)| {
+            point + (mesh.position(w) - at) * weight
+        })
+    }
+}
+
+/// The neighbours of a vertex of one fan, in order.
+fn ring<M: MeshQuery>(mesh: &M, v: M::Vertex) -> Vec<M::Vertex> {
+    let ring = mesh.one_ring(v);
+    ring.expect("checked to be one fan").collect()
+}
+
+/// The point of the edge between two regular vertices.
+fn regular_point<M: MeshQuery>(mesh: &M, e: M::Edge, faces: [M::Face; 2]) -> Point {
+    let ends = mesh.edge_vertices(e).map(|v| mesh.position(v));
+    let (mut sides, mut wings) = (Point::ZERO, Point::ZERO);
+    for f in faces {
+        let corners: Point = mesh.face_vertices(f).map(|v| mesh.position(v)).sum();
+        sides += corners - (ends[0] + ends[1]);
+        mesh.face_edges(f)
+            .filter(|&side| side != e)
+            .for_each(|side| {
+                let shared = mesh.edge_vertices(side).map(|v| mesh.position(v));
+                let shared = shared[0] + shared[1];
+                let across = mesh.edge_faces(side).find(|&g| g != f);
+                wings += match across {
+                    Some(g) => {
+                        let corners: Point = mesh.face_vertices(g).map(|v| mesh.position(v)).sum();
+                        corners - shared
+                    }
+                    None => shared - (corners - shared),
+                };
+            });
+    }
+    (ends[0] + ends[1]) * 0.5 + sides * 0.125 - wings * 0.0625
+}
+
+/// The point of a boundary edge.
+fn boundary_point<M: MeshQuery>(mesh: &M, [a, b]: [M::Vertex; 2]) -> Point {
+    // The ring runs from one boundary edge to the other.
+    let beyond = |v, to| match ring(mesh, v)[..] {
+        [first, .., last] if last == to => mesh.position(first),
+        [.., last] => mesh.position(last),
+        [] => mesh.position(v),
+    };
+    let far = beyond(a, b) + beyond(b, a);
+    (mesh.position(a) + mesh.position(b)) * 0.5625 - far * 0.0625
+}
+
+/// The weights of the neighbours of an inner vertex, from the one at the edge on; the vertex has what
+/// is left of 1.
+fn ring_weights(valence: usize) -> Vec<f32> {
+    let n = valence as f64;
+    let weight = |j: usize| {
+        let angle = TAU * j as f64 / n;
+        ((0.25 + angle.cos() + 0.5 * (2.0 * angle).cos()) / n) as f32
+    };
+    match valence {
+        0..=2 => std::iter::once(0.5).chain([0.0]).take(valence).collect(),
+        3 => [5.0, -1.0, -1.0].map(|w| w / 12.0).to_vec(),
+        4 => vec![0.375, 0.0, -0.125, 0.0],
+        _ => (0..valence).map(weight).collect(),
+    }
+}
+
+/// The weights of the k + 1 neighbours of a boundary vertex with k `triangles`, from one boundary edge
+/// to the other, for the edge to neighbour `i`; the vertex has what is left of 1 (Zorin & Schröder
+/// 2000). With θ = π/k:
+///
+/// ```text
+///   first, last  ±(cos iθ)/4 ∓ sin 2θ sin 2iθ / (4k (cos θ − cos 2θ))
+///   j between    (sin iθ sin jθ + (sin 2iθ sin 2jθ)/2)/k
+/// ```
+fn rim_weights(triangles: usize, i: usize) -> Vec<f32> {
+    let (k, i) = (triangles as f64, i as f64);
+    let theta = PI / k;
+    let end = 0.25 * (i * theta).cos()
+        - (2.0 * theta).sin() * (2.0 * i * theta).sin()
+            / (4.0 * k * (theta.cos() - (2.0 * theta).cos()));
+    let between = |j: usize| {
+        let (i, j) = (i * theta, j as f64 * theta);
+        (i.sin() * j.sin() + 0.5 * (2.0 * i).sin() * (2.0 * j).sin()) / k
+    };
+    let inner = (1..triangles).map(between);
+    let all = std::iter::once(end).chain(inner).chain([-end]);
+    all.map(|weight| weight as f32).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use face_vertex::FaceVertexMesh;
+    use indexed_face_set::IndexedFaceSet;
+    use mesh_core::{PolygonMesh, VertexId};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::alike::{
+        all_ways, assert_affine, assert_alike, assert_near, assert_same_on_threads, built, native,
+        triangle_mesh,
+    };
+
+    fn step(polygons: &PolygonMesh) -> PolygonMesh {
+        let step = gather(&built::<IndexedFaceSet>(polygons));
+        step.expect("a manifold").polygons
+    }
+
+    /// Every edge point between `ends` in a step of `polygons`.
+    fn edge_points(polygons: &PolygonMesh) -> Vec<([Point; 2], Point)> {
+        let mesh: IndexedFaceSet = built(polygons);
+        let ends = mesh.edges().map(|e| mesh.edge_vertices(e));
+        let ends = ends.map(|ends| ends.map(|v| mesh.position(v)));
+        let step = step(polygons);
+        let points = step.positions()[polygons.vertex_count()..].iter();
+        ends.zip(points.copied()).collect()
+    }
+
+    #[test]
+    fn the_weights_add_up_and_keep_a_plane() {
+        for valence in 3..=40 {
+            let sum: f32 = ring_weights(valence).iter().sum();
+            assert!((sum - 0.25).abs() < 1e-6, "valence {valence}: {sum}");
+        }
+        let weights = |valence| ring_weights(valence)[..2].to_vec();
+        assert_eq!(weights(3), [5.0 / 12.0, -1.0 / 12.0]);
+        assert_eq!(weights(4), [0.375, 0.0]);
+        assert!((ring_weights(5)[0] - 0.35).abs() < 1e-6);
+        // A half-disc: the point of each spoke lies half-way out.
+        for triangles in 2..=12 {
+            let angle = |i: usize| PI * i as f64 / triangles as f64;
+            for i in 1..triangles {
+                let weights = rim_weights(triangles, i);
+                let at = weights.iter().enumerate().map(|(j, &w)| {
+                    let (sin, cos) = angle(j).sin_cos();
+                    Point::new(cos as f32, sin as f32, 0.0) * w
+                });
+                let (sin, cos) = angle(i).sin_cos();
+                let half = Point::new(cos as f32, sin as f32, 0.0) * 0.5;
+                assert_near(at.sum(), half);
+            }
+        }
+    }
+
+    #[test]
+    fn solids_go_where_the_paper_says() {
+        // By hand: 5/6 v + 1/2 w around v on a tetrahedron, 3/4 v + 1/2 w on an octahedron.
+        for (solid, weight) in [
+            (shapes::tetrahedron(), 2.0 / 3.0),
+            (shapes::octahedron(), 0.625),
+        ] {
+            let centre = solid.positions().iter().sum::<Point>() / solid.vertex_count() as f32;
+            for ([a, b], point) in edge_points(&solid) {
+                let expected = centre + (a + b - centre * 2.0) * weight;
+                assert_near(point, expected);
+            }
+        }
+    }
+
+    #[test]
+    fn regular_grids_keep_cubics() {
+        let (m, n) = (7, 6);
+        let grid = shapes::triangle_grid(m, n).expect("a small grid");
+        let height = |x: f32, y: f32| {
+            0.5 * x * x * x - x * x * y + 0.25 * x * y * y + y * y * y - 2.0 * x * y + x - 3.0
+        };
+        let lattice = grid.positions().iter().map(|p| {
+            let (x, y) = (p.x * 0.25, p.y * 0.25);
+            Point::new(x, y, height(x, y))
+        });
+        let field = PolygonMesh::from_faces(lattice.collect(), grid.faces().clone());
+        let field = field.expect("the faces of the grid");
+        let is_inside = |p: &Point| {
+            let within = |x: f32, size: usize| x > 0.0 && x < size as f32 * 0.25;
+            within(p.x, m) && within(p.y, n)
+        };
+        let mut kept = 0;
+        for (ends, point) in edge_points(&field) {
+            if ends.iter().all(is_inside) {
+                let Point { x, y, .. } = midpoint(ends);
+                assert_near(point, Point::new(x, y, height(x, y)));
+                kept += 1;
+            }
+        }
+        // Inner edges of a grid of (m − 2) × (n − 2).
+        let (m, n) = (m - 2, n - 2);
+        assert_eq!(kept, 3 * m * n + m + n);
+    }
+
+    /// ```text
+    ///   3 ── 4 ── 5      the edges 1–2 and 0–1 along the boundary, and 1–4, whose wings at 0–1 and
+    ///   │ ╲  │ ╲  │      elsewhere are ghosts
+    ///   0 ── 1 ── 2
+    /// ```
+    #[test]
+    fn a_boundary_is_a_four_point_curve() {
+        let corners = [(0, 0), (1, 2), (3, 1), (0, 5), (2, 6), (4, 4)];
+        let corners = corners.map(|(x, y)| Point::new(x as f32, y as f32, (x * y) as f32));
+        let faces = [[0, 1, 3], [1, 4, 3], [1, 2, 4], [2, 5, 4]];
+        let mesh = PolygonMesh::new(corners, faces).expect("four triangles");
+        let c = corners;
+        let between = |a: usize, b: usize| {
+            let all = edge_points(&mesh);
+            let found = all
+                .iter()
+                .find(|(ends, _)| ends.contains(&c[a]) && ends.contains(&c[b]));
+            found.expect("an edge").1
+        };
+        assert_near(
+            between(1, 2),
+            (c[1] + c[2]) * 0.5625 - (c[0] + c[5]) * 0.0625,
+        );
+        assert_near(
+            between(0, 1),
+            (c[0] + c[1]) * 0.5625 - (c[3] + c[2]) * 0.0625,
+        );
+        // 1 and 4 have three triangles each, so both are regular. Wings: 0 across 1–3, 5 across 2–4,
+        // and ghosts beyond 3–4 and 1–2.
+        let ghosts = (c[3] + c[4] - c[1]) + (c[1] + c[2] - c[4]);
+        let expected =
+            (c[1] + c[4]) * 0.5 + (c[3] + c[2]) * 0.125 - (c[0] + c[5] + ghosts) * 0.0625;
+        assert_near(between(1, 4), expected);
+        // 3 has two triangles: the crease mask with k = 2, i = 1 on the ring 0, 1, 4.
+        let weights = rim_weights(2, 1);
+        let expected = weights.iter().zip([c[0], c[1], c[4]]);
+        let expected = expected.fold(c[3], |p, (&w, at)| p + (at - c[3]) * w);
+        assert_near(between(3, 1), expected);
+    }
+
+    #[test]
+    fn what_has_no_rule_is_named() {
+        let corners = [0.0, 1.0, 2.0, 3.0, 4.0].map(Point::splat);
+        let refused = |faces: &[[u32; 3]]| {
+            let polygons = PolygonMesh::new(corners, faces).expect("valid");
+            let mesh: IndexedFaceSet = built(&polygons);
+            let error = gather(&mesh).expect_err("no rule");
+            let native = native::<FaceVertexMesh>(Scheme::Butterfly, &polygons, 0);
+            assert_eq!(native, Err(error.clone()));
+            error
+        };
+        let scheme = Scheme::Butterfly;
+        let edge = |faces| SubdivisionError::NonManifoldEdge {
+            scheme,
+            ends: [0, 1].map(VertexId::new),
+            faces,
+        };
+        assert_eq!(refused(&[[0, 1, 2], [1, 0, 3], [1, 0, 4]]), edge(3));
+        assert_eq!(refused(&[[0, 1, 2], [0, 1, 3]]), edge(2));
+        let vertex = VertexId::new(0);
+        let several = SubdivisionError::NonManifoldVertex { scheme, vertex };
+        assert_eq!(refused(&[[0, 1, 2], [0, 3, 4]]), several);
+    }
+
+    #[test]
+    fn threads_change_nothing() {
+        assert_same_on_threads(Scheme::Butterfly, 0);
+    }
+
+    proptest! {
+        #[test]
+        fn all_methods_agree_and_old_vertices_stay(mesh in triangle_mesh()) {
+            let meshes = all_ways(Scheme::Butterfly, &mesh, 0).expect("a manifold");
+            let known = mesh.vertex_count();
+            for other in &meshes {
+                prop_assert_eq!(&other.positions()[..known], mesh.positions());
+                assert_alike(&meshes[0], other, known);
+            }
+        }
+
+        #[test]
+        fn affine_maps_commute(mesh in triangle_mesh()) {
+            assert_affine(Scheme::Butterfly, &mesh, 0);
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! Sharpness: what it does to points, and what is left of it one level on.
+//!
+//! The rules are those of DeRose, Kass & Truong (1998), with fractional sharpness as film
+//! production follows them. A step first places all points as if nothing were sharp; then those at
+//! sharp edges and vertices are placed again, here, the same way for every scheme and method.
+//!
+//! ```text
+//!   sharp edges at a vertex       it is        and goes to
+//!   none                          smooth       the scheme's own vertex point
+//!   one                           a dart       the same
+//!   two                           a crease     1/8 end + 3/4 itself + 1/8 end
+//!   more, or sharp by itself      a corner     where it is
+//! ```
+//!
+//! Sharpness wears off by one a level. Where a vertex is another kind at the next level, it goes in
+//! between: w · (what it is now) + (1 − w) · (what it will be), with w the mean of the sharpnesses
+//! that reach zero.
+
+use mesh_core::{Creases, Pair, Point, SHARP_FOR_EVER, VertexId};
+
+use crate::mask::midpoint;
+use crate::options::Creasing;
+
+/// An edge that is sharp at this level, by the numbers of a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SharpEdge {
+    /// Its place among all edges.
+    pub(crate) edge: usize,
+    /// Its two ends.
+    pub(crate) ends: [u32; 2],
+    /// Above 0.
+    pub(crate) sharpness: f32,
+    /// Whether it is sharp by what it is, a boundary edge or one with three faces: then its halves
+    /// will be, too, and need not be told.
+    pub(crate) by_nature: bool,
+}
+
+/// All that is sharp at one level.
+#[derive(Debug, Default)]
+pub(crate) struct SharpLevel {
+    /// In any order, each once.
+    pub(crate) edges: Vec<SharpEdge>,
+    /// In the order of the vertices.
+    pub(crate) corners: Vec<(VertexId, f32)>,
+}
+
+/// A sharp edge as one of its ends sees it.
+#[derive(Clone, Copy, Debug)]
+struct Spoke {
+    at: u32,
+    far: u32,
+    sharpness: f32,
+    /// Which edge of the level, and which end of it.
+    edge: (usize, usize),
+    /// The sharpness of the half at this end, one level on.
+    child: f32,
+}
+
+/// What a vertex is by its own sharpness and that of its edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rule {
+    Smooth,
+    Crease,
+    Corner,
+}
+
+impl Rule {
+    pub(crate) fn of(own: f32, sharp_edges: usize) -> Self {
+        match sharp_edges {
+            _ if own > 0.0 => Self::Corner,
+            // A dart moves as a smooth vertex does.
+            0 | 1 => Self::Smooth,
+            2 => Self::Crease,
+            _ => Self::Corner,
+        }
+    }
+}
+
+/// What sharpness comes to in one level, by itself.
+fn worn(sharpness: f32) -> f32 {
+    if sharpness >= SHARP_FOR_EVER {
+        f32::INFINITY
+    } else {
+        (sharpness - 1.0).max(0.0)
+    }
+}
+
+pub(crate) fn is_semi_sharp(sharpness: f32) -> bool {
+    sharpness > 0.0 && sharpness < SHARP_FOR_EVER
+}
+
+impl SharpLevel {
+    /// Places the points at what is sharp, and yields the sharpness of the next level.
+    ///
+    /// `points` holds the vertex points from 0 and the edge points from `first_edge`, all placed as
+    /// if nothing were sharp; `old` is where vertices were. O(s log s) for s sharp elements.
+    pub(crate) fn place(
+        &self,
+        old: impl Fn(u32) -> Point,
+        points: &mut [Point],
+        first_edge: usize,
+        creasing: Creasing,
+    ) -> Creases {
+        let mut spokes = self.spokes(creasing);
+        let mut children = vec![[0.0_f32; 2]; self.edges.len()];
+        for spoke in &spokes {
+            children[spoke.edge.0][spoke.edge.1] = spoke.child;
+        }
+        self.place_edges(&children, &old, points, first_edge);
+        spokes.sort_unstable_by_key(|spoke| (spoke.at, spoke.edge));
+        let corners = self.place_vertices(&spokes, &old, points);
+        Creases::sorted(self.halves(&children, first_edge), corners)
+    }
+
+    /// Both views of every edge, by vertex.
+    fn spokes(&self, creasing: Creasing) -> Vec<Spoke> {
+        let edges = self.edges.iter().enumerate();
+        let mut spokes: Vec<Spoke> = edges
+            .flat_map(|(number, edge)| {
+                let [a, b] = edge.ends;
+                [(a, b, 0), (b, a, 1)].map(|(at, far, end)| Spoke {
+                    at,
+                    far,
+                    sharpness: edge.sharpness,
+                    edge: (number, end),
+                    child: worn(edge.sharpness),
+                })
+            })
+            .collect();
+        if creasing == Creasing::Chaikin {
+            spokes.sort_unstable_by_key(|spoke| (spoke.at, spoke.edge));
+            for around in spokes.chunk_by_mut(|a, b| a.at == b.at) {
+                even_out(around);
+            }
+        }
+        spokes
+    }
+
+    fn place_edges(
+        &self,
+        children: &[[f32; 2]],
+        old: &impl Fn(u32) -> Point,
+        points: &mut [Point],
+        first_edge: usize,
+    ) {
+        for (edge, children) in self.edges.iter().zip(children) {
+            let sharp = midpoint(edge.ends.map(old));
+            let point = &mut points[first_edge + edge.edge];
+            let stays = children.iter().all(|&child| child > 0.0);
+            *point = if stays || edge.sharpness >= 1.0 {
+                sharp
+            } else {
+                point.lerp(sharp, edge.sharpness)
+            };
+        }
+    }
+
+    /// Places every vertex at a sharp edge or sharp by itself; yields the sharp ones of the next level.
+    fn place_vertices(
+        &self,
+        spokes: &[Spoke],
+        old: &impl Fn(u32) -> Point,
+        points: &mut [Point],
+    ) -> Vec<(VertexId, f32)> {
+        let mut own = self.corners.iter().copied().peekable();
+        let alone = |(v, sharpness): (VertexId, f32), points: &mut [Point]| {
+            let v = v.index() as u32;
+            points[v as usize] = placed(v, sharpness, &[], old, points[v as usize]);
+        };
+        for around in spokes.chunk_by(|a, b| a.at == b.at) {
+            let v = around[0].at;
+            while let Some(corner) = own.next_if(|(corner, _)| corner.index() < v as usize) {
+                alone(corner, points);
+            }
+            let corner = own.next_if(|(corner, _)| corner.index() == v as usize);
+            let sharpness = corner.map_or(0.0, |(_, sharpness)| sharpness);
+            points[v as usize] = placed(v, sharpness, around, old, points[v as usize]);
+        }
+        for corner in own {
+            alone(corner, points);
+        }
+        let next = self.corners.iter().map(|&(v, s)| (v, worn(s)));
+        next.collect()
+    }
+
+    /// The halves of the edges, from each end to the edge point.
+    fn halves(&self, children: &[[f32; 2]], first_edge: usize) -> Vec<(Pair<VertexId>, f32)> {
+        let told = self.edges.iter().zip(children);
+        told.filter(|(edge, _)| !edge.by_nature)
+            .flat_map(|(edge, children)| {
+                // The numbers of points fit, or the step would have been refused.
+                let middle = VertexId::new((first_edge + edge.edge) as u32);
+                let half = |end: usize| {
+                    let ends = Pair::new(VertexId::new(edge.ends[end]), middle);
+                    (ends, children[end])
+                };
+                [half(0), half(1)]
+            })
+            .collect()
+    }
+}
+
+/// Chaikin's rule for the sharpness of the halves around one vertex.
+fn even_out(around: &mut [Spoke]) {
+    let semi_sharp = |spoke: &&Spoke| is_semi_sharp(spoke.sharpness);
+    let (count, sum) = around
+        .iter()
+        .filter(semi_sharp)
+        .fold((0, 0.0), |(count, sum), spoke| {
+            (count + 1, sum + spoke.sharpness)
+        });
+    if count < 2 {
+        return;
+    }
+    for spoke in around
+        .iter_mut()
+        .filter(|spoke| is_semi_sharp(spoke.sharpness))
+    {
+        let others = (sum - spoke.sharpness) / (count - 1) as f32;
+        spoke.child = (0.75 * spoke.sharpness + 0.25 * others - 1.0).max(0.0);
+    }
+}
+
+/// Where vertex `v` goes, of the sharpness `own` and with these sharp edges.
+fn placed(v: u32, own: f32, around: &[Spoke], old: &impl Fn(u32) -> Point, smooth: Point) -> Point {
+    let staying = || around.iter().filter(|spoke| spoke.child > 0.0);
+    let now = Rule::of(own, around.len());
+    let then = Rule::of(worn(own), staying().count());
+    let at = |rule: Rule, ends: &mut dyn Iterator<Item = &Spoke>| match rule {
+        Rule::Corner => old(v),
+        Rule::Crease => {
+            let ends: Point = ends.map(|spoke| old(spoke.far)).sum();
+            ends * 0.125 + old(v) * 0.75
+        }
+        Rule::Smooth => smooth,
+    };
+    let parent = at(now, &mut around.iter());
+    if now == then || now == Rule::Smooth {
+        return parent;
+    }
+    at(then, &mut staying()).lerp(parent, transition(own, around))
+}
+
+/// How far a vertex that changes its kind is still of the old one: the mean of the sharpnesses that
+/// reach zero, at most 1.
+fn transition(own: f32, around: &[Spoke]) -> f32 {
+    let edges = around.iter().filter(|spoke| spoke.child == 0.0);
+    let vertex = (own > 0.0 && worn(own) == 0.0).then_some(own);
+    let ending = edges.map(|spoke| spoke.sharpness).chain(vertex);
+    let (count, sum) = ending.fold((0_u32, 0.0), |(count, sum), s| (count + 1, sum + s));
+    (sum / count.max(1) as f32).min(1.0)
+}

@@ -1,0 +1,374 @@
+//! Curves: a polygon becomes a cubic B-spline, or has its corners cut.
+//!
+//! ```text
+//!   add edge midpoints, add struts                  cut corners (Chaikin 1974)
+//!
+//!            v        a strut runs from a                  v
+//!           ╱┊╲       vertex to the middle of             ╱ ╲       each edge leaves the points
+//!          ╱ v'╲      the new midpoints; the             •───•      at 1/4 and 3/4 of it
+//!         m──┊──m     vertex moves half-way             ╱     ╲
+//!        ╱   s   ╲    along it:                        •       •
+//!       a         b   (a + 6v + b)/8                  a         b
+//! ```
+//!
+//! The first is the uniform cubic B-spline (Lane & Riesenfeld 1980), C²; the second the quadratic, C¹
+//! (Riesenfeld 1975). Both lie in the convex hull of the polygon.
+
+use mesh_core::{MAX_ROWS, Point};
+
+use crate::error::CurveError;
+use crate::mask::midpoint;
+
+/// What the ends of a polygon, or of the rows of a grid, do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Ends {
+    /// There are none: the last point is joined to the first.
+    Closed,
+    /// They stay, as a boundary does with its corners kept. The curve is that of the polygon with
+    /// one point more beyond each end: its mirror image for the cubic, the end itself for Chaikin.
+    #[default]
+    Kept,
+    /// They are dropped, for want of a neighbour: what is left is the B-spline of the points alone.
+    Dropped,
+}
+
+/// The points of an edge polygon after `levels` steps of "add midpoints, add struts", on their way to
+/// the uniform cubic B-spline.
+///
+/// Of n points, 2n come out of a step if the polygon is closed, 2n − 1 if the ends are kept, and 2n − 3
+/// if they are dropped. O(points that come out).
+///
+/// # Errors
+///
+/// Fewer than 3 points of a closed polygon, 2 with ends kept, 4 with ends dropped; or more than
+/// [`MAX_ROWS`] at the end.
+///
+/// # Examples
+///
+/// ```
+/// use mesh_core::Point;
+/// use subdivision::{Ends, cubic_b_spline};
+///
+/// let roof = [Point::ZERO, Point::new(4.0, 8.0, 0.0), Point::new(8.0, 0.0, 0.0)];
+/// let curve = cubic_b_spline(&roof, Ends::Kept, 1)?;
+/// assert_eq!(curve[2], Point::new(4.0, 6.0, 0.0));
+/// # Ok::<(), subdivision::CurveError>(())
+/// ```
+pub fn cubic_b_spline(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<Point>, CurveError> {
+    repeated(points, levels, cubic_loss(ends), least(ends), |points| {
+        cubic_step(points, ends)
+    })
+}
+
+/// The points of a polygon after its corners have been cut `levels` times, on their way to the uniform
+/// quadratic B-spline (Chaikin 1974).
+///
+/// Of n points, 2n come out of a step, or 2n − 2 if the ends are dropped. O(points that come out).
+///
+/// # Errors
+///
+/// Fewer than 3 points, or 2 with ends kept; or more than [`MAX_ROWS`] at the end.
+pub fn chaikin(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<Point>, CurveError> {
+    let (loss, least) = match ends {
+        Ends::Closed => (0, 3),
+        Ends::Kept => (0, 2),
+        Ends::Dropped => (2, 3),
+    };
+    repeated(points, levels, loss, least, |points| {
+        chaikin_step(points, ends)
+    })
+}
+
+/// The point of the uniform cubic B-spline of `points` at `t`, where control point i has the parameter
+/// i: the limit of [`cubic_b_spline`].
+///
+/// `t` runs from 0 to n − 1 if the ends are kept, from 1 to n − 2 if they are dropped, and round and
+/// round if the polygon is closed. `None` elsewhere, and for too few points. O(1).
+pub fn cubic_b_spline_at(points: &[Point], ends: Ends, t: f64) -> Option<Point> {
+    let n = points.len();
+    let (first, last) = cubic_domain(n, ends)?;
+    let t = match ends {
+        Ends::Closed => t.rem_euclid(last),
+        _ => t,
+    };
+    // Not for NaN, which a closed polygon may be asked for as well.
+    if !(first <= t && t <= last) {
+        return None;
+    }
+    let piece = t.floor().min(last - 1.0);
+    let weights = cubic_basis(t - piece);
+    let controls = (0..4).map(|k| control(points, ends, piece as usize + k));
+    Some(controls.zip(weights).map(|(p, w)| p * w as f32).sum())
+}
+
+/// The first and the last parameter of a curve; `None` if there are too few points for one.
+pub(crate) fn cubic_domain(points: usize, ends: Ends) -> Option<(f64, f64)> {
+    let n = points as f64;
+    (points >= least(ends)).then_some(match ends {
+        Ends::Closed => (0.0, n),
+        Ends::Kept => (0.0, n - 1.0),
+        Ends::Dropped => (1.0, n - 2.0),
+    })
+}
+
+/// The four weights at `s`, 0 to 1, of a piece of the uniform cubic B-spline.
+fn cubic_basis(s: f64) -> [f64; 4] {
+    let r = 1.0 - s;
+    [
+        r * r * r / 6.0,
+        (s * s * (3.0 * s - 6.0) + 4.0) / 6.0,
+        (r * r * (3.0 * r - 6.0) + 4.0) / 6.0,
+        s * s * s / 6.0,
+    ]
+}
+
+/// Control point `number` − 1, with those beyond the ends.
+fn control(points: &[Point], ends: Ends, number: usize) -> Point {
+    let n = points.len();
+    match ends {
+        Ends::Closed => points[(number + n - 1) % n],
+        Ends::Kept if number == 0 => points[0] * 2.0 - points[1],
+        Ends::Kept if number > n => points[n - 1] * 2.0 - points[n - 2],
+        _ => points[number - 1],
+    }
+}
+
+/// The fewest points of a cubic.
+pub(crate) fn least(ends: Ends) -> usize {
+    match ends {
+        Ends::Closed => 3,
+        Ends::Kept => 2,
+        Ends::Dropped => 4,
+    }
+}
+
+/// How many points fewer than twice as many come out of a step.
+fn cubic_loss(ends: Ends) -> usize {
+    match ends {
+        Ends::Closed => 0,
+        Ends::Kept => 1,
+        Ends::Dropped => 3,
+    }
+}
+
+/// How many points come out of a cubic step.
+pub(crate) fn cubic_count(points: usize, ends: Ends) -> usize {
+    (2 * points).saturating_sub(cubic_loss(ends))
+}
+
+/// One step of "add midpoints, add struts".
+pub(crate) fn cubic_step(points: &[Point], ends: Ends) -> Vec<Point> {
+    let n = points.len();
+    let mut refined = Vec::with_capacity(cubic_count(n, ends));
+    let middle = |i: usize| midpoint([points[i], points[(i + 1) % n]]);
+    for (i, &v) in points.iter().enumerate() {
+        let (is_first, is_last) = (i == 0, i + 1 == n);
+        match ends {
+            _ if ends == Ends::Closed || !(is_first || is_last) => {
+                let strut = midpoint([middle((i + n - 1) % n), middle(i)]);
+                refined.push(midpoint([v, strut]));
+            }
+            Ends::Kept => refined.push(v),
+            _ => {}
+        }
+        if !is_last || ends == Ends::Closed {
+            refined.push(middle(i));
+        }
+    }
+    refined
+}
+
+/// One cut of all corners.
+fn chaikin_step(points: &[Point], ends: Ends) -> Vec<Point> {
+    let n = points.len();
+    let mut refined = Vec::with_capacity(2 * n);
+    let edges = if ends == Ends::Closed { n } else { n - 1 };
+    if ends == Ends::Kept {
+        refined.push(points[0]);
+    }
+    for i in 0..edges {
+        let [a, b] = [points[i], points[(i + 1) % n]];
+        refined.extend([a * 0.75 + b * 0.25, a * 0.25 + b * 0.75]);
+    }
+    if ends == Ends::Kept {
+        refined.push(points[n - 1]);
+    }
+    refined
+}
+
+/// `levels` steps, each of which makes 2n − `loss` points of n.
+fn repeated(
+    points: &[Point],
+    levels: u32,
+    loss: usize,
+    least: usize,
+    step: impl Fn(&[Point]) -> Vec<Point>,
+) -> Result<Vec<Point>, CurveError> {
+    let given = points.len();
+    if given < least {
+        return Err(CurveError::TooFewPoints { given, least });
+    }
+    // There are loss + (n − loss)·2^levels of them at the end, and n is above the loss.
+    let growth = 1_usize.checked_shl(levels);
+    let last = growth.and_then(|growth| (given - loss).checked_mul(growth));
+    if last.is_none_or(|last| last > MAX_ROWS - loss) {
+        let limit = MAX_ROWS;
+        return Err(CurveError::TooManyPoints {
+            given,
+            levels,
+            limit,
+        });
+    }
+    let mut refined = points.to_vec();
+    for _ in 0..levels {
+        refined = step(&refined);
+    }
+    Ok(refined)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const ALL: [Ends; 3] = [Ends::Closed, Ends::Kept, Ends::Dropped];
+
+    type Scheme = fn(&[Point], Ends, u32) -> Result<Vec<Point>, CurveError>;
+
+    const SCHEMES: [Scheme; 2] = [cubic_b_spline, chaikin];
+
+    fn x(places: &[f32]) -> Vec<Point> {
+        places.iter().map(|&x| Point::new(x, 0.0, 0.0)).collect()
+    }
+
+    fn polygon() -> impl Strategy<Value = Vec<Point>> {
+        let point = [-8.0_f32..8.0, -8.0_f32..8.0, -8.0_f32..8.0];
+        prop::collection::vec(point.prop_map(Point::from), 4..9)
+    }
+
+    /// The quadratic B-spline, where corner i of the polygon is at i.
+    fn quadratic(points: &[Point], t: f64) -> Point {
+        let i = (t + 0.5).floor();
+        let s = (t + 0.5 - i) as f32;
+        let n = points.len() as isize;
+        let at = |k: isize| points[(i as isize + k).rem_euclid(n) as usize];
+        let r = 1.0 - s;
+        at(-1) * (r * r / 2.0) + at(0) * (0.5 + s * r) + at(1) * (s * s / 2.0)
+    }
+
+    #[test]
+    fn a_step_is_what_the_weights_say() {
+        let points = x(&[0.0, 8.0, 0.0, 16.0]);
+        let step = |ends| cubic_b_spline(&points, ends, 1).expect("four points");
+        assert_eq!(step(Ends::Kept), x(&[0.0, 4.0, 6.0, 4.0, 3.0, 8.0, 16.0]));
+        assert_eq!(step(Ends::Dropped), x(&[4.0, 6.0, 4.0, 3.0, 8.0]));
+        let closed = x(&[3.0, 4.0, 6.0, 4.0, 3.0, 8.0, 12.0, 8.0]);
+        assert_eq!(step(Ends::Closed), closed);
+        let cut = |ends| chaikin(&points, ends, 1).expect("four points");
+        assert_eq!(cut(Ends::Dropped), x(&[2.0, 6.0, 6.0, 2.0, 4.0, 12.0]));
+        let kept = x(&[0.0, 2.0, 6.0, 6.0, 2.0, 4.0, 12.0, 16.0]);
+        assert_eq!(cut(Ends::Kept), kept);
+        let closed = x(&[2.0, 6.0, 6.0, 2.0, 4.0, 12.0, 12.0, 4.0]);
+        assert_eq!(cut(Ends::Closed), closed);
+    }
+
+    #[test]
+    fn each_fault_is_named() {
+        for ends in ALL {
+            let few = least(ends) - 1;
+            let error = cubic_b_spline(&vec![Point::ZERO; few], ends, 1).unwrap_err();
+            let expected = CurveError::TooFewPoints {
+                given: few,
+                least: few + 1,
+            };
+            assert_eq!(error, expected);
+            assert_eq!(cubic_b_spline_at(&vec![Point::ZERO; few], ends, 1.0), None);
+        }
+        for levels in [31, 63, 64, u32::MAX] {
+            for scheme in SCHEMES {
+                let error = scheme(&[Point::ZERO; 5], Ends::Dropped, levels);
+                assert!(matches!(error, Err(CurveError::TooManyPoints { .. })));
+            }
+        }
+        let points = [Point::ZERO; 5];
+        assert_eq!(cubic_b_spline_at(&points, Ends::Dropped, 0.5), None);
+        assert_eq!(cubic_b_spline_at(&points, Ends::Kept, 4.5), None);
+        for t in [f64::NAN, f64::INFINITY] {
+            assert!(ALL.map(|ends| cubic_b_spline_at(&points, ends, t)) == [None; 3]);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn points_approach_the_b_spline(points in polygon()) {
+            for ends in ALL {
+                let levels = 7;
+                let refined = cubic_b_spline(&points, ends, levels).expect("enough points");
+                let step = f64::from(1 << levels).recip();
+                let (first, last) = cubic_domain(points.len(), ends).expect("enough points");
+                // With ends dropped each step loses one half of what is before the first parameter.
+                let start = if ends == Ends::Dropped { first - step } else { first };
+                prop_assert_eq!(refined.len(), ((last - start) / step).round() as usize
+                    + match ends { Ends::Closed => 0, Ends::Kept => 1, Ends::Dropped => 2 });
+                for (i, &point) in refined.iter().enumerate() {
+                    let t = (start + i as f64 * step).clamp(first, last);
+                    let limit = cubic_b_spline_at(&points, ends, t).expect("within");
+                    let near = if ends == Ends::Dropped && (i == 0 || i + 1 == refined.len()) { 0.2 } else { 2e-3 };
+                    prop_assert!(point.distance(limit) < near, "{:?} {}: {} {}", ends, i, point, limit);
+                }
+            }
+        }
+
+        #[test]
+        fn cut_corners_approach_the_quadratic_b_spline(points in polygon()) {
+            let levels = 7;
+            let cut = chaikin(&points, Ends::Closed, levels).expect("enough points");
+            let step = f64::from(1 << levels).recip();
+            for (i, &point) in cut.iter().enumerate() {
+                // The points of the first edge stay around its middle, half a step to either side.
+                let t = 0.5 + (i as f64 - 0.5) * step;
+                let near = quadratic(&points, t);
+                prop_assert!(point.distance(near) < 5e-3, "{}: {} {}", i, point, near);
+            }
+        }
+
+        /// What ends that are kept mean.
+        #[test]
+        fn kept_ends_are_dropped_ones_of_a_longer_polygon(points in polygon()) {
+            let n = points.len();
+            let with = |a: Point, b: Point| -> Vec<Point> {
+                [&[a][..], &points, &[b]].concat()
+            };
+            let mirrored = with(points[0] * 2.0 - points[1], points[n - 1] * 2.0 - points[n - 2]);
+            let doubled = with(points[0], points[n - 1]);
+            for (scheme, longer) in SCHEMES.into_iter().zip([mirrored, doubled]) {
+                let kept = scheme(&points, Ends::Kept, 3).expect("enough points");
+                let dropped = scheme(&longer, Ends::Dropped, 3).expect("enough points");
+                for (a, b) in kept.iter().zip(&dropped[1..]) {
+                    prop_assert!(a.distance(*b) < 1e-4);
+                }
+                prop_assert_eq!(kept.len() + 2, dropped.len());
+            }
+        }
+
+        /// Affine maps go through, so that the weights sum to one; and so do the hulls.
+        #[test]
+        fn affine_maps_commute_with_steps(points in polygon(), shift in -9.0_f32..9.0) {
+            let map = |p: Point| Point::new(p.x - 2.0 * p.y + shift, 0.5 * p.z, p.y + p.x - shift);
+            let mapped: Vec<Point> = points.iter().copied().map(map).collect();
+            for scheme in SCHEMES {
+                for ends in ALL {
+                    let after = scheme(&points, ends, 3).expect("enough points");
+                    let before = scheme(&mapped, ends, 3).expect("enough points");
+                    prop_assert_eq!(after.len(), before.len());
+                    for (a, b) in after.into_iter().map(map).zip(before) {
+                        prop_assert!(a.distance(b) < 1e-4);
+                    }
+                    let still = scheme(&vec![Point::ONE; points.len()], ends, 2);
+                    prop_assert!(still.expect("enough points").iter().all(|&p| p == Point::ONE));
+                }
+            }
+        }
+    }
+}

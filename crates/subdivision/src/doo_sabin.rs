@@ -1,0 +1,367 @@
+//! Doo–Sabin: every corner a vertex, every face, inner edge and inner vertex a face; C¹.
+//!
+//! Doo & Sabin (1978). Any polygons come in; after one step all inner vertices have valence 4, but for
+//! those beside a vertex of valence 2.
+//!
+//! ```text
+//!   ┌───────────┬──            each corner i of a face of degree n moves into the face:
+//!   │ •───────• │ •
+//!   │ │ face  │e│ │              vᵢ' = Σ aᵢⱼ vⱼ     aᵢᵢ = (n + 5)/(4n)
+//!   │ │       │d│ │                                aᵢⱼ = (3 + 2 cos(2π(i − j)/n))/(4n)
+//!   │ •───────• │ •
+//!   ├──edge─────v──            then faces join them: one in each old face, one (a quad) across each
+//!   │ •───────• │ •            inner edge, one around each inner vertex
+//! ```
+//!
+//! No faces are made of boundary edges and boundary vertices, so that an open mesh shrinks. Around an
+//! inner vertex of valence 2 there is no face either: the two edge faces meet there. Isolated vertices
+//! go.
+//!
+//! # Sizes
+//!
+//! Of V vertices, I of them isolated and T inner ones with two faces; E edges, B of them at boundaries;
+//! F faces with C corners, R of them at boundary vertices:
+//!
+//! ```text
+//!   V' = C      E' = C + 2(E − B) − T      F' = F + (E − B) + (V − I − B − T)
+//!   C' = 2C + 4(E − B) − R − 2T            B' = R      R' = 3R − 2B
+//! ```
+
+use std::f64::consts::TAU;
+
+use mesh_core::{Creases, FaceList, MeshQuery, Point, PolygonMesh, VertexId};
+
+use crate::error::SubdivisionError;
+use crate::scheme::Scheme;
+use crate::sheet::{Sheet, non_manifold_vertex, vertex_numbers};
+use crate::step::Step;
+
+/// Degrees whose turns are kept; few faces have more corners.
+const KEPT: usize = 16;
+
+/// The weights of Doo & Sabin (1978).
+///
+/// As cos(i − j) = cos i cos j + sin i sin j, all corners of a face take three sums, not n:
+/// vᵢ' = vᵢ/4 + 3/4 · mean + (cos(2πi/n) Σ cos(2πj/n) vⱼ + sin(2πi/n) Σ sin(2πj/n) vⱼ)/(2n).
+struct DooSabin {
+    /// By degree, cos and sin of 2πi/n.
+    turns: [Vec<[f32; 2]>; KEPT],
+}
+
+/// cos and sin of 2πi/n.
+fn turns(degree: usize) -> Vec<[f32; 2]> {
+    let angles = (0..degree).map(|i| TAU * i as f64 / degree as f64);
+    let turns = angles.map(|angle| [angle.cos() as f32, angle.sin() as f32]);
+    turns.collect()
+}
+
+impl DooSabin {
+    fn new() -> Self {
+        Self {
+            turns: std::array::from_fn(turns),
+        }
+    }
+
+    /// The points of the corners of a face; O(degree).
+    fn face(&self, corners: &[Point], points: &mut Vec<Point>) {
+        let made;
+        let turns = match self.turns.get(corners.len()) {
+            Some(turns) => turns,
+            None => {
+                made = turns(corners.len());
+                &made
+            }
+        };
+        let share = 1.0 / corners.len() as f32;
+        let mut sums = [Point::ZERO; 3];
+        for (&at, &[cos, sin]) in corners.iter().zip(turns) {
+            sums[0] += at;
+            sums[1] += at * cos;
+            sums[2] += at * sin;
+        }
+        let [mean, along, aside] = sums.map(|sum| sum * share);
+        points.extend(
+            corners.iter().zip(turns).map(|(&at, &[cos, sin])| {
+                at * 0.25 + mean * 0.75 + (along * cos + aside * sin) * 0.5
+            }),
+        );
+    }
+}
+
+/// One step, by asking each edge for its faces, and each vertex for its ring and its faces. O(the sum
+/// of the squares of the degrees) beyond the cost of the queries.
+pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
+    let sheet = Sheet::gathered(mesh, Scheme::DooSabin)?;
+    let mut draft = Draft::of(mesh, &sheet)?;
+    draft.edge_faces(&sheet)?;
+    let mut first_corners = mesh.face_map(0_u32);
+    let mut first = 0;
+    mesh.faces().for_each(|f| {
+        first_corners[f] = first;
+        first += mesh.face_vertices(f).count() as u32;
+    });
+    let numbers = vertex_numbers(mesh);
+    let (mut spokes, mut around) = (Vec::new(), Vec::new());
+    for v in mesh.vertices() {
+        // By the neighbour after v in each face.
+        spokes.clear();
+        mesh.vertex_faces(v).for_each(|f| {
+            let mut corner = first_corners[f];
+            while sheet.corners[corner as usize] != numbers[v] {
+                corner = sheet.after(corner);
+            }
+            let [_, next] = sheet.ends(corner);
+            spokes.push((next, corner));
+        });
+        spokes.sort_unstable();
+        let Some(ring) = mesh.one_ring(v) else {
+            return Err(non_manifold_vertex(Scheme::DooSabin, numbers[v]));
+        };
+        around.clear();
+        let mut valence = 0;
+        ring.for_each(|w| {
+            valence += 1;
+            let at = spokes.binary_search_by_key(&numbers[w], |&(next, _)| next);
+            around.extend(at.ok().map(|at| spokes[at].1));
+        });
+        if valence == around.len() {
+            draft.vertex_face(&around)?;
+        }
+    }
+    draft.finish()
+}
+
+/// One step from one pass over the faces, whose corners are linked around the vertices.
+pub(crate) fn scatter<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
+    let sheet = Sheet::scattered(mesh, Scheme::DooSabin)?;
+    let mut draft = Draft::of(mesh, &sheet)?;
+    draft.edge_faces(&sheet)?;
+    sheet.fans(mesh.vertex_count(), Scheme::DooSabin, |around| {
+        draft.vertex_face(around)
+    })?;
+    draft.finish()
+}
+
+/// The faces and points made so far.
+struct Draft {
+    points: Vec<Point>,
+    faces: FaceList,
+}
+
+impl Draft {
+    /// The corners of the old faces, moved in, and the faces that they make.
+    fn of<M: MeshQuery>(mesh: &M, sheet: &Sheet) -> Result<Self, SubdivisionError> {
+        let scheme = DooSabin::new();
+        let mut draft = Self {
+            points: Vec::with_capacity(sheet.corners.len()),
+            faces: FaceList::with_capacity(4 * sheet.corners.len()),
+        };
+        let mut corners = Vec::new();
+        for f in mesh.faces() {
+            corners.clear();
+            mesh.face_vertices(f)
+                .for_each(|v| corners.push(mesh.position(v)));
+            let first = draft.points.len() as u32;
+            scheme.face(&corners, &mut draft.points);
+            draft.push(first..draft.points.len() as u32)?;
+        }
+        Ok(draft)
+    }
+
+    /// A quad across each inner edge.
+    ///
+    /// ```text
+    ///      b             from the side c, which runs a → b, to the side d across it:
+    ///   lb │ rb          (la, ra, rb, lb) = (c, after(d), d, after(c))
+    ///   la │ ra
+    ///      a
+    /// ```
+    fn edge_faces(&mut self, sheet: &Sheet) -> Result<(), SubdivisionError> {
+        for edge in sheet.edges() {
+            if let Some(other) = edge.second {
+                let [lb, ra] = [edge.first, other].map(|side| sheet.after(side));
+                self.push([edge.first, ra, other, lb])?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The face of an inner vertex, of the corners around it; none of two.
+    fn vertex_face(&mut self, around: &[u32]) -> Result<(), SubdivisionError> {
+        if around.len() > 2 {
+            self.push(around.iter().copied())?;
+        }
+        Ok(())
+    }
+
+    fn push(&mut self, corners: impl IntoIterator<Item = u32>) -> Result<(), SubdivisionError> {
+        let face = corners.into_iter().map(VertexId::new);
+        Ok(self.faces.push(face)?)
+    }
+
+    fn finish(self) -> Result<Step, SubdivisionError> {
+        Ok(Step {
+            polygons: PolygonMesh::from_faces(self.points, self.faces)?,
+            creases: Creases::default(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use half_edge::HalfEdgeMesh;
+    use indexed_face_set::IndexedFaceSet;
+    use mesh_core::{Facts, Representation};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::alike::{assert_affine, assert_alike, assert_near, built};
+    use crate::{Method, Subdivision, subdivide};
+
+    fn step_of<M: Representation>(method: Method, polygons: &PolygonMesh) -> PolygonMesh {
+        let scheme = Subdivision::new(Scheme::DooSabin);
+        let none = Creases::default();
+        let step = subdivide::<M>(&scheme, method, polygons, &none, 1, |_, _| ());
+        step.expect("a manifold").polygons
+    }
+
+    #[test]
+    fn the_weights_are_those_of_the_paper() {
+        for degree in [3, 4, 5, 6, 11, 40] {
+            let n = degree as f64;
+            let mut unit = vec![Point::ZERO; degree];
+            unit[1] = Point::X;
+            let mut points = Vec::new();
+            DooSabin::new().face(&unit, &mut points);
+            for (i, point) in points.iter().enumerate() {
+                let turn = TAU * (i as f64 - 1.0) / n;
+                let weight = match i {
+                    1 => (n + 5.0) / (4.0 * n),
+                    _ => (3.0 + 2.0 * turn.cos()) / (4.0 * n),
+                };
+                assert_near(*point, Point::X * weight as f32);
+            }
+        }
+    }
+
+    #[test]
+    fn a_cube_goes_where_the_paper_says() {
+        let cube = shapes::cube();
+        let centre = cube.positions().iter().sum::<Point>() / 8.0;
+        let half = (cube.positions()[0] - centre).abs().x;
+        for method in [Method::Gather, Method::Scatter] {
+            let step = step_of::<IndexedFaceSet>(method, &cube);
+            assert_eq!([step.vertex_count(), step.face_count()], [24, 26]);
+            // 9/16 + 3/16 − 3/16 − 1/16 = 1/2 across the face, and 1 out of it.
+            for p in step.positions() {
+                let mut sizes = ((*p - centre).abs() / half).to_array();
+                sizes.sort_by(f32::total_cmp);
+                assert_near(Point::from(sizes), Point::new(0.5, 0.5, 1.0));
+            }
+            let degrees = |n| {
+                step.faces()
+                    .iter()
+                    .filter(|(_, face)| face.len() == n)
+                    .count()
+            };
+            assert_eq!([degrees(3), degrees(4)], [8, 18]);
+            let facts = Facts::of(&step);
+            assert_eq!((facts.genus, facts.edges), (Some(0), 48));
+            assert_eq!(facts.valence.map(|v| (v.min, v.max)), Some((4, 4)));
+        }
+    }
+
+    #[test]
+    fn between_two_triangles_lies_a_prism() {
+        let corners = [Point::ZERO, Point::X, Point::Y];
+        let pillow = PolygonMesh::new(corners, [[0, 1, 2], [0, 2, 1]]).expect("two triangles");
+        for method in [Method::Gather, Method::Scatter] {
+            let facts = Facts::of(&step_of::<IndexedFaceSet>(method, &pillow));
+            assert_eq!([facts.vertices, facts.edges, facts.faces], [6, 9, 5]);
+            assert_eq!(facts.genus, Some(0));
+        }
+    }
+
+    #[test]
+    fn an_open_mesh_shrinks() {
+        let grid = shapes::grid(3, 2).expect("a small grid");
+        for method in [Method::Gather, Method::Scatter] {
+            let step = step_of::<IndexedFaceSet>(method, &grid);
+            // 6 faces, 7 inner edges, 2 inner vertices.
+            assert_eq!([step.vertex_count(), step.face_count()], [24, 15]);
+            let facts = Facts::of(&step);
+            assert_eq!((facts.boundary_loops, facts.boundary_edges), (Some(1), 16));
+        }
+    }
+
+    #[test]
+    fn what_has_no_rule_is_named() {
+        let corners = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(Point::splat);
+        let refused = |faces: &[[u32; 3]]| {
+            let mesh: IndexedFaceSet = built(&PolygonMesh::new(corners, faces).expect("valid"));
+            let errors = [gather(&mesh), scatter(&mesh)].map(|step| step.expect_err("no rule"));
+            assert_eq!(errors[0], errors[1]);
+            errors[0].clone()
+        };
+        let scheme = Scheme::DooSabin;
+        let edge = |faces| SubdivisionError::NonManifoldEdge {
+            scheme,
+            ends: [0, 1].map(VertexId::new),
+            faces,
+        };
+        assert_eq!(refused(&[[0, 1, 2], [1, 0, 3], [1, 0, 4]]), edge(3));
+        assert_eq!(refused(&[[0, 1, 2], [0, 1, 3]]), edge(2));
+        let vertex = VertexId::new(0);
+        let several = SubdivisionError::NonManifoldVertex { scheme, vertex };
+        assert_eq!(refused(&[[0, 1, 2], [0, 3, 4]]), several);
+        let cones = [
+            [0, 1, 2],
+            [0, 2, 3],
+            [0, 3, 1],
+            [0, 4, 5],
+            [0, 5, 6],
+            [0, 6, 4],
+        ];
+        assert_eq!(refused(&cones), several);
+        assert_eq!(refused(&[cones[0], cones[1], cones[2], [0, 4, 5]]), several);
+    }
+
+    #[test]
+    fn a_large_face_takes_no_square_of_its_degree() {
+        let corners = 30_000;
+        let around = (0..corners).map(|i| {
+            let angle = TAU * f64::from(i) / f64::from(corners);
+            Point::new(angle.cos() as f32, angle.sin() as f32, 0.0)
+        });
+        let all: Vec<u32> = (0..corners).collect();
+        let polygon = PolygonMesh::new(around.collect::<Vec<_>>(), [all]).expect("one face");
+        let step = step_of::<IndexedFaceSet>(Method::Scatter, &polygon);
+        // Of a regular polygon, each corner keeps 1/4 + 1/2 of its distance from the centre.
+        for (p, old) in step.positions().iter().zip(polygon.positions()) {
+            assert!(
+                p.distance(*old * 0.5) < 1e-4 || p.distance(*old * 0.75) < 1e-4,
+                "{p}"
+            );
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn all_methods_agree(mesh in conformance::strategy::manifold_mesh()) {
+            let list = step_of::<IndexedFaceSet>(Method::Gather, &mesh);
+            let known = list.vertex_count();
+            assert_alike(&list, &step_of::<IndexedFaceSet>(Method::Scatter, &mesh), known);
+            // A structure may start a face at another corner; its own order of corners names them.
+            let halves = HalfEdgeMesh::from_polygons(&mesh).expect("a manifold").to_polygons();
+            let list = step_of::<IndexedFaceSet>(Method::Gather, &halves);
+            for method in [Method::Gather, Method::Scatter] {
+                assert_alike(&list, &step_of::<HalfEdgeMesh>(method, &mesh), known);
+            }
+        }
+
+        #[test]
+        fn affine_maps_commute(mesh in conformance::strategy::manifold_mesh()) {
+            assert_affine(Scheme::DooSabin, &mesh, 0);
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! How large a mesh will be, before it is made.
+
+use mesh_core::{Counts, PolygonMesh, Split};
+
+use crate::scheme::Scheme;
+use crate::subdivision::Subdivision;
+
+/// The sizes of a mesh that decide how large the next level is, in closed form.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extent {
+    /// Vertices, edges, faces and corners.
+    pub counts: Counts,
+    /// Edges with one face.
+    pub boundary_edges: usize,
+    /// Corners at vertices of boundary edges.
+    pub boundary_corners: usize,
+    /// Vertices without a face.
+    pub isolated_vertices: usize,
+    /// Vertices inside with no more than two faces.
+    pub pinched_vertices: usize,
+}
+
+impl Extent {
+    /// The extent of `polygons`; O(corners) expected.
+    pub fn of(polygons: &PolygonMesh) -> Self {
+        let mut corners = vec![0_usize; polygons.vertex_count()];
+        for v in polygons.faces().corners() {
+            corners[v.index()] += 1;
+        }
+        let mut open = vec![false; polygons.vertex_count()];
+        let uses = polygons.edge_uses();
+        let mut boundary_edges = 0;
+        for edge in uses.iter().filter(|edge| edge.is_boundary()) {
+            boundary_edges += 1;
+            edge.ends.iter().for_each(|v| open[v.index()] = true);
+        }
+        let vertices = || corners.iter().zip(&open);
+        let boundary = vertices().filter(|&(_, &open)| open);
+        let pinched = vertices().filter(|&(&corners, &open)| corners == 2 && !open);
+        Self {
+            counts: polygons.counts(),
+            boundary_edges,
+            boundary_corners: boundary.map(|(&corners, _)| corners).sum(),
+            isolated_vertices: vertices().filter(|&(&corners, _)| corners == 0).count(),
+            pinched_vertices: pinched.count(),
+        }
+    }
+
+    /// After a Doo–Sabin step; the formulas stand in `doo_sabin.rs`.
+    fn vertex_split(&self) -> Self {
+        let &Self {
+            counts,
+            boundary_edges: boundary,
+            boundary_corners,
+            isolated_vertices: isolated,
+            pinched_vertices: pinched,
+        } = self;
+        let inner_edges = counts.edges.saturating_sub(boundary);
+        let all_vertices = counts.vertices.saturating_sub(boundary);
+        let inner_vertices = all_vertices.saturating_sub(isolated.saturating_add(pinched));
+        let added = |a: usize, b: usize| a.saturating_add(b);
+        let corners = added(counts.corners, inner_edges.saturating_mul(4));
+        let fans = counts.corners.saturating_sub(boundary_corners);
+        Self {
+            counts: Counts {
+                vertices: counts.corners,
+                edges: added(counts.corners, inner_edges.saturating_mul(2)).saturating_sub(pinched),
+                faces: added(added(counts.faces, inner_edges), inner_vertices),
+                corners: added(corners, fans.saturating_sub(pinched.saturating_mul(2))),
+                uniform: false,
+            },
+            boundary_edges: boundary_corners,
+            boundary_corners: boundary_corners
+                .saturating_mul(3)
+                .saturating_sub(boundary.saturating_mul(2)),
+            isolated_vertices: 0,
+            pinched_vertices: 0,
+        }
+    }
+
+    /// After every face is split.
+    fn face_split(&self, split: Split) -> Self {
+        let boundary = self.boundary_edges;
+        // How many edges a boundary edge becomes, and how many corners come to the boundary for it.
+        let (edges, corners) = match split {
+            Split::Quads => (2, 2),
+            Split::Triangles => (2, 3),
+            Split::Sqrt3 { trisect: false } => (1, 1),
+            Split::Sqrt3 { trisect: true } => (3, 5),
+        };
+        let more = boundary.saturating_mul(corners);
+        Self {
+            counts: split.grown(&self.counts, boundary),
+            boundary_edges: boundary.saturating_mul(edges),
+            boundary_corners: self.boundary_corners.saturating_add(more),
+            ..*self
+        }
+    }
+}
+
+impl Subdivision {
+    /// The extent of a mesh after step `level`, counted from 0; O(1). Exact for manifolds, also before
+    /// the faces of a boundary are left out; of edges with three or more faces Catmull–Clark, Loop
+    /// and their linear twins count vertices, edges and faces right. Saturates where sizes leave
+    /// `usize`. The faces after a Doo–Sabin step are said to be of mixed degrees.
+    pub fn grown(&self, extent: &Extent, level: u32) -> Extent {
+        match self.split(level) {
+            Some(split) => extent.face_split(split),
+            None => {
+                debug_assert_eq!(self.scheme, Scheme::DooSabin, "the only vertex split");
+                extent.vertex_split()
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use indexed_face_set::IndexedFaceSet;
+    use mesh_core::Creases;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::alike::triangle_mesh;
+    use crate::{Method, subdivide};
+
+    /// Holds two steps of a scheme to be as large as was told before.
+    fn assert_foretold(scheme: Scheme, polygons: &PolygonMesh) {
+        let subdivision = Subdivision::new(scheme);
+        let mut extent = Extent::of(polygons);
+        for level in 0..2 {
+            extent = subdivision.grown(&extent, level);
+            let none = Creases::default();
+            let levels = level + 1;
+            let step = subdivide::<IndexedFaceSet>(
+                &subdivision,
+                Method::Gather,
+                polygons,
+                &none,
+                levels,
+                |_, _| (),
+            );
+            let mut got = Extent::of(&step.expect("a manifold").polygons);
+            got.counts.uniform = extent.counts.uniform;
+            assert_eq!(got, extent, "{scheme}, level {levels}");
+        }
+    }
+
+    #[test]
+    fn sizes_saturate() {
+        let huge = Extent {
+            counts: Counts {
+                vertices: usize::MAX,
+                edges: usize::MAX,
+                faces: usize::MAX,
+                corners: usize::MAX,
+                uniform: true,
+            },
+            boundary_edges: usize::MAX,
+            boundary_corners: usize::MAX,
+            isolated_vertices: usize::MAX,
+            pinched_vertices: usize::MAX,
+        };
+        for scheme in Scheme::ALL {
+            let grown = Subdivision::new(scheme).grown(&huge, 1);
+            assert_eq!(grown.counts.corners, usize::MAX, "{scheme}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn polygons_grow_as_told(mesh in conformance::strategy::manifold_mesh()) {
+            for scheme in [Scheme::DooSabin, Scheme::CatmullClark] {
+                assert_foretold(scheme, &mesh);
+            }
+        }
+
+        #[test]
+        fn triangles_grow_as_told(mesh in triangle_mesh()) {
+            for scheme in [Scheme::Sqrt3, Scheme::Loop, Scheme::Butterfly] {
+                assert_foretold(scheme, &mesh);
+            }
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! Gather: for every new point, its neighbourhood is asked for.
+//!
+//! ```text
+//!   face point    FV                 Each question is asked where it arises, so that a structure
+//!   edge point    EV, EF             that has to search for EF or VV searches once for each edge
+//!   vertex point  VV, VF             and each vertex: O(faces²) on a polygon soup.
+//! ```
+
+use mesh_core::{Creases, MeshQuery, Point};
+
+use crate::SubdivisionError;
+use crate::crease::{SharpEdge, SharpLevel};
+use crate::mask::{Mask, midpoint};
+use crate::options::Creasing;
+use crate::step::{Marked, Outline, Step};
+
+/// One step of a scheme that splits faces.
+pub(crate) fn step<M: MeshQuery, K: Mask>(
+    mesh: &M,
+    mask: K,
+    creases: &Creases,
+    creasing: Creasing,
+) -> Result<Step, SubdivisionError> {
+    let mut outline = Outline::of(K::SPLIT, mesh);
+    let mut values = mesh.face_map(Point::ZERO);
+    if K::EDGES_SEE_FACES || K::VERTICES_SEE_FACES || outline.has_face_points() {
+        mesh.faces()
+            .for_each(|f| values[f] = face_value(mesh, mask, f));
+    }
+    let mut numbers = mesh.vertex_map(0_u32);
+    let mut number = 0;
+    mesh.vertices().for_each(|v| {
+        numbers[v] = number;
+        number += 1;
+        outline.points.push(if K::APPROXIMATES {
+            vertex_point(mesh, mask, v, |f| values[f])
+        } else {
+            mesh.position(v)
+        });
+    });
+    if outline.has_face_points() {
+        mesh.faces().for_each(|f| outline.points.push(values[f]));
+    }
+    let first_edge = outline.points.len();
+    let marked = Marked::of(creases, mesh.vertex_count());
+    let mut level = SharpLevel {
+        edges: Vec::new(),
+        corners: creases.corners().to_vec(),
+    };
+    let mut edge_points = mesh.edge_map(0_u32);
+    mesh.edges().for_each(|e| {
+        let edge = outline.points.len() - first_edge;
+        edge_points[e] = outline.points.len() as u32;
+        let ends = mesh.edge_vertices(e);
+        let (point, faces) = edge_point(mesh, mask, e, |f| values[f]);
+        outline.points.push(point);
+        let by_nature = faces != 2;
+        let ends = ends.map(|v| numbers[v]);
+        let sharpness = marked.sharpness(creases, ends, by_nature);
+        if sharpness > 0.0 {
+            level.edges.push(SharpEdge {
+                edge,
+                ends,
+                sharpness,
+                by_nature,
+            });
+        }
+    });
+    outline.split_faces(mesh, |v| numbers[v], |e| edge_points[e])?;
+    let old = by_number(mesh);
+    let creases = level.place(old, &mut outline.points, first_edge, creasing);
+    outline.finish(creases)
+}
+
+/// Where vertices are, by their numbers; worked out where it is asked for.
+fn by_number<M: MeshQuery>(mesh: &M) -> impl Fn(u32) -> Point {
+    let positions: Vec<Point> = mesh.vertices().map(|v| mesh.position(v)).collect();
+    move |v| positions[v as usize]
+}
+
+/// The face value of `f`.
+#[inline(always)]
+pub(crate) fn face_value<M: MeshQuery, K: Mask>(mesh: &M, mask: K, f: M::Face) -> Point {
+    let (sum, degree) = corner_sum(mesh, f);
+    mask.face(sum, degree)
+}
+
+/// The sum of the corners of `f`, and how many there are.
+#[inline(always)]
+pub(crate) fn corner_sum<M: MeshQuery>(mesh: &M, f: M::Face) -> (Point, usize) {
+    let (mut sum, mut degree) = (Point::ZERO, 0);
+    mesh.face_vertices(f).for_each(|v| {
+        sum += mesh.position(v);
+        degree += 1;
+    });
+    (sum, degree)
+}
+
+/// The sum of the neighbours of `v`, and how many there are.
+#[inline(always)]
+pub(crate) fn neighbour_sum<M: MeshQuery>(mesh: &M, v: M::Vertex) -> (Point, usize) {
+    let (mut sum, mut valence) = (Point::ZERO, 0);
+    mesh.vertex_vertices(v).for_each(|w| {
+        sum += mesh.position(w);
+        valence += 1;
+    });
+    (sum, valence)
+}
+
+/// The point of edge `e` as if it were not sharp, and how many faces it has. Where these are not
+/// two it is the midpoint.
+#[inline(always)]
+pub(crate) fn edge_point<M: MeshQuery, K: Mask>(
+    mesh: &M,
+    mask: K,
+    e: M::Edge,
+    face_value: impl Fn(M::Face) -> Point,
+) -> (Point, usize) {
+    let ends = mesh.edge_vertices(e).map(|v| mesh.position(v));
+    let (mut sum, mut faces) = (Point::ZERO, 0);
+    mesh.edge_faces(e).for_each(|f| {
+        if K::EDGES_SEE_FACES {
+            sum += face_value(f);
+        }
+        faces += 1;
+    });
+    match faces {
+        2 => (mask.edge(ends, sum), 2),
+        _ => (midpoint(ends), faces),
+    }
+}
+
+/// Where vertex `v` goes as if nothing were sharp there; an isolated vertex stays.
+#[inline(always)]
+pub(crate) fn vertex_point<M: MeshQuery, K: Mask>(
+    mesh: &M,
+    mask: K,
+    v: M::Vertex,
+    face_value: impl Fn(M::Face) -> Point,
+) -> Point {
+    let at = mesh.position(v);
+    let (neighbours, valence) = neighbour_sum(mesh, v);
+    if valence == 0 {
+        return at;
+    }
+    let mut faces = Point::ZERO;
+    if K::VERTICES_SEE_FACES {
+        mesh.vertex_faces(v).for_each(|f| faces += face_value(f));
+    }
+    mask.vertex(at, valence, neighbours, faces)
+}

@@ -1,0 +1,146 @@
+//! Several steps, from polygons to polygons.
+
+use mesh_core::{Creases, FaceId, FaceList, PolygonMesh, Refine, Representation, VertexId};
+
+use crate::control::renumbered;
+use crate::error::SubdivisionError;
+use crate::scheme::Method;
+use crate::step::Step;
+use crate::subdivision::Subdivision;
+
+/// Takes `levels` steps with a structure of type `M`, built anew for each; `watch` is told the level
+/// and its number of faces after every step. No level is the mesh itself.
+///
+/// # Errors
+///
+/// What the scheme cannot split, what `M` cannot hold, or [`SubdivisionError::NoMethod`] for
+/// [`Method::Native`], which is [`subdivide_native`].
+pub fn subdivide<M: Representation>(
+    subdivision: &Subdivision,
+    method: Method,
+    polygons: &PolygonMesh,
+    creases: &Creases,
+    levels: u32,
+    mut watch: impl FnMut(u32, usize),
+) -> Result<Step, SubdivisionError> {
+    let mut left_out = subdivision.left_out(polygons, creases);
+    let mut at = Step {
+        polygons: polygons.clone(),
+        creases: creases.clone(),
+    };
+    for level in 0..levels {
+        let mesh = built::<M>(&at.polygons, level)?;
+        let creases = if level == 0 {
+            subdivision.control(&mesh, &at.polygons, &at.creases)?
+        } else {
+            renumbered(&mesh, &at.polygons, &at.creases)
+        };
+        let next = match method {
+            Method::Gather => subdivision.gather(&mesh, &creases, level)?,
+            Method::Scatter => subdivision.scatter(&mesh, &creases, level)?,
+            Method::Native => return Err(subdivision.not_by_polygons()),
+        };
+        // The parts of one face follow one another: so many as it has corners, or four.
+        left_out = left_out.map(|left_out| {
+            let degrees = at.polygons.faces().iter().map(|(_, face)| face.len());
+            let parts = degrees.map(|degree| subdivision.parts_of(degree));
+            let each = left_out.into_iter().zip(parts);
+            each.flat_map(|(out, parts)| std::iter::repeat_n(out, parts))
+                .collect()
+        });
+        at = next;
+        watch(level + 1, at.polygons.face_count());
+    }
+    Ok(without(at, left_out))
+}
+
+/// Takes `levels` steps in the tables of a structure of type `M`, which is built once; on the threads
+/// of the current rayon pool. As [`subdivide`], but for the order of faces and edge points, which
+/// is the structure's own.
+///
+/// # Errors
+///
+/// What the scheme cannot split, what `M` cannot hold, or cannot do in its own tables.
+pub fn subdivide_native<M: Refine>(
+    subdivision: &Subdivision,
+    polygons: &PolygonMesh,
+    creases: &Creases,
+    levels: u32,
+    mut watch: impl FnMut(u32, usize),
+) -> Result<Step, SubdivisionError> {
+    let mut left_out = subdivision.left_out(polygons, creases);
+    let mut mesh = built::<M>(polygons, 0)?;
+    let mut creases = if levels == 0 {
+        creases.clone()
+    } else {
+        subdivision.control(&mesh, polygons, creases)?
+    };
+    let mut numbers = M::EdgeNumbers::default();
+    for level in 0..levels {
+        let mut child = M::empty();
+        creases = subdivision.refine_into(&mesh, &creases, level, &mut numbers, &mut child)?;
+        left_out = left_out
+            .zip(subdivision.split(level))
+            .map(|(left_out, split)| {
+                let parents = child.faces().map(|f| mesh.parent(&numbers, split, f));
+                parents.map(|f| left_out[f.index()]).collect()
+            });
+        mesh = child;
+        watch(level + 1, mesh.face_count());
+    }
+    let polygons = if levels == 0 {
+        polygons.clone()
+    } else {
+        mesh.to_polygons()
+    };
+    Ok(without(Step { polygons, creases }, left_out))
+}
+
+fn built<M: Representation>(polygons: &PolygonMesh, level: u32) -> Result<M, SubdivisionError> {
+    M::from_polygons(polygons).map_err(|refusal| SubdivisionError::Build {
+        structure: M::NAME,
+        level,
+        refusal,
+    })
+}
+
+/// The mesh without the faces that are left out, and without the vertices that only they had.
+fn without(step: Step, left_out: Option<Vec<bool>>) -> Step {
+    let Some(left_out) = left_out.filter(|left_out| left_out.contains(&true)) else {
+        return step;
+    };
+    let Step { polygons, creases } = step;
+    let stays = |f: FaceId| !left_out[f.index()];
+    let faces = || polygons.faces().iter();
+    let mut used = vec![false; polygons.vertex_count()];
+    let mut lost = used.clone();
+    for (f, face) in faces() {
+        let seen = if stays(f) { &mut used } else { &mut lost };
+        for v in face {
+            seen[v.index()] = true;
+        }
+    }
+    let mut positions = Vec::new();
+    let mut names = vec![None; polygons.vertex_count()];
+    for v in polygons.vertices() {
+        // Vertices that had no face before stay isolated.
+        if used[v.index()] || !lost[v.index()] {
+            names[v.index()] = Some(VertexId::new(positions.len() as u32));
+            positions.push(polygons.position(v));
+        }
+    }
+    let mut kept = FaceList::default();
+    for (_, face) in faces().filter(|&(f, _)| stays(f)) {
+        let renamed = face.iter().filter_map(|v| names[v.index()]);
+        kept.push(renamed).expect("fewer faces than before");
+    }
+    let edges = creases.edges().iter().filter_map(|&(ends, sharpness)| {
+        let [a, b] = ends.ends().map(|v| names[v.index()]);
+        Some((mesh_core::Pair::new(a?, b?), sharpness))
+    });
+    let corners = creases.corners().iter();
+    let corners = corners.filter_map(|&(v, sharpness)| Some((names[v.index()]?, sharpness)));
+    let creases = Creases::sorted(edges.collect(), corners.collect());
+    let polygons = PolygonMesh::from_faces(positions, kept).expect("faces of a mesh");
+    Step { polygons, creases }
+}

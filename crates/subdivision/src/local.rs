@@ -1,0 +1,421 @@
+//! Local refinement: only chosen triangles are split, and still no corner lies on a side.
+//!
+//! Red and green, after Bank, Sherman & Weiser (1983). Chosen faces are split in four, *red*. What
+//! has two or three split sides then becomes red as well, until nothing changes; what has one is
+//! halved, *green*.
+//!
+//! ```text
+//!    red             green            green that must be split again: its parent becomes red
+//!
+//!      c                c                       c                         c
+//!     / \              /│\                     /│\                       / \
+//!    q───p            / │ \                   / │ \          →          q───p
+//!   / \ / \          /  │  \                 /  │  \                   / \ / \
+//!  a───m───b        a───m───b               a─x─m───b                 a─x─m───b   (a, m, q) is green
+//! ```
+//!
+//! So every face is a part of a first one like it in shape, or half of such a part: angles do not
+//! become smaller and smaller with the levels. New points are midpoints, and old ones stay.
+
+use mesh_core::{
+    EdgeMap, FaceId, FaceList, MAX_ROWS, MeshQuery, Point, PolygonError, PolygonMesh,
+    Representation, VertexId,
+};
+
+use crate::error::LocalError;
+use crate::mask::midpoint;
+use crate::select::{Selection, triangle};
+
+/// Takes `levels` steps of local refinement with a structure of type `M`, built anew for each.
+///
+/// Of a list of faces, the parts are chosen at the next level; a box and an angle are asked anew.
+/// O(faces) a level beyond the costs of FE, EF and FV.
+///
+/// # Errors
+///
+/// A selection that makes no sense, a face that is no triangle, edges that are too short to be
+/// halved, more faces than a handle can name, or what `M` cannot hold.
+///
+/// # Examples
+///
+/// ```
+/// use indexed_face_set::IndexedFaceSet;
+/// use mesh_core::FaceId;
+/// use subdivision::{Selection, refine_locally};
+///
+/// // One face in four, and three neighbours in two.
+/// let one = Selection::Faces(vec![FaceId::new(0)]);
+/// let refined = refine_locally::<IndexedFaceSet>(&shapes::octahedron(), &one, 1)?;
+/// assert_eq!(refined.polygons().face_count(), 4 + 3 * 2 + 4);
+/// # Ok::<(), subdivision::LocalError>(())
+/// ```
+pub fn refine_locally<M: Representation>(
+    polygons: &PolygonMesh,
+    selection: &Selection,
+    levels: u32,
+) -> Result<LocalMesh, LocalError> {
+    selection.check(polygons.face_count())?;
+    let mut local = LocalMesh::new(polygons.clone())?;
+    for level in 0..levels {
+        let mesh = M::from_polygons(&local.polygons).map_err(|refusal| LocalError::Build {
+            structure: M::NAME,
+            level,
+            refusal,
+        })?;
+        let chosen = match selection {
+            Selection::Faces(_) if level > 0 => local.chosen_parts(),
+            _ => selection.faces(&mesh)?,
+        };
+        if chosen.is_empty() {
+            break;
+        }
+        local = local.refined(&mesh, &chosen)?;
+    }
+    Ok(local)
+}
+
+/// A triangle mesh that has been refined here and there, and how it came about.
+///
+/// # Invariants
+///
+/// - L1  Every face is a triangle.
+/// - L2  Green faces come in pairs, one after the other: (a, m, c) and (m, b, c), the halves of
+///   (a, b, c).
+#[derive(Clone, Debug, PartialEq)]
+pub struct LocalMesh {
+    polygons: PolygonMesh,
+    kinds: Vec<Kind>,
+}
+
+/// How a face came about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Kind {
+    /// Which face of the first mesh it is a part of.
+    origin: FaceId,
+    half: Option<Half>,
+    /// Whether it is part of a face that was chosen in the last step.
+    chosen: bool,
+}
+
+/// Which face of a green pair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Half {
+    First,
+    Second,
+}
+
+impl LocalMesh {
+    /// A mesh that has not been refined.
+    ///
+    /// # Errors
+    ///
+    /// The first face that is no triangle.
+    pub fn new(polygons: PolygonMesh) -> Result<Self, LocalError> {
+        let faces = polygons.faces();
+        if let Some((face, corners)) = faces.iter().find(|(_, corners)| corners.len() != 3) {
+            let degree = corners.len();
+            return Err(LocalError::NotATriangle { face, degree });
+        }
+        let kind = |(origin, _)| Kind {
+            origin,
+            half: None,
+            chosen: false,
+        };
+        let kinds = faces.iter().map(kind).collect();
+        Ok(Self { polygons, kinds })
+    }
+
+    /// The mesh: vertices of the mesh before in its order, then midpoints; the parts of a face follow
+    /// one another.
+    pub fn polygons(&self) -> &PolygonMesh {
+        &self.polygons
+    }
+
+    /// Which face of the first mesh each face is a part of, in their order.
+    pub fn origins(&self) -> impl ExactSizeIterator<Item = FaceId> {
+        self.kinds.iter().map(|kind| kind.origin)
+    }
+
+    /// Whether `f` is half of a face, and will be undone rather than split.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such face.
+    pub fn is_green(&self, f: FaceId) -> bool {
+        self.kinds[f.index()].half.is_some()
+    }
+
+    /// The parts of the faces that were chosen in the last step.
+    pub fn chosen_parts(&self) -> Vec<FaceId> {
+        let kinds = (0..).map(FaceId::new).zip(&self.kinds);
+        let chosen = kinds.filter(|(_, kind)| kind.chosen);
+        chosen.map(|(f, _)| f).collect()
+    }
+
+    /// One step: splits the faces `chosen`, numbers in the order of faces, and what must be split with
+    /// them. `mesh` is any structure that was built from [`polygons`](Self::polygons). Where the faces
+    /// of an edge are more than two all of them take part.
+    ///
+    /// # Errors
+    ///
+    /// A number that no face has, an edge that is too short to be halved, or more faces than a handle
+    /// can name.
+    ///
+    /// # Panics
+    ///
+    /// If `mesh` has another number of faces.
+    pub fn refined<M: MeshQuery>(&self, mesh: &M, chosen: &[FaceId]) -> Result<Self, LocalError> {
+        let faces = self.kinds.len();
+        assert_eq!(mesh.face_count(), faces, "a mesh of these polygons");
+        Selection::check_faces(chosen, faces)?;
+        let mut step = Step::new(self, mesh)?;
+        for f in chosen {
+            step.chosen[f.index()] = true;
+            step.waiting.push(f.index());
+        }
+        step.close();
+        step.finish()
+    }
+}
+
+/// A step under way.
+struct Step<'a, M: MeshQuery> {
+    before: &'a [Kind],
+    mesh: &'a M,
+    numbers: mesh_core::FaceMap<M, u32>,
+    /// By face: its corners, and the sides that start there. Of a green face the first corner is the
+    /// one that the other half does not have: (a, m, c) and (b, c, m).
+    faces: Vec<([M::Vertex; 3], [M::Edge; 3])>,
+    split: EdgeMap<M, bool>,
+    /// By face: how many of its sides are split; whether it, or the whole it is half of, is red;
+    /// whether it was chosen.
+    split_sides: Vec<u8>,
+    red: Vec<bool>,
+    chosen: Vec<bool>,
+    /// Faces that are to become red.
+    waiting: Vec<usize>,
+}
+
+impl<'a, M: MeshQuery> Step<'a, M> {
+    fn new(before: &'a LocalMesh, mesh: &'a M) -> Result<Self, LocalError> {
+        let count = before.kinds.len();
+        let mut numbers = mesh.face_map(0);
+        let mut faces = Vec::with_capacity(count);
+        for (number, f) in (0..).zip(mesh.faces()) {
+            numbers[f] = number;
+            let corners = triangle(mesh, f, FaceId::new(number))?;
+            let mut sides = mesh.face_edges(f);
+            let sides = [(); 3].map(|()| sides.next().expect("as many sides as corners"));
+            faces.push((corners, sides));
+        }
+        for first in 0..count {
+            if before.kinds[first].half == Some(Half::First) {
+                let [f, g] = [first, first + 1].map(|half| faces[half]);
+                faces[first] = turned(f, g.0);
+                faces[first + 1] = turned(g, f.0);
+            }
+        }
+        Ok(Self {
+            before: &before.kinds,
+            mesh,
+            numbers,
+            faces,
+            split: mesh.edge_map(false),
+            split_sides: vec![0; count],
+            red: vec![false; count],
+            chosen: vec![false; count],
+            waiting: Vec::new(),
+        })
+    }
+
+    /// Makes faces red until no more have to be; every side is split at most once.
+    fn close(&mut self) {
+        while let Some(f) = self.waiting.pop() {
+            if self.red[f] {
+                continue;
+            }
+            self.red[f] = true;
+            let sides = self.faces[f].1;
+            match self.before[f].half {
+                None => sides.into_iter().for_each(|side| self.split(side)),
+                // The side of the whole that is not halved yet: c–a of (a, m, c), b–c of (b, c, m).
+                Some(Half::First) => {
+                    self.split(sides[2]);
+                    self.waiting.push(f + 1);
+                }
+                Some(Half::Second) => {
+                    self.split(sides[0]);
+                    self.waiting.push(f - 1);
+                }
+            }
+        }
+    }
+
+    fn split(&mut self, side: M::Edge) {
+        if std::mem::replace(&mut self.split[side], true) {
+            return;
+        }
+        for f in self.mesh.edge_faces(side) {
+            let f = self.numbers[f] as usize;
+            self.split_sides[f] += 1;
+            // Half a face cannot be halved.
+            if self.split_sides[f] > 1 || self.before[f].half.is_some() {
+                self.waiting.push(f);
+            }
+        }
+    }
+
+    fn finish(self) -> Result<LocalMesh, LocalError> {
+        let (mesh, limit) = (self.mesh, MAX_ROWS);
+        let parts = (0..self.faces.len()).map(|f| self.parts(f));
+        if parts.sum::<usize>().saturating_mul(3) > limit {
+            let elements = "corners";
+            return Err(PolygonError::TooMany { elements, limit }.into());
+        }
+        let mut names = mesh.vertex_map(VertexId::new(0));
+        let mut points: Vec<Point> = Vec::with_capacity(mesh.vertex_count());
+        for v in mesh.vertices() {
+            names[v] = VertexId::new(mesh_core::row(points.len()));
+            points.push(mesh.position(v));
+        }
+        let mut middles = mesh.edge_map(None);
+        for e in mesh.edges().filter(|&e| self.split[e]) {
+            let ends = mesh.edge_vertices(e);
+            let [a, b] = ends.map(|v| mesh.position(v));
+            let middle = midpoint([a, b]);
+            if a != b && (middle == a || middle == b) {
+                let ends = ends.map(|v| names[v]);
+                return Err(LocalError::TooShort { ends });
+            }
+            middles[e] = Some(VertexId::new(mesh_core::row(points.len())));
+            points.push(middle);
+        }
+        let mut parts = Parts::default();
+        for (f, &(corners, sides)) in self.faces.iter().enumerate() {
+            let corners = corners.map(|v| names[v]);
+            let middles_of = |sides: [M::Edge; 3]| sides.map(|side| middles[side]);
+            let kind = Kind {
+                half: None,
+                chosen: self.chosen[f],
+                ..self.before[f]
+            };
+            match self.before[f].half {
+                None => parts.split(kind, corners, middles_of(sides))?,
+                Some(half) if !self.red[f] => {
+                    let half = Some(half);
+                    parts.push(Kind { half, ..kind }, corners)?;
+                }
+                Some(Half::First) => {
+                    let kind = Kind {
+                        chosen: kind.chosen || self.chosen[f + 1],
+                        ..kind
+                    };
+                    let (others, other_sides) = self.faces[f + 1];
+                    let wholes = [corners, others.map(|v| names[v])];
+                    parts.split_again(kind, wholes, [sides, other_sides].map(middles_of))?;
+                }
+                // Done with the first half.
+                Some(Half::Second) => {}
+            }
+        }
+        let polygons = PolygonMesh::from_faces(points, parts.faces)?;
+        let kinds = parts.kinds;
+        Ok(LocalMesh { polygons, kinds })
+    }
+
+    /// How many parts come of a face; those of a green pair that is undone are counted at each half.
+    fn parts(&self, f: usize) -> usize {
+        let is_red = self.red[f];
+        match self.before[f].half {
+            Some(_) if is_red => 1 + usize::from(self.split_sides[f]),
+            Some(_) => 1,
+            None if is_red => 4,
+            None => 1 + usize::from(self.split_sides[f]),
+        }
+    }
+}
+
+/// A face from the corner on that `other` does not have.
+fn turned<V: Copy + Eq, E: Copy>(
+    (corners, sides): ([V; 3], [E; 3]),
+    other: [V; 3],
+) -> ([V; 3], [E; 3]) {
+    let alone = corners.iter().position(|v| !other.contains(v));
+    let from = alone.expect("L2: the halves of a face share two corners");
+    let turn = |i: usize| (from + i) % 3;
+    (
+        [0, 1, 2].map(|i| corners[turn(i)]),
+        [0, 1, 2].map(|i| sides[turn(i)]),
+    )
+}
+
+/// The new faces.
+#[derive(Default)]
+struct Parts {
+    faces: FaceList,
+    kinds: Vec<Kind>,
+}
+
+impl Parts {
+    fn push(&mut self, kind: Kind, corners: [VertexId; 3]) -> Result<(), PolygonError> {
+        self.kinds.push(kind);
+        self.faces.push(corners)
+    }
+
+    /// A face with the middles of its sides, where these are split: none, one, or all three.
+    fn split(
+        &mut self,
+        kind: Kind,
+        corners: [VertexId; 3],
+        middles: [Option<VertexId>; 3],
+    ) -> Result<(), PolygonError> {
+        let [a, b, c] = corners;
+        match middles {
+            [Some(m), Some(p), Some(q)] => {
+                for part in [[a, m, q], [m, b, p], [q, p, c], [m, p, q]] {
+                    self.push(kind, part)?;
+                }
+                Ok(())
+            }
+            [Some(m), None, None] => self.halve(kind, [a, b, c], m),
+            [None, Some(m), None] => self.halve(kind, [b, c, a], m),
+            [None, None, Some(m)] => self.halve(kind, [c, a, b], m),
+            _ => {
+                debug_assert_eq!(middles, [None; 3], "two split sides make a face red");
+                self.push(kind, corners)
+            }
+        }
+    }
+
+    /// The halves of a face whose first side has the middle `m`.
+    fn halve(
+        &mut self,
+        kind: Kind,
+        [a, b, c]: [VertexId; 3],
+        m: VertexId,
+    ) -> Result<(), PolygonError> {
+        let half = |half| Kind {
+            half: Some(half),
+            ..kind
+        };
+        self.push(half(Half::First), [a, m, c])?;
+        self.push(half(Half::Second), [m, b, c])
+    }
+
+    /// The whole of two halves (a, m, c) and (b, c, m), made red: the outer parts at a and b are halved
+    /// where their part of the side is split again.
+    fn split_again(
+        &mut self,
+        kind: Kind,
+        [[a, m, c], [b, ..]]: [[VertexId; 3]; 2],
+        [[near, _, q], [p, _, far]]: [[Option<VertexId>; 3]; 2],
+    ) -> Result<(), PolygonError> {
+        let (Some(p), Some(q)) = (p, q) else {
+            unreachable!("a red face has all its sides split");
+        };
+        self.split(kind, [a, m, q], [near, None, None])?;
+        self.split(kind, [m, b, p], [far, None, None])?;
+        self.push(kind, [q, p, c])?;
+        self.push(kind, [m, p, q])
+    }
+}

@@ -1,0 +1,99 @@
+//! What a mesh must be where a scheme looks across edges or around vertices: oriented, in fans.
+
+use mesh_core::{MeshQuery, Refine, in_given_parts};
+
+use crate::error::SubdivisionError;
+use crate::scheme::Scheme;
+use crate::sheet::{non_manifold_edge, non_manifold_vertex};
+
+/// Whether `f` has `b` after `a`.
+pub(crate) fn runs<M: MeshQuery>(mesh: &M, f: M::Face, [a, b]: [M::Vertex; 2]) -> bool {
+    let (mut first, mut last, mut found) = (None, None, false);
+    mesh.face_vertices(f).for_each(|v| {
+        found |= last == Some(a) && v == b;
+        first = first.or(Some(v));
+        last = Some(v);
+    });
+    found || (last == Some(a) && first == Some(b))
+}
+
+/// Whether `e` has one face, or two that run along it in opposite directions; else how many.
+fn check_edge<M: MeshQuery>(mesh: &M, e: M::Edge) -> Result<(), usize> {
+    let ends = mesh.edge_vertices(e);
+    let mut along = [0, 0];
+    mesh.edge_faces(e)
+        .for_each(|f| along[usize::from(runs(mesh, f, ends))] += 1);
+    if along.iter().all(|&faces| faces <= 1) {
+        Ok(())
+    } else {
+        Err(along[0] + along[1])
+    }
+}
+
+/// Whether every edge has one face, or two that run along it in opposite directions, and the faces
+/// at every vertex are one fan.
+///
+/// # Errors
+///
+/// The first edge that has not, else the first vertex where they are not.
+pub(crate) fn check<M: MeshQuery>(mesh: &M, scheme: Scheme) -> Result<(), SubdivisionError> {
+    let number_of = |v: M::Vertex| mesh.vertices().position(|w| w == v).unwrap_or(0) as u32;
+    for e in mesh.edges() {
+        check_edge(mesh, e).map_err(|faces| {
+            let ends = mesh.edge_vertices(e).map(number_of);
+            non_manifold_edge(scheme, ends, faces)
+        })?;
+    }
+    for (number, v) in mesh.vertices().enumerate() {
+        if mesh.one_ring(v).is_none() {
+            return Err(non_manifold_vertex(scheme, number as u32));
+        }
+    }
+    Ok(())
+}
+
+/// Whether a structure holds nothing that [`check`] would find.
+pub(crate) fn is_sure<M: Refine>() -> bool {
+    let can = M::CAPABILITIES;
+    !(can.non_manifold_edges || can.non_manifold_vertices || can.inconsistent_orientation)
+}
+
+/// The boundary edges in their order, each as its face runs along it; in parts that threads share.
+///
+/// # Errors
+///
+/// The first edge with three faces, or with two that run along it the same way.
+pub(crate) fn boundary<M: Refine>(
+    mesh: &M,
+    numbers: &M::EdgeNumbers,
+    scheme: Scheme,
+) -> Result<Vec<[u32; 2]>, SubdivisionError> {
+    let parts = mesh.edge_parts(numbers);
+    let is_sure = is_sure::<M>();
+    // Nothing is written by edge, and nothing is what these rows take.
+    let mut rows = vec![(); parts.last().copied().unwrap_or(0)];
+    let found = in_given_parts(&mut rows, &parts, |part, _, _| {
+        let mut boundary = Vec::new();
+        for e in mesh.edges_of_part(numbers, part) {
+            let (mut face, mut faces) = (None, 0);
+            mesh.edge_faces(e).for_each(|f| {
+                face = Some(f);
+                faces += 1;
+            });
+            let ends = mesh.edge_vertices(e);
+            if let (Some(f), 1) = (face, faces) {
+                let [a, b] = ends.map(|v| v.index() as u32);
+                boundary.push(if runs(mesh, f, ends) { [a, b] } else { [b, a] });
+            } else if !is_sure && check_edge(mesh, e).is_err() {
+                let ends = ends.map(|v| v.index() as u32);
+                return Err(non_manifold_edge(scheme, ends, faces));
+            }
+        }
+        Ok(boundary)
+    });
+    let mut all = Vec::new();
+    for part in found {
+        all.append(&mut part?);
+    }
+    Ok(all)
+}

@@ -1,0 +1,107 @@
+//! Native: the structure splits its own tables, and the points are gathered into them.
+//!
+//! Nothing is rebuilt: [`Refine`] knows where each new record goes. The points are worked out by the
+//! very queries and rules of a gather, each by itself, so that they are the same on any number of
+//! threads.
+
+use mesh_core::{Creases, FaceId, PART, Point, Refine, RowId, Split, in_given_parts, in_parts};
+
+use crate::SubdivisionError;
+use crate::crease::{SharpEdge, SharpLevel};
+use crate::gather::{edge_point, face_value, vertex_point};
+use crate::mask::Mask;
+use crate::options::Creasing;
+
+/// One step of a scheme that splits faces, into `child`; yields the creases of the child.
+pub(crate) fn step<M: Refine, K: Mask>(
+    mesh: &M,
+    mask: K,
+    creases: &Creases,
+    creasing: Creasing,
+    numbers: &M::EdgeNumbers,
+    child: &mut M,
+) -> Result<Creases, SubdivisionError> {
+    mesh.split_into(K::SPLIT, numbers, child)?;
+    let (vertices, faces) = (mesh.vertex_count(), mesh.face_count());
+    let face_points = if K::SPLIT == Split::Quads { faces } else { 0 };
+    let first_edge = vertices + face_points;
+    let (old, rest) = child.positions_mut().split_at_mut(vertices);
+    let (face_points, edge_points) = rest.split_at_mut(face_points);
+    place(face_points, |f| face_value(mesh, mask, f));
+    let face_points = &*face_points;
+    let value = |f: FaceId| match K::SPLIT {
+        Split::Quads => face_points[f.index()],
+        // To keep them would be quicker, and take more than a tenth of a corner table beside it.
+        _ => face_value(mesh, mask, f),
+    };
+    if K::APPROXIMATES {
+        place(old, |v| vertex_point(mesh, mask, v, value));
+    } else {
+        keep(old, mesh.position_rows());
+    }
+    let parts = mesh.edge_parts(numbers);
+    let sharp = in_given_parts(edge_points, &parts, |part, range, points| {
+        let mut by_nature = Vec::new();
+        let mut at = 0;
+        mesh.edges_of_part(numbers, part).for_each(|e| {
+            let (point, faces) = edge_point(mesh, mask, e, value);
+            points[at] = point;
+            if faces != 2 {
+                by_nature.push(SharpEdge {
+                    edge: range.start + at,
+                    ends: mesh.edge_vertices(e).map(|v| v.index() as u32),
+                    sharpness: f32::INFINITY,
+                    by_nature: true,
+                });
+            }
+            at += 1;
+        });
+        by_nature
+    });
+    let mut level = SharpLevel {
+        edges: sharp.concat(),
+        corners: creases.corners().to_vec(),
+    };
+    level.edges.extend(creased(mesh, creases, numbers));
+    if level.edges.is_empty() && level.corners.is_empty() {
+        return Ok(Creases::default());
+    }
+    let old = |v: u32| mesh.position_rows()[v as usize];
+    Ok(level.place(old, child.positions_mut(), first_edge, creasing))
+}
+
+/// Gives each row its value, in parts that threads share.
+pub(crate) fn place<H: RowId, T: Send>(rows: &mut [T], value: impl Fn(H) -> T + Sync) {
+    in_parts(rows, PART, |first, rows| {
+        for (row, name) in rows.iter_mut().zip(first as u32..) {
+            *row = value(H::from_row(name));
+        }
+    });
+}
+
+/// Copies `old`, in parts that threads share.
+pub(crate) fn keep(points: &mut [Point], old: &[Point]) {
+    in_parts(points, PART, |first, points| {
+        points.copy_from_slice(&old[first..first + points.len()]);
+    });
+}
+
+/// The edges that are said to be sharp and are not so by nature.
+fn creased<M: Refine>(
+    mesh: &M,
+    creases: &Creases,
+    numbers: &M::EdgeNumbers,
+) -> impl Iterator<Item = SharpEdge> {
+    creases.edges().iter().filter_map(|&(pair, sharpness)| {
+        let [a, b] = pair.ends();
+        let runs_to_b = |&e: &M::Edge| mesh.edge_vertices(e).contains(&b);
+        let e = mesh.vertex_edges(a).find(runs_to_b);
+        let e = e.expect("creases are those of the mesh");
+        (mesh.edge_faces(e).count() == 2).then(|| SharpEdge {
+            edge: mesh.edge_number(numbers, e),
+            ends: [a, b].map(|v| v.index() as u32),
+            sharpness,
+            by_nature: false,
+        })
+    })
+}

@@ -1,0 +1,198 @@
+//! Which faces to refine.
+
+use mesh_core::{FaceId, MeshQuery, Point};
+
+use crate::error::LocalError;
+
+/// A choice among the faces of a triangle mesh.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Selection {
+    /// These faces, and at later levels the parts of them.
+    Faces(Vec<FaceId>),
+    /// The faces that have a point in common with a box, its surface included, be it only a corner:
+    /// a box smaller than any face still finds the faces it is in. Sides may be infinite. Asked anew
+    /// at every level.
+    Box {
+        /// The lowest coordinates.
+        min: Point,
+        /// The highest coordinates.
+        max: Point,
+    },
+    /// The faces that bend from a neighbour by more than so many degrees, 0 to 180, and those along
+    /// edges of three or more faces. Asked anew at every level, and as new points do not move, the
+    /// faces along the same folds are found again. Faces without area do not count.
+    Angle(f32),
+}
+
+impl Selection {
+    /// Whether this can be asked of a mesh with so many faces.
+    ///
+    /// # Errors
+    ///
+    /// A face that is not there, a box with NaN or its corners swapped, an angle outside 0 to 180.
+    pub fn check(&self, faces: usize) -> Result<(), LocalError> {
+        match self {
+            Self::Faces(list) => Self::check_faces(list, faces),
+            // False for NaN.
+            Self::Box { min, max } if min.cmple(*max).all() => Ok(()),
+            &Self::Box { min, max } => Err(LocalError::BadBox { min, max }),
+            Self::Angle(degrees) if (0.0..=180.0).contains(degrees) => Ok(()),
+            &Self::Angle(degrees) => Err(LocalError::BadAngle { degrees }),
+        }
+    }
+
+    pub(crate) fn check_faces(list: &[FaceId], faces: usize) -> Result<(), LocalError> {
+        match list.iter().find(|f| f.index() >= faces) {
+            Some(&face) => Err(LocalError::MissingFace { face, faces }),
+            None => Ok(()),
+        }
+    }
+
+    /// The faces of `mesh` that are chosen, as numbers in the order of [`MeshQuery::faces`]. O(faces), or
+    /// for an angle O(edges), beyond the costs of FV and EF.
+    ///
+    /// # Errors
+    ///
+    /// As [`check`](Self::check), or a face that is no triangle.
+    pub fn faces<M: MeshQuery>(&self, mesh: &M) -> Result<Vec<FaceId>, LocalError> {
+        self.check(mesh.face_count())?;
+        match self {
+            Self::Faces(list) => Ok(list.clone()),
+            &Self::Box { min, max } => {
+                let mut chosen = Vec::new();
+                for (number, f) in (0..).zip(mesh.faces()) {
+                    let face = FaceId::new(number);
+                    let corners = triangle(mesh, f, face)?.map(|v| mesh.position(v));
+                    if touches(corners, min, max) {
+                        chosen.push(face);
+                    }
+                }
+                Ok(chosen)
+            }
+            &Self::Angle(degrees) => bent(mesh, degrees),
+        }
+    }
+}
+
+/// The corners of a face, whose number is `face`.
+pub(crate) fn triangle<M: MeshQuery>(
+    mesh: &M,
+    f: M::Face,
+    face: FaceId,
+) -> Result<[M::Vertex; 3], LocalError> {
+    let mut corners = mesh.face_vertices(f);
+    let three = [corners.next(), corners.next(), corners.next()];
+    match (three, corners.next()) {
+        ([Some(a), Some(b), Some(c)], None) => Ok([a, b, c]),
+        _ => Err(LocalError::NotATriangle {
+            face,
+            degree: mesh.face_vertices(f).count(),
+        }),
+    }
+}
+
+/// Whether a triangle and a box have a point in common: they have none if the shadows on a line are
+/// apart, and of all lines thirteen are enough (Akenine-Möller 2001).
+fn touches(corners: [Point; 3], min: Point, max: Point) -> bool {
+    let [a, b, c] = corners;
+    // The part of the box beside the triangle; these are the three lines along the axes.
+    let (min, max) = (min.max(a.min(b).min(c)), max.min(a.max(b).max(c)));
+    if !min.cmple(max).all() {
+        return false;
+    }
+    let corners = corners.map(Point::as_dvec3);
+    let [min, max] = [min, max].map(Point::as_dvec3);
+    let sides = [0, 1, 2].map(|i| corners[(i + 1) % 3] - corners[i]);
+    let axes = [Point::X, Point::Y, Point::Z].map(Point::as_dvec3);
+    let across = sides
+        .iter()
+        .flat_map(|side| axes.map(|axis| side.cross(axis)));
+    let mut lines = across.chain([sides[0].cross(sides[1])]);
+    lines.all(|line| {
+        let shadow = corners.map(|corner| line.dot(corner));
+        let (low, high) = (line * min, line * max);
+        let least = low.min(high).element_sum();
+        let most = low.max(high).element_sum();
+        // Sums of products of three rounded differences: what touches must not be missed.
+        let slack = 1e-12 * line.abs().dot(min.abs().max(max.abs()));
+        shadow.iter().any(|&at| at >= least - slack) && shadow.iter().any(|&at| at <= most + slack)
+    })
+}
+
+/// The faces along edges that bend by more than `degrees`.
+fn bent<M: MeshQuery>(mesh: &M, degrees: f32) -> Result<Vec<FaceId>, LocalError> {
+    let mut numbers = mesh.face_map(FaceId::new(0));
+    let mut chosen = vec![false; mesh.face_count()];
+    for (number, f) in (0..).zip(mesh.faces()) {
+        numbers[f] = FaceId::new(number);
+        triangle(mesh, f, FaceId::new(number))?;
+    }
+    // The normal of a face, and whether it runs from `a` to `b`.
+    let seen = |f: M::Face, a: M::Vertex, b: M::Vertex| {
+        let corners: Vec<M::Vertex> = mesh.face_vertices(f).collect();
+        let forward = (0..3).any(|i| corners[i] == a && corners[(i + 1) % 3] == b);
+        let at = |i: usize| mesh.position(corners[i]).as_dvec3();
+        ((at(1) - at(0)).cross(at(2) - at(0)), forward)
+    };
+    for e in mesh.edges() {
+        let [a, b] = mesh.edge_vertices(e);
+        let faces: Vec<M::Face> = mesh.edge_faces(e).collect();
+        let is_bent = match faces[..] {
+            [f, g] => {
+                let ((m, along), (n, other)) = (seen(f, a, b), seen(g, a, b));
+                // Two that run the same way show their backs to each other.
+                let n = if along == other { -n } else { n };
+                let angle = m.cross(n).length().atan2(m.dot(n));
+                angle.to_degrees() > f64::from(degrees)
+            }
+            [_] | [] => false,
+            _ => true,
+        };
+        if is_bent {
+            for f in faces {
+                chosen[numbers[f].index()] = true;
+            }
+        }
+    }
+    let numbers = (0..).map(FaceId::new).zip(chosen);
+    Ok(numbers
+        .filter(|&(_, chosen)| chosen)
+        .map(|(f, _)| f)
+        .collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_finds_what_it_touches() {
+        let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 4.0]].map(Point::from);
+        let near = |min: [f32; 3], max: [f32; 3]| touches(corners, min.into(), max.into());
+        assert!(
+            near([1.0, 1.0, 1.0], [1.0, 1.0, 1.0]),
+            "a point in the plane"
+        );
+        assert!(near([-1.0; 3], [0.0; 3]), "a corner");
+        assert!(near([1.9, 1.9, 0.0], [9.0, 9.0, 9.0]), "across a side");
+        assert!(
+            near([f32::NEG_INFINITY; 3], [f32::INFINITY; 3]),
+            "everything"
+        );
+        assert!(
+            near([0.5, 0.1, -1.0], [0.6, 0.2, 9.0]),
+            "a needle through it"
+        );
+        assert!(!near([1.0, 1.0, 1.1], [1.0, 1.0, 2.0]), "above the plane");
+        assert!(
+            !near([2.2, 2.2, 0.0], [9.0, 9.0, 9.0]),
+            "past a side, within the bounds"
+        );
+        assert!(!near([5.0, 0.0, 0.0], [9.0, 9.0, 9.0]), "outside");
+        let side = [[0.0, 0.0, 0.0], [2.0, 2.0, 0.1], [4.0, 4.0, 0.0]].map(Point::from);
+        let upright = |min: [f32; 3], max: [f32; 3]| touches(side, min.into(), max.into());
+        assert!(upright([0.9, 0.9, 0.0], [1.0, 1.0, 9.0]));
+        assert!(!upright([0.9, 1.1, 0.0], [1.0, 1.2, 9.0]));
+    }
+}

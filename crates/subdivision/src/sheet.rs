@@ -1,0 +1,279 @@
+//! A mesh by numbers: its corners, and which of them lie at one edge.
+//!
+//! For schemes that make faces across old edges: these have to know the face on the other side.
+//!
+//! ```text
+//!          b
+//!        ╱ │ ╲       A side is called by the corner it starts at. Side c runs a → b, and d runs
+//!       ╱ c│  ╲      b → a: across(c) = d, across(d) = c.
+//!       ╲  │d ╱
+//!        ╲ │ ╱       after(c) is the next corner of the same face, here at b.
+//!          a
+//! ```
+
+use std::iter::successors;
+
+use mesh_core::{MeshQuery, VertexId, VertexMap};
+
+use crate::error::SubdivisionError;
+use crate::scheme::Scheme;
+
+/// The corners of all faces in their order, and how the faces hang together.
+pub(crate) struct Sheet {
+    /// The vertex at each corner.
+    pub(crate) corners: Vec<u32>,
+    /// The next corner of the same face.
+    after: Vec<u32>,
+    /// The edge of each side.
+    sides: Vec<u32>,
+    edges: Vec<SheetEdge>,
+}
+
+/// An edge by its sides.
+#[derive(Clone, Copy)]
+pub(crate) struct SheetEdge {
+    /// The side of its face, or of one of them.
+    pub(crate) first: u32,
+    /// The side of the other face; none at a boundary.
+    pub(crate) second: Option<u32>,
+}
+
+/// No edge has this number yet.
+const UNMET: u32 = u32::MAX;
+
+impl Sheet {
+    /// The sheet of `mesh`, for `scheme`, by asking each edge for its faces; edges as `edges()` has
+    /// them. FV, EV and EF: O(the sum of the degrees of the faces of all edges) beyond their cost.
+    ///
+    /// # Errors
+    ///
+    /// An edge with three faces, or with two that run along it the same way.
+    pub(crate) fn gathered<M: MeshQuery>(
+        mesh: &M,
+        scheme: Scheme,
+    ) -> Result<Self, SubdivisionError> {
+        let numbers = vertex_numbers(mesh);
+        let mut sheet = Self::with_room(mesh);
+        let mut first_corners = mesh.face_map(0_u32);
+        mesh.faces().for_each(|f| {
+            let first = sheet.corners.len();
+            first_corners[f] = first as u32;
+            let corners = mesh.face_vertices(f).map(|v| numbers[v]);
+            corners.for_each(|corner| sheet.corners.push(corner));
+            sheet.close_face(first);
+        });
+        sheet.sides = vec![UNMET; sheet.corners.len()];
+        for e in mesh.edges() {
+            let ends = mesh.edge_vertices(e).map(|v| numbers[v]);
+            let (mut along, mut faces, mut twice) = ([None; 2], 0, false);
+            mesh.edge_faces(e).for_each(|f| {
+                let (way, side) = sheet.side_between(first_corners[f], ends);
+                twice |= along[way].replace(side).is_some();
+                faces += 1;
+            });
+            let [one, other] = along;
+            let (Some(first), false) = (one.or(other), twice) else {
+                return Err(non_manifold_edge(scheme, ends, faces));
+            };
+            let second = one.and(other);
+            let number = sheet.edges.len() as u32;
+            for side in [Some(first), second].into_iter().flatten() {
+                sheet.sides[side as usize] = number;
+            }
+            sheet.edges.push(SheetEdge { first, second });
+        }
+        Ok(sheet)
+    }
+
+    /// The same from one pass over the faces, FV and FE alone; edges as the faces name them. O(corners)
+    /// expected.
+    ///
+    /// # Errors
+    ///
+    /// An edge with three faces, or with two that run along it the same way.
+    pub(crate) fn scattered<M: MeshQuery>(
+        mesh: &M,
+        scheme: Scheme,
+    ) -> Result<Self, SubdivisionError> {
+        let numbers = vertex_numbers(mesh);
+        let mut sheet = Self::with_room(mesh);
+        let mut edge_numbers = mesh.edge_map(UNMET);
+        let mut faulty: Option<u32> = None;
+        mesh.faces().for_each(|f| {
+            let first = sheet.corners.len();
+            let corners = mesh.face_vertices(f).map(|v| numbers[v]);
+            corners.for_each(|corner| sheet.corners.push(corner));
+            sheet.close_face(first);
+            let mut side = first as u32;
+            mesh.face_edges(f).for_each(|e| {
+                let number = &mut edge_numbers[e];
+                if *number == UNMET {
+                    *number = sheet.edges.len() as u32;
+                    sheet.edges.push(SheetEdge {
+                        first: side,
+                        second: None,
+                    });
+                } else {
+                    let edge = &mut sheet.edges[*number as usize];
+                    let same_way =
+                        sheet.corners[edge.first as usize] == sheet.corners[side as usize];
+                    if edge.second.replace(side).is_some() || same_way {
+                        faulty = Some(faulty.map_or(*number, |lowest| lowest.min(*number)));
+                    }
+                }
+                sheet.sides.push(*number);
+                side += 1;
+            });
+        });
+        if let Some(edge) = faulty {
+            let ends = sheet.ends(sheet.edges[edge as usize].first);
+            let faces = sheet.sides.iter().filter(|&&side| side == edge).count();
+            return Err(non_manifold_edge(scheme, ends, faces));
+        }
+        Ok(sheet)
+    }
+
+    fn with_room<M: MeshQuery>(mesh: &M) -> Self {
+        let corners = 3 * mesh.face_count();
+        Self {
+            corners: Vec::with_capacity(corners),
+            after: Vec::with_capacity(corners),
+            sides: Vec::with_capacity(corners),
+            edges: Vec::with_capacity(corners / 2),
+        }
+    }
+
+    /// Links the corners from `first` on into a face.
+    fn close_face(&mut self, first: usize) {
+        let next = first as u32 + 1..self.corners.len() as u32;
+        self.after.extend(next.chain([first as u32]));
+    }
+
+    /// The side of a face between `ends`, and whether it runs backwards: 0 from the first to the
+    /// second, 1 from the second to the first.
+    fn side_between(&self, corner_of_face: u32, ends: [u32; 2]) -> (usize, u32) {
+        let mut side = corner_of_face;
+        loop {
+            match self.ends(side) {
+                [a, b] if [a, b] == ends => return (0, side),
+                [a, b] if [b, a] == ends => return (1, side),
+                _ => side = self.after(side),
+            }
+        }
+    }
+
+    /// The next corner of the same face.
+    #[inline]
+    pub(crate) fn after(&self, corner: u32) -> u32 {
+        self.after[corner as usize]
+    }
+
+    /// Where a side starts and ends.
+    #[inline]
+    pub(crate) fn ends(&self, side: u32) -> [u32; 2] {
+        [side, self.after(side)].map(|corner| self.corners[corner as usize])
+    }
+
+    /// The edge of a side.
+    #[inline]
+    pub(crate) fn edge_of(&self, side: u32) -> usize {
+        self.sides[side as usize] as usize
+    }
+
+    /// The side that runs along the same edge the other way; none at a boundary.
+    #[inline]
+    pub(crate) fn across(&self, side: u32) -> Option<u32> {
+        let edge = self.edges[self.edge_of(side)];
+        if edge.first == side {
+            edge.second
+        } else {
+            Some(edge.first)
+        }
+    }
+
+    /// All edges.
+    pub(crate) fn edges(&self) -> &[SheetEdge] {
+        &self.edges
+    }
+
+    /// Tells `fan` the corners around each inner vertex, counter-clockwise; O(corners).
+    ///
+    /// ```text
+    ///      f  w  g      c is the corner of v in f, whose side runs v → w; across it is the side w → v
+    ///         │         of g, and after that the corner of v in g: d = after(across(c)), the next one
+    ///       c │ d       clockwise
+    ///         v
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// A vertex whose faces are several fans, or what `fan` says.
+    pub(crate) fn fans(
+        &self,
+        vertices: usize,
+        scheme: Scheme,
+        mut fan: impl FnMut(&[u32]) -> Result<(), SubdivisionError>,
+    ) -> Result<(), SubdivisionError> {
+        // By vertex: a corner of it, and whether the fan begins there, at a boundary; how many there are.
+        let mut starts = vec![(None, false); vertices];
+        let mut counts = vec![0_usize; vertices];
+        for (corner, &v) in (0..).zip(&self.corners) {
+            starts[v as usize].0 = Some(corner);
+            counts[v as usize] += 1;
+        }
+        let mut twice: Option<u32> = None;
+        for edge in self.edges().iter().filter(|edge| edge.second.is_none()) {
+            let corner = self.after(edge.first);
+            let v = self.corners[corner as usize];
+            let start = &mut starts[v as usize];
+            if start.1 {
+                twice = Some(twice.map_or(v, |lowest| lowest.min(v)));
+            }
+            *start = (Some(corner), true);
+        }
+        if let Some(v) = twice {
+            return Err(non_manifold_vertex(scheme, v));
+        }
+        let mut around = Vec::new();
+        for (v, (&(start, is_open), &count)) in (0..).zip(starts.iter().zip(&counts)) {
+            let turn = |&corner: &u32| self.across(corner).map(|twin| self.after(twin));
+            let walk = successors(start, |corner| turn(corner).filter(|&c| Some(c) != start));
+            around.clear();
+            around.extend(walk);
+            if around.len() != count {
+                return Err(non_manifold_vertex(scheme, v));
+            }
+            if !is_open {
+                around.reverse();
+                fan(&around)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The number of each vertex: its place in `vertices()`.
+pub(crate) fn vertex_numbers<M: MeshQuery>(mesh: &M) -> VertexMap<M, u32> {
+    let mut numbers = mesh.vertex_map(0_u32);
+    let mut number = 0;
+    mesh.vertices().for_each(|v| {
+        numbers[v] = number;
+        number += 1;
+    });
+    numbers
+}
+
+/// That an edge does not have one face, or two that run along it in opposite directions.
+pub(crate) fn non_manifold_edge(scheme: Scheme, ends: [u32; 2], faces: usize) -> SubdivisionError {
+    SubdivisionError::NonManifoldEdge {
+        scheme,
+        ends: ends.map(VertexId::new),
+        faces,
+    }
+}
+
+/// That the faces at a vertex are several fans.
+pub(crate) fn non_manifold_vertex(scheme: Scheme, v: u32) -> SubdivisionError {
+    let vertex = VertexId::new(v);
+    SubdivisionError::NonManifoldVertex { scheme, vertex }
+}

@@ -1,0 +1,126 @@
+//! The refined mesh of one step, while it is made out of polygons.
+
+use mesh_core::{Creases, FaceList, MeshQuery, Point, PolygonMesh, Split, VertexId};
+
+use crate::SubdivisionError;
+
+/// A refined mesh, and what of it is still sharp.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// The old vertices, then the face points, then the edge points, each in the order of the
+    /// structure that was refined; the faces that one face was split into follow one another. After a
+    /// vertex split the vertices are the corners of the old faces, and the faces are those of faces,
+    /// of edges and of vertices, each in their order.
+    pub polygons: PolygonMesh,
+    /// The creases of [`polygons`](Self::polygons).
+    pub creases: Creases,
+}
+
+/// Points and corners that have been made so far.
+pub(crate) struct Outline {
+    split: Split,
+    vertices: usize,
+    corners: Vec<VertexId>,
+    /// Vertex points, face points, edge points.
+    pub(crate) points: Vec<Point>,
+}
+
+impl Outline {
+    /// Nothing yet, with room for what `mesh` will be split into.
+    pub(crate) fn of<M: MeshQuery>(split: Split, mesh: &M) -> Self {
+        let (vertices, faces) = (mesh.vertex_count(), mesh.face_count());
+        let (points, corners) = match split {
+            Split::Quads => (vertices + 3 * faces, 16 * faces),
+            _ => (vertices + 3 * faces / 2, 12 * faces),
+        };
+        Self {
+            split,
+            vertices,
+            corners: Vec::with_capacity(corners),
+            points: Vec::with_capacity(points),
+        }
+    }
+
+    pub(crate) fn has_face_points(&self) -> bool {
+        self.split == Split::Quads
+    }
+
+    /// Splits all faces; `number` tells the number of a vertex, `edge_point` that of an edge's point.
+    pub(crate) fn split_faces<M: MeshQuery>(
+        &mut self,
+        mesh: &M,
+        number: impl Fn(M::Vertex) -> u32,
+        edge_point: impl Fn(M::Edge) -> u32,
+    ) -> Result<(), SubdivisionError> {
+        let mut face_point = self.vertices as u32;
+        let (mut corners, mut middles) = (Vec::new(), Vec::new());
+        mesh.faces().for_each(|f| {
+            corners.clear();
+            middles.clear();
+            mesh.face_vertices(f).for_each(|v| corners.push(number(v)));
+            mesh.face_edges(f).for_each(|e| middles.push(edge_point(e)));
+            self.split_face(&corners, &middles, face_point);
+            face_point += 1;
+        });
+        Ok(())
+    }
+
+    /// Splits a face with these corners and the points of the sides that start there.
+    #[inline(always)]
+    pub(crate) fn split_face(&mut self, corners: &[u32], middles: &[u32], face_point: u32) {
+        let mut before = middles[middles.len() - 1];
+        for (&corner, &middle) in corners.iter().zip(middles) {
+            let part = match self.split {
+                Split::Quads => &[corner, middle, face_point, before][..],
+                _ => &[corner, middle, before],
+            };
+            self.corners.extend(part.iter().map(|&v| VertexId::new(v)));
+            before = middle;
+        }
+        if self.split == Split::Triangles {
+            self.corners
+                .extend(middles.iter().map(|&v| VertexId::new(v)));
+        }
+    }
+
+    /// The refined mesh.
+    pub(crate) fn finish(self, creases: Creases) -> Result<Step, SubdivisionError> {
+        let degree = match self.split {
+            Split::Quads => 4,
+            _ => 3,
+        };
+        let faces = FaceList::uniform(degree, self.corners)?;
+        let polygons = PolygonMesh::from_faces(self.points, faces)?;
+        Ok(Step { polygons, creases })
+    }
+}
+
+/// Which vertices have a crease, so that few edges are looked up.
+pub(crate) struct Marked(Vec<bool>);
+
+impl Marked {
+    pub(crate) fn of(creases: &Creases, vertices: usize) -> Self {
+        if creases.edges().is_empty() {
+            return Self(Vec::new());
+        }
+        let mut marked = vec![false; vertices];
+        for v in creases.edges().iter().flat_map(|(ends, _)| ends.ends()) {
+            marked[v.index()] = true;
+        }
+        Self(marked)
+    }
+
+    /// How sharp the edge between two vertices is.
+    pub(crate) fn sharpness(&self, creases: &Creases, ends: [u32; 2], by_nature: bool) -> f32 {
+        if by_nature {
+            return f32::INFINITY;
+        }
+        let [a, b] = ends;
+        let marked = |v: u32| self.0.get(v as usize).is_some_and(|&marked| marked);
+        if marked(a) && marked(b) {
+            creases.edge(VertexId::new(a), VertexId::new(b))
+        } else {
+            0.0
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! How the limit surface of Catmull–Clark and Loop stands at a vertex: two tangents.
+//!
+//! Inside, those of Halstead, Kass & DeRose (1993) and Loop (1987): the neighbours weighed with cosines,
+//! and with sines. Those across creases were derived for the rules of a step as they are here, for
+//! Biermann, Levin & Zorin (2000) change the rules beside a crease; see [`Sector`].
+
+use std::f64::consts::{PI, TAU};
+
+use mesh_core::{Handle, MeshQuery, Point};
+
+use crate::options::LoopWeights;
+
+/// The direction that is square to both; `None` where it is hidden in errors of size `rounding`.
+pub(crate) fn normal([a, b]: [Point; 2], rounding: f32) -> Option<Point> {
+    let tilt = rounding / a.length() + rounding / b.length();
+    let across = a.try_normalize()?.cross(b.try_normalize()?);
+    (across.length() > 8.0 * tilt).then(|| across.normalize())
+}
+
+/// About how wrong a sum over the points around `at` may be, for positions are rounded.
+pub(crate) fn rounding(at: Point, around: &[Point]) -> f32 {
+    let reach = around.iter().map(|p| p.length()).fold(0.0, f32::max);
+    // The weights are up to six.
+    6.0 * f32::EPSILON * around.len() as f32 * (at.length() + reach)
+}
+
+/// The neighbour after `v` in `f`, and the place of the corner opposite to `v` if `f` is a quad.
+pub(crate) fn far_corner<M: MeshQuery>(
+    mesh: &M,
+    v: M::Vertex,
+    f: M::Face,
+) -> Option<(M::Vertex, Point)> {
+    let mut corners = mesh.face_vertices(f);
+    let quad: [M::Vertex; 4] = [
+        corners.next()?,
+        corners.next()?,
+        corners.next()?,
+        corners.next()?,
+    ];
+    let place = quad.iter().position(|&corner| corner == v)?;
+    let far = mesh.position(quad[(place + 2) % 4]);
+    corners
+        .next()
+        .is_none()
+        .then_some((quad[(place + 1) % 4], far))
+}
+
+/// The faces around a vertex in their order, seen from there.
+///
+/// ```text
+///     o₁ ── e₁ ── o₀        e  the neighbours, counter-clockwise
+///     │     │     │         o  the far corners of quads: oᵢ between eᵢ and eᵢ₊₁
+///     e₂ ── v ─── e₀
+/// ```
+pub(crate) struct Fan<V> {
+    pub(crate) names: Vec<V>,
+    pub(crate) is_closed: bool,
+    edges: Vec<Point>,
+    far: Vec<Point>,
+    /// See [`rounding`].
+    pub(crate) rounding: f32,
+}
+
+impl<V: Handle> Fan<V> {
+    /// `None` where there is no such order, or a face that `surface` has no mask for.
+    pub(crate) fn around<M: MeshQuery<Vertex = V>>(
+        mesh: &M,
+        v: V,
+        surface: Surface,
+    ) -> Option<Self> {
+        let at = mesh.position(v);
+        let names: Vec<V> = mesh.one_ring(v)?.collect();
+        let faces = mesh.vertex_faces(v);
+        let edges = names.iter().map(|&name| mesh.position(name) - at);
+        let edges: Vec<Point> = edges.collect();
+        let (is_closed, far) = match surface {
+            Surface::CatmullClark => {
+                let far: Option<Vec<(V, Point)>> = faces.map(|f| far_corner(mesh, v, f)).collect();
+                let mut far = far?;
+                far.sort_unstable_by_key(|&(after, _)| after);
+                let place = |name: &V| far.binary_search_by_key(name, |&(after, _)| after).ok();
+                let ordered = names.iter().filter_map(place);
+                let ordered = ordered.map(|place| far[place].1 - at).collect();
+                (far.len() == names.len(), ordered)
+            }
+            Surface::Loop(_) => (faces.count() == names.len(), Vec::new()),
+        };
+        Some(Self {
+            names,
+            is_closed,
+            rounding: rounding(at, &edges),
+            edges,
+            far,
+        })
+    }
+
+    /// The tangents of a smooth vertex, the second counter-clockwise from the first.
+    pub(crate) fn tangents(&self, surface: Surface) -> [Point; 2] {
+        let n = self.edges.len();
+        if !self.is_closed || n < 3 {
+            return [Point::ZERO; 2];
+        }
+        let angle = TAU / n as f64;
+        let mode = surface.mode(angle);
+        let wave = |wave: fn(f64) -> f64| {
+            let at = |i: usize| wave(angle * i as f64);
+            mode.sum(&self.edges, &self.far, at)
+        };
+        [wave(f64::cos), wave(f64::sin)]
+    }
+
+    /// The faces from neighbour `from` on to neighbour `to`.
+    pub(crate) fn sector(&self, from: usize, to: usize) -> Sector {
+        let n = self.edges.len();
+        let faces = if to > from { to - from } else { to + n - from };
+        let turned = |points: &[Point], count: usize| {
+            let all = points.iter().cycle().skip(from);
+            all.take(count).copied().collect()
+        };
+        Sector {
+            edges: turned(&self.edges, faces + 1),
+            far: turned(&self.far, faces),
+        }
+    }
+}
+
+/// The faces of a vertex between two edges of a crease or boundary.
+///
+/// With k faces let θ = π/k, and the neighbours e₀ … eₖ, of which the first and the last are on the
+/// crease. The matrix of a step takes apart into the crease, a cubic B-spline with the eigenvalues 1,
+/// 1/2, 1/4, and k − 1 modes inside, each of them sin(ijθ) along the edges with an eigenvalue that falls
+/// as j rises. Inside mode 1 and whatever comes second make up the tangents:
+///
+/// ```text
+///   across  Σ a·sin(iθ) eᵢ + Σ b·(sin(iθ) + sin((i + 1)θ)) oᵢ + l (e₀ + eₖ)   mode 1
+///   along   e₀ − eₖ                                                          the crease
+///      or   the same sums of sin(2iθ) + m (e₀ − eₖ)                          mode 2, from 1/2 on
+/// ```
+///
+/// One face has no mode inside; then e₀ + eₖ − 2v is across.
+pub(crate) struct Sector {
+    /// The neighbours, seen from the vertex; at least two.
+    edges: Vec<Point>,
+    /// The far corners of quads.
+    far: Vec<Point>,
+}
+
+impl Sector {
+    /// The tangents along and across, the second counter-clockwise from the first.
+    pub(crate) fn tangents(&self, surface: Surface) -> [Point; 2] {
+        let k = self.edges.len() - 1;
+        let (first, last) = (self.edges[0], self.edges[k]);
+        if k == 1 {
+            return [first - last, first + last];
+        }
+        let angle = PI / k as f64;
+        let inside = |mode: Mode, angle: f64| {
+            let wave = |i: usize| {
+                if i % k == 0 {
+                    0.0
+                } else {
+                    (angle * i as f64).sin()
+                }
+            };
+            mode.sum(&self.edges, &self.far, wave)
+        };
+        // From the columns of e₀ and of the vertex, whose weight makes the sum zero.
+        let mode = surface.mode(angle);
+        let ends = (8.0 * mode.spill * angle.sin() - mode.weight() / (angle / 2.0).tan())
+            / (8.0 * mode.value - 2.0);
+        let across = inside(mode, angle) + (first + last) * ends as f32;
+        let second = surface.mode(2.0 * angle);
+        let ahead = second.value - 0.5;
+        let along = if ahead > 1e-9 {
+            let ends = second.spill * (2.0 * angle).sin() / ahead;
+            inside(second, 2.0 * angle) + (first - last) * ends as f32
+        } else {
+            first - last
+        };
+        [along, across]
+    }
+}
+
+/// A scheme whose limit is known.
+#[derive(Clone, Copy)]
+pub(crate) enum Surface {
+    CatmullClark,
+    Loop(LoopWeights),
+}
+
+/// An eigenvector of a step with a sine along the edges, but for the crease.
+#[derive(Clone, Copy)]
+struct Mode {
+    /// The eigenvalue.
+    value: f64,
+    /// The amplitude at edges.
+    edge: f64,
+    /// The amplitude at far corners, for each of the two edges beside.
+    far: f64,
+    /// How much of an old neighbour goes to the new points beside it.
+    spill: f64,
+}
+
+impl Surface {
+    /// The greater mode in which neighbours are `angle` apart.
+    fn mode(self, angle: f64) -> Mode {
+        let cos = angle.cos();
+        match self {
+            Self::CatmullClark => {
+                // For π the root is of zero, which rounding may miss.
+                let edge = 1.0 + cos + ((cos + 9.0) * (cos + 1.0)).max(0.0).sqrt();
+                let value = (edge + 4.0) / 16.0;
+                Mode {
+                    value,
+                    edge,
+                    far: 1.0,
+                    spill: value,
+                }
+            }
+            Self::Loop(_) => Mode {
+                value: 0.375 + 0.25 * cos,
+                edge: 1.0,
+                far: 0.0,
+                spill: 0.125,
+            },
+        }
+    }
+}
+
+impl Mode {
+    /// The amplitude of an edge with its part of the far corners.
+    fn weight(self) -> f64 {
+        self.edge + 2.0 * self.far
+    }
+
+    /// The sum over edges and far corners, with `wave` along the edges.
+    fn sum(self, edges: &[Point], far: &[Point], wave: impl Fn(usize) -> f64) -> Point {
+        let edges = (0..).zip(edges);
+        let edges: Point = edges.map(|(i, &e)| e * (self.edge * wave(i)) as f32).sum();
+        let far = (0..).zip(far);
+        let far = far.map(|(i, &o)| o * (self.far * (wave(i) + wave(i + 1))) as f32);
+        edges + far.sum::<Point>()
+    }
+}

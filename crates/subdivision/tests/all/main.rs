@@ -1,0 +1,4 @@
+//! What needs whole meshes and several structures; one binary.
+
+mod limit;
+mod local;

@@ -1,0 +1,586 @@
+//! Every face split in the structure's own tables, in closed form.
+//!
+//! A *run* is an edge along one of its sides, and so is a corner: the one where the run starts.
+//! Edge by edge, left before right, the runs that have a face have the ranks 0, 1, 2 …, and all that a
+//! corner gives to the child goes by its rank. Below, h₀ and h₁ are the halves of a run that starts
+//! at `o`, and `r` is the edge that the run adds inside its face.
+//!
+//! ```text
+//!              Quads                               Triangles
+//!      │           ╎           │                       ·
+//!     m₋ ── r₋ ──► p ◄── r₊ ── m₊                     ╱ ╲          ₋  of the run before
+//!      │           ▲           │                     ╱ t₋╲         ₊  of the run after
+//!      │     q     │     q₊    │                   m₋ ─r₋► m₊
+//!      │           r           │                   ╱ ◄  M  ╱╲      In both, r begins at m; here
+//!      │           │           │                  ╱   r   r₊ ╲     it ends at m₋, with t on its
+//!      o ── h₀ ──► m ── h₁ ──► ·                 ╱  t  ╲ ◄ t₊ ╲    left and M on its right.
+//!                                               o ─h₀─► m ─h₁─► ·
+//! ```
+//!
+//! Edge `e` becomes the edges 2e, from its start to its middle, and 2e + 1, on to its end: they keep
+//! its direction, and the run on side s (0 left, 1 right) has h₀ = 2e + s and h₁ = 2e + 1 − s. With
+//! E edges, F faces and C corners before, rank k, and k₋, k₊ the ranks of the runs before and after:
+//!
+//! | | face | next | prev |
+//! |---|---|---|---|
+//! | h₀ along its face | k | r | h₁ of the run before |
+//! | h₁, quads | k₊ | h₀ of the run after | r |
+//! | h₁, triangles | k₊ | h₀ of the run after | r₊ |
+//! | r = 2E + k, quads: left, m to p | k | 2E + k₋ | h₀ |
+//! | and right, p to m | k₊ | h₁ | 2E + k₊ |
+//! | r = 2E + k, triangles: left, m to m₋ | k | h₁ of the run before | h₀ |
+//! | and right, m₋ to m | C + f | 2E + k₊ | 2E + k₋ |
+//!
+//! Along a side without a face h₀ and h₁ follow each other. An edge reads its four wings, to know on
+//! which side of them it is, and writes its four children.
+
+use std::ops::Range;
+
+use mesh_core::{
+    Counts, EdgeId, FaceId, MeshQuery, PART, Point, Ranks, Refine, RefineError, RowId, Slot, Split,
+    Table, VertexId, all_rows, check_split, in_parts, row,
+};
+
+use crate::edge::Edge;
+use crate::mesh::WingedEdgeMesh;
+use crate::wings::{Side, Wings};
+
+impl Refine for WingedEdgeMesh {
+    const SPLITS: &'static [Split] = &[Split::Quads, Split::Triangles];
+
+    /// Edges are rows; what has to be known is the runs with a face, for their ranks.
+    type EdgeNumbers = Ranks;
+
+    fn empty() -> Self {
+        Self {
+            positions: Table::new("positions", "vertex", Vec::new()),
+            spokes: Table::new("spokes", "vertex", Vec::new()),
+            edges: Table::new("edges", "edge", Vec::new()),
+            sides: Table::new("sides", "face", Vec::new()),
+        }
+    }
+
+    /// O(edges).
+    fn number_edges(&self, numbers: &mut Ranks) {
+        numbers.fill(self.edge_records(), |edge| {
+            edge.faces.map(|face| face != Slot::NONE)
+        });
+    }
+
+    fn edge_parts(&self, _: &Ranks) -> Vec<usize> {
+        let edges = self.edges.len();
+        (0..edges).step_by(PART).chain([edges]).collect()
+    }
+
+    #[inline]
+    fn edges_of_part(&self, _: &Ranks, part: usize) -> impl Iterator<Item = EdgeId> {
+        let end = self.edges.len().min((part + 1) * PART);
+        (row(part * PART)..row(end)).map(EdgeId::new)
+    }
+
+    /// Its row; O(1).
+    #[inline]
+    fn edge_number(&self, _: &Ranks, e: EdgeId) -> usize {
+        e.index()
+    }
+
+    /// O(edges + vertices).
+    fn split_into(
+        &self,
+        split: Split,
+        numbers: &Ranks,
+        child: &mut Self,
+    ) -> Result<(), RefineError> {
+        let runs = 2 * self.edges.len();
+        assert_eq!(numbers.items(), runs, "the numbers are of another mesh");
+        let counts = Counts {
+            vertices: self.positions.len(),
+            edges: self.edges.len(),
+            faces: self.sides.len(),
+            corners: numbers.members(),
+            uniform: false,
+        };
+        let grown = check_split::<Self>(split, &counts, numbers.missing())?;
+        if split.needs_triangles() {
+            self.check_triangles(&counts)?;
+            self.check_double_edges()?;
+        }
+        child.positions.resize(grown.vertices, Point::ZERO);
+        child.spokes.resize(grown.vertices, Slot::NONE);
+        let blank = Edge {
+            ends: [VertexId::new(0); 2],
+            faces: [Slot::NONE; 2],
+            next: Wings::BLANK,
+            prev: Wings::BLANK,
+        };
+        child.edges.resize(grown.edges, blank);
+        child.sides.resize(grown.faces, EdgeId::new(0));
+        // Compiled once for closed meshes, where the rank of a run is its number.
+        match (split, numbers.missing() == 0) {
+            (Split::Quads, true) => self.splitting::<true, true>(numbers).fill(child),
+            (Split::Quads, false) => self.splitting::<true, false>(numbers).fill(child),
+            (_, true) => self.splitting::<false, true>(numbers).fill(child),
+            (_, false) => self.splitting::<false, false>(numbers).fill(child),
+        }
+        Ok(())
+    }
+
+    /// O(1) on a closed mesh, else O(log edges).
+    fn parent(&self, numbers: &Ranks, split: Split, child: FaceId) -> FaceId {
+        if let (Split::Triangles, Some(middle)) =
+            (split, child.index().checked_sub(numbers.members()))
+        {
+            return FaceId::new(row(middle));
+        }
+        let run = numbers.select(child.index());
+        let face = self.edge(EdgeId::new(row(run / 2))).faces()[run % 2];
+        face.expect("a run of a rank has a face")
+    }
+
+    fn positions_mut(&mut self) -> &mut [Point] {
+        self.positions.rows_mut()
+    }
+
+    fn position_rows(&self) -> &[Point] {
+        self.positions.rows()
+    }
+}
+
+impl WingedEdgeMesh {
+    /// Refuses a face that is no triangle: there is one if the corners are not three a face.
+    fn check_triangles(&self, counts: &Counts) -> Result<(), RefineError> {
+        if counts.corners == 3 * counts.faces {
+            return Ok(());
+        }
+        let degrees = self.faces().map(|face| self.face_edges(face).count());
+        match { self.faces().zip(degrees) }.find(|&(_, degree)| degree != 3) {
+            Some((face, degree)) => Err(RefineError::NotATriangle { face, degree }),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses two triangles that share two edges: the vertex between these has no other edge.
+    fn check_double_edges(&self) -> Result<(), RefineError> {
+        let twofold = |edge: &Edge| {
+            let alone = edge.next.on(Side::LEFT) == edge.prev.on(Side::RIGHT);
+            alone && !edge.faces.contains(&Slot::NONE)
+        };
+        if all_rows(self.edge_records(), |edge| !twofold(edge)) {
+            return Ok(());
+        }
+        let mut twofold = self.edge_records().iter().filter(|edge| twofold(edge));
+        match twofold.next().map(Edge::faces) {
+            Some([Some(first), Some(second)]) => Err(RefineError::DoubleEdge { first, second }),
+            _ => Ok(()),
+        }
+    }
+
+    fn splitting<'a, const QUADS: bool, const CLOSED: bool>(
+        &'a self,
+        ranks: &'a Ranks,
+    ) -> Splitting<'a, QUADS, CLOSED> {
+        let vertices = self.positions.len();
+        Splitting {
+            spokes: self.spoke_rows(),
+            edges: self.edge_records(),
+            sides: self.side_rows(),
+            ranks,
+            middle: row(vertices + if QUADS { self.sides.len() } else { 0 }),
+            inner: row(2 * self.edges.len()),
+        }
+    }
+}
+
+/// How many edges have their wings read at once.
+const BLOCK: usize = 64;
+
+/// A mesh while it is split: its tables as they lie in memory, and where in the child things begin.
+#[derive(Clone, Copy)]
+struct Splitting<'a, const QUADS: bool, const CLOSED: bool> {
+    spokes: &'a [Slot<EdgeId>],
+    edges: &'a [Edge],
+    sides: &'a [EdgeId],
+    ranks: &'a Ranks,
+    /// The middle of the first edge.
+    middle: u32,
+    /// The edge that the first corner adds.
+    inner: u32,
+}
+
+/// What some edges in a row give to the child: two halves each, and an edge for each corner.
+struct Part<'a> {
+    halves: &'a mut [Edge],
+    inner: &'a mut [Edge],
+}
+
+/// A run and what lies along it, by the names of child edges. Ranks mean nothing without a face.
+struct Run {
+    face: Slot<FaceId>,
+    has_face: bool,
+    /// h₀ and h₁.
+    halves: [EdgeId; 2],
+    /// h₁ of the run before.
+    half_before: EdgeId,
+    /// h₀ of the run after.
+    half_after: EdgeId,
+    /// The run before, the run itself and the run after.
+    ranks: [u32; 3],
+    /// The middle of the run before.
+    middle_before: VertexId,
+}
+
+impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
+    /// Overwrites the tables of `child`, which have their lengths already.
+    fn fill(self, child: &mut WingedEdgeMesh) {
+        self.fill_edges(child.edges.rows_mut());
+        self.fill_sides(child.sides.rows_mut());
+        self.fill_spokes(child.spokes.rows_mut());
+    }
+
+    fn fill_edges(self, child: &mut [Edge]) {
+        let (mut halves, mut inner) = child.split_at_mut(2 * self.edges.len());
+        let part_of = |start| start..self.edges.len().min(start + PART);
+        let mut parts = Vec::with_capacity(self.edges.len().div_ceil(PART));
+        for start in (0..self.edges.len()).step_by(PART) {
+            let edges = part_of(start);
+            let corners = self.ranks.rank(2 * edges.end) - self.ranks.rank(2 * edges.start);
+            let (here, beyond) = halves.split_at_mut(2 * edges.len());
+            let (inside, after) = inner.split_at_mut(corners);
+            parts.push(Part {
+                halves: here,
+                inner: inside,
+            });
+            (halves, inner) = (beyond, after);
+        }
+        in_parts(&mut parts, 1, |number, parts| {
+            for part in parts {
+                self.fill_part(part_of(number * PART), part);
+            }
+        });
+    }
+
+    /// Block by block: what has to be read of the wings first, for it may lie anywhere, and a short
+    /// loop has more of it under way at once; then the rows.
+    fn fill_part(self, edges: Range<usize>, part: &mut Part<'_>) {
+        let mut rank = self.ranks.rank(2 * edges.start) as u32;
+        let mut inner = part.inner.iter_mut();
+        let mut e = edges.start as u32;
+        let mut wings = [[[Side::LEFT; 2]; 2]; BLOCK];
+        let halves = part.halves.as_chunks_mut::<2>().0;
+        for (edges, halves) in self.edges[edges]
+            .chunks(BLOCK)
+            .zip(halves.chunks_mut(BLOCK))
+        {
+            for (wings, edge) in wings.iter_mut().zip(edges) {
+                let left = self.sides_of_wings(edge, Side::LEFT);
+                *wings = [left, self.sides_of_wings(edge, Side::RIGHT)];
+            }
+            for ((edge, wings), halves) in edges.iter().zip(&wings).zip(halves) {
+                let left = self.run(EdgeId::new(e), edge, Side::LEFT, wings[0], rank);
+                rank += u32::from(left.has_face);
+                let right = self.run(EdgeId::new(e), edge, Side::RIGHT, wings[1], rank);
+                rank += u32::from(right.has_face);
+                for run in [&left, &right] {
+                    if run.has_face {
+                        let inner = inner.next().expect("as many as ranks");
+                        *inner = self.inner_edge(EdgeId::new(e), run);
+                    }
+                }
+                *halves = self.halves(EdgeId::new(e), edge, &left, &right);
+                e += 1;
+            }
+        }
+    }
+
+    /// On which of its sides the wing before runs, along `side` of `edge`, and the wing after.
+    #[inline(always)]
+    fn sides_of_wings(self, edge: &Edge, side: Side) -> [Side; 2] {
+        let [before, after] = [edge.prev.on(side), edge.next.on(side)];
+        let [origin, target] = [edge.ends[side.index()], edge.ends[side.other().index()]];
+        // The run before ends at the origin, the run after starts at the target.
+        [
+            Side::right_if(self.edges[before.index()].ends[0] == origin),
+            Side::right_if(self.edges[after.index()].ends[0] != target),
+        ]
+    }
+
+    /// The run of `e` along `side`, of rank `rank`, whose wings run on the sides `wings`.
+    #[inline(always)]
+    fn run(self, e: EdgeId, edge: &Edge, side: Side, wings: [Side; 2], rank: u32) -> Run {
+        let [before, after] = [edge.prev.on(side), edge.next.on(side)];
+        let [before_on, after_on] = wings;
+        let face = edge.faces[side.index()];
+        Run {
+            face,
+            has_face: CLOSED || face != Slot::NONE,
+            halves: [half(e, side), half(e, side.other())],
+            half_before: half(before, before_on.other()),
+            half_after: half(after, after_on),
+            ranks: [
+                self.rank(before, before_on),
+                rank,
+                self.rank(after, after_on),
+            ],
+            middle_before: self.middle(before),
+        }
+    }
+
+    #[inline(always)]
+    fn rank(self, e: EdgeId, side: Side) -> u32 {
+        let run = half(e, side);
+        if CLOSED {
+            run.row()
+        } else {
+            self.ranks.rank(run.index()) as u32
+        }
+    }
+
+    #[inline(always)]
+    fn middle(self, e: EdgeId) -> VertexId {
+        VertexId::new(self.middle + e.row())
+    }
+
+    /// The edge that a corner adds.
+    #[inline(always)]
+    fn inner(self, rank: u32) -> EdgeId {
+        EdgeId::new(self.inner + rank)
+    }
+
+    /// The two halves of `e`: its children from start to middle, and from middle to end.
+    #[inline(always)]
+    fn halves(self, e: EdgeId, edge: &Edge, left: &Run, right: &Run) -> [Edge; 2] {
+        let ([start, end], m) = (edge.ends, self.middle(e));
+        let ([left_first, left_second], [right_first, right_second]) =
+            (self.lanes(left), self.lanes(right));
+        [
+            between([start, m], left_first, right_second),
+            between([m, end], left_second, right_first),
+        ]
+    }
+
+    /// What h₀ and h₁ of a run have along its side.
+    #[inline(always)]
+    fn lanes(self, run: &Run) -> [Lane; 2] {
+        let [first, second] = run.halves;
+        let [_, own, after] = run.ranks;
+        let (faces, next, prev) = if !run.has_face {
+            ([Slot::NONE; 2], second, first)
+        } else {
+            let prev = if QUADS { own } else { after };
+            let faces = [own, after].map(|corner| Slot::some(FaceId::new(corner)));
+            (faces, self.inner(own), self.inner(prev))
+        };
+        [
+            Lane {
+                face: faces[0],
+                next,
+                prev: run.half_before,
+            },
+            Lane {
+                face: faces[1],
+                next: run.half_after,
+                prev,
+            },
+        ]
+    }
+
+    /// The edge that `run`, which has a face, adds inside it: from the middle of `e`.
+    #[inline(always)]
+    fn inner_edge(self, e: EdgeId, run: &Run) -> Edge {
+        let face = run.face.get().expect("a run with a face");
+        let [first, second] = run.halves;
+        let [before, own, after] = run.ranks;
+        let (end, left_next, right) = if QUADS {
+            let right = Lane {
+                face: Slot::some(FaceId::new(after)),
+                next: second,
+                prev: self.inner(after),
+            };
+            (self.face_point(face), self.inner(before), right)
+        } else {
+            let right = Lane {
+                face: Slot::some(self.middle_face(face)),
+                next: self.inner(after),
+                prev: self.inner(before),
+            };
+            (run.middle_before, run.half_before, right)
+        };
+        let left = Lane {
+            face: Slot::some(FaceId::new(own)),
+            next: left_next,
+            prev: first,
+        };
+        between([self.middle(e), end], left, right)
+    }
+
+    /// Of quads.
+    #[inline(always)]
+    fn face_point(self, face: FaceId) -> VertexId {
+        VertexId::new(self.spokes.len() as u32 + face.row())
+    }
+
+    /// Of triangles: they come after those of the corners.
+    #[inline(always)]
+    fn middle_face(self, face: FaceId) -> FaceId {
+        FaceId::new(self.ranks.members() as u32 + face.row())
+    }
+
+    /// The edge that a corner adds lies along the face of the corner, and along the middle triangle.
+    fn fill_sides(self, child: &mut [EdgeId]) {
+        let (of_corners, of_middles) = child.split_at_mut(self.ranks.members());
+        in_parts(of_corners, PART, |first, sides| {
+            for (rank, side) in (first as u32..).zip(sides) {
+                *side = self.inner(rank);
+            }
+        });
+        in_parts(of_middles, PART, |first, sides| {
+            for ((face, &parent), side) in (first..).zip(&self.sides[first..]).zip(sides) {
+                *side = self.edge_inside(FaceId::new(face as u32), parent);
+            }
+        });
+    }
+
+    /// An edge that a corner of `face` adds, by an edge along it.
+    #[inline(always)]
+    fn edge_inside(self, face: FaceId, e: EdgeId) -> EdgeId {
+        let on = Side::right_if(self.edges[e.index()].faces[0] != Slot::some(face));
+        self.inner(self.rank(e, on))
+    }
+
+    /// An old vertex keeps the half of its spoke that is near; a face point takes an edge that ends
+    /// there; a middle has its own edge, and leaves it with no face on the right where it can.
+    fn fill_spokes(self, child: &mut [Slot<EdgeId>]) {
+        let (old, new) = child.split_at_mut(self.spokes.len());
+        let (of_faces, of_edges) = new.split_at_mut(if QUADS { self.sides.len() } else { 0 });
+        in_parts(old, PART, |first, spokes| {
+            for ((v, parent), spoke) in (first as u32..).zip(&self.spokes[first..]).zip(spokes) {
+                *spoke = Slot::from(parent.get().map(|e| {
+                    let [start, _] = self.edges[e.index()].ends;
+                    half(e, Side::right_if(start != VertexId::new(v)))
+                }));
+            }
+        });
+        in_parts(of_faces, PART, |first, spokes| {
+            for ((face, &e), spoke) in (first as u32..).zip(&self.sides[first..]).zip(spokes) {
+                *spoke = Slot::some(self.edge_inside(FaceId::new(face), e));
+            }
+        });
+        in_parts(of_edges, PART, |first, spokes| {
+            if CLOSED {
+                for (e, spoke) in (first as u32..).zip(spokes) {
+                    *spoke = Slot::some(half(EdgeId::new(e), Side::LEFT));
+                }
+                return;
+            }
+            for ((e, edge), spoke) in (first as u32..).zip(&self.edges[first..]).zip(spokes) {
+                // Towards the start the right of the edge is on the left, towards the end it stays.
+                let on = Side::right_if(edge.faces[1] == Slot::NONE);
+                *spoke = Slot::some(half(EdgeId::new(e), on));
+            }
+        });
+    }
+}
+
+/// What an edge has on one of its sides.
+#[derive(Clone, Copy)]
+struct Lane {
+    face: Slot<FaceId>,
+    next: EdgeId,
+    prev: EdgeId,
+}
+
+#[inline(always)]
+fn between(ends: [VertexId; 2], left: Lane, right: Lane) -> Edge {
+    Edge {
+        ends,
+        faces: [left.face, right.face],
+        next: Wings::of([left.next, right.next]),
+        prev: Wings::of([left.prev, right.prev]),
+    }
+}
+
+/// Half of `e`: the one that the run along `side` begins with. Its row is the number of the run, too.
+#[inline(always)]
+fn half(e: EdgeId, side: Side) -> EdgeId {
+    EdgeId::new(2 * e.row() + side.index() as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::{PolygonMesh, Representation};
+
+    use super::*;
+
+    /// One triangle: e0 from v0 to v1 and e2 from v1 to v2 with the face on the left, e1 from v0 to v2
+    /// with it on the right. The ranks of these runs are 0, 2 and 1.
+    fn split(split: Split) -> WingedEdgeMesh {
+        let polygons = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]]);
+        let mesh = WingedEdgeMesh::from_polygons(&polygons.expect("valid")).expect("manifold");
+        let mut numbers = Ranks::default();
+        mesh.number_edges(&mut numbers);
+        let mut child = WingedEdgeMesh::empty();
+        let done = mesh.split_into(split, &numbers, &mut child);
+        done.expect("a triangle");
+        child
+    }
+
+    type Row = ([u32; 2], [Option<u32>; 2], [u32; 2], [u32; 2]);
+
+    /// Ends, faces, the next wings and the ones before; each on the left, then on the right.
+    fn rows(mesh: &WingedEdgeMesh) -> Vec<Row> {
+        let row_of = |edge: &Edge| {
+            (
+                edge.ends().map(RowId::row),
+                edge.faces().map(|face| face.map(RowId::row)),
+                edge.next().map(RowId::row),
+                edge.prev().map(RowId::row),
+            )
+        };
+        mesh.edge_records().iter().map(row_of).collect()
+    }
+
+    fn spokes(mesh: &WingedEdgeMesh) -> Vec<Option<u32>> {
+        let spokes = mesh.spoke_rows().iter();
+        spokes.map(|e| e.get().map(RowId::row)).collect()
+    }
+
+    #[test]
+    fn a_triangle_in_quads_is_as_drawn() {
+        // v3 is the face point; v4, v5 and v6 are the middles.
+        let child = split(Split::Quads);
+        let expected = [
+            ([0, 4], [Some(0), None], [6, 2], [2, 1]),
+            ([4, 1], [Some(2), None], [4, 0], [6, 4]),
+            ([0, 5], [None, Some(0)], [3, 0], [0, 7]),
+            ([5, 2], [None, Some(1)], [5, 7], [2, 5]),
+            ([1, 6], [Some(2), None], [8, 1], [1, 5]),
+            ([6, 2], [Some(1), None], [3, 4], [8, 3]),
+            ([4, 3], [Some(0), Some(2)], [7, 1], [0, 8]),
+            ([5, 3], [Some(1), Some(0)], [8, 2], [3, 6]),
+            ([6, 3], [Some(2), Some(1)], [6, 5], [4, 7]),
+        ];
+        assert_eq!(rows(&child), expected);
+        assert_eq!(child.side_rows(), [6, 7, 8].map(EdgeId::new));
+        assert_eq!(spokes(&child), [0, 4, 3, 6, 1, 2, 5].map(Some));
+    }
+
+    #[test]
+    fn a_triangle_in_four_is_as_drawn() {
+        // v3, v4 and v5 are the middles; f3 is the triangle between them.
+        let child = split(Split::Triangles);
+        let expected = [
+            ([0, 3], [Some(0), None], [6, 2], [2, 1]),
+            ([3, 1], [Some(2), None], [4, 0], [8, 4]),
+            ([0, 4], [None, Some(0)], [3, 0], [0, 6]),
+            ([4, 2], [None, Some(1)], [5, 7], [2, 5]),
+            ([1, 5], [Some(2), None], [8, 1], [1, 5]),
+            ([5, 2], [Some(1), None], [3, 4], [7, 3]),
+            ([3, 4], [Some(0), Some(3)], [2, 8], [0, 7]),
+            ([4, 5], [Some(1), Some(3)], [5, 6], [3, 8]),
+            ([5, 3], [Some(2), Some(3)], [1, 7], [4, 6]),
+        ];
+        assert_eq!(rows(&child), expected);
+        assert_eq!(child.side_rows(), [6, 7, 8, 6].map(EdgeId::new));
+        assert_eq!(spokes(&child), [0, 4, 3, 1, 2, 5].map(Some));
+    }
+}

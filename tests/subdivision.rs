@@ -1,0 +1,313 @@
+//! One result, however it is run: every scheme by every method on every structure makes the same
+//! mesh.
+
+use conformance::strategy::{any_mesh, manifold_mesh};
+use conformance::{compact, gallery, welded};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::sample::Index;
+use sixfold::subdivision::{Boundary, Creasing, Method, Scheme, Step, Subdivision};
+use sixfold::{
+    Creases, Point, PolygonMesh, Refine, Representation, VertexId, for_each_refinable,
+    for_each_representation,
+};
+
+/// How far apart points may be that are one, beside the size of the mesh: a few ulps.
+const NEAR: f32 = 4e-6;
+
+/// One step by one method on a structure; `None` where the structure cannot hold the mesh, or the
+/// scheme does not run so.
+fn rebuilt<M: Representation>(
+    subdivision: &Subdivision,
+    method: Method,
+    polygons: &PolygonMesh,
+    creases: &Creases,
+    level: u32,
+) -> Option<Result<Step, String>> {
+    let mesh = M::from_polygons(polygons).ok()?;
+    let creases = match subdivision.control(&mesh, polygons, creases) {
+        Ok(creases) => creases,
+        Err(refusal) => return Some(Err(refusal.to_string())),
+    };
+    let step = match method {
+        Method::Gather => subdivision.gather(&mesh, &creases, level),
+        Method::Scatter if !subdivision.scheme.kind().scatter => return None,
+        _ => subdivision.scatter(&mesh, &creases, level),
+    };
+    Some(step.map_err(|refusal| refusal.to_string()))
+}
+
+/// One native step, and the same with three threads, which must be the same to the bit.
+fn native<M: Refine>(
+    subdivision: &Subdivision,
+    polygons: &PolygonMesh,
+    creases: &Creases,
+    level: u32,
+) -> Option<Result<Step, String>> {
+    let split = subdivision.split(level)?;
+    if !M::SPLITS.iter().any(|known| known.name() == split.name()) {
+        return None;
+    }
+    let mesh = M::from_polygons(polygons).ok()?;
+    let refined = || {
+        let creases = subdivision.control(&mesh, polygons, creases);
+        let creases = creases.map_err(|refusal| refusal.to_string())?;
+        let (mut numbers, mut child) = (M::EdgeNumbers::default(), M::empty());
+        let creases = subdivision
+            .refine_into(&mesh, &creases, level, &mut numbers, &mut child)
+            .map_err(|refusal| refusal.to_string())?;
+        child.validate().expect("a sound child");
+        let polygons = child.to_polygons();
+        Ok(Step { polygons, creases })
+    };
+    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let [one, three] = [1, 3].map(|threads| pool(threads).expect("threads").install(refined));
+    assert_eq!(one, three, "{}: one thread and three", M::NAME);
+    Some(one)
+}
+
+/// `step` with the vertices called as in `first`, by where they are; `None` where two vertices of
+/// `first` cannot be told apart.
+fn called_alike(step: &Step, first: &Step) -> Option<Step> {
+    let size = extent(&first.polygons);
+    let near = |a: Point, b: Point| a.distance(b) <= NEAR * size;
+    let places = first.polygons.positions();
+    let mut names = Vec::new();
+    for &point in step.polygons.positions() {
+        let mut at = (0_u32..)
+            .zip(places)
+            .filter(|&(_, &place)| near(point, place));
+        let (name, _) = at.next().unwrap_or_else(|| {
+            let least = places
+                .iter()
+                .map(|p| p.distance(point))
+                .fold(f32::MAX, f32::min);
+            panic!("a point at {point}, {least} from any other: {size} is the size")
+        });
+        if at.next().is_some() {
+            return None;
+        }
+        names.push(name);
+    }
+    let edges = step.creases.edges().iter();
+    let name = |v: VertexId| names[v.index()];
+    let edges = edges.map(|&(ends, sharpness)| (ends.ends().map(name), sharpness));
+    let corners = step.creases.corners().iter();
+    let corners = corners.map(|&(v, sharpness)| (name(v), sharpness));
+    let polygons = step.polygons.renamed(&names);
+    let creases = Creases::new(&polygons, edges, corners).expect("creases of the mesh");
+    Some(Step { polygons, creases })
+}
+
+fn extent(polygons: &PolygonMesh) -> f32 {
+    let sizes = polygons.positions().iter().map(|p| p.abs().max_element());
+    sizes.fold(1e-30, f32::max)
+}
+
+/// Every face from its lowest vertex on, sorted.
+fn faces(polygons: &PolygonMesh) -> Vec<Vec<VertexId>> {
+    let from_the_lowest = |face: &[VertexId]| {
+        let lowest = (0..face.len()).min_by_key(|&i| face[i]).unwrap_or(0);
+        let mut face = face.to_vec();
+        face.rotate_left(lowest);
+        face
+    };
+    let all = polygons.faces().iter();
+    let mut all: Vec<_> = all.map(|(_, face)| from_the_lowest(face)).collect();
+    all.sort();
+    all
+}
+
+/// Holds `step` to `first`, which another structure or method made of the same mesh.
+fn same(step: &Step, first: &Step, what: &str) {
+    let sizes = |step: &Step| (step.polygons.vertex_count(), step.polygons.face_count());
+    assert_eq!(sizes(step), sizes(first), "{what}");
+    let Some(step) = called_alike(step, first) else {
+        return;
+    };
+    assert_eq!(
+        faces(&step.polygons),
+        faces(&first.polygons),
+        "faces, {what}"
+    );
+    let keys = |step: &Step| {
+        let edges: Vec<_> = step.creases.edges().iter().map(|&(ends, _)| ends).collect();
+        let corners: Vec<_> = step.creases.corners().iter().map(|&(v, _)| v).collect();
+        (edges, corners)
+    };
+    assert_eq!(keys(&step), keys(first), "creases, {what}");
+    for (a, b) in step.creases.edges().iter().zip(first.creases.edges()) {
+        let apart = (a.1 - b.1).abs();
+        assert!(a.1 == b.1 || apart < 1e-5, "{a:?} and {b:?}, {what}");
+    }
+}
+
+/// Takes `levels` steps by all methods on all structures; each step starts from what the first made
+/// of the one before. Yields how many results were compared.
+fn agree(
+    subdivision: &Subdivision,
+    polygons: &PolygonMesh,
+    creases: &Creases,
+    levels: u32,
+) -> usize {
+    let (mut polygons, mut creases) = (polygons.clone(), creases.clone());
+    let mut compared = 0;
+    for level in 0..levels {
+        // A soup names vertices in the order in which faces do; after the first step it may merge some.
+        let Ok(mesh) = welded(&polygons) else { break };
+        if mesh != polygons && level > 0 {
+            break;
+        }
+        let mut first: Option<(Step, String)> = None;
+        let (mut refused, mut made) = (0, 0);
+        let mut hold = |name: &str, method: Method, done: Option<Result<Step, String>>| {
+            let what = format!(
+                "{} by {method} on {name}, level {level}, of {}",
+                subdivision.scheme,
+                compact(&polygons)
+            );
+            match (done, &first) {
+                (None, _) => {}
+                // Two edges with the same ends fit no table of edges; polygons are made all the same.
+                (Some(Err(_)), _) if method == Method::Native => {}
+                (Some(Err(_)), _) => refused += 1,
+                (Some(Ok(step)), None) => first = Some((step, what)),
+                (Some(Ok(step)), Some((other, before))) => {
+                    same(&step, other, &format!("{what}, against {before}"));
+                    made += 1;
+                }
+            }
+        };
+        for method in [Method::Gather, Method::Scatter] {
+            for_each_representation!(M => {
+                hold(M::NAME, method, rebuilt::<M>(subdivision, method, &polygons, &creases, level));
+            });
+        }
+        for_each_refinable!(M => {
+            hold(M::NAME, Method::Native, native::<M>(subdivision, &polygons, &creases, level));
+        });
+        assert!(
+            refused == 0 || first.is_none(),
+            "{}: some refuse",
+            compact(&polygons)
+        );
+        compared += made;
+        let Some((step, _)) = first else { break };
+        (polygons, creases) = (step.polygons, step.creases);
+    }
+    compared
+}
+
+/// Sharpness of a few edges and vertices, several of them at one vertex.
+fn sharpness() -> impl Strategy<Value = Vec<(Index, Index, f32)>> {
+    let value = prop_oneof![
+        Just(0.3_f32),
+        Just(0.5),
+        Just(1.0),
+        Just(1.5),
+        Just(2.25),
+        Just(3.75),
+        Just(10.0),
+        Just(f32::INFINITY),
+        0.01_f32..4.0,
+    ];
+    vec((any::<Index>(), any::<Index>(), value), 0..8)
+}
+
+/// The creases that `choices` make on `polygons`: every second one goes to an edge at a vertex that
+/// has been chosen before, so that creases meet.
+fn creases_on(polygons: &PolygonMesh, choices: &[(Index, Index, f32)]) -> Creases {
+    let edges = polygons.edge_uses();
+    if edges.is_empty() {
+        return Creases::default();
+    }
+    let (mut sharp, mut corners) = (Vec::new(), Vec::new());
+    let mut hub = edges[0].ends[0];
+    for (i, (edge, vertex, sharpness)) in choices.iter().enumerate() {
+        match i % 4 {
+            0 => {
+                let ends = edge.get(&edges).ends;
+                hub = ends[0];
+                sharp.push((ends.map(|v| v.index() as u32), *sharpness));
+            }
+            1 | 2 => {
+                let at_hub: Vec<_> = edges.iter().filter(|e| e.ends.contains(&hub)).collect();
+                let ends = edge.get(&at_hub).ends;
+                sharp.push((ends.map(|v| v.index() as u32), *sharpness));
+            }
+            _ => {
+                let v = vertex.index(polygons.vertex_count()) as u32;
+                corners.push((v, *sharpness));
+            }
+        }
+    }
+    Creases::new(polygons, sharp, corners).expect("edges and vertices of the mesh")
+}
+
+/// The mesh for a scheme: cut into triangles where it takes nothing else, and named as a soup would.
+fn fitting(scheme: Scheme, polygons: &PolygonMesh) -> Option<PolygonMesh> {
+    let polygons = match scheme.kind().takes {
+        "triangles" => polygons.fan_triangulated().ok()?,
+        _ => polygons.clone(),
+    };
+    welded(&polygons).ok()
+}
+
+fn schemes() -> impl Strategy<Value = Subdivision> {
+    let scheme = prop::sample::select(Scheme::ALL.to_vec());
+    let boundary = prop::sample::select(Boundary::ALL.to_vec());
+    let creasing = prop::sample::select(Creasing::ALL.to_vec());
+    (scheme, boundary, creasing).prop_map(|(scheme, boundary, creasing)| Subdivision {
+        boundary,
+        creasing,
+        ..Subdivision::new(scheme)
+    })
+}
+
+#[test]
+fn every_method_is_compared_on_the_gallery() {
+    for scheme in Scheme::ALL {
+        let subdivision = Subdivision::new(scheme);
+        let mut compared = 0;
+        for specimen in gallery() {
+            if let Some(polygons) = fitting(scheme, &specimen.polygons) {
+                compared += agree(&subdivision, &polygons, &Creases::default(), 2);
+            }
+        }
+        assert!(compared > 50, "{scheme}: {compared} results were compared");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 96, ..ProptestConfig::default() })]
+
+    #[test]
+    fn manifolds_come_out_alike(
+        subdivision in schemes(),
+        polygons in manifold_mesh(),
+        choices in sharpness(),
+    ) {
+        if let Some(polygons) = fitting(subdivision.scheme, &polygons) {
+            let creases = match subdivision.scheme.kind().creases {
+                true => creases_on(&polygons, &choices),
+                false => Creases::default(),
+            };
+            agree(&subdivision, &polygons, &creases, 3);
+        }
+    }
+
+    #[test]
+    fn chaos_comes_out_alike(
+        subdivision in schemes(),
+        polygons in any_mesh(),
+        choices in sharpness(),
+    ) {
+        if let Some(polygons) = fitting(subdivision.scheme, &polygons) {
+            let creases = match subdivision.scheme.kind().creases {
+                true => creases_on(&polygons, &choices),
+                false => Creases::default(),
+            };
+            agree(&subdivision, &polygons, &creases, 2);
+        }
+    }
+}
