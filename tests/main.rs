@@ -2,7 +2,9 @@
 
 mod equivalence;
 mod facts;
+mod opensubdiv;
 mod operators;
 mod real_meshes;
 mod seventh;
 mod subdivision;
+mod subdivision_laws;

@@ -199,7 +199,7 @@ fn agree(
 }
 
 /// Sharpness of a few edges and vertices, several of them at one vertex.
-fn sharpness() -> impl Strategy<Value = Vec<(Index, Index, f32)>> {
+pub(crate) fn sharpness() -> impl Strategy<Value = Vec<(Index, Index, f32)>> {
     let value = prop_oneof![
         Just(0.3_f32),
         Just(0.5),
@@ -216,7 +216,7 @@ fn sharpness() -> impl Strategy<Value = Vec<(Index, Index, f32)>> {
 
 /// The creases that `choices` make on `polygons`: every second one goes to an edge at a vertex that
 /// has been chosen before, so that creases meet.
-fn creases_on(polygons: &PolygonMesh, choices: &[(Index, Index, f32)]) -> Creases {
+pub(crate) fn creases_on(polygons: &PolygonMesh, choices: &[(Index, Index, f32)]) -> Creases {
     let edges = polygons.edge_uses();
     if edges.is_empty() {
         return Creases::default();

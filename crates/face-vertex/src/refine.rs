@@ -240,4 +240,19 @@ mod tests {
         ];
         assert_eq!(fans(&child), around);
     }
+
+    #[test]
+    fn a_fan_for_which_there_is_no_room_is_split_like_any_other() {
+        // A book with more pages than sides are found at once.
+        let pages = (0..1500).map(|page| [0, 1, page + 2]);
+        let polygons = PolygonMesh::new(vec![Point::ZERO; 1502], pages).expect("valid");
+        let mesh = FaceVertexMesh::from_polygons(&polygons).expect("holds everything");
+        let mut numbers = EdgeNumbers::default();
+        mesh.number_edges(&mut numbers);
+        for &split in FaceVertexMesh::SPLITS {
+            let mut child = FaceVertexMesh::empty();
+            assert_eq!(mesh.split_into(split, &numbers, &mut child), Ok(()));
+            assert_eq!(child.validate(), Ok(()), "{split}");
+        }
+    }
 }

@@ -270,7 +270,7 @@ mod tests {
     #[test]
     fn edges_say_how_faces_use_them() {
         let corners = [0.0, 1.0, 2.0, 3.0, 4.0].map(Point::splat);
-        let mesh = PolygonMesh::new(corners, [[0, 1, 2], [1, 0, 3], [2, 0, 4]]).expect("valid");
+        let mesh = PolygonMesh::new(corners, [[0, 1, 2], [1, 0, 3], [0, 2, 4]]).expect("valid");
         let uses = mesh.edge_uses();
         assert_eq!(uses.len(), mesh.counts().edges);
         let of = |a: u32, b: u32| {

@@ -66,4 +66,4 @@ pub use notice::{Notice, Passed};
 pub use obj_mesh::{LeftOut, LeftOutReason, ObjMesh, ShortFace};
 pub use read::{parse_obj, read_obj};
 pub use tags::{CornerTag, CreaseTag, LooseCrease, Tag, TagFault};
-pub use write::write_obj;
+pub use write::{write_obj, write_obj_with_normals};

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::io::{self, BufWriter, Write};
 
-use mesh_core::PolygonMesh;
+use mesh_core::{Point, PolygonMesh, VertexId};
 
 /// Writes `polygons` as OBJ text, which reads back bit for bit; O(corners).
 ///
@@ -27,6 +27,34 @@ use mesh_core::PolygonMesh;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn write_obj(polygons: &PolygonMesh, out: impl Write) -> io::Result<()> {
+    written(polygons, &[], out)
+}
+
+/// Writes `polygons` with a normal for each vertex that has one; a face of which a corner has none is
+/// written without. As [`write_obj`] otherwise.
+///
+/// # Errors
+///
+/// As [`write_obj`], and [`io::ErrorKind::InvalidInput`] where the numbers of vertices and normals
+/// differ.
+pub fn write_obj_with_normals(
+    polygons: &PolygonMesh,
+    normals: &[Option<Point>],
+    out: impl Write,
+) -> io::Result<()> {
+    let vertices = polygons.vertex_count();
+    if normals.len() != vertices {
+        let message = format!("{} normals for {vertices} vertices", normals.len());
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+    }
+    written(polygons, normals, out)
+}
+
+fn written(
+    polygons: &PolygonMesh,
+    normals: &[Option<Point>],
+    out: impl Write,
+) -> io::Result<()> {
     let positions = polygons.positions();
     if let Some(v) = positions.iter().position(|p| !p.is_finite()) {
         let message = format!("vertex v{v} is not at a finite place: OBJ has no word for it");
@@ -44,10 +72,31 @@ pub fn write_obj(polygons: &PolygonMesh, out: impl Write) -> io::Result<()> {
             Shortest(p.z)
         )?;
     }
+    // By vertex: the number of its normal in the file.
+    let mut numbers = Vec::with_capacity(normals.len());
+    let mut number = 0;
+    for normal in normals {
+        numbers.push(normal.map(|_| number + 1));
+        if let Some(n) = normal {
+            number += 1;
+            writeln!(
+                out,
+                "vn {} {} {}",
+                Shortest(n.x),
+                Shortest(n.y),
+                Shortest(n.z)
+            )?;
+        }
+    }
+    let normal = |v: &VertexId| numbers.get(v.index()).copied().flatten();
     for (_, face) in polygons.faces().iter() {
+        let whole = face.iter().all(|v| normal(v).is_some());
         write!(out, "f")?;
         for v in face {
             write!(out, " {}", v.index() + 1)?;
+            if let (true, Some(normal)) = (whole, normal(v)) {
+                write!(out, "//{normal}")?;
+            }
         }
         writeln!(out)?;
     }
@@ -70,9 +119,19 @@ impl fmt::Display for Shortest {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::Point;
-
     use super::*;
+
+    #[test]
+    fn normals_are_written_where_a_whole_face_has_them() {
+        let corners = [Point::ZERO, Point::X, Point::Y, Point::ONE];
+        let mesh = PolygonMesh::new(corners, [[0, 1, 2], [1, 3, 2]]).expect("valid");
+        let normals = [Some(Point::Z), Some(Point::Z), Some(Point::Z), None];
+        let mut text = Vec::new();
+        write_obj_with_normals(&mesh, &normals, &mut text).expect("a vector takes all");
+        let text = String::from_utf8(text).expect("ASCII");
+        assert!(text.ends_with("vn 0 0 1\nf 1//1 2//2 3//3\nf 2 4 3\n"), "{text}");
+        assert!(write_obj_with_normals(&mesh, &normals[1..], &mut Vec::new()).is_err());
+    }
 
     #[test]
     fn a_mesh_is_written_in_the_fewest_digits() {

@@ -1,6 +1,8 @@
 //! What can be asked for.
 
 mod render;
+mod reshaping;
+mod subdivision;
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -8,9 +10,10 @@ use std::time::Duration;
 use ::study::Operation;
 use clap::{Args, Parser, Subcommand};
 use sixfold::shapes::Order;
-use sixfold::subdivision::{Boundary, Creasing, LoopWeights, Method, Scheme};
 
 pub(crate) use render::Render;
+pub(crate) use reshaping::{Dual, Smooth, Triangulate};
+pub(crate) use subdivision::{Schemes, Select, Subdivide};
 
 const EXAMPLES: &str = "Examples:
   sixfold                                    study the built-in mesh
@@ -42,20 +45,6 @@ const INSPECT_EXAMPLES: &str = "Examples:
 
 Exit codes: 0 done; 2 wrong usage or unusable input; 4 interrupted.";
 
-const SUBDIVIDE_EXAMPLES: &str = "Examples:
-  sixfold subdivide --scheme catmull-clark --levels 3 cage.obj -o smooth.obj
-  sixfold subdivide --scheme loop --levels 2 --creases edges.txt part.obj -o part2.obj
-  sixfold subdivide --scheme midpoint --select box:0,0,0,1,1,1 part.obj -o finer.obj
-  sixfold subdivide --scheme loop --method scatter --backend polygon-soup in.obj -o out.obj
-
-A crease file has lines `edge a b sharpness` and `corner v sharpness`: vertices from 0, sharpness a
-number from 0 on, or inf; # begins a comment. From 10 on an edge is sharp for ever, below it gets
-smoother by one a level. What an OBJ file says of creases (t crease, t corner) holds as well.
-`sixfold schemes` lists what runs on which backend.
-
-Exit codes: 0 done; 2 wrong usage or unusable input; 3 the scheme or the backend does not support
-the mesh or the option; 4 interrupted, nothing written.";
-
 /// Which mesh data structure fits this mesh and this workload? Measured, with evidence.
 ///
 /// Builds every backend from the same mesh, runs the same operations on each and compares.
@@ -79,6 +68,12 @@ pub(crate) enum Command {
     Schemes(Schemes),
     /// Refine a mesh by a subdivision scheme
     Subdivide(Subdivide),
+    /// Move vertices towards their neighbours
+    Smooth(Smooth),
+    /// Make a vertex of each face, and a face of each vertex
+    Dual(Dual),
+    /// Cut polygons into triangles
+    Triangulate(Triangulate),
     /// Draw meshes with their edges and creases, as PNG or SVG
     Render(Render),
 }
@@ -168,145 +163,6 @@ pub(crate) struct Generate {
     /// Where to write it (- for standard output)
     #[arg(short, long, value_name = "FILE.obj")]
     pub(crate) output: PathBuf,
-}
-
-/// Say what subdivision schemes there are, and what runs on which backend.
-#[derive(Debug, Args)]
-pub(crate) struct Schemes {
-    /// Write both tables as JSON (- for standard output)
-    #[arg(long, value_name = "FILE")]
-    pub(crate) json: Option<PathBuf>,
-}
-
-/// Refine a mesh by a subdivision scheme.
-///
-/// Says beforehand how large the result is and what memory it takes, and refuses what the machine
-/// does not have.
-#[derive(Debug, Args)]
-#[command(after_help = SUBDIVIDE_EXAMPLES, verbatim_doc_comment)]
-pub(crate) struct Subdivide {
-    /// The mesh, an OBJ file
-    #[arg(value_name = "IN.obj")]
-    pub(crate) mesh: PathBuf,
-    /// Where to write the result (- for standard output)
-    #[arg(short, long, value_name = "OUT.obj")]
-    pub(crate) output: PathBuf,
-    /// catmull-clark, loop, sqrt3, butterfly, doo-sabin, midpoint or bilinear
-    #[arg(long, value_name = "NAME", default_value = "catmull-clark", value_parser = scheme)]
-    pub(crate) scheme: Scheme,
-    /// How many steps to take
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub(crate) levels: u32,
-    /// Refine only some triangles, and their neighbours as far as it takes to leave no gaps:
-    /// faces:FILE (numbers from 0), box:X0,Y0,Z0,X1,Y1,Z1 or angle:DEGREES
-    #[arg(long, value_name = "WHAT", value_parser = select, allow_hyphen_values = true)]
-    pub(crate) select: Option<Select>,
-    /// The structure to do it with
-    #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
-    pub(crate) backend: String,
-    /// gather, scatter or native; without it the last of these that the backend has
-    #[arg(long, value_name = "NAME", value_parser = method)]
-    pub(crate) method: Option<Method>,
-    /// Threads of a native step; 0 for as many as there are processors
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
-    pub(crate) threads: usize,
-    /// Sharp edges and vertices, beside those that the mesh file tells
-    #[arg(long, value_name = "FILE")]
-    pub(crate) creases: Option<PathBuf>,
-    /// edge-and-corner, edge-only or none
-    #[arg(long, value_name = "RULE", value_parser = boundary)]
-    pub(crate) boundary: Option<Boundary>,
-    /// uniform or chaikin
-    #[arg(long, value_name = "RULE", value_parser = creasing)]
-    pub(crate) creasing: Option<Creasing>,
-    /// loop or warren
-    #[arg(long, value_name = "WHOSE", value_parser = loop_weights)]
-    pub(crate) loop_weights: Option<LoopWeights>,
-    /// Write the result at its limit positions, with limit normals, here as well
-    #[arg(long, value_name = "LIMIT.obj")]
-    pub(crate) limit: Option<PathBuf>,
-    /// Write the sharpness that is left, as a crease file
-    #[arg(long, value_name = "FILE")]
-    pub(crate) creases_left: Option<PathBuf>,
-    /// Go on where the result is larger than the memory that is free
-    #[arg(long)]
-    pub(crate) force: bool,
-}
-
-/// Which faces to refine.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Select {
-    /// Those that a file lists.
-    Faces(PathBuf),
-    /// Those that touch a box: its lower and its upper corner.
-    Box([f32; 3], [f32; 3]),
-    /// Those at an edge that bends by more than so many degrees.
-    Angle(f32),
-}
-
-fn select(text: &str) -> Result<Select, String> {
-    let wrong = || "write faces:FILE, box:X0,Y0,Z0,X1,Y1,Z1 or angle:DEGREES".to_owned();
-    let (kind, rest) = text.split_once(':').ok_or_else(wrong)?;
-    let numbers = || {
-        let parsed: Result<Vec<f32>, _> = rest.split(',').map(|x| x.trim().parse()).collect();
-        let numbers = parsed.map_err(|_| wrong())?;
-        match numbers.iter().all(|x| x.is_finite()) {
-            true => Ok(numbers),
-            false => Err("numbers must be finite".to_owned()),
-        }
-    };
-    match kind {
-        "faces" if !rest.is_empty() => Ok(Select::Faces(rest.into())),
-        "box" => match numbers()?[..] {
-            [x0, y0, z0, x1, y1, z1] if x0 <= x1 && y0 <= y1 && z0 <= z1 => {
-                Ok(Select::Box([x0, y0, z0], [x1, y1, z1]))
-            }
-            [_, _, _, _, _, _] => Err("the lower corner of a box comes first".to_owned()),
-            _ => Err(wrong()),
-        },
-        "angle" => match numbers()?[..] {
-            [degrees] if (0.0..=180.0).contains(&degrees) => Ok(Select::Angle(degrees)),
-            [_] => Err("an angle is from 0 to 180 degrees".to_owned()),
-            _ => Err(wrong()),
-        },
-        _ => Err(wrong()),
-    }
-}
-
-/// The item of `all` that is called `text`.
-fn named<T: Copy>(all: &[T], name: impl Fn(T) -> &'static str, text: &str) -> Result<T, String> {
-    let found = all.iter().find(|&&item| name(item) == text.trim());
-    let names = || all.iter().map(|&item| name(item)).collect::<Vec<_>>();
-    found.copied().ok_or_else(|| format!("choose from {}", names().join(", ")))
-}
-
-fn scheme(text: &str) -> Result<Scheme, String> {
-    named(&Scheme::ALL, Scheme::name, text)
-}
-
-fn method(text: &str) -> Result<Method, String> {
-    named(&Method::ALL, Method::name, text)
-}
-
-fn boundary(text: &str) -> Result<Boundary, String> {
-    named(&Boundary::ALL, Boundary::name, text)
-}
-
-fn creasing(text: &str) -> Result<Creasing, String> {
-    named(&Creasing::ALL, Creasing::name, text)
-}
-
-fn loop_weights(text: &str) -> Result<LoopWeights, String> {
-    named(&LoopWeights::ALL, LoopWeights::name, text)
-}
-
-/// No more threads than any machine has use for.
-fn threads(text: &str) -> Result<usize, String> {
-    let parsed: Result<usize, _> = text.trim().parse();
-    match parsed {
-        Ok(threads) if threads <= 1024 => Ok(threads),
-        _ => Err("a number of threads is from 0 to 1024".to_owned()),
-    }
 }
 
 fn backend(name: &str) -> Result<String, String> {

@@ -20,6 +20,7 @@ mod numbers;
 mod output;
 mod progress;
 mod render;
+mod reshape;
 mod results_table;
 mod schemes;
 mod study;
@@ -53,6 +54,9 @@ fn main() -> ExitCode {
         Ok(Some(Command::Generate(arguments))) => generate::run(&arguments),
         Ok(Some(Command::Schemes(arguments))) => schemes::run(&arguments),
         Ok(Some(Command::Subdivide(arguments))) => subdivide::run(&arguments),
+        Ok(Some(Command::Smooth(arguments))) => reshape::smooth(&arguments),
+        Ok(Some(Command::Dual(arguments))) => reshape::make_dual(&arguments),
+        Ok(Some(Command::Triangulate(arguments))) => reshape::triangulate(&arguments),
         Ok(Some(Command::Render(arguments))) => render::run(&arguments),
     };
     match done {

@@ -58,8 +58,7 @@ impl Faces {
         if !io::stderr().is_terminal() {
             return Self(None);
         }
-        let style =
-            ProgressStyle::with_template("{bar:30} {human_pos} faces, {per_sec} {msg}");
+        let style = ProgressStyle::with_template("{bar:30} {human_pos} faces, {per_sec} {msg}");
         let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
         let bar = ProgressBar::new(faces as u64).with_style(style);
         bar.enable_steady_tick(Duration::from_millis(100));

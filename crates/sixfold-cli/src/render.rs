@@ -1,6 +1,5 @@
 //! `sixfold render`: pictures of meshes.
 
-use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 

@@ -49,7 +49,14 @@ fn table(header: Vec<Cell>) -> Table {
 
 /// One row for each scheme: what kind it is.
 fn classification() -> String {
-    let heads = ["scheme", "splits", "faces", "old vertices", "growth", "limit"];
+    let heads = [
+        "scheme",
+        "splits",
+        "faces",
+        "old vertices",
+        "growth",
+        "limit",
+    ];
     let mut kinds = table(heads.map(Cell::new).to_vec());
     let mut notes = Vec::new();
     for scheme in Scheme::ALL {
@@ -76,7 +83,14 @@ fn classification() -> String {
             true => "stay",
             false => "move",
         };
-        let row = [scheme.name(), primitive, &faces, stay, &format!("× {growth}"), continuity];
+        let row = [
+            scheme.name(),
+            primitive,
+            &faces,
+            stay,
+            &format!("× {growth}"),
+            continuity,
+        ];
         kinds.add_row(row.map(Cell::new).to_vec());
         notes.push((scheme.name(), boundary, source));
     }
@@ -92,7 +106,11 @@ fn classification() -> String {
 fn matrix() -> String {
     let backends = roster();
     let mut header = vec![Cell::new("methods")];
-    header.extend(backends.iter().map(|backend| Cell::new(backend.name.replace('-', "\n"))));
+    header.extend(
+        backends
+            .iter()
+            .map(|backend| Cell::new(backend.name.replace('-', "\n"))),
+    );
     let mut methods = table(header);
     let mut once = false;
     for scheme in Scheme::ALL {

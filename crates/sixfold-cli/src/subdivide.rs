@@ -1,6 +1,8 @@
 //! `sixfold subdivide`: a mesh refined by a scheme.
 
 mod forecast;
+mod limit;
+mod local;
 
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -11,8 +13,8 @@ use sixfold::subdivision::{
     Boundary, Method, Scheme, Step, Subdivision, SubdivisionError, subdivide, subdivide_native,
 };
 use sixfold::{
-    Creases, PolygonMesh, PolygonSoup, Refine, RefineVisitor, Representation, Visitor, support,
-    visit, visit_refinable,
+    Creases, PolygonMesh, Refine, RefineVisitor, Representation, Visitor, support, visit,
+    visit_refinable,
 };
 
 use crate::arguments::Subdivide;
@@ -21,7 +23,7 @@ use crate::load;
 use crate::numbers::{counted, duration, figure, grouped};
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Faces, end_on_interrupt};
-use crate::text::{Text, complain, tame};
+use crate::text::{Text, tame};
 use forecast::Forecast;
 
 /// Refines the mesh and writes it.
@@ -36,6 +38,9 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     let data = places.iter().filter_map(|&(_, path)| path);
     let mut text = Text::shown(!data.into_iter().any(|path| is_stdout(path)));
     let subdivision = options(arguments)?;
+    if let Some(select) = &arguments.select {
+        return local::run(arguments, select);
+    }
     let method = method(arguments)?;
     let (polygons, mut creases) = load::with_creases(&arguments.mesh)?;
     if let Some(path) = &arguments.creases {
@@ -53,6 +58,7 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     forecast.check(arguments.force)?;
     // Opened before the work, so that nobody waits for a failure.
     let output = Output::open(&arguments.output)?;
+    let limit = Output::open_if(arguments.limit.as_ref())?;
     let left = Output::open_if(arguments.creases_left.as_ref())?;
     let mut job = Job {
         subdivision,
@@ -70,6 +76,10 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     output.finish(|writer| write_obj(&step.polygons, writer))?;
     if let Some(left) = left {
         left.finish(|writer| write_creases(&step.creases, writer))?;
+    }
+    if let (Some(limit), Some(path)) = (limit, &arguments.limit) {
+        let lines = limit::write(&subdivision, &step, arguments.levels, limit, path)?;
+        lines.iter().for_each(|line| text.say(line));
     }
     let place = tame(&arguments.output.display().to_string());
     let vertices = counted(step.polygons.vertex_count(), "vertex", "vertices");
@@ -107,6 +117,11 @@ fn options(arguments: &Subdivide) -> Result<Subdivision, Failure> {
     if arguments.limit.is_some() && !kind.creases {
         return Err(foreign("--limit", creases));
     }
+    if arguments.limit.is_some() && arguments.boundary == Some(Boundary::None) {
+        return Err(Failure::unsupported(
+            "--limit needs the faces that --boundary none leaves out: leave one of the two out",
+        ));
+    }
     let usual = Subdivision::new(scheme);
     Ok(Subdivision {
         boundary: arguments.boundary.unwrap_or(usual.boundary),
@@ -131,9 +146,9 @@ fn method(arguments: &Subdivide) -> Result<Method, Failure> {
         best != Method::Native || row.holds_result
     });
     match arguments.method {
-        None => best.ok_or_else(|| {
-            Failure::unsupported(format!("{scheme} does not run on {backend}"))
-        }),
+        None => {
+            best.ok_or_else(|| Failure::unsupported(format!("{scheme} does not run on {backend}")))
+        }
         Some(method) if row.methods.contains(&method) => Ok(method),
         Some(method) => Err(Failure::unsupported(format!(
             "{scheme} does not run by {method} on {backend}: choose {names}, or see `sixfold schemes`"
@@ -175,7 +190,9 @@ impl Job<'_> {
             Method::Native => {
                 let pool = ThreadPoolBuilder::new().num_threads(threads).build();
                 let pool = pool.map_err(|error| {
-                    Failure::usage(format!("{threads} threads cannot be had ({error}): take fewer"))
+                    Failure::usage(format!(
+                        "{threads} threads cannot be had ({error}): take fewer"
+                    ))
                 })?;
                 pool.install(|| visit_refinable(backend, self))
             }

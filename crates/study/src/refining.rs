@@ -5,7 +5,7 @@ use std::fmt;
 use serde::{Serialize, Serializer};
 use sixfold::subdivision::{Method, Scheme, Step, Subdivision, SubdivisionError};
 use sixfold::{
-    Creases, MeshQuery, Point, PolygonMesh, Refine, RefineVisitor, Representation, Visitor, visit,
+    Creases, Point, PolygonMesh, Refine, RefineVisitor, Representation, Visitor, visit,
     visit_refinable,
 };
 

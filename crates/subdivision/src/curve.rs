@@ -86,12 +86,15 @@ pub fn chaikin(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<Point>, 
 /// round if the polygon is closed. `None` elsewhere, and for too few points. O(1).
 pub fn cubic_b_spline_at(points: &[Point], ends: Ends, t: f64) -> Option<Point> {
     let n = points.len();
-    let (first, last) = cubic_domain(n, ends)?;
+    if n < least(ends) {
+        return None;
+    }
+    let (first, last) = cubic_domain(n, ends);
     let t = match ends {
         Ends::Closed => t.rem_euclid(last),
         _ => t,
     };
-    // Not for NaN, which a closed polygon may be asked for as well.
+    // False for NaN.
     if !(first <= t && t <= last) {
         return None;
     }
@@ -101,14 +104,14 @@ pub fn cubic_b_spline_at(points: &[Point], ends: Ends, t: f64) -> Option<Point> 
     Some(controls.zip(weights).map(|(p, w)| p * w as f32).sum())
 }
 
-/// The first and the last parameter of a curve; `None` if there are too few points for one.
-pub(crate) fn cubic_domain(points: usize, ends: Ends) -> Option<(f64, f64)> {
+/// The first and the last parameter of a curve of enough points.
+pub(crate) fn cubic_domain(points: usize, ends: Ends) -> (f64, f64) {
     let n = points as f64;
-    (points >= least(ends)).then_some(match ends {
+    match ends {
         Ends::Closed => (0.0, n),
         Ends::Kept => (0.0, n - 1.0),
         Ends::Dropped => (1.0, n - 2.0),
-    })
+    }
 }
 
 /// The four weights at `s`, 0 to 1, of a piece of the uniform cubic B-spline.
@@ -306,7 +309,7 @@ mod tests {
                 let levels = 7;
                 let refined = cubic_b_spline(&points, ends, levels).expect("enough points");
                 let step = f64::from(1 << levels).recip();
-                let (first, last) = cubic_domain(points.len(), ends).expect("enough points");
+                let (first, last) = cubic_domain(points.len(), ends);
                 // With ends dropped each step loses one half of what is before the first parameter.
                 let start = if ends == Ends::Dropped { first - step } else { first };
                 prop_assert_eq!(refined.len(), ((last - start) / step).round() as usize

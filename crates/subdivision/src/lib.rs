@@ -4,6 +4,7 @@
 //! - [`Subdivision`]: a scheme with its options; one step by [`gather`](Subdivision::gather),
 //!   [`scatter`](Subdivision::scatter) or [`refine_into`](Subdivision::refine_into).
 //! - [`subdivide`], [`subdivide_native`]: several steps from polygons to polygons.
+//! - [`Extent`]: how large the result will be, before it is made.
 //! - [`limit`](Subdivision::limit): where vertices go in endless levels, as [`LimitPoint`]s.
 //! - [`cubic_b_spline`], [`chaikin`]: the same for curves; [`ControlGrid`]: for curves of curves.
 //! - [`refine_locally`]: triangles split where a [`Selection`] says, and conforming all the same.

@@ -183,9 +183,9 @@ struct Step<'a, M: MeshQuery> {
     before: &'a [Kind],
     mesh: &'a M,
     numbers: mesh_core::FaceMap<M, u32>,
-    /// By face: its corners, and the sides that start there. Of a green face the first corner is the
-    /// one that the other half does not have: (a, m, c) and (b, c, m).
-    faces: Vec<([M::Vertex; 3], [M::Edge; 3])>,
+    /// Of a green face the first corner is the one that the other half does not have: (a, m, c) and
+    /// (b, c, m).
+    faces: Vec<Triangle<M::Vertex, M::Edge>>,
     split: EdgeMap<M, bool>,
     /// By face: how many of its sides are split; whether it, or the whole it is half of, is red;
     /// whether it was chosen.
@@ -206,13 +206,13 @@ impl<'a, M: MeshQuery> Step<'a, M> {
             let corners = triangle(mesh, f, FaceId::new(number))?;
             let mut sides = mesh.face_edges(f);
             let sides = [(); 3].map(|()| sides.next().expect("as many sides as corners"));
-            faces.push((corners, sides));
+            faces.push(Triangle { corners, sides });
         }
         for first in 0..count {
             if before.kinds[first].half == Some(Half::First) {
                 let [f, g] = [first, first + 1].map(|half| faces[half]);
-                faces[first] = turned(f, g.0);
-                faces[first + 1] = turned(g, f.0);
+                faces[first] = f.turned(g);
+                faces[first + 1] = g.turned(f);
             }
         }
         Ok(Self {
@@ -235,7 +235,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
                 continue;
             }
             self.red[f] = true;
-            let sides = self.faces[f].1;
+            let sides = self.faces[f].sides;
             match self.before[f].half {
                 None => sides.into_iter().for_each(|side| self.split(side)),
                 // The side of the whole that is not halved yet: c–a of (a, m, c), b–c of (b, c, m).
@@ -291,7 +291,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
             points.push(middle);
         }
         let mut parts = Parts::default();
-        for (f, &(corners, sides)) in self.faces.iter().enumerate() {
+        for (f, &Triangle { corners, sides }) in self.faces.iter().enumerate() {
             let corners = corners.map(|v| names[v]);
             let middles_of = |sides: [M::Edge; 3]| sides.map(|side| middles[side]);
             let kind = Kind {
@@ -310,9 +310,9 @@ impl<'a, M: MeshQuery> Step<'a, M> {
                         chosen: kind.chosen || self.chosen[f + 1],
                         ..kind
                     };
-                    let (others, other_sides) = self.faces[f + 1];
-                    let wholes = [corners, others.map(|v| names[v])];
-                    parts.split_again(kind, wholes, [sides, other_sides].map(middles_of))?;
+                    let other = self.faces[f + 1];
+                    let halves = [corners, other.corners.map(|v| names[v])];
+                    parts.split_again(kind, halves, [sides, other.sides].map(middles_of))?;
                 }
                 // Done with the first half.
                 Some(Half::Second) => {}
@@ -335,18 +335,25 @@ impl<'a, M: MeshQuery> Step<'a, M> {
     }
 }
 
-/// A face from the corner on that `other` does not have.
-fn turned<V: Copy + Eq, E: Copy>(
-    (corners, sides): ([V; 3], [E; 3]),
-    other: [V; 3],
-) -> ([V; 3], [E; 3]) {
-    let alone = corners.iter().position(|v| !other.contains(v));
-    let from = alone.expect("L2: the halves of a face share two corners");
-    let turn = |i: usize| (from + i) % 3;
-    (
-        [0, 1, 2].map(|i| corners[turn(i)]),
-        [0, 1, 2].map(|i| sides[turn(i)]),
-    )
+/// A face: its corners, and the sides that start there.
+#[derive(Clone, Copy)]
+struct Triangle<V, E> {
+    corners: [V; 3],
+    sides: [E; 3],
+}
+
+impl<V: Copy + Eq, E: Copy> Triangle<V, E> {
+    /// The same from the corner on that `other` does not have.
+    fn turned(self, other: Self) -> Self {
+        let alone = |v: &V| !other.corners.contains(v);
+        let from = self.corners.iter().position(alone);
+        let from = from.expect("L2: the halves of a face share two corners");
+        let turn = |i: usize| (from + i) % 3;
+        Self {
+            corners: [0, 1, 2].map(|i| self.corners[turn(i)]),
+            sides: [0, 1, 2].map(|i| self.sides[turn(i)]),
+        }
+    }
 }
 
 /// The new faces.

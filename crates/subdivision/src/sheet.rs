@@ -159,6 +159,7 @@ impl Sheet {
                 [a, b] if [b, a] == ends => return (1, side),
                 _ => side = self.after(side),
             }
+            assert!(side != corner_of_face, "EF and FV disagree about a face");
         }
     }
 

@@ -156,7 +156,7 @@ impl Sector {
         let angle = PI / k as f64;
         let inside = |mode: Mode, angle: f64| {
             let wave = |i: usize| {
-                if i % k == 0 {
+                if i.is_multiple_of(k) {
                     0.0
                 } else {
                     (angle * i as f64).sin()

@@ -103,7 +103,16 @@ mod tests {
         let (width, height) = (640, 48);
         assert_eq!(size("640x48"), Ok(Size { width, height }));
         assert_eq!(size(" 640 × 48 "), Ok(Size { width, height }));
-        for text in ["", "640", "640x", "x48", "-1x4", "6.5x4", "1x2x3", "99999999999x4"] {
+        for text in [
+            "",
+            "640",
+            "640x",
+            "x48",
+            "-1x4",
+            "6.5x4",
+            "1x2x3",
+            "99999999999x4",
+        ] {
             assert!(size(text).is_err(), "{text}");
         }
         assert_eq!(view("-30, 20.5"), Ok([-30.0, 20.5]));

@@ -1,6 +1,6 @@
 //! How large the result of a subdivision will be, and whether the machine has room for it.
 
-use sixfold::subdivision::{Method, Subdivision};
+use sixfold::subdivision::{Extent, Method, Subdivision};
 use sixfold::{Counts, MAX_ROWS, Point, PolygonMesh, Representation, VertexId, Visitor, visit};
 use sysinfo::{MemoryRefreshKind, System};
 
@@ -24,25 +24,28 @@ impl Forecast {
         polygons: &PolygonMesh,
         levels: u32,
     ) -> Result<Self, Failure> {
-        let edges = polygons.edge_uses();
-        let mut boundary = edges.iter().filter(|edge| edge.is_boundary()).count();
-        let mut counts = vec![polygons.counts()];
+        let mut extent = Extent::of(polygons);
+        let mut counts = vec![extent.counts];
         for level in 0..levels {
-            let Some(&last) = counts.last() else { break };
-            let (next, edges) = subdivision.grown(&last, boundary, level);
-            boundary = edges;
-            let names = [
-                ("vertices", next.vertices),
-                ("half-edges", next.edges.saturating_mul(2)),
-                ("corners", next.corners),
+            extent = subdivision.grown(&extent, level);
+            let Counts {
+                vertices,
+                edges,
+                corners,
+                ..
+            } = extent.counts;
+            let rows = [
+                ("vertices", vertices),
+                ("half-edges", edges.saturating_mul(2)),
+                ("corners", corners),
             ];
-            if let Some((elements, _)) = names.iter().find(|(_, number)| *number > MAX_ROWS) {
+            if let Some((elements, _)) = rows.iter().find(|(_, number)| *number > MAX_ROWS) {
                 return Err(Failure::unsupported(format!(
                     "level {} of {levels} would have more than {MAX_ROWS} {elements}, and handles are 32 bits: take fewer levels, or split the mesh",
                     level + 1
                 )));
             }
-            counts.push(next);
+            counts.push(extent.counts);
         }
         let peak = counts.windows(2).map(|pair| {
             let before = held(backend, &pair[0]) + flat(&pair[0]);

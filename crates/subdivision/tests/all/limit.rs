@@ -39,7 +39,11 @@ fn step(scheme: &Subdivision, polygons: &PolygonMesh, creases: &Creases) -> Step
 fn fan(scheme: Scheme, faces: usize, is_closed: bool, seed: usize) -> PolygonMesh {
     let bump = |i: usize| ((i * 37 + seed * 101) as f32 * 12.9898).sin() * 0.3;
     let spokes = if is_closed { faces } else { faces + 1 };
-    let turn = if is_closed { 6.283 } else { 3.6 } / faces as f32;
+    let turn = if is_closed {
+        std::f32::consts::TAU
+    } else {
+        3.6
+    } / faces as f32;
     let place = |turns: f32, radius: f32, i: usize| {
         let (sin, cos) = (turns * turn).sin_cos();
         Point::new(radius * cos, radius * sin, 0.0)

@@ -1,0 +1,138 @@
+//! What `sixfold smooth`, `dual` and `triangulate` can be asked for.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use sixfold::operators::{Boundary, Facing, Triangulation, Weights};
+
+use super::backend;
+use super::subdivision::named;
+
+const SMOOTH_EXAMPLES: &str = "Examples:
+  sixfold smooth scan.obj -o smooth.obj
+  sixfold smooth scan.obj --weights cotangent --iterations 50 -o smooth.obj
+  sixfold smooth scan.obj --step 0.33 --step-back=-0.34 -o smooth.obj    the volume is kept
+
+Exit codes: 0 done; 2 wrong usage or unusable input; 3 the weights or the backend do not support the
+mesh; 4 interrupted, nothing written.";
+
+/// Move vertices towards their neighbours.
+///
+/// The connectivity stays as it is.
+#[derive(Debug, Args)]
+#[command(after_help = SMOOTH_EXAMPLES, verbatim_doc_comment)]
+pub(crate) struct Smooth {
+    /// The mesh, an OBJ file
+    #[arg(value_name = "IN.obj")]
+    pub(crate) mesh: PathBuf,
+    /// Where to write the result (- for standard output)
+    #[arg(short, long, value_name = "OUT.obj")]
+    pub(crate) output: PathBuf,
+    /// uniform or cotangent
+    #[arg(long, value_name = "WHICH", default_value = "uniform", value_parser = weights)]
+    pub(crate) weights: Weights,
+    /// fixed, or curve: smoothed along itself
+    #[arg(long, value_name = "RULE", default_value = "fixed", value_parser = boundary)]
+    pub(crate) boundary: Boundary,
+    /// How often
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    pub(crate) iterations: usize,
+    /// How far to go each time, of the way to the mean of the neighbours: 0 to 1
+    #[arg(
+        long,
+        value_name = "PART",
+        default_value_t = 0.5,
+        allow_hyphen_values = true
+    )]
+    pub(crate) step: f64,
+    /// A step away again after each, below minus the step, which keeps the volume
+    #[arg(long, value_name = "PART", allow_hyphen_values = true)]
+    pub(crate) step_back: Option<f64>,
+    /// The structure to do it with
+    #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
+    pub(crate) backend: String,
+}
+
+const DUAL_EXAMPLES: &str = "Examples:
+  sixfold dual icosahedron.obj -o dodecahedron.obj
+
+Exit codes: 0 done; 2 wrong usage or unusable input; 3 the mesh has no dual, or the backend does not
+hold it; 4 interrupted, nothing written.";
+
+/// Make a vertex of each face, and a face of each vertex.
+///
+/// The mesh must be a closed, oriented manifold.
+#[derive(Debug, Args)]
+#[command(after_help = DUAL_EXAMPLES, verbatim_doc_comment)]
+pub(crate) struct Dual {
+    /// The mesh, an OBJ file
+    #[arg(value_name = "IN.obj")]
+    pub(crate) mesh: PathBuf,
+    /// Where to write the result (- for standard output)
+    #[arg(short, long, value_name = "OUT.obj")]
+    pub(crate) output: PathBuf,
+    /// The structure to do it with
+    #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
+    pub(crate) backend: String,
+}
+
+const TRIANGULATE_EXAMPLES: &str = "Examples:
+  sixfold triangulate plan.obj -o triangles.obj
+  sixfold triangulate quads.obj --method fan -o triangles.obj
+  sixfold triangulate scan.obj --orient outward -o consistent.obj
+
+Exit codes: 0 done; 2 wrong usage or unusable input; 3 the mesh cannot be oriented; 4 interrupted,
+nothing written.";
+
+/// Cut polygons into triangles.
+///
+/// No vertex is added; triangles run the way of their polygons.
+#[derive(Debug, Args)]
+#[command(after_help = TRIANGULATE_EXAMPLES, verbatim_doc_comment)]
+pub(crate) struct Triangulate {
+    /// The mesh, an OBJ file
+    #[arg(value_name = "IN.obj")]
+    pub(crate) mesh: PathBuf,
+    /// Where to write the result (- for standard output)
+    #[arg(short, long, value_name = "OUT.obj")]
+    pub(crate) output: PathBuf,
+    /// ears: right for any simple polygon; fan: quicker, and right for convex ones
+    #[arg(long, value_name = "NAME", default_value = "ears", value_parser = triangulation)]
+    pub(crate) method: Triangulation,
+    /// Turn faces over until neighbours agree: majority, as most of them face, or outward
+    #[arg(long, value_name = "RULE", value_parser = facing)]
+    pub(crate) orient: Option<Facing>,
+}
+
+fn weights(text: &str) -> Result<Weights, String> {
+    let name = |weights| match weights {
+        Weights::Uniform => "uniform",
+        Weights::Cotangent => "cotangent",
+    };
+    named(&[Weights::Uniform, Weights::Cotangent], name, text)
+}
+
+fn boundary(text: &str) -> Result<Boundary, String> {
+    let name = |boundary| match boundary {
+        Boundary::Fixed => "fixed",
+        Boundary::Curve => "curve",
+    };
+    named(&[Boundary::Fixed, Boundary::Curve], name, text)
+}
+
+fn triangulation(text: &str) -> Result<Triangulation, String> {
+    let name = |method| match method {
+        Triangulation::EarClipping => "ears",
+        Triangulation::Fan => "fan",
+    };
+    let all = [Triangulation::EarClipping, Triangulation::Fan];
+    named(&all, name, text)
+}
+
+fn facing(text: &str) -> Result<Facing, String> {
+    let name = |facing| match facing {
+        Facing::Majority => "majority",
+        Facing::Outward => "outward",
+    };
+    named(&[Facing::Majority, Facing::Outward], name, text)
+}

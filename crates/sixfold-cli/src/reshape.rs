@@ -1,0 +1,126 @@
+//! `sixfold smooth`, `dual` and `triangulate`: other shapes and faces, no finer mesh.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use sixfold::mesh_io::write_obj;
+use sixfold::operators::{Smoothing, dual, oriented, smoothed, triangulated};
+use sixfold::{PolygonMesh, Representation, Visitor, visit};
+
+use crate::arguments::{Dual, Smooth, Triangulate};
+use crate::failure::Failure;
+use crate::load;
+use crate::numbers::counted;
+use crate::output::{Output, check_places, is_stdout};
+use crate::progress::end_on_interrupt;
+use crate::text::{Text, tame};
+
+/// Smooths the mesh and writes it.
+pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
+    let work = Smoothed(Smoothing {
+        weights: arguments.weights,
+        boundary: arguments.boundary,
+        step: arguments.step,
+        step_back: arguments.step_back,
+        iterations: arguments.iterations,
+    });
+    let place = [arguments.mesh.as_path(), &arguments.output];
+    reshaped(place, "smoothed", |polygons| {
+        on_backend(&arguments.backend, polygons, &work)
+    })
+}
+
+/// Makes the dual and writes it.
+pub(crate) fn make_dual(arguments: &Dual) -> Result<ExitCode, Failure> {
+    let place = [arguments.mesh.as_path(), &arguments.output];
+    reshaped(place, "the dual", |polygons| {
+        on_backend(&arguments.backend, polygons, &Dualised)
+    })
+}
+
+/// Cuts all polygons and writes the triangles.
+pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> {
+    let place = [arguments.mesh.as_path(), &arguments.output];
+    reshaped(place, "triangles", |polygons| {
+        let turned = match arguments.orient {
+            Some(facing) => {
+                oriented(polygons, facing)
+                    .map_err(Failure::unsupported)?
+                    .polygons
+            }
+            None => polygons.clone(),
+        };
+        triangulated(&turned, arguments.method).map_err(Failure::unsupported)
+    })
+}
+
+/// Reads a mesh, has it changed, and writes what comes of it.
+fn reshaped(
+    [from, to]: [&Path; 2],
+    what: &str,
+    change: impl FnOnce(&PolygonMesh) -> Result<PolygonMesh, Failure>,
+) -> Result<ExitCode, Failure> {
+    end_on_interrupt();
+    check_places(Some(from), &[("--output", Some(&to.to_owned()))])?;
+    let specimen = load::specimen(from)?;
+    // Opened before the work, so that nobody waits for a failure.
+    let output = Output::open(to)?;
+    let changed = change(&specimen.polygons)?;
+    output.finish(|writer| write_obj(&changed, writer))?;
+    let mut text = Text::shown(!is_stdout(to));
+    let place = tame(&to.display().to_string());
+    let vertices = counted(changed.vertex_count(), "vertex", "vertices");
+    let faces = counted(changed.face_count(), "face", "faces");
+    text.say(&format!("{place}: {what}, {vertices}, {faces}"));
+    text.finish()?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Something that is done with a structure.
+trait Work {
+    fn done<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, String>;
+}
+
+struct Smoothed(Smoothing);
+
+impl Work for Smoothed {
+    fn done<M: Representation>(&self, mut mesh: M) -> Result<PolygonMesh, String> {
+        let positions = smoothed(&mesh, &self.0).map_err(|error| error.to_string())?;
+        let moved = mesh.set_positions(&positions);
+        moved.map_err(|error| error.to_string())?;
+        Ok(mesh.to_polygons())
+    }
+}
+
+struct Dualised;
+
+impl Work for Dualised {
+    fn done<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, String> {
+        dual(&mesh).map_err(|error| error.to_string())
+    }
+}
+
+/// Does `work` with the structure called `backend`.
+fn on_backend(
+    backend: &str,
+    polygons: &PolygonMesh,
+    work: &impl Work,
+) -> Result<PolygonMesh, Failure> {
+    struct On<'a, W>(&'a PolygonMesh, &'a W);
+
+    impl<W: Work> Visitor for On<'_, W> {
+        type Output = Result<PolygonMesh, String>;
+
+        fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
+            let mesh = M::from_polygons(self.0);
+            let mesh =
+                mesh.map_err(|refusal| format!("{} cannot hold the mesh: {refusal}", M::NAME))?;
+            self.1.done(mesh)
+        }
+    }
+
+    match visit(backend, &mut On(polygons, work)) {
+        Some(done) => done.map_err(Failure::unsupported),
+        None => Err(Failure::usage(format!("no backend is called `{backend}`"))),
+    }
+}

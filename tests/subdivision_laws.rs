@@ -1,0 +1,1 @@
+//! What every scheme keeps, on random meshes.
