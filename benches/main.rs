@@ -5,6 +5,7 @@
 mod construction;
 mod input;
 mod query;
+mod subdivision;
 mod workload;
 mod zero_cost;
 
@@ -24,6 +25,7 @@ fn short() -> Criterion {
 criterion_group! {
     name = all;
     config = short();
-    targets = zero_cost::define, construction::define, workload::define, query::define
+    targets = zero_cost::define, construction::define, workload::define, query::define,
+        subdivision::define
 }
 criterion_main!(all);

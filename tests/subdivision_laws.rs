@@ -1,1 +1,490 @@
-//! What every scheme keeps, on random meshes.
+//! What every scheme keeps, on random manifolds with random creases, and what it counts up to.
+
+use std::collections::BTreeMap;
+
+use conformance::strategy::manifold_mesh;
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::sample::{Index, select};
+use sixfold::subdivision::{
+    Boundary, ControlGrid, Creasing, Ends, Extent, LoopWeights, Method, Scheme, Step, Subdivision,
+    subdivide, subdivide_native,
+};
+use sixfold::{
+    Creases, Facts, HalfEdgeMesh, IndexedFaceSet, Point, PolygonMesh, Representation, VertexId,
+    mesh_core,
+};
+
+use crate::subdivision::{creases_on, sharpness};
+
+/// How far apart points may be that are one, beside the size of the mesh.
+const NEAR: f32 = 1e-5;
+
+/// A mesh that the scheme takes, and creases if it has rules for them.
+#[derive(Clone, Debug)]
+struct Try {
+    subdivision: Subdivision,
+    polygons: PolygonMesh,
+    creases: Creases,
+}
+
+impl Try {
+    fn after(&self, levels: u32) -> Step {
+        after(&self.subdivision, &self.polygons, &self.creases, levels)
+    }
+
+    fn scheme(&self) -> Scheme {
+        self.subdivision.scheme
+    }
+}
+
+fn after(
+    subdivision: &Subdivision,
+    polygons: &PolygonMesh,
+    creases: &Creases,
+    levels: u32,
+) -> Step {
+    let method = Method::Gather;
+    let step =
+        subdivide::<IndexedFaceSet>(subdivision, method, polygons, creases, levels, |_, _| ());
+    step.expect("a mesh that the scheme takes")
+}
+
+fn tries_of(schemes: &[Scheme], boundaries: &[Boundary]) -> impl Strategy<Value = Try> + use<> {
+    let options = (
+        select(schemes.to_vec()),
+        select(boundaries.to_vec()),
+        select(Creasing::ALL.to_vec()),
+        select(LoopWeights::ALL.to_vec()),
+    );
+    let parts = (options, manifold_mesh(), sharpness());
+    parts.prop_filter_map(
+        "a fan can run an edge through two polygons",
+        |((scheme, boundary, creasing, loop_weights), polygons, choices)| {
+            let polygons = fitting(scheme, polygons)?;
+            let creases = creases_for(scheme, &polygons, &choices);
+            let subdivision = Subdivision {
+                scheme,
+                boundary,
+                creasing,
+                loop_weights,
+            };
+            Some(Try {
+                subdivision,
+                polygons,
+                creases,
+            })
+        },
+    )
+}
+
+fn tries() -> impl Strategy<Value = Try> {
+    tries_of(&Scheme::ALL, &Boundary::ALL)
+}
+
+fn creases_for(scheme: Scheme, polygons: &PolygonMesh, choices: &[(Index, Index, f32)]) -> Creases {
+    match scheme.kind().creases {
+        true => creases_on(polygons, choices),
+        false => Creases::default(),
+    }
+}
+
+/// Cut into triangles where the scheme takes nothing else; `None` where that is no manifold, or two
+/// triangles have the same corners.
+fn fitting(scheme: Scheme, polygons: PolygonMesh) -> Option<PolygonMesh> {
+    if scheme.kind().takes != "triangles" {
+        return Some(polygons);
+    }
+    let polygons = polygons.fan_triangulated().ok()?;
+    is_plain_manifold(&polygons).then_some(polygons)
+}
+
+fn is_plain_manifold(polygons: &PolygonMesh) -> bool {
+    let has_twins = Facts::of(polygons).duplicate_faces > 0;
+    !has_twins && HalfEdgeMesh::from_polygons(polygons).is_ok()
+}
+
+/// The same faces between other points.
+fn moved(polygons: &PolygonMesh, place: impl Fn(Point) -> Point) -> PolygonMesh {
+    let positions = polygons.positions().iter().copied().map(place).collect();
+    PolygonMesh::from_faces(positions, polygons.faces().clone()).expect("the same faces")
+}
+
+fn size(polygons: &PolygonMesh) -> f32 {
+    let sizes = polygons.positions().iter().map(|p| p.abs().max_element());
+    sizes.fold(0.0, f32::max)
+}
+
+/// By vertex, how many edges end there, and whether one of them has a single face.
+fn valences(polygons: &PolygonMesh) -> Vec<(usize, bool)> {
+    let mut valences = vec![(0, false); polygons.vertex_count()];
+    for edge in polygons.edge_uses() {
+        for v in edge.ends {
+            let (valence, is_open) = &mut valences[v.index()];
+            *valence += 1;
+            *is_open |= edge.is_boundary();
+        }
+    }
+    valences
+}
+
+/// Vertices, edges and faces after step `level`, of a manifold.
+///
+/// ```text
+///                        V′             E′             F′             C corners, b boundary edges
+///   quads                V + E + F      2E + C         C
+///   triangles            V + E          2E + 3F        4F
+///   √3, even steps       V + F          E + 3F         3F
+///   √3, odd steps        V + F + 2b     E + 3F + 4b    3F + 2b
+///   Doo–Sabin            C              C + 2(E − b)   F + (E − b) + inner vertices
+/// ```
+///
+/// An inner vertex of two faces becomes an edge by Doo–Sabin, where two edges meet.
+fn grown(scheme: Scheme, polygons: &PolygonMesh, level: u32) -> [usize; 3] {
+    let facts = Facts::of(polygons);
+    let (v, e, f) = (facts.vertices, facts.edges, facts.faces);
+    let (c, b) = (polygons.corner_count(), facts.boundary_edges);
+    match scheme {
+        Scheme::CatmullClark | Scheme::Bilinear => [v + e + f, 2 * e + c, c],
+        Scheme::Loop | Scheme::Butterfly | Scheme::Midpoint => [v + e, 2 * e + 3 * f, 4 * f],
+        Scheme::Sqrt3 if level % 2 == 0 => [v + f, e + 3 * f, 3 * f],
+        Scheme::Sqrt3 => [v + f + 2 * b, e + 3 * f + 4 * b, 3 * f + 2 * b],
+        Scheme::DooSabin => {
+            let valences = valences(polygons);
+            let inner = valences.iter().filter(|&&(n, is_open)| n > 2 && !is_open);
+            let pinched = valences.iter().filter(|&&(n, is_open)| n == 2 && !is_open);
+            let (inner, pinched) = (inner.count(), pinched.count());
+            [c, c + 2 * (e - b) - pinched, f + (e - b) + inner]
+        }
+        other => panic!("{other} has no formula here"),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 96, ..ProptestConfig::default() })]
+
+    /// Holes would change what there is to count, so that boundary edges are kept.
+    #[test]
+    fn topology_is_kept_and_counts_are_foretold(
+        start in tries_of(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
+    ) {
+        let before = Facts::of(&start.polygons);
+        let (mut parent, mut extent) = (start.polygons.clone(), Extent::of(&start.polygons));
+        for level in 0..2 {
+            let child = start.after(level + 1).polygons;
+            let facts = Facts::of(&child);
+            let told = grown(start.scheme(), &parent, level);
+            prop_assert_eq!([facts.vertices, facts.edges, facts.faces], told);
+            extent = start.subdivision.grown(&extent, level);
+            let Extent { counts, .. } = extent;
+            prop_assert_eq!([counts.vertices, counts.edges, counts.faces], told);
+            prop_assert_eq!(counts.corners, child.corner_count());
+            prop_assert_eq!(extent.boundary_edges, facts.boundary_edges);
+            prop_assert_eq!(facts.euler_characteristic, before.euler_characteristic);
+            prop_assert_eq!(facts.components, before.components);
+            prop_assert_eq!(facts.boundary_loops, before.boundary_loops);
+            prop_assert_eq!(facts.genus, before.genus);
+            prop_assert_eq!(facts.consistently_oriented, before.consistently_oriented);
+            prop_assert_eq!(facts.non_manifold_vertices, 0);
+            let degree = match start.scheme().kind().makes {
+                "quads" => Some(4),
+                "triangles" => Some(3),
+                _ => None,
+            };
+            for (f, face) in child.faces().iter() {
+                prop_assert!(degree.is_none_or(|degree| face.len() == degree), "{}", f);
+            }
+            parent = child;
+        }
+    }
+
+    /// Old vertices keep their valence; new ones have that of a regular mesh, but for face points.
+    #[test]
+    fn valences_are_kept(
+        start in tries_of(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
+    ) {
+        let (old, new) = (valences(&start.polygons), valences(&start.after(1).polygons));
+        let (vertices, faces) = (old.len(), start.polygons.face_count());
+        let kept = old.iter().zip(&new);
+        let regular = |from: usize, inside: usize, rim: usize| {
+            let all = new[from..].iter();
+            all.copied().all(|(valence, is_open)| valence == if is_open { rim } else { inside })
+        };
+        match start.scheme() {
+            Scheme::CatmullClark | Scheme::Bilinear => {
+                prop_assert!(kept.clone().all(|(old, new)| old == new));
+                for (f, face) in start.polygons.faces().iter() {
+                    prop_assert_eq!(new[vertices + f.index()], (face.len(), false));
+                }
+                prop_assert!(regular(vertices + faces, 4, 3));
+            }
+            Scheme::Loop | Scheme::Butterfly | Scheme::Midpoint => {
+                prop_assert!(kept.clone().all(|(old, new)| old == new));
+                prop_assert!(regular(vertices, 6, 4));
+            }
+            // One edge to each face where there was one along each side: on the rim that is one more.
+            Scheme::Sqrt3 => {
+                let grown = |&(valence, is_open): &(usize, bool)| (valence + usize::from(is_open), is_open);
+                prop_assert!(kept.clone().all(|(old, new)| grown(old) == *new));
+                // Three corners, and the face points across the sides that are no boundary.
+                prop_assert!(new[vertices..].iter().all(|&(valence, _)| (3..=6).contains(&valence)));
+            }
+            Scheme::DooSabin => {
+                let pinched = old.iter().any(|&(valence, is_open)| valence == 2 && !is_open);
+                let inside = new.iter().filter(|&&(_, is_open)| !is_open);
+                let mut inside = inside.map(|&(valence, _)| valence);
+                prop_assert!(inside.all(|valence| valence == 4 || pinched && valence == 3));
+            }
+            other => panic!("{other} has no rule here"),
+        }
+    }
+
+    #[test]
+    fn affine_maps_commute(
+        start in tries(),
+        matrix in prop::array::uniform3(prop::array::uniform3(-2.0_f32..2.0)),
+        shift in prop::array::uniform3(-5.0_f32..5.0),
+    ) {
+        let [x, y, z] = matrix.map(Point::from);
+        let map = |p: Point| Point::new(x.dot(p), y.dot(p), z.dot(p)) + Point::from(shift);
+        let first = moved(&start.polygons, map);
+        let first = after(&start.subdivision, &first, &start.creases, 2);
+        let step = start.after(2);
+        let last = moved(&step.polygons, map);
+        prop_assert_eq!(first.polygons.faces(), last.faces());
+        prop_assert_eq!(first.creases, step.creases);
+        let size = 10.0 + 6.0 * size(&start.polygons);
+        for (v, (a, b)) in first.polygons.positions().iter().zip(last.positions()).enumerate() {
+            prop_assert!(a.distance(*b) <= NEAR * size, "v{}: {} and {}", v, a, b);
+        }
+    }
+
+    /// The weights of every stencil add up to 1: where all points are one, they stay.
+    #[test]
+    fn weights_are_a_partition_of_unity(start in tries()) {
+        let place = Point::new(1.0, -3.0, 0.7);
+        let all = moved(&start.polygons, |_| place);
+        let step = after(&start.subdivision, &all, &start.creases, 2);
+        for (v, p) in step.polygons.positions().iter().enumerate() {
+            prop_assert!((*p - place).abs().max_element() < 2e-6, "v{}: {}", v, p);
+        }
+    }
+
+    #[test]
+    fn planar_stays_planar(start in tries()) {
+        let flat = moved(&start.polygons, |p| Point::new(p.x, p.y, 0.0));
+        let step = after(&start.subdivision, &flat, &start.creases, 2);
+        prop_assert!(step.polygons.positions().iter().all(|p| p.z == 0.0));
+    }
+
+    #[test]
+    fn symmetric_stays_symmetric(start in tries()) {
+        let Some((double, mirror)) = doubled(&start) else { return Ok(()) };
+        let step = after(&double.subdivision, &double.polygons, &double.creases, 2);
+        let points = step.polygons.positions();
+        let near = NEAR * size(&double.polygons);
+        let other_side = |p: Point| Point::new(-p.x, p.y, p.z);
+        if start.scheme() != Scheme::DooSabin {
+            for (v, &mirrored) in mirror.iter().enumerate() {
+                let off = other_side(points[v]).distance(points[mirrored]);
+                prop_assert!(off <= near, "v{} at {}, v{} at {}", v, points[v], mirrored, points[mirrored]);
+            }
+        }
+        for &p in points {
+            let expected = other_side(p);
+            prop_assert!(points.iter().any(|p| p.distance(expected) <= near), "none at {}", expected);
+        }
+    }
+
+    #[test]
+    fn interpolating_schemes_keep_old_vertices(
+        start in tries_of(&[Scheme::Butterfly, Scheme::Midpoint, Scheme::Bilinear], &Boundary::ALL),
+        levels in 1..3_u32,
+    ) {
+        prop_assert!(start.scheme().kind().interpolating);
+        let step = start.after(levels);
+        let bits = |p: &Point| p.to_array().map(f32::to_bits);
+        let (old, new) = (start.polygons.positions(), step.polygons.positions());
+        prop_assert!(old.iter().zip(new).all(|(old, new)| bits(old) == bits(new)));
+    }
+
+    #[test]
+    fn no_levels_are_the_mesh_itself(
+        start in tries_of(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
+    ) {
+        let Try { subdivision, polygons, creases } = &start;
+        let itself = Step { polygons: polygons.clone(), creases: creases.clone() };
+        for method in [Method::Gather, Method::Scatter] {
+            let step = subdivide::<IndexedFaceSet>(subdivision, method, polygons, creases, 0, |_, _| ());
+            prop_assert_eq!(step.as_ref(), Ok(&itself));
+        }
+        let step = subdivide_native::<HalfEdgeMesh>(subdivision, polygons, creases, 0, |_, _| ());
+        prop_assert_eq!(step, Ok(itself));
+    }
+}
+
+/// A mesh and its mirror image, sewn together along the boundary, which lies in x = 0; with the
+/// vertex that each is mirrored to. `None` where that is no manifold.
+///
+/// ```text
+///       boundary
+///    a′ ─── o ─── a     a at x > 0, a′ at −x; creases on both sides alike
+///    │      │     │
+///    b′ ─── p ─── b
+/// ```
+fn doubled(start: &Try) -> Option<(Try, Vec<usize>)> {
+    let half = &start.polygons;
+    let is_open: Vec<bool> = valences(half).iter().map(|&(_, is_open)| is_open).collect();
+    let mut points: Vec<Point> = Vec::new();
+    for (p, &is_open) in half.positions().iter().zip(&is_open) {
+        let x = if is_open { 0.0 } else { p.x.abs() + 1.0 };
+        points.push(Point::new(x, p.y, p.z));
+    }
+    let mut mirror: Vec<usize> = (0..points.len()).collect();
+    for v in half.vertices().filter(|v| !is_open[v.index()]) {
+        let p = points[v.index()];
+        mirror[v.index()] = points.len();
+        mirror.push(v.index());
+        points.push(Point::new(-p.x, p.y, p.z));
+    }
+    let number = |v: &VertexId| v.index() as u32;
+    let mirrored = |v: &VertexId| mirror[v.index()] as u32;
+    let faces = half.faces().iter().flat_map(|(_, face)| {
+        let there: Vec<u32> = face.iter().map(number).collect();
+        let here: Vec<u32> = face.iter().rev().map(mirrored).collect();
+        [there, here]
+    });
+    let polygons = PolygonMesh::new(points, faces.collect::<Vec<_>>()).ok()?;
+    if !is_plain_manifold(&polygons) {
+        return None;
+    }
+    let edges = start.creases.edges().iter().flat_map(|&(pair, s)| {
+        let ends = pair.ends();
+        [
+            (ends.each_ref().map(number), s),
+            (ends.each_ref().map(mirrored), s),
+        ]
+    });
+    let corners = start.creases.corners().iter();
+    let corners = corners.flat_map(|(v, s)| [(number(v), *s), (mirrored(v), *s)]);
+    let creases = Creases::new(&polygons, edges, corners).expect("edges of both halves");
+    let subdivision = start.subdivision;
+    let double = Try {
+        subdivision,
+        polygons,
+        creases,
+    };
+    Some((double, mirror))
+}
+
+fn control_grids() -> impl Strategy<Value = ControlGrid> {
+    let all = vec![Ends::Closed, Ends::Kept, Ends::Dropped];
+    let parts = (4..7_usize, 4..6_usize, prop::array::uniform2(select(all)));
+    parts.prop_flat_map(|(columns, rows, ends)| {
+        let point = prop::array::uniform3(-1.0_f32..1.0).prop_map(Point::from);
+        let grid = move |points| ControlGrid::new(columns, points, ends).expect("4 × 4");
+        vec(point, columns * rows).prop_map(grid)
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 24, ..ProptestConfig::default() })]
+
+    /// With no coordinate above 1, a vertex is away from its limit by a sixth of the second difference
+    /// along rows and one along columns, each at most 4, and by a 36th of that of both, at most 16. A
+    /// step makes these differences a quarter, and that of both a sixteenth. So after k steps
+    ///
+    /// ```text
+    ///   |vertex − limit| ≤ 4/3 · 4⁻ᵏ + 4/9 · 16⁻ᵏ
+    /// ```
+    #[test]
+    fn regular_grids_converge_to_the_b_spline_patch(grid in control_grids()) {
+        let polygons = grid.to_polygons().expect("small");
+        let subdivision = Subdivision::new(Scheme::CatmullClark);
+        let (vertices, columns) = (polygons.vertex_count(), grid.columns());
+        let across = if grid.ends()[0] == Ends::Closed { columns } else { columns - 1 };
+        let mut compared = BTreeMap::new();
+        for levels in 0..=4 {
+            let refined = after(&subdivision, &polygons, &Creases::default(), levels).polygons;
+            // Control vertices keep their numbers, and so do the first face points.
+            let old = (0..vertices).map(|v| (v, (v % columns) as f64, (v / columns) as f64, levels));
+            let faces = (0..polygons.face_count()).filter(|_| levels > 0).map(|f| {
+                let (i, j) = (f % across, f / across);
+                (vertices + f, i as f64 + 0.5, j as f64 + 0.5, levels - 1)
+            });
+            for (v, i, j, steps) in old.chain(faces) {
+                let Some(limit) = grid.evaluate(i, j) else { continue };
+                let off = (refined.positions()[v] - limit).abs().max_element();
+                let far = 4.0 / 3.0 * 0.25_f32.powi(steps as i32)
+                    + 4.0 / 9.0 * 0.0625_f32.powi(steps as i32);
+                prop_assert!(off <= far + 1e-6, "{} {} after {} steps: off {}", i, j, steps, off);
+                *compared.entry(levels).or_insert(0) += 1;
+            }
+        }
+        prop_assert!(compared[&4] >= 5, "{:?}", compared);
+    }
+}
+
+/// A step is not told from which side a mesh is numbered: the torus is the same from every vertex.
+#[test]
+fn a_regular_torus_stays_as_regular() {
+    let torus = sixfold::shapes::torus(6, 5).expect("a small torus");
+    let step = after(
+        &Subdivision::new(Scheme::CatmullClark),
+        &torus,
+        &Creases::default(),
+        2,
+    );
+    let facts = Facts::of(&step.polygons);
+    assert_eq!([facts.vertices, facts.faces], [480, 480]);
+    assert_eq!(facts.genus, Some(1));
+    // Turned by one of the six, it is itself.
+    let turn = std::f32::consts::TAU / 6.0;
+    let (sin, cos) = turn.sin_cos();
+    let points = step.polygons.positions();
+    let size = size(&torus);
+    for p in points {
+        let turned = Point::new(cos * p.x - sin * p.y, sin * p.x + cos * p.y, p.z);
+        let off = points.iter().map(|q| q.distance(turned));
+        assert!(
+            off.fold(f32::MAX, f32::min) <= NEAR * size,
+            "none at {turned}"
+        );
+    }
+}
+
+/// What is sharp for ever stays so; just below, it wears off.
+#[test]
+fn sharpness_of_ten_stays_and_less_wears_off() {
+    let grid = sixfold::shapes::grid(2, 2).expect("a small grid");
+    for (scheme, mesh) in [
+        (Scheme::CatmullClark, grid.clone()),
+        (Scheme::Loop, grid.fan_triangulated().expect("small")),
+    ] {
+        let inner = mesh.edge_uses();
+        let inner = inner.iter().find(|edge| !edge.is_boundary());
+        let [a, b] = inner.expect("an inner edge").ends.map(|v| v.index() as u32);
+        for (given, left) in [
+            (f32::INFINITY, f32::INFINITY),
+            (10.0, f32::INFINITY),
+            (9.99, 8.99),
+            (1.25, 0.25),
+            (1.0, 0.0),
+        ] {
+            let creases = Creases::new(&mesh, [([a, b], given)], [(a, given)]).expect("an edge");
+            let subdivision = Subdivision::new(scheme);
+            let step = after(&subdivision, &mesh, &creases, 1);
+            let a = VertexId::new(a);
+            let halves: Vec<f32> = step.creases.edges().iter().map(|&(_, s)| s).collect();
+            let expected = if left > 0.0 { vec![left; 2] } else { vec![] };
+            assert_eq!(halves.len(), expected.len(), "{scheme}, {given}");
+            let near = |s: f32, left: f32| s == left || (s - left).abs() < 1e-6;
+            assert!(
+                halves.iter().all(|&s| near(s, left)),
+                "{scheme}: {halves:?}"
+            );
+            assert!(near(step.creases.corner(a), left), "{scheme}, {given}");
+        }
+    }
+    assert!(mesh_core::SHARP_FOR_EVER == 10.0);
+}

@@ -28,12 +28,8 @@ pub(crate) fn non_manifold() -> impl Strategy<Value = Case> {
         (3..6_u32).prop_map(two_cones),
         (0..12_usize).prop_map(with_fin),
     ];
-    let torn = (
-        made,
-        vec(any::<Index>(), 0..2),
-        vec(any::<Index>(), 0..3),
-    );
-    let torn = torn.prop_map(|(mesh, lost, turned)| torn(&mesh, &lost, &turned));
+    let parts = (made, vec(any::<Index>(), 0..2), vec(any::<Index>(), 0..3));
+    let torn = parts.prop_map(|(mesh, lost, turned)| torn(&mesh, &lost, &turned));
     let chaos = any_mesh().prop_filter("no faces", |mesh| mesh.face_count() > 0);
     case_of(prop_oneof![2 => torn, 1 => chaos])
 }
@@ -45,22 +41,24 @@ fn case_of(mesh: impl Strategy<Value = PolygonMesh>) -> impl Strategy<Value = Ca
     let options = (scheme, boundary, creasing, 1..4_u32);
     let creases = (sharpness(), sharpness()).prop_map(|(some, more)| [some, more].concat());
     let parts = (options, mesh, creases);
-    parts.prop_map(|((scheme, boundary, creasing, levels), polygons, choices)| {
-        let polygons = fitting(scheme, polygons);
-        let creases = creases_on(&polygons, &choices);
-        let corners = polygons.corner_count();
-        let fits = |&levels: &u32| corners << (2 * levels) <= ENOUGH;
-        Case {
-            subdivision: Subdivision {
-                boundary,
-                creasing,
-                ..Subdivision::new(scheme)
-            },
-            levels: (1..=levels).rev().find(fits).unwrap_or(1),
-            polygons,
-            creases,
-        }
-    })
+    parts.prop_map(
+        |((scheme, boundary, creasing, levels), polygons, choices)| {
+            let polygons = fitting(scheme, polygons);
+            let creases = creases_on(&polygons, &choices);
+            let corners = polygons.corner_count();
+            let fits = |&levels: &u32| corners << (2 * levels) <= ENOUGH;
+            Case {
+                subdivision: Subdivision {
+                    boundary,
+                    creasing,
+                    ..Subdivision::new(scheme)
+                },
+                levels: (1..=levels).rev().find(fits).unwrap_or(1),
+                polygons,
+                creases,
+            }
+        },
+    )
 }
 
 fn fitting(scheme: Scheme, polygons: PolygonMesh) -> PolygonMesh {
@@ -129,9 +127,8 @@ pub(crate) fn fixed() -> Vec<Case> {
 fn all_options() -> impl Iterator<Item = (Scheme, Boundary, Creasing)> {
     let schemes = [Scheme::CatmullClark, Scheme::Loop].into_iter();
     let boundaries = schemes.flat_map(|scheme| Boundary::ALL.map(|boundary| (scheme, boundary)));
-    boundaries.flat_map(|(scheme, boundary)| {
-        Creasing::ALL.map(|creasing| (scheme, boundary, creasing))
-    })
+    boundaries
+        .flat_map(|(scheme, boundary)| Creasing::ALL.map(|creasing| (scheme, boundary, creasing)))
 }
 
 fn around(i: u32, n: u32, z: f32) -> Point {

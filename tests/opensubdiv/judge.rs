@@ -1,11 +1,11 @@
 //! The program `refine` as judge: a case goes in, what OpenSubdiv makes of it comes out.
 
+use std::env;
 use std::fmt::{self, Write as _};
 use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::str::{FromStr, SplitWhitespace};
-use std::env;
 
 use sixfold::subdivision::{Creasing, Subdivision};
 use sixfold::{Creases, Point, PolygonMesh, SHARP_FOR_EVER};

@@ -141,14 +141,16 @@ fn method(arguments: &Subdivide) -> Result<Method, Failure> {
     let row = row.ok_or_else(|| Failure::usage(format!("no backend is called `{backend}`")))?;
     let names: Vec<&str> = row.methods.iter().map(|method| method.name()).collect();
     let names = names.join(" or ");
-    let best = row.best().filter(|&best| {
-        // A native step keeps no order of faces that others could follow, and needs a fitting result.
-        best != Method::Native || row.holds_result
-    });
+    if arguments.levels > 1 && !row.holds_result {
+        let makes = scheme.kind().makes;
+        return Err(Failure::unsupported(format!(
+            "{scheme} makes {makes}, and {backend} holds triangles alone: level 2 cannot be made on it, choose another backend"
+        )));
+    }
     match arguments.method {
-        None => {
-            best.ok_or_else(|| Failure::unsupported(format!("{scheme} does not run on {backend}")))
-        }
+        None => row
+            .best()
+            .ok_or_else(|| Failure::unsupported(format!("{scheme} does not run on {backend}"))),
         Some(method) if row.methods.contains(&method) => Ok(method),
         Some(method) => Err(Failure::unsupported(format!(
             "{scheme} does not run by {method} on {backend}: choose {names}, or see `sixfold schemes`"

@@ -57,7 +57,7 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
         let by_nature = faces != 2;
         let ends = ends.map(|v| numbers[v]);
         let sharpness = marked.sharpness(creases, ends, by_nature);
-        if sharpness > 0.0 {
+        if K::APPROXIMATES && sharpness > 0.0 {
             level.edges.push(SharpEdge {
                 edge,
                 ends,

@@ -81,7 +81,11 @@ impl LimitPoint {
         match self {
             Self::Defined { normal, .. } => match normal {
                 LimitNormal::One(normal) => Some(normal),
-                LimitNormal::TwoSides([a, b]) => (a + b).try_normalize(),
+                LimitNormal::TwoSides([a, b]) => {
+                    let sum = a + b;
+                    // Where the sides lie back to back what is left of the sum is rounding.
+                    (sum.length() > 1e-3).then(|| sum.normalize())
+                }
                 LimitNormal::Undefined => None,
             },
             Self::Undefined(_) => None,

@@ -10,7 +10,8 @@ use mesh_core::{Point, Split};
 pub(crate) trait Mask: Copy + Sync {
     /// How faces are split.
     const SPLIT: Split;
-    /// Whether old vertices move; `vertex` is not asked otherwise.
+    /// Whether old vertices move. Otherwise `vertex` is not asked, and boundaries and creases need no
+    /// rules: edges have their midpoints anyway.
     const APPROXIMATES: bool;
     /// Whether `edge` looks at face values.
     const EDGES_SEE_FACES: bool;

@@ -46,7 +46,7 @@ pub(crate) fn step<M: Refine, K: Mask>(
         mesh.edges_of_part(numbers, part).for_each(|e| {
             let (point, faces) = edge_point(mesh, mask, e, value);
             points[at] = point;
-            if faces != 2 {
+            if K::APPROXIMATES && faces != 2 {
                 by_nature.push(SharpEdge {
                     edge: range.start + at,
                     ends: mesh.edge_vertices(e).map(|v| v.index() as u32),

@@ -131,7 +131,7 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
         });
         let by_nature = count != 2;
         let sharpness = marked.sharpness(creases, ends, by_nature);
-        if sharpness > 0.0 {
+        if K::APPROXIMATES && sharpness > 0.0 {
             level.edges.push(SharpEdge {
                 edge: number,
                 ends,

@@ -112,24 +112,24 @@ impl Scheme {
             Self::CatmullClark => Kind {
                 takes: "polygons",
                 makes: "quads",
-                continuity: "C2, C1 at extraordinary vertices",
-                boundary: "cubic B-spline curve, corners kept on demand",
+                continuity: "C2, extraordinary C1",
+                boundary: "B-spline curve; corners may stay",
                 creases: true,
                 split: Some(Split::Quads),
-                source: "Catmull & Clark 1978; DeRose, Kass & Truong 1998",
+                source: "Catmull & Clark 1978; DeRose et al. 1998",
                 ..BASE
             },
             Self::Loop => Kind {
-                continuity: "C2, C1 at extraordinary vertices",
-                boundary: "cubic B-spline curve, corners kept on demand",
+                continuity: "C2, extraordinary C1",
+                boundary: "B-spline curve; corners may stay",
                 creases: true,
                 source: "Loop 1987; Warren 1995",
                 ..BASE
             },
             Self::Sqrt3 => Kind {
-                continuity: "C2, C1 at extraordinary vertices",
+                continuity: "C2, extraordinary C1",
                 growth: "3",
-                boundary: "cubic B-spline curve, cut in three every second step",
+                boundary: "B-spline curve, every second step",
                 split: Some(Split::Sqrt3 { trisect: false }),
                 source: "Kobbelt 2000",
                 ..BASE
@@ -147,7 +147,7 @@ impl Scheme {
                 takes: "polygons",
                 makes: "polygons",
                 continuity: "C1",
-                boundary: "shrinks: no faces of boundary edges and vertices",
+                boundary: "shrinks: its edges make no faces",
                 split: None,
                 source: "Doo & Sabin 1978",
                 ..BASE

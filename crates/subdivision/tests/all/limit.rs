@@ -139,6 +139,14 @@ fn defined(limit: LimitPoint) -> (Point, LimitNormal) {
     }
 }
 
+fn normals(limit: LimitPoint) -> Vec<Point> {
+    match defined(limit).1 {
+        LimitNormal::One(normal) => vec![normal],
+        LimitNormal::TwoSides(sides) => sides.to_vec(),
+        LimitNormal::Undefined => vec![],
+    }
+}
+
 fn all_options(scheme: Scheme) -> Vec<Subdivision> {
     let of = |loop_weights| Subdivision {
         loop_weights,
@@ -227,7 +235,11 @@ fn a_boundary_vertex_comes_to_its_limit() {
             let (position, normal) = defined(at[0]);
             let start = Step { polygons, creases };
             // Few faces grow flat against the boundary, until rounding shows; many turn slowly.
-            let levels = if k < 4 { 9 } else { 45 };
+            let (levels, least) = match k {
+                1 | 2 => (14, 0.9995),
+                3 => (20, 0.9995),
+                _ => (45, 0.99),
+            };
             let (place, seen) = followed(&scheme, start, levels, |_| true);
             assert!(
                 place.distance(position) < 1e-4,
@@ -237,7 +249,7 @@ fn a_boundary_vertex_comes_to_its_limit() {
                 panic!("{k}: {normal:?}")
             };
             assert!(
-                seen.dot(normal) > 0.99,
+                seen.dot(normal) > least,
                 "{scheme:?} {k} {seed}: {seen} {normal}"
             );
         }
@@ -449,9 +461,10 @@ proptest! {
                     continue;
                 };
                 prop_assert!(p.distance(q) < 1e-5 * size, "{}: {:?} {:?}", v, a, b);
-                if let (Some(m), Some(n)) = (a.normal(), b.normal()) {
-                    prop_assert!(m.dot(n) > 0.98, "{}: {:?} {:?}", v, a, b);
-                }
+                // Which side comes first may change, with the numbers of the ends.
+                let (m, n) = (normals(*a), normals(*b));
+                let known = |m: &Point| n.is_empty() || n.iter().any(|n| m.dot(*n) > 0.98);
+                prop_assert!(m.iter().all(known), "{}: {:?} {:?}", v, a, b);
             }
             (at, creases, before) = (after.polygons, after.creases, limits);
         }
