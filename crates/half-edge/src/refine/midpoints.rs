@@ -78,14 +78,13 @@ pub(super) fn quads<const CLOSED: bool>(
     let rows = mesh.half_rows();
     let inner = |h: u32| 4 * sizes.edges + 2 * corners.number(h);
     let far = AtomicBool::new(false);
-    let before = |first: u32, pairs: &[[Half; 2]], before: &mut [u32]| {
-        if !previous(rows, first, pairs, before) {
+    split(mesh, corners, sizes, child, |h, record, n| {
+        let (sizes, corners) = (sizes, *corners);
+        let p = previous(rows, h, n).unwrap_or_else(|| {
             // Never wrong in the end: large faces are linked once all rows are there.
             far.store(true, Ordering::Relaxed);
-        }
-    };
-    split(mesh, corners, sizes, child, before, |h, record, n, p| {
-        let (sizes, corners) = (sizes, *corners);
+            h
+        });
         let face = record.face.get().map_or(0, |f| f.index() as u32);
         [
             half(inner(p) + 1, sizes.midpoints + h / 2, corners.face(h)),
@@ -111,12 +110,8 @@ pub(super) fn triangles<const CLOSED: bool>(
     let sizes = Sizes::of(mesh, false);
     let rows = mesh.half_rows();
     let inner = |h: u32| 4 * sizes.edges + 2 * corners.number(h);
-    let before = |_: u32, pairs: &[[Half; 2]], before: &mut [u32]| {
-        for (half, before) in pairs.as_flattened().iter().zip(before) {
-            *before = rows[half.next.index()].next.index() as u32;
-        }
-    };
-    split(mesh, corners, sizes, child, before, |h, record, n, p| {
+    split(mesh, corners, sizes, child, |h, record, n| {
+        let p = rows[n as usize].next.index() as u32;
         let face = record.face.get().map_or(0, |f| f.index() as u32);
         let middle = FaceId::new(3 * sizes.faces + face);
         [
@@ -131,20 +126,14 @@ pub(super) fn triangles<const CLOSED: bool>(
     });
 }
 
-/// How many edges are looked ahead for, so that their far reads wait for one another no longer.
-const AHEAD: usize = 64;
-
-/// Cuts every edge in two, and joins the midpoints inside the faces as `inner_pair` says, which is told
-/// a half, its record, and the halves after and before it; `befores` finds the latter for some edges,
-/// of which it is told the first half and the records.
+/// Cuts every edge in two, and joins the midpoints inside the faces as `inner` says.
 #[inline(always)]
 fn split<const CLOSED: bool>(
     mesh: &HalfEdgeMesh,
     corners: &Corners<CLOSED>,
     sizes: Sizes,
     child: &mut HalfEdgeMesh,
-    befores: impl Fn(u32, &[[Half; 2]], &mut [u32]) + Sync,
-    inner_pair: impl Fn(u32, &Half, u32, u32) -> [Half; 2] + Sync,
+    inner_pair: impl Fn(u32, &Half, u32) -> [Half; 2] + Sync,
 ) {
     let edges = mesh.half_rows().as_chunks::<2>().0;
     for_parts(edges.len(), corners, 4, child, |part| {
@@ -161,24 +150,16 @@ fn split<const CLOSED: bool>(
                 half(2 * n, point, corners.face(n)),
             ]
         };
-        let blocks = pairs.chunks(AHEAD).zip(along.chunks_mut(AHEAD));
-        let blocks = part.edges.clone().step_by(AHEAD).zip(blocks);
-        let mut before = [[0_u32; 2]; AHEAD];
         if CLOSED {
-            let inner = part.inner.as_chunks_mut::<4>().0.chunks_mut(AHEAD);
-            for ((first, (pairs, along)), inner) in blocks.zip(inner) {
-                let before = &mut before[..pairs.len()];
-                befores(2 * first, pairs, before.as_flattened_mut());
-                let rows = pairs.iter().zip(&*before).zip(along).zip(inner);
-                for (e, (((pair, before), along), inner)) in (first..).zip(rows) {
-                    let ([one, other], [p, q]) = (pair, *before);
-                    let (h, t) = (2 * e, 2 * e + 1);
-                    let ([a, b], [c, d]) = (children(h, one), children(t, other));
-                    *along = [a, d, c, b];
-                    let [a, b] = inner_pair(h, one, one.next.index() as u32, p);
-                    let [c, d] = inner_pair(t, other, other.next.index() as u32, q);
-                    *inner = [a, b, c, d];
-                }
+            let inner = part.inner.as_chunks_mut::<4>().0;
+            let rows = pairs.iter().zip(along).zip(inner);
+            for (e, (([one, other], along), inner)) in part.edges.clone().zip(rows) {
+                let (h, t) = (2 * e, 2 * e + 1);
+                let ([a, b], [c, d]) = (children(h, one), children(t, other));
+                *along = [a, d, c, b];
+                let [a, b] = inner_pair(h, one, one.next.index() as u32);
+                let [c, d] = inner_pair(t, other, other.next.index() as u32);
+                *inner = [a, b, c, d];
             }
             for (h, first) in (2 * part.edges.start..).zip(part.first.iter_mut()) {
                 *first = HalfEdgeId::new(2 * h);
@@ -187,27 +168,22 @@ fn split<const CLOSED: bool>(
         }
         let inner = part.inner.as_chunks_mut::<2>().0;
         let mut inner = inner.iter_mut().zip(part.first.iter_mut());
-        for (first, (pairs, along)) in blocks {
-            let before = &mut before[..pairs.len()];
-            befores(2 * first, pairs, before.as_flattened_mut());
-            let rows = pairs.iter().zip(&*before).zip(along);
-            for (e, ((pair, before), along)) in (first..).zip(rows) {
-                let [one, other] = [0, 1].map(|side| {
-                    let (h, record) = (2 * e + side, &pair[side as usize]);
-                    let (n, origin) = (record.next.index() as u32, record.origin.index() as u32);
-                    if !corners.is_one(h) {
-                        let point = sizes.midpoints + e;
-                        return [(late(h), origin), (2 * n, point)]
-                            .map(|(next, origin)| half(next, origin, Slot::NONE));
-                    }
-                    if let Some((inner, first)) = inner.next() {
-                        *inner = inner_pair(h, record, n, before[side as usize]);
-                        *first = HalfEdgeId::new(2 * h);
-                    }
-                    children(h, record)
-                });
-                *along = [one[0], other[1], other[0], one[1]];
-            }
+        for ((e, pair), along) in part.edges.clone().zip(pairs).zip(along) {
+            let [one, other] = [0, 1].map(|side| {
+                let (h, record) = (2 * e + side, &pair[side as usize]);
+                let (n, origin) = (record.next.index() as u32, record.origin.index() as u32);
+                if !corners.is_one(h) {
+                    let point = sizes.midpoints + e;
+                    return [(late(h), origin), (2 * n, point)]
+                        .map(|(next, origin)| half(next, origin, Slot::NONE));
+                }
+                if let Some((inner, first)) = inner.next() {
+                    *inner = inner_pair(h, record, n);
+                    *first = HalfEdgeId::new(2 * h);
+                }
+                children(h, record)
+            });
+            *along = [one[0], other[1], other[0], one[1]];
         }
     });
     let (old, points) = child
@@ -236,30 +212,18 @@ fn late(h: u32) -> u32 {
     2 * (h ^ 1) + 1
 }
 
-/// The halves before those of `pairs`, of which `first` is the first, along their faces; false if a
-/// face is too large to go all the way. Along boundary loops it goes nowhere of use.
-///
-/// All go a step before any goes the next: the reads of a step do not wait for one another, and it is
-/// by waiting that a walk of its own for each half would spend its time.
-fn previous(rows: &[Half], first: u32, pairs: &[[Half; 2]], before: &mut [u32]) -> bool {
-    let halves = || pairs.as_flattened().iter().zip(first..);
-    for (at, (half, _)) in before.iter_mut().zip(halves()) {
-        *at = half.next.index() as u32;
-    }
-    let mut arrived = false;
+/// The half before `h`, whose next is `n`, along a face; none if the face is too large.
+#[inline(always)]
+fn previous(rows: &[Half], h: u32, n: u32) -> Option<u32> {
+    let mut at = n;
     for _ in 0..REACH {
-        arrived = true;
-        for (at, (half, h)) in before.iter_mut().zip(halves()) {
-            let after = rows[*at as usize].next.index() as u32;
-            let there = after == h || half.face == Slot::NONE;
-            arrived &= there;
-            *at = if there { *at } else { after };
+        let after = rows[at as usize].next.index() as u32;
+        if after == h {
+            return Some(at);
         }
-        if arrived {
-            break;
-        }
+        at = after;
     }
-    arrived
+    None
 }
 
 /// Links what [`previous`] did not reach, by one walk along each large face; O(corners).
