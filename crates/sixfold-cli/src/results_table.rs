@@ -1,6 +1,6 @@
 //! The table: a row for each operation, a column for each backend.
 
-use ::study::{Agreement, BackendReport, Operation, Report, ResultRow, Standing};
+use ::study::{Agreement, BackendReport, Operation, Refusal, Report, ResultRow, Standing};
 use comfy_table::{
     Attribute, Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle,
 };
@@ -39,7 +39,8 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     let mut signs = Signs::default();
     for operation in Operation::ALL {
         let rows: Vec<&ResultRow> = report.rows(operation).collect();
-        if rows.is_empty() {
+        let refused = |refusal: &Refusal| refusal.operation == operation;
+        if rows.is_empty() && !report.refusals.iter().any(refused) {
             continue;
         }
         let mut line = vec![Cell::new(operation.name()), Cell::new(operation.per())];
@@ -199,20 +200,58 @@ impl Signs {
                 _ => lines.push(part),
             }
         }
-        for row in &report.results {
-            if let Some(ns) = row.estimated_ns {
-                let ResultRow {
-                    backend, operation, ..
-                } = row;
-                let time = duration(ns);
-                let text = format!(
-                    "? {operation} on {backend} was not run: one run would take about {time}, too long for the budget"
-                );
-                lines.extend(wrapped(&text, WIDTH));
-            }
-        }
+        let mut notes = refused(report);
+        notes.extend(report.results.iter().filter_map(unrun));
+        lines.extend(notes.iter().flat_map(|note| wrapped(note, WIDTH)));
         lines
     }
+}
+
+/// Why a row was only estimated, and what can be done about it.
+fn unrun(row: &ResultRow) -> Option<String> {
+    let time = duration(row.estimated_ns?);
+    let ResultRow {
+        backend, operation, ..
+    } = row;
+    Some(match row.by_name_only {
+        true => format!(
+            "? {operation} on {backend} was left out: some {time} a run; ask for it with --operations {operation}"
+        ),
+        false => format!(
+            "? {operation} on {backend} was not run: one run would take about {time}, too long for the budget"
+        ),
+    })
+}
+
+/// What is not there and why: one line for each reason, and the operations that it keeps from a
+/// backend.
+fn refused(report: &Report) -> Vec<String> {
+    let mut lines: Vec<(&str, Vec<&str>, Vec<&str>)> = Vec::new();
+    for backend in &report.backends {
+        let of_it = || {
+            let refusals = report.refusals.iter();
+            refusals.filter(|refusal| refusal.backend == backend.name)
+        };
+        let mut seen: Vec<&str> = Vec::new();
+        for Refusal { reason, .. } in of_it() {
+            if seen.contains(&reason.as_str()) {
+                continue;
+            }
+            seen.push(reason);
+            let here = of_it().filter(|refusal| refusal.reason == *reason);
+            let operations: Vec<&str> = here.map(|refusal| refusal.operation.name()).collect();
+            let mut alike = lines.iter_mut();
+            match alike.find(|(r, o, _)| *r == reason && *o == operations) {
+                Some((.., backends)) => backends.push(&backend.name),
+                None => lines.push((reason, operations, vec![&backend.name])),
+            }
+        }
+    }
+    let lines = lines.into_iter().map(|(reason, operations, backends)| {
+        let (operations, backends) = (operations.join(", "), backends.join(", "));
+        format!("– {operations} on {backends}: {reason}")
+    });
+    lines.collect()
 }
 
 #[cfg(test)]
@@ -263,6 +302,7 @@ mod tests {
             samples: 9,
             runs_per_sample: 1,
             warm_up_only: false,
+            by_name_only: false,
         }
     }
 
@@ -276,6 +316,18 @@ mod tests {
         unrun.estimated_ns = Some(7.3e9);
         let mut merged = row("polygon-soup", "build", 1234.0, Standing::Tied);
         merged.agreement = Agreement::Merged;
+        let mut left_out = row("polygon-soup", "loop_gather", 0.0, Standing::Slower);
+        (
+            left_out.median_ns,
+            left_out.ns_per_element,
+            left_out.standing,
+        ) = (None, None, None);
+        (left_out.estimated_ns, left_out.by_name_only) = (Some(1.4e9), true);
+        let refusal = |operation: &str, reason: &str| Refusal {
+            backend: "polygon-soup".into(),
+            operation: operation.parse().expect("a name"),
+            reason: reason.into(),
+        };
         let mesh = PolygonMesh::default();
         Report {
             schema: SCHEMA,
@@ -292,6 +344,13 @@ mod tests {
                 row("half-edge", "vertex_vertices", 1.2e6, Standing::Best),
                 unrun,
                 wrong,
+                left_out,
+                row("half-edge", "loop_gather", 8e4, Standing::Alone),
+                row("half-edge", "loop_native", 2e3, Standing::Alone),
+            ],
+            refusals: vec![
+                refusal("catmull_clark_native", "it cannot split its own tables"),
+                refusal("loop_native", "it cannot split its own tables"),
             ],
             words: Vec::new(),
             interrupted: false,

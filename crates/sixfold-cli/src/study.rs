@@ -114,6 +114,7 @@ fn refusals(specimen: &Specimen, settings: &Settings) -> Result<Report, Failure>
         mesh: inspection.mesh,
         backends,
         results: Vec::new(),
+        refusals: Vec::new(),
         words: Vec::new(),
         interrupted: false,
         environment: Environment::here(settings.seed, settings.budget.as_secs_f64()),

@@ -29,7 +29,7 @@ const FACTS: [(&str, &str); 19] = [
     ("face_degree", "object or null"),
 ];
 
-const RESULT: [(&str, &str); 23] = [
+const RESULT: [(&str, &str); 24] = [
     ("backend", "string"),
     ("operation", "string"),
     ("median_ns", "number or null"),
@@ -53,6 +53,7 @@ const RESULT: [(&str, &str); 23] = [
     ("samples", "number"),
     ("runs_per_sample", "number"),
     ("warm_up_only", "boolean"),
+    ("by_name_only", "boolean"),
 ];
 
 fn kind(value: &Value) -> &'static str {
@@ -108,11 +109,21 @@ fn a_study_writes_its_schema_and_everybody_agrees() {
         assert!(backend["bytes"].as_f64() > Some(0.0));
     }
     let results = report["results"].as_array().expect("a list");
-    assert_eq!(results.len(), 18 * backends.len());
+    let refusals = report["refusals"].as_array().expect("a list");
+    assert_eq!(results.len() + refusals.len(), 24 * backends.len());
+    for refusal in refusals {
+        let fields = ["backend", "operation", "reason"].map(|field| (field, "string"));
+        has(refusal, &fields);
+    }
     let mut checksums: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     for row in results {
         has(row, &RESULT);
-        assert_eq!(row["agreement"], "same", "{row}");
+        let expected = if row["median_ns"].is_null() {
+            "unchecked"
+        } else {
+            "same"
+        };
+        assert_eq!(row["agreement"], expected, "{row}");
         if row["sampled"] == false && row["estimated_ns"].is_null() {
             assert!(row["min_ns"].as_f64() <= row["median_ns"].as_f64(), "{row}");
             let operation = row["operation"].as_str().expect("a name");

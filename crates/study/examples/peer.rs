@@ -95,7 +95,9 @@ fn run(arguments: &Arguments) -> Result<(), String> {
         );
     }
     for operation in Operation::ALL {
-        if !wanted(operation.name()) {
+        // Subdivisions are run below, and here only where they are named.
+        let unasked = operation.subdivides() && arguments.operations.is_empty();
+        if unasked || !wanted(operation.name()) {
             continue;
         }
         let clock = MachineClock::start();
@@ -166,7 +168,11 @@ struct Row {
 
 impl Row {
     /// Runs it once to warm up, and then as often as it is asked for and the budget allows.
-    fn of(arguments: &Arguments, operation: &str, mut run: impl FnMut() -> (Time, f64, u64)) -> Self {
+    fn of(
+        arguments: &Arguments,
+        operation: &str,
+        mut run: impl FnMut() -> (Time, f64, u64),
+    ) -> Self {
         let (_, checksum, elements) = run();
         let mut row = Self {
             operation: operation.to_owned(),

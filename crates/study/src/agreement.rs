@@ -101,7 +101,10 @@ fn agree(operation: Operation, a: f64, b: f64, polygons: &PolygonMesh) -> bool {
 fn noise(operation: Operation, polygons: &PolygonMesh) -> f64 {
     match operation {
         Operation::VertexNormal => 12.0 * cancelled_normals(polygons) as f64,
-        Operation::FaceBarycenter | Operation::VvSmooth => {
+        Operation::FaceBarycenter
+        | Operation::VvSmooth
+        | Operation::CatmullClark(_)
+        | Operation::Loop(_) => {
             let corners = polygons.faces().corners().iter();
             1e-6 * field_sum(corners.map(|&v| polygons.position(v)))
         }
@@ -180,10 +183,7 @@ mod tests {
                 checksum: self.checksum * part,
                 elements: 10 - self.merged as u64,
             };
-            Run {
-                time: clock.now(),
-                outcome: Some(outcome),
-            }
+            Run::done(clock.now(), Some(outcome))
         }
     }
 

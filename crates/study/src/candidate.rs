@@ -6,7 +6,9 @@ use sixfold::{MeshQuery, PolygonMesh, QueryCost, Representation};
 
 use crate::clock::{Clock, Time, timed};
 use crate::operation::{Kind, Operation};
+use crate::refining::Refining;
 use crate::sample::{Draw, Side};
+use crate::subdividing::{OneThread, patch};
 use crate::workload::{All, Elements, Outputs, Tally, field_sum, share};
 
 /// What to run: an operation on all elements, or on a sample.
@@ -18,7 +20,8 @@ pub(crate) struct Job {
     pub(crate) sample: Option<Sample>,
 }
 
-/// The first few elements of the draw, of the kinds that are scanned for.
+/// The first few elements of the draw, of the kinds that are scanned for; the first few faces, as a
+/// mesh of their own, where they are subdivided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Sample {
     /// By kind: whether a sample stands for all. The other kinds are gone through in full.
@@ -28,12 +31,25 @@ pub(crate) struct Sample {
 }
 
 /// What a run came to.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Run {
     /// The time of one run of the whole operation; scaled where a sample stands for it.
     pub(crate) time: Time,
     /// What it found; `None` if nobody asked.
     pub(crate) outcome: Option<Outcome>,
+    /// Why it cannot be done on this structure or mesh; the time means nothing then.
+    pub(crate) refusal: Option<String>,
+}
+
+impl Run {
+    /// A run that was done.
+    pub(crate) fn done(time: Time, outcome: Option<Outcome>) -> Self {
+        Self {
+            time,
+            outcome,
+            refusal: None,
+        }
+    }
 }
 
 /// What an operation found.
@@ -66,10 +82,11 @@ pub(crate) struct Candidate<'a, M: Representation> {
     mesh: M,
     outputs: Outputs<M>,
     chosen: Chosen<M>,
+    thread: OneThread,
     merged_vertices: usize,
 }
 
-impl<'a, M: Representation> Candidate<'a, M> {
+impl<'a, M: Representation + 'static> Candidate<'a, M> {
     /// Puts `mesh`, built from `polygons`, on the bench.
     pub(crate) fn new(polygons: &'a PolygonMesh, draw: Option<&'a Draw>, mesh: M) -> Self {
         Self {
@@ -77,6 +94,7 @@ impl<'a, M: Representation> Candidate<'a, M> {
             draw,
             outputs: Outputs::for_mesh(&mesh),
             chosen: Chosen::default(),
+            thread: OneThread::default(),
             merged_vertices: polygons.vertex_count().saturating_sub(mesh.vertex_count()),
             mesh,
         }
@@ -93,7 +111,7 @@ impl<'a, M: Representation> Candidate<'a, M> {
             checksum: (mesh.vertex_count() + mesh.face_count()) as f64,
             elements: mesh.face_count() as u64,
         });
-        Run { time, outcome }
+        Run::done(time, outcome)
     }
 
     /// Each run smooths a fresh copy, made before the clock starts.
@@ -124,7 +142,7 @@ impl<'a, M: Representation> Candidate<'a, M> {
                 elements: tally.elements,
             }
         });
-        Run { time, outcome }
+        Run::done(time, outcome)
     }
 
     fn whole(&mut self, operation: Operation, runs: u32, clock: &dyn Clock, check: bool) -> Run {
@@ -140,7 +158,7 @@ impl<'a, M: Representation> Candidate<'a, M> {
             }
         });
         let outcome = check.then(|| self.outcome(operation, &All, tallies, [1.0; 3]));
-        Run { time, outcome }
+        Run::done(time, outcome)
     }
 
     fn sampled(
@@ -189,9 +207,29 @@ impl<'a, M: Representation> Candidate<'a, M> {
             total = total.plus(swap);
         }
         let outcome = check.then(|| self.outcome(operation, &chosen, tallies, scale));
+        Run::done(total, outcome)
+    }
+
+    /// On all faces, or on a patch that stands for them.
+    fn subdivide(
+        &mut self,
+        refining: Refining,
+        sample: Option<Sample>,
+        runs: u32,
+        clock: &dyn Clock,
+        check: bool,
+    ) -> Run {
+        let Some(Sample { size, .. }) = sample else {
+            return self
+                .thread
+                .run::<M>(refining, self.polygons, runs, clock, check);
+        };
+        let patch = patch(self.polygons, size);
+        let scale = self.polygons.face_count() as f64 / patch.face_count() as f64;
+        let run = self.thread.run::<M>(refining, &patch, runs, clock, check);
         Run {
-            time: total,
-            outcome,
+            time: run.time.scaled(scale),
+            ..run
         }
     }
 
@@ -235,7 +273,7 @@ impl<'a, M: Representation> Candidate<'a, M> {
     }
 }
 
-impl<M: Representation> Subject for Candidate<'_, M> {
+impl<M: Representation + 'static> Subject for Candidate<'_, M> {
     fn name(&self) -> &'static str {
         M::NAME
     }
@@ -253,11 +291,15 @@ impl<M: Representation> Subject for Candidate<'_, M> {
     }
 
     fn run(&mut self, job: &Job, runs: u32, clock: &dyn Clock, check: bool) -> Run {
-        let run = match (job.operation, job.sample) {
-            (Operation::Build, _) => self.build(runs, clock),
-            (operation, Some(sample)) => return self.sampled(operation, sample, clock, check),
-            (Operation::VvSmooth, None) => self.smooth(runs, clock, check),
-            (operation, None) => self.whole(operation, runs, clock, check),
+        let refining = job.operation.refining();
+        let run = match (job.operation, job.sample, refining) {
+            (_, sample, Some(refining)) => self.subdivide(refining, sample, runs, clock, check),
+            (Operation::Build, ..) => self.build(runs, clock),
+            (operation, Some(sample), None) => {
+                return self.sampled(operation, sample, clock, check);
+            }
+            (Operation::VvSmooth, ..) => self.smooth(runs, clock, check),
+            (operation, ..) => self.whole(operation, runs, clock, check),
         };
         Run {
             time: run.time.scaled(1.0 / f64::from(runs)),

@@ -52,7 +52,9 @@ impl Sub for Time {
 }
 
 /// Something that tells the time; a test can tell it what it likes.
-pub trait Clock {
+///
+/// Work may be done on another thread: it is asked there, and then speaks of that thread.
+pub trait Clock: Sync {
     /// The moment.
     fn now(&self) -> Time;
 }

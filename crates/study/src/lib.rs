@@ -14,6 +14,7 @@ mod clock;
 mod environment;
 mod inspect;
 mod measure;
+mod methods;
 mod operation;
 mod plan;
 mod refining;
@@ -23,6 +24,7 @@ mod solo;
 mod standing;
 mod statistics;
 mod study;
+mod subdividing;
 mod words;
 mod workload;
 
@@ -34,7 +36,7 @@ pub use measure::Progress;
 pub use operation::{Kind, Operation, UnknownOperation};
 pub use refining::{Refiner, Refining, Way};
 pub use report::{
-    Agreement, BackendReport, Inspection, MeshReport, Report, ResultRow, SCHEMA, Standing,
+    Agreement, BackendReport, Inspection, MeshReport, Refusal, Report, ResultRow, SCHEMA, Standing,
 };
 pub use solo::{Solo, SoloRun};
 pub use study::{Settings, StudyError, study};

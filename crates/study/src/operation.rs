@@ -4,7 +4,10 @@ use std::fmt;
 use std::str::FromStr;
 
 use serde::{Serialize, Serializer};
-use sixfold::{QueryCost, Relation};
+use sixfold::subdivision::{Method, Scheme};
+use sixfold::{PolygonMesh, QueryCost, Relation};
+
+use crate::refining::{Refining, Way};
 
 /// One kind of element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -67,13 +70,21 @@ pub enum Operation {
     FfBfs,
     /// Every element asked its three relations.
     AllQueries,
+    /// One step of Catmull–Clark by one method; its scheme and way are [`Operation::refining`].
+    CatmullClark(Method),
+    /// One step of Loop by one method.
+    Loop(Method),
 }
 
 const RELATIONS: &[Relation; 9] = &Relation::ALL;
+/// What a step of Catmull–Clark asks of a vertex, and any step of a face.
+const AROUND_VERTEX: &[Relation] = &[Relation::VertexVertices, Relation::VertexFaces];
+const AROUND_EDGE: &[Relation] = &[Relation::EdgeVertices, Relation::EdgeFaces];
+const AROUND_FACE: &[Relation] = &[Relation::FaceVertices, Relation::FaceEdges];
 
 impl Operation {
     /// All of them, in the order in which tables show them.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 24] = [
         Self::Build,
         Self::Relation(Relation::VertexVertices),
         Self::Relation(Relation::VertexEdges),
@@ -92,6 +103,12 @@ impl Operation {
         Self::Boundary,
         Self::FfBfs,
         Self::AllQueries,
+        Self::CatmullClark(Method::Gather),
+        Self::CatmullClark(Method::Scatter),
+        Self::CatmullClark(Method::Native),
+        Self::Loop(Method::Gather),
+        Self::Loop(Method::Scatter),
+        Self::Loop(Method::Native),
     ];
 
     /// What users call it: `vv_smooth`.
@@ -107,10 +124,54 @@ impl Operation {
             Self::Boundary => "boundary",
             Self::FfBfs => "ff_bfs",
             Self::AllQueries => "all_queries",
+            Self::CatmullClark(Method::Gather) => "catmull_clark_gather",
+            Self::CatmullClark(Method::Scatter) => "catmull_clark_scatter",
+            Self::CatmullClark(Method::Native) => "catmull_clark_native",
+            Self::Loop(Method::Gather) => "loop_gather",
+            Self::Loop(Method::Scatter) => "loop_scatter",
+            Self::Loop(Method::Native) => "loop_native",
         }
     }
 
-    /// What one element of its count is: `vertex`, or `visit` where neighbours are counted.
+    /// The subdivision that it is, if it is one: a single step.
+    pub fn refining(self) -> Option<Refining> {
+        let (scheme, method) = match self {
+            Self::CatmullClark(method) => (Scheme::CatmullClark, method),
+            Self::Loop(method) => (Scheme::Loop, method),
+            _ => return None,
+        };
+        let way = match method {
+            Method::Gather => Way::Gather,
+            Method::Scatter => Way::Scatter,
+            Method::Native => Way::Native,
+        };
+        Some(Refining::new(scheme, way, 1))
+    }
+
+    /// Whether it is a subdivision.
+    pub const fn subdivides(self) -> bool {
+        matches!(self, Self::CatmullClark(_) | Self::Loop(_))
+    }
+
+    /// Whether every series of its runs begins with one that nobody times: it fills the tables that
+    /// the others use again.
+    pub(crate) const fn readies_itself(self) -> bool {
+        matches!(
+            self,
+            Self::CatmullClark(Method::Native) | Self::Loop(Method::Native)
+        )
+    }
+
+    /// How many elements it visits on `polygons` where no run has told: the faces, or the new ones.
+    pub(crate) fn expected(self, polygons: &PolygonMesh) -> usize {
+        match self {
+            Self::CatmullClark(_) => polygons.corner_count(),
+            Self::Loop(_) => polygons.face_count().saturating_mul(4),
+            _ => polygons.face_count(),
+        }
+    }
+
+    /// What one element of its count is: `vertex`, `visit` where neighbours are counted, or `new face`.
     pub const fn per(self) -> &'static str {
         match self {
             Self::Relation(relation) => Kind::asked(relation).name(),
@@ -118,6 +179,7 @@ impl Operation {
             Self::EdgeLength | Self::Boundary => Kind::Edge.name(),
             Self::Build | Self::FaceBarycenter | Self::FfBfs => Kind::Face.name(),
             Self::Circulate | Self::AllQueries => "visit",
+            Self::CatmullClark(_) | Self::Loop(_) => "new face",
         }
     }
 
@@ -134,6 +196,8 @@ impl Operation {
                 Kind::Face => F,
             },
             Self::Circulate => &[Kind::Vertex, Kind::Face],
+            Self::CatmullClark(Method::Scatter) | Self::Loop(Method::Scatter) => F,
+            Self::CatmullClark(_) | Self::Loop(_) => &Kind::ALL,
             Self::FaceBarycenter | Self::FfBfs => F,
             Self::VertexNormal => &[Kind::Face, Kind::Vertex],
             Self::VvSmooth => V,
@@ -155,6 +219,11 @@ impl Operation {
             (Self::EdgeLength, Kind::Edge) => one(Relation::EdgeVertices),
             (Self::Boundary, Kind::Edge) => one(Relation::EdgeFaces),
             (Self::FfBfs, Kind::Face) => one(Relation::FaceFaces),
+            (Self::CatmullClark(_) | Self::Loop(_), Kind::Face) => AROUND_FACE,
+            (Self::CatmullClark(Method::Scatter) | Self::Loop(Method::Scatter), _) => &[],
+            (Self::CatmullClark(_), Kind::Vertex) => AROUND_VERTEX,
+            (Self::Loop(_), Kind::Vertex) => one(Relation::VertexVertices),
+            (Self::CatmullClark(_) | Self::Loop(_), Kind::Edge) => AROUND_EDGE,
             (Self::AllQueries, _) => &RELATIONS[3 * kind.index()..][..3],
             _ => &[],
         }
@@ -182,14 +251,19 @@ impl Operation {
 
     /// Whether some of its elements can stand for all.
     pub const fn can_be_sampled(self) -> bool {
-        !matches!(self, Self::Build | Self::FfBfs)
+        !matches!(self, Self::Build | Self::FfBfs) && !self.subdivides()
     }
 
     /// Whether its checksum is a count, equal to the last digit for all structures.
     pub const fn counts(self) -> bool {
         !matches!(
             self,
-            Self::FaceBarycenter | Self::VertexNormal | Self::VvSmooth | Self::EdgeLength
+            Self::FaceBarycenter
+                | Self::VertexNormal
+                | Self::VvSmooth
+                | Self::EdgeLength
+                | Self::CatmullClark(_)
+                | Self::Loop(_)
         )
     }
 }
@@ -266,5 +340,25 @@ mod tests {
         assert_eq!(Operation::VertexNormal.walks_around(), [true, false, false]);
         assert_eq!(Operation::EdgeLength.walks_around(), [false; 3]);
         assert_eq!(Operation::AllQueries.walks_around(), [true; 3]);
+        // Of the subdivisions those that ask around vertices; Loop's rules do without their faces.
+        let scans = |operation: Operation| operation.scans(&costs)[0];
+        assert!(scans(Operation::CatmullClark(Method::Gather)));
+        assert!(!scans(Operation::CatmullClark(Method::Scatter)));
+        assert!(!scans(Operation::Loop(Method::Gather)));
+    }
+
+    #[test]
+    fn subdivisions_are_named_by_scheme_and_way() {
+        for operation in Operation::ALL {
+            let named = operation.refining().map(|refining| {
+                let scheme = refining.subdivision.scheme.name().replace('-', "_");
+                format!("{scheme}_{}", refining.way)
+            });
+            assert_eq!(named.is_some(), operation.subdivides());
+            assert_eq!(
+                named.as_deref().unwrap_or(operation.name()),
+                operation.name()
+            );
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! The warm-up: everything once, and from that a plan of samples that fit the budget.
 
-use crate::candidate::{Job, Sample};
+use crate::candidate::{Job, Run, Sample};
+use crate::clock::Time;
 use crate::measure::{Bench, Entry, LONG_RUN_NS};
 use crate::operation::{Kind, Operation};
 
@@ -16,6 +17,10 @@ const SELDOM: u32 = 4;
 pub(crate) const FEWEST_ELEMENTS: usize = 16;
 /// What an operation that cannot be sampled may take of the time left, to be run just once.
 const ONCE: f64 = 0.5;
+/// What one run of a subdivision that nobody asked for by name may take of the time left.
+const SMALL_SHARE: f64 = 0.02;
+/// So many faces, cut out of the mesh, tell for the first time what subdividing it would take.
+const FIRST_PATCH: usize = 1024;
 /// Structures that one sample may build or copy, in bytes.
 const MOST_BYTES: usize = 64 << 20;
 
@@ -43,7 +48,9 @@ impl Bench<'_, '_> {
                 let part = if others < count { 2.0 } else { 1.0 };
                 let left = (deadline - self.clock.now().wall_ns).max(0.0) / part;
                 let share = left / (f64::from(ROUNDS) * others);
-                if scanning {
+                if entry.job.operation.subdivides() {
+                    self.plan_subdivision(entry, *scans, share, left);
+                } else if scanning {
                     self.plan_scan(entry, *scans, share, left);
                 } else {
                     self.plan_whole(entry, share);
@@ -53,8 +60,10 @@ impl Bench<'_, '_> {
         self.catch_up(entries, deadline);
     }
 
-    /// Runs once, the shortest first, what was only estimated and yet fits into the time left.
+    /// Runs once, the shortest first, what was only estimated and yet fits into the time left. A
+    /// subdivision that nobody asked for has to be content with little.
     fn catch_up(&mut self, entries: &mut [Entry], deadline: f64) {
+        let budget = self.budget.as_nanos() as f64;
         let mut put_off: Vec<(f64, &mut Entry)> = entries
             .iter_mut()
             .filter_map(|entry| Some((entry.estimate?.wall_ns, entry)))
@@ -62,15 +71,19 @@ impl Bench<'_, '_> {
         put_off.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         for (wall_ns, entry) in put_off {
             let left = deadline - self.clock.now().wall_ns;
-            if self.stopped() || wall_ns > ONCE * left {
+            if self.stopped() {
                 return;
+            }
+            let unasked = entry.job.operation.subdivides() && !self.named;
+            if wall_ns > left * if unasked { SMALL_SHARE } else { ONCE } {
+                entry.by_name_only = unasked && wall_ns <= ONCE * budget;
+                continue;
             }
             self.report(0.1, "warming up", entry);
             let run = self.run(entry.subject, &entry.job, 1, true);
-            entry.warm_up = Some(run.time);
-            entry.outcome = run.outcome;
             entry.estimate = None;
             entry.every = 0;
+            keep(entry, run);
         }
     }
 
@@ -86,24 +99,35 @@ impl Bench<'_, '_> {
     }
 
     fn plan_whole(&mut self, entry: &mut Entry, share: f64) {
-        let subject = entry.subject;
-        let run = self.run(subject, &entry.job, 1, true);
-        entry.warm_up = Some(run.time);
-        entry.outcome = run.outcome;
+        let (run, mut outside) = self.run_and_look(entry, 1, true);
         let mut ns = run.time.ns().max(1.0);
-        if self.stopped() {
+        keep(entry, run);
+        if self.stopped() || entry.refusal.is_some() {
             return;
         }
         if ns < SHORTEST_SAMPLE_NS {
             // The first run paid for cold caches and page faults; a second series says more.
             let runs = (SHORTEST_SAMPLE_NS / 4.0 / ns).clamp(1.0, self.most_runs(entry));
-            ns = self.run(subject, &entry.job, runs as u32, false).time.ns();
-            ns = ns.max(0.1);
+            let (run, besides) = self.run_and_look(entry, runs as u32, false);
+            (ns, outside) = (run.time.ns().max(0.1), besides);
         }
         let target = (share / 2.0).clamp(SHORTEST_SAMPLE_NS, LONGEST_SAMPLE_NS);
         entry.runs = (target / ns).ceil().clamp(1.0, self.most_runs(entry)) as u32;
-        let untimed = if ns > LONG_RUN_NS { 0 } else { 1 };
-        self.plan_rounds(entry, ns * f64::from(entry.runs + untimed), share);
+        let untimed = match ns > LONG_RUN_NS || entry.job.operation.readies_itself() {
+            true => 0.0,
+            false => 1.0,
+        };
+        let cost = ns * (f64::from(entry.runs) + untimed) + outside * (1.0 + untimed);
+        self.plan_rounds(entry, cost, share);
+    }
+
+    /// The run, and the wall time that went by outside its timing.
+    fn run_and_look(&mut self, entry: &Entry, runs: u32, check: bool) -> (Run, f64) {
+        let start = self.clock.now().wall_ns;
+        let run = self.run(entry.subject, &entry.job, runs, check);
+        let inside = run.time.wall_ns * f64::from(runs);
+        let outside = self.clock.now().wall_ns - start - inside;
+        (run, outside.max(0.0))
     }
 
     /// More runs than this in a row would hold too many structures at once.
@@ -119,7 +143,10 @@ impl Bench<'_, '_> {
 
     fn plan_rounds(&self, entry: &mut Entry, cost_ns: f64, share: f64) {
         entry.cost_ns = cost_ns;
-        entry.every = if cost_ns > 4.0 * share { SELDOM } else { 1 };
+        // Subdivisions are many and long: where nobody asked for them the others keep their rounds.
+        let unasked = entry.job.operation.subdivides() && !self.named;
+        let most = if unasked { 1.0 } else { 4.0 };
+        entry.every = if cost_ns > most * share { SELDOM } else { 1 };
     }
 
     /// Asks for few elements, then more, until the cost of the whole is known; then decides.
@@ -130,28 +157,12 @@ impl Bench<'_, '_> {
             &[relation] if !operation.can_be_sampled() => Operation::Relation(relation),
             _ => operation,
         };
-        let asked = (0..3).filter(|&k| scanned[k]);
-        let all = asked.map(|k| self.population[k]).max().unwrap_or(0);
-        let (mut size, mut whole, mut cost);
-        size = 4;
-        loop {
-            let job = Job {
-                operation: probed,
-                sample: Some(Sample { scanned, size }),
-            };
-            let start = self.clock.now().wall_ns;
-            whole = self.run(entry.subject, &job, 1, false).time;
-            cost = self.clock.now().wall_ns - start;
-            if cost > share.min(LONGEST_SAMPLE_NS) || size >= all || self.stopped() {
-                break;
-            }
-            size *= 4;
-        }
-        let seldom = left * f64::from(SELDOM) / f64::from(ROUNDS) / 2.0;
+        let all = self.most_asked(scanned);
+        let Probe { whole, cost, size } = self.probe(entry.subject, probed, scanned, share);
         let fits = match operation.can_be_sampled() {
             true => whole.ns() <= share || all <= FEWEST_ELEMENTS,
             // What takes no longer than one sample is run whatever is left.
-            false => whole.ns() <= seldom.max(LONGEST_SAMPLE_NS),
+            false => whole.ns() <= longest_in_rounds(left).max(LONGEST_SAMPLE_NS),
         };
         if self.stopped() {
             return;
@@ -169,9 +180,134 @@ impl Bench<'_, '_> {
         entry.job.sample = Some(Sample { scanned, size });
         let start = self.clock.now().wall_ns;
         let run = self.run(entry.subject, &entry.job, 1, true);
-        entry.warm_up = Some(run.time);
-        entry.outcome = run.outcome;
+        keep(entry, run);
         let cost = self.clock.now().wall_ns - start;
         self.plan_rounds(entry, cost, share);
     }
+
+    /// How many elements of the kinds that are scanned for there are, of the most frequent kind.
+    fn most_asked(&self, scanned: [bool; 3]) -> usize {
+        let asked = (0..3).filter(|&k| scanned[k]);
+        asked.map(|k| self.population[k]).max().unwrap_or(0)
+    }
+
+    /// Asks for few elements, then more, until that takes as long as a sample may.
+    fn probe(
+        &mut self,
+        subject: usize,
+        operation: Operation,
+        scanned: [bool; 3],
+        share: f64,
+    ) -> Probe {
+        let all = self.most_asked(scanned);
+        let mut size = 4;
+        loop {
+            let sample = Some(Sample { scanned, size });
+            let start = self.clock.now().wall_ns;
+            let whole = self.run(subject, &Job { operation, sample }, 1, false).time;
+            let cost = self.clock.now().wall_ns - start;
+            if cost > share.min(LONGEST_SAMPLE_NS) || size >= all || self.stopped() {
+                return Probe { whole, cost, size };
+            }
+            size *= 4;
+        }
+    }
+
+    /// Estimates it first: by a patch, and by what it searches for. It is run in rounds, once, or not
+    /// at all.
+    fn plan_subdivision(&mut self, entry: &mut Entry, scanned: [bool; 3], share: f64, left: f64) {
+        // A single face tells what is refused.
+        let run = self.run(entry.subject, &of_a_patch(entry, 1), 1, false);
+        entry.refusal = run.refusal;
+        if self.stopped() || entry.refusal.is_some() {
+            return;
+        }
+        let searches = scanned.contains(&true);
+        let mut estimate = self.time_by_patches(entry, share);
+        if searches {
+            // A patch tells nothing of searching the whole.
+            let search = self.search_time(entry, scanned, share);
+            let patch = estimate.filter(|patch| patch.ns() > search.ns());
+            estimate = Some(patch.unwrap_or(search));
+        }
+        if self.stopped() || entry.refusal.is_some() {
+            return;
+        }
+        let most = match (searches, self.named) {
+            (true, _) => share,
+            (false, false) => SMALL_SHARE * left,
+            (false, true) => longest_in_rounds(left),
+        };
+        let fits = |whole: &Time| whole.ns() <= most.max(LONGEST_SAMPLE_NS);
+        match estimate.filter(|whole| !fits(whole)) {
+            None => self.plan_whole(entry, share),
+            too_long => entry.estimate = too_long,
+        }
+    }
+
+    /// What the searches of a subdivision take together, by samples.
+    fn search_time(&mut self, entry: &Entry, scanned: [bool; 3], share: f64) -> Time {
+        let mut total = Time::none_like(self.clock.now());
+        for kind in Kind::ALL.into_iter().filter(|kind| scanned[kind.index()]) {
+            let only = Kind::ALL.map(|other| other == kind);
+            for &relation in entry.job.operation.relations(kind) {
+                let asked = Operation::Relation(relation);
+                let probe = self.probe(entry.subject, asked, only, share);
+                total = total.plus(probe.whole);
+            }
+        }
+        total
+    }
+
+    /// What it takes on larger and larger patches, as the time of the whole; `None` where the next
+    /// would be the whole. Patches lie in the cache, so that this errs on the small side.
+    fn time_by_patches(&mut self, entry: &mut Entry, share: f64) -> Option<Time> {
+        let all = self.population[Kind::Face.index()];
+        let mut size = FIRST_PATCH;
+        while size < all {
+            let start = self.clock.now().wall_ns;
+            let run = self.run(entry.subject, &of_a_patch(entry, size), 1, false);
+            entry.refusal = run.refusal;
+            let cost = self.clock.now().wall_ns - start;
+            if cost > share || size.saturating_mul(4) >= all || self.stopped() {
+                return Some(run.time);
+            }
+            if entry.refusal.is_some() {
+                return None;
+            }
+            size *= 4;
+        }
+        None
+    }
+}
+
+/// How long a run may take that is worth a place in every fourth round, of the time left.
+fn longest_in_rounds(left: f64) -> f64 {
+    left * f64::from(SELDOM) / f64::from(ROUNDS) / 2.0
+}
+
+/// What asking for some elements has told.
+struct Probe {
+    /// The time of the whole.
+    whole: Time,
+    /// The wall time of asking, in nanoseconds.
+    cost: f64,
+    /// How many were asked for.
+    size: usize,
+}
+
+/// The operation of `entry` on a patch of so many faces.
+fn of_a_patch(entry: &Entry, size: usize) -> Job {
+    let scanned = [false; 3];
+    Job {
+        sample: Some(Sample { scanned, size }),
+        ..entry.job
+    }
+}
+
+/// Takes over what the run came to, as the warm-up; nothing of one that was refused.
+fn keep(entry: &mut Entry, run: Run) {
+    entry.warm_up = run.refusal.is_none().then_some(run.time);
+    entry.outcome = run.outcome;
+    entry.refusal = run.refusal;
 }

@@ -105,14 +105,31 @@ impl Refining {
         polygons: &PolygonMesh,
         creases: &Creases,
     ) -> Option<Result<Box<dyn Refiner>, SubdivisionError>> {
-        let mut start = Start {
-            job: self,
-            polygons,
-            creases,
-        };
+        let mut start = self.start(polygons, creases);
         match self.way {
             Way::Gather | Way::Scatter => visit(backend, &mut start),
             Way::NativeFresh | Way::Native => visit_refinable(backend, &mut start),
+        }
+    }
+
+    /// As [`on`](Self::on), on a structure of type `M`, which need not be of the roster where it is
+    /// built anew from each level.
+    pub(crate) fn of<M: Representation + 'static>(
+        self,
+        polygons: &PolygonMesh,
+        creases: &Creases,
+    ) -> Option<Result<Box<dyn Refiner>, SubdivisionError>> {
+        match self.way.method() {
+            Method::Native => self.on(M::NAME, polygons, creases),
+            _ => Some(Visitor::visit::<M>(&mut self.start(polygons, creases))),
+        }
+    }
+
+    fn start<'a>(self, polygons: &'a PolygonMesh, creases: &'a Creases) -> Start<'a> {
+        Start {
+            job: self,
+            polygons,
+            creases,
         }
     }
 }
@@ -127,7 +144,10 @@ struct Start<'a> {
 impl Start<'_> {
     fn control<M: Representation>(&self) -> Result<(M, Creases), SubdivisionError> {
         let mesh = built::<M>(self.polygons, 0)?;
-        let creases = self.job.subdivision.control(&mesh, self.polygons, self.creases)?;
+        let creases = self
+            .job
+            .subdivision
+            .control(&mesh, self.polygons, self.creases)?;
         Ok((mesh, creases))
     }
 }
@@ -227,8 +247,7 @@ impl<M: Refine + 'static> Refiner for InPlace<M> {
         let mut parent = &self.mesh;
         for (level, child) in (0..).zip(&mut self.levels) {
             let subdivision = &self.job.subdivision;
-            creases =
-                subdivision.refine_into(parent, &creases, level, &mut self.numbers, child)?;
+            creases = subdivision.refine_into(parent, &creases, level, &mut self.numbers, child)?;
             parent = child;
         }
         Ok(())
@@ -236,7 +255,10 @@ impl<M: Refine + 'static> Refiner for InPlace<M> {
 
     fn result(&self) -> (usize, f64) {
         let mesh = self.levels.last().unwrap_or(&self.mesh);
-        (mesh.face_count(), checksum(mesh.position_rows().iter().copied()))
+        (
+            mesh.face_count(),
+            checksum(mesh.position_rows().iter().copied()),
+        )
     }
 }
 
@@ -276,7 +298,10 @@ mod tests {
                 }
             }
             let (faces, sum) = results[0];
-            assert_eq!(faces, polygons.face_count() * if levels == 2 { 16 } else { 3 });
+            assert_eq!(
+                faces,
+                polygons.face_count() * if levels == 2 { 16 } else { 3 }
+            );
             for &(others, other) in &results {
                 assert_eq!(others, faces);
                 assert!((other - sum).abs() < 1e-5 * sum, "{other} and {sum}");

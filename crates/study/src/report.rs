@@ -35,6 +35,8 @@ pub struct Report {
     pub backends: Vec<BackendReport>,
     /// Operation by operation, and within each in the order of the roster.
     pub results: Vec<ResultRow>,
+    /// What was asked for and cannot be done, in the same order.
+    pub refusals: Vec<Refusal>,
     /// What the table shows, in words.
     pub words: Vec<String>,
     /// Told to stop before the end: some rows are missing, or rest on fewer samples.
@@ -98,7 +100,7 @@ pub struct ResultRow {
     pub ci_high_ns: Option<f64>,
     /// How many elements a whole run visits.
     pub elements: Option<u64>,
-    /// What one of them is: `vertex`, `edge`, `face`, or `visit`.
+    /// What one of them is: `vertex`, `edge`, `face`, `new face`, or `visit`.
     pub per: &'static str,
     /// `median_ns` for each of them.
     pub ns_per_element: Option<f64>,
@@ -131,10 +133,23 @@ pub struct ResultRow {
     pub runs_per_sample: u32,
     /// There was time for no more than the warm-up: that one run, with its cold caches, is the sample.
     pub warm_up_only: bool,
+    /// It was left to an estimate because nobody asked for it by name: the budget has room for a run.
+    pub by_name_only: bool,
+}
+
+/// An operation that a backend cannot do on this mesh: it has no row among the results.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Refusal {
+    /// The backend.
+    pub backend: String,
+    /// The operation.
+    pub operation: Operation,
+    /// Why not.
+    pub reason: String,
 }
 
 /// The fields of a row, for a file without any.
-const COLUMNS: [&str; 23] = [
+const COLUMNS: [&str; 24] = [
     "backend",
     "operation",
     "median_ns",
@@ -158,6 +173,7 @@ const COLUMNS: [&str; 23] = [
     "samples",
     "runs_per_sample",
     "warm_up_only",
+    "by_name_only",
 ];
 
 /// What the checksums of one operation say.

@@ -20,7 +20,8 @@ pub struct Solo<'a> {
 pub struct SoloRun {
     /// How long it took.
     pub time: Time,
-    /// A number that depends on all results, and not on the order of neighbours.
+    /// A number that depends on all results, and not on the order of neighbours; not a number where
+    /// the backend does not do the operation on this mesh.
     pub checksum: f64,
     /// How many elements it visited.
     pub elements: u64,

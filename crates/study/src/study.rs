@@ -15,7 +15,7 @@ use crate::environment::Environment;
 use crate::inspect::{Specimen, counts, per_vertex, unbuilt};
 use crate::measure::{Bench, Entry, Progress};
 use crate::operation::Operation;
-use crate::report::{Agreement, BackendReport, Report, ResultRow, SCHEMA};
+use crate::report::{Agreement, BackendReport, Refusal, Report, ResultRow, SCHEMA};
 use crate::sample::Draw;
 use crate::standing::places;
 use crate::statistics::Median;
@@ -31,7 +31,8 @@ pub struct Settings {
     pub backends: Vec<String>,
     /// Representations that take part besides those of the roster.
     pub extra: Vec<Backend>,
-    /// Operations; empty for all.
+    /// Operations; empty for all. A subdivision that takes a good part of the budget is run where it
+    /// is named here, and only estimated where it is not.
     pub operations: Vec<Operation>,
     /// How long measuring may take. One run of everything, or of a small sample where the whole may
     /// be long, is made in any case.
@@ -171,6 +172,7 @@ pub fn study(
         skewed,
         clock: &clock,
         budget: settings.budget,
+        named: !settings.operations.is_empty(),
         random: ChaCha8Rng::seed_from_u64(settings.seed),
         stop,
         progress,
@@ -179,6 +181,7 @@ pub fn study(
     let interrupted = stop.load(Ordering::Relaxed);
     let agreements = judge(&entries, &mut subjects, polygons, &clock, stop);
     let results = results(&entries, agreements, &subjects, polygons);
+    let refusals = refusals(&entries, &subjects);
     let scanning = |backend: &str, relation: Relation| {
         let costs = chosen.iter().find(|b| b.name() == backend);
         costs.is_some_and(|b| b.info.costs[relation as usize] == QueryCost::Scan)
@@ -189,6 +192,7 @@ pub fn study(
         mesh: specimen.report(),
         backends,
         results,
+        refusals,
         words,
         interrupted,
         environment,
@@ -254,7 +258,7 @@ fn results(
         for ((entry, times), place) in group.iter().zip(&times).zip(places) {
             let agreement = agreements.next().unwrap_or(Agreement::Unchecked);
             if times.is_empty() && entry.estimate.is_none() {
-                continue; // the study was told to stop before
+                continue; // refused, or the study was told to stop before
             }
             let median = Median::of(times.iter().map(|(_, time)| time.ns()));
             let wall = Median::of(times.iter().map(|(_, time)| time.wall_ns));
@@ -263,9 +267,8 @@ fn results(
                 None => entry.outcome.or(counted),
             };
             let elements = elements.map(|outcome| outcome.elements);
-            // What is estimated and not run is a walk over the faces.
-            let walked = entry.estimate.map(|_| polygons.face_count() as u64);
-            let elements = elements.or(walked);
+            let expected = entry.job.operation.expected(polygons) as u64;
+            let elements = elements.or(entry.estimate.map(|_| expected));
             let per_element = |ns: f64| match elements {
                 Some(n) if n > 0 => Some(ns / n as f64),
                 _ => None,
@@ -299,8 +302,22 @@ fn results(
                 samples: times.len(),
                 runs_per_sample: entry.runs,
                 warm_up_only: entry.samples.is_empty() && entry.warm_up.is_some(),
+                by_name_only: entry.by_name_only,
             });
         }
     }
     rows
+}
+
+/// What cannot be done, in the order of the entries.
+fn refusals(entries: &[Entry], subjects: &[Box<dyn Subject + '_>]) -> Vec<Refusal> {
+    let refusal = |entry: &Entry| {
+        let reason = entry.refusal.clone()?;
+        Some(Refusal {
+            backend: subjects[entry.subject].name().into(),
+            operation: entry.job.operation,
+            reason,
+        })
+    };
+    entries.iter().filter_map(refusal).collect()
 }

@@ -2,6 +2,7 @@
 
 use sixfold::{PolygonMesh, Relation};
 
+use crate::methods::methods;
 use crate::operation::Operation;
 use crate::report::{Agreement, BackendReport, ResultRow, Standing};
 use crate::statistics::Median;
@@ -18,6 +19,7 @@ pub(crate) fn words(
     for backend in backends.iter().filter(|backend| backend.holds) {
         words.extend(scans(&backend.name, results, polygons, scanning));
     }
+    words.extend(methods(backends, results, times));
     words.extend(memory(backends));
     words.extend(doubts(results));
     for backend in backends {
@@ -222,6 +224,7 @@ mod tests {
             samples: 9,
             runs_per_sample: 1,
             warm_up_only: false,
+            by_name_only: false,
         }
     }
 
@@ -249,6 +252,35 @@ mod tests {
             said.contains(&format!("{a} finds something else")),
             "{said}"
         );
+    }
+
+    #[test]
+    fn methods_are_compared_where_they_differ_beyond_doubt() {
+        use sixfold::subdivision::Method::{Gather, Native, Scatter};
+        let mesh = shapes::tetrahedron();
+        let backends = inspect(&Specimen::new("test", mesh.clone())).backends;
+        let timed = |backend: &str, method, ratio, spread: f64| ResultRow {
+            ci_low_ns: Some(100.0 * ratio / spread),
+            ci_high_ns: Some(100.0 * ratio * spread),
+            ..row(backend, Operation::Loop(method), ratio, Standing::Tied)
+        };
+        let searching = ResultRow {
+            median_ns: None,
+            estimated_ns: Some(9000.0),
+            ..row("polygon-soup", Operation::Loop(Gather), 1.0, Standing::Tied)
+        };
+        let results = [
+            searching,
+            timed("face-vertex", Gather, 1.2, 1.3),
+            timed("half-edge", Gather, 2.0, 1.01),
+            timed("polygon-soup", Scatter, 3.0, 1.01),
+            timed("face-vertex", Scatter, 1.0, 1.3),
+            timed("half-edge", Scatter, 3.0, 1.01),
+            timed("half-edge", Native, 0.5, 1.01),
+        ];
+        let said = words(&backends, &results, &mesh, &|_, _| false);
+        let expected = "Loop: scatter is faster than gather on polygon-soup 30 ×; slower on half-edge 1.5 ×; native is faster than both on half-edge 4.0 ×.";
+        assert!(said.iter().any(|words| words == expected), "{said:?}");
     }
 
     #[test]

@@ -113,7 +113,8 @@ pub(crate) fn share<M: MeshQuery, E: Elements<M>>(
         (Operation::AllQueries, Kind::Vertex) => ask_vertices(mesh, elements),
         (Operation::AllQueries, Kind::Edge) => ask_edges(mesh, elements),
         (Operation::AllQueries, Kind::Face) => ask_faces(mesh, elements),
-        (Operation::Build, _) => Tally::default(),
+        // Made by the candidate, not found by queries alone.
+        (Operation::Build | Operation::CatmullClark(_) | Operation::Loop(_), _) => Tally::default(),
     }
 }
 

@@ -3,6 +3,7 @@
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
+use sixfold::subdivision::Method;
 use sixfold::{Facts, Relation, shapes};
 use study::{Agreement, Operation, Report, Settings, Specimen, Standing, StudyError, study};
 
@@ -21,18 +22,29 @@ fn scans_are_sampled_alike_and_what_takes_too_long_is_estimated() {
         ..Settings::default()
     };
     let report = quick(&specimen, &settings).expect("everybody holds it");
-    assert_eq!(report.results.len(), 18 * report.backends.len());
+    let asked = Operation::ALL.len() * report.backends.len();
+    assert_eq!(report.results.len() + report.refusals.len(), asked);
+    // Two structures split no tables of their own, and corner tables hold no quads.
+    assert_eq!(report.refusals.len(), 2 * 2 + 3, "{:?}", report.refusals);
     for row in &report.results {
         let context = format!("{} on {}", row.operation, row.backend);
-        let expected = match row.operation {
-            Operation::FfBfs if row.estimated_ns.is_some() => Agreement::Unchecked,
-            _ => Agreement::Same,
-        };
-        assert_eq!(row.agreement, expected, "{context}: {row:?}");
+        let estimated = row.estimated_ns.is_some();
+        match row.operation {
+            Operation::FfBfs if estimated => assert_eq!(row.agreement, Agreement::Unchecked),
+            // In so little time one may be run on a single structure.
+            operation if operation.subdivides() => {
+                assert!(row.agreement != Agreement::Mismatch, "{context}: {row:?}");
+            }
+            _ => assert_eq!(row.agreement, Agreement::Same, "{context}: {row:?}"),
+        }
         let elements = match row.per {
             "vertex" => facts.vertices,
             "edge" => facts.edges,
             "face" => facts.faces,
+            "new face" => match row.operation {
+                Operation::Loop(_) => 4 * facts.faces,
+                _ => 3 * facts.faces,
+            },
             _ => continue,
         };
         assert_eq!(row.elements, Some(elements as u64), "{context}");
@@ -135,4 +147,69 @@ fn what_cannot_be_studied_is_refused_by_name() {
     let specimen = Specimen::new("twice", twice);
     let refused = quick(&specimen, &settings("half-edge")).expect_err("not oriented");
     assert!(refused.to_string().contains("v0→v1"), "{refused}");
+}
+
+/// What a study of one subdivision says of it on the soup, which searches all faces for each vertex.
+fn searched(operations: Vec<Operation>, budget: Duration) -> study::ResultRow {
+    let mesh = shapes::triangle_grid(40, 35).expect("a grid");
+    let settings = Settings {
+        backends: vec!["polygon-soup".into(), "half-edge".into()],
+        operations,
+        budget,
+        ..Settings::default()
+    };
+    let report = quick(&Specimen::new("grid", mesh), &settings).expect("both hold it");
+    let of_soup = |row: &&study::ResultRow| {
+        let gather = row.operation == Operation::Loop(Method::Gather);
+        gather && row.backend == "polygon-soup"
+    };
+    let row = report.results.iter().find(of_soup);
+    row.expect("measured or estimated").clone()
+}
+
+#[test]
+fn a_subdivision_that_searches_is_run_where_it_is_named() {
+    let named = vec![Operation::Loop(Method::Gather)];
+    let run = searched(named.clone(), Duration::from_secs(3));
+    let took = run.median_ns.expect("it was run");
+    assert_eq!(run.elements, Some(4 * 2 * 40 * 35));
+    assert!(
+        !run.by_name_only && run.agreement == Agreement::Same,
+        "{run:?}"
+    );
+    // A tenth of a budget is too much for what nobody asked for.
+    let tight = Duration::from_nanos(10 * took as u64);
+    let left_out = searched(Vec::new(), tight);
+    let estimate = left_out.estimated_ns.expect("only estimated");
+    assert!(left_out.median_ns.is_none(), "{left_out:?}");
+    assert!(
+        (0.2..5.0).contains(&(estimate / took)),
+        "{estimate} for {took}"
+    );
+    // Longer than the budget, and not even by name.
+    let hopeless = searched(named, tight / 1000);
+    assert!(hopeless.estimated_ns.is_some() && !hopeless.by_name_only);
+}
+
+#[test]
+fn what_a_scheme_does_not_take_is_said_once_and_by_the_face() {
+    let specimen = Specimen::new("cube", shapes::cube());
+    let settings = Settings {
+        budget: Duration::from_millis(100),
+        ..Settings::default()
+    };
+    let report = quick(&specimen, &settings).expect("quads");
+    let loops = |operation: Operation| matches!(operation, Operation::Loop(_));
+    assert!(report.results.iter().all(|row| !loops(row.operation)));
+    let refused = report.refusals.iter().filter(|r| loops(r.operation));
+    let reasons: Vec<&str> = refused.map(|r| r.reason.as_str()).collect();
+    assert_eq!(reasons.len(), 3 * 5, "five of six hold quads");
+    assert!(
+        reasons[0].starts_with("face f0 has 4 corners"),
+        "{reasons:?}"
+    );
+    assert!(reasons.iter().all(|reason| *reason == reasons[0]));
+    for row in &report.results {
+        assert_eq!(row.agreement, Agreement::Same, "{row:?}");
+    }
 }

@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use sixfold::{Point, PolygonMesh, Relation, roster, shapes};
+use sixfold::subdivision::Scheme;
+use sixfold::{BackendInfo, Point, PolygonMesh, Relation, roster, shapes, support};
 use study::{MachineClock, Operation, Solo};
 
 /// What the operations should find, worked out slowly.
@@ -113,6 +114,56 @@ impl<'a> Oracle<'a> {
         depths.into_iter().flatten().sum()
     }
 
+    /// The points after one step, by the rules as they are published: where an edge has one face the
+    /// mesh ends in a cubic B-spline, and a vertex of a single face stays.
+    fn refined(&self, scheme: Scheme) -> Vec<[f64; 3]> {
+        let quads = scheme == Scheme::CatmullClark;
+        let centre = |f: &usize| self.mean(self.faces[*f].iter().copied());
+        let mut points = Vec::new();
+        if quads {
+            points.extend((0..self.faces.len()).map(|f| centre(&f)));
+        }
+        for (&[a, b], faces) in &self.edges {
+            let middle = self.mean([a, b].into_iter());
+            let far = |f: &usize| {
+                let mut corners = self.faces[*f].iter().copied();
+                self.at(corners
+                    .find(|v| ![a, b].contains(v))
+                    .expect("three corners"))
+            };
+            points.push(match (faces.len(), quads) {
+                (2, true) => mix([(0.5, middle), (0.5, mean_of(faces.iter().map(centre)))]),
+                (2, false) => mix([(0.75, middle), (0.25, mean_of(faces.iter().map(far)))]),
+                _ => middle,
+            });
+        }
+        for (v, ring) in self.neighbours().into_iter().enumerate() {
+            let at = self.at(v);
+            let around: Vec<usize> = (0..self.faces.len())
+                .filter(|&f| self.faces[f].contains(&v))
+                .collect();
+            let n = ring.len() as f64;
+            let rim = ring.iter().copied();
+            let rim = rim.filter(|&w| self.edges[&[v.min(w), v.max(w)]].len() == 1);
+            let rim: Vec<usize> = rim.collect();
+            let beside = self.mean(ring.iter().copied());
+            points.push(match (rim.len(), quads) {
+                (0, true) => {
+                    let faces = mean_of(around.iter().map(centre));
+                    mix([(1.0 - 2.0 / n, at), (1.0 / n, beside), (1.0 / n, faces)])
+                }
+                (0, false) => {
+                    let turn = 3.0 / 8.0 + (std::f64::consts::TAU / n).cos() / 4.0;
+                    let weight = 5.0 / 8.0 - turn * turn;
+                    mix([(1.0 - weight, at), (weight, beside)])
+                }
+                _ if around.len() == 1 => at,
+                _ => mix([(0.75, at), (0.25, self.mean(rim.into_iter()))]),
+            });
+        }
+        points
+    }
+
     fn checksum(&self, operation: Operation) -> f64 {
         let boundary = self.edges.values().filter(|faces| faces.len() == 1);
         let length = |&[a, b]: &[usize; 2]| {
@@ -141,6 +192,8 @@ impl<'a> Oracle<'a> {
             Operation::Boundary => boundary.count() as f64,
             Operation::FfBfs => self.depths() as f64,
             Operation::AllQueries => all(),
+            Operation::CatmullClark(_) => field(self.refined(Scheme::CatmullClark).into_iter()),
+            Operation::Loop(_) => field(self.refined(Scheme::Loop).into_iter()),
         }
     }
 
@@ -149,6 +202,10 @@ impl<'a> Oracle<'a> {
             "vertex" => self.mesh.vertex_count(),
             "edge" => self.edges.len(),
             "face" => self.faces.len(),
+            "new face" => match operation {
+                Operation::Loop(_) => 4 * self.faces.len(),
+                _ => self.mesh.corner_count(),
+            },
             _ => self.checksum(operation) as usize,
         }
     }
@@ -156,6 +213,17 @@ impl<'a> Oracle<'a> {
 
 fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+fn mix<const N: usize>(terms: [(f64, [f64; 3]); N]) -> [f64; 3] {
+    let weighed = terms.map(|(weight, point)| point.map(|x| weight * x));
+    weighed.into_iter().fold([0.0; 3], add)
+}
+
+fn mean_of(points: impl Iterator<Item = [f64; 3]>) -> [f64; 3] {
+    let points: Vec<_> = points.collect();
+    let weight = 1.0 / points.len() as f64;
+    points.into_iter().fold([0.0; 3], add).map(|x| weight * x)
 }
 
 fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
@@ -188,6 +256,19 @@ fn patchwork() -> PolygonMesh {
     PolygonMesh::new(positions, faces).expect("valid")
 }
 
+/// Whether the table of schemes and structures, and the degrees of the mesh, let it run.
+fn runs(operation: Operation, backend: &BackendInfo, mesh: &PolygonMesh) -> bool {
+    let Some(refining) = operation.refining() else {
+        return true;
+    };
+    let scheme = refining.subdivision.scheme;
+    let mut rows = support(scheme).into_iter();
+    let row = rows.find(|row| row.backend == backend.name);
+    let row = row.expect("a row for each of the roster");
+    let takes = scheme != Scheme::Loop || mesh.faces().uniform_degree() == Some(3);
+    takes && row.holds_result && row.methods.contains(&refining.way.method())
+}
+
 #[test]
 fn operations_find_what_the_face_list_says() {
     let meshes = [
@@ -205,6 +286,10 @@ fn operations_find_what_the_face_list_says() {
             let mut solo = Solo::new(backend.name, mesh).expect("it can hold it");
             for operation in Operation::ALL {
                 let run = solo.run(operation, &MachineClock::start());
+                if !runs(operation, &backend, mesh) {
+                    assert!(run.checksum.is_nan() && run.elements == 0, "{run:?}");
+                    continue;
+                }
                 let expected = oracle.checksum(operation);
                 let near = (run.checksum - expected).abs() <= 1e-5 * expected.abs();
                 let context = format!("{operation} of {name} on {}", backend.name);

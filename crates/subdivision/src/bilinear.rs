@@ -36,3 +36,41 @@ impl Mask for Bilinear {
         at
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use half_edge::HalfEdgeMesh;
+    use indexed_face_set::IndexedFaceSet;
+    use mesh_core::{Creases, PolygonMesh};
+
+    use super::*;
+    use crate::{Method, Scheme, Subdivision, subdivide, subdivide_native};
+
+    /// Boundaries are no curves here: corners stay, and so do all vertices.
+    #[test]
+    fn a_square_keeps_its_corners() {
+        let corners = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 1.0), Point::Y];
+        let square = PolygonMesh::new(corners, [[0, 1, 2, 3]]).expect("a quad");
+        let (scheme, none) = (Subdivision::new(Scheme::Bilinear), Creases::default());
+        let steps = [Method::Gather, Method::Scatter].map(|method| {
+            subdivide::<IndexedFaceSet>(&scheme, method, &square, &none, 1, |_, _| ())
+        });
+        let native = subdivide_native::<HalfEdgeMesh>(&scheme, &square, &none, 1, |_, _| ());
+        for step in steps.into_iter().chain([native]) {
+            let mesh = step.expect("a quad").polygons;
+            let points = mesh.positions();
+            assert_eq!(points[..4], corners);
+            assert_eq!(points[4], Point::new(0.5, 0.5, 0.25));
+            for middle in [
+                [0.5, 0.0, 0.0],
+                [1.0, 0.5, 0.5],
+                [0.5, 1.0, 0.5],
+                [0.0, 0.5, 0.0],
+            ] {
+                let middle = Point::from(middle);
+                assert!(points[5..].contains(&middle), "{middle}");
+            }
+            assert_eq!([mesh.vertex_count(), mesh.face_count()], [9, 4]);
+        }
+    }
+}

@@ -53,7 +53,8 @@ mod tests {
     use mesh_core::{Creases, PolygonMesh};
 
     use super::*;
-    use crate::{Method, Scheme, Subdivision, subdivide, subdivide_native};
+    use crate::alike::assert_near;
+    use crate::{Boundary, Method, Scheme, Subdivision, subdivide, subdivide_native};
 
     /// A cube from −1 to 1; corner `i` has the coordinates that its bits say.
     fn cube() -> PolygonMesh {
@@ -95,6 +96,64 @@ mod tests {
                 assert_eq!(sizes, [0.0, 0.75, 0.75]);
             }
             assert_eq!([points.len(), step.polygons.face_count()], [26, 24]);
+        }
+    }
+
+    /// ```text
+    ///   6 ── 7 ── 8      vertices of a unit grid, 4 at height 64, and a crease 3–4–5
+    ///   │    │    │
+    ///   3 ══ 4 ══ 5
+    ///   │    │    │
+    ///   0 ── 1 ── 2
+    /// ```
+    #[test]
+    fn a_grid_with_a_crease_goes_where_the_paper_says() {
+        let at = |i: u32| {
+            Point::new(
+                (i % 3) as f32,
+                (i / 3) as f32,
+                [0.0, 64.0][usize::from(i == 4)],
+            )
+        };
+        let quad = |i: u32| [i, i + 1, i + 4, i + 3];
+        let points: Vec<Point> = (0..9).map(at).collect();
+        let grid = PolygonMesh::new(points, [0, 1, 3, 4].map(quad)).expect("four quads");
+        let crease = [([3, 4], f32::INFINITY), ([4, 5], f32::INFINITY)];
+        let creases = Creases::new(&grid, crease, []).expect("inner edges");
+        for (boundary, corner) in [
+            (Boundary::EdgeAndCorner, Point::ZERO),
+            // (1, 6, 1)/8 of (0, 1), (0, 0) and (1, 0).
+            (Boundary::EdgeOnly, Point::new(0.125, 0.125, 0.0)),
+        ] {
+            let scheme = Subdivision {
+                boundary,
+                ..Subdivision::new(Scheme::CatmullClark)
+            };
+            let steps = [Method::Gather, Method::Scatter].map(|method| {
+                let step =
+                    subdivide::<IndexedFaceSet>(&scheme, method, &grid, &creases, 1, |_, _| ());
+                step.expect("quads")
+            });
+            let native = subdivide_native::<HalfEdgeMesh>(&scheme, &grid, &creases, 1, |_, _| ());
+            for step in steps.into_iter().chain(native) {
+                let points = step.polygons.positions();
+                assert_near(points[0], corner);
+                // Along the boundary (1, 6, 1)/8; where the crease ends on it there are three sharp
+                // edges, and 3 stays. The middle goes along the crease: 6/8 of 64.
+                assert_near(points[1], Point::new(1.0, 0.0, 0.0));
+                assert_near(points[3], Point::new(0.0, 1.0, 0.0));
+                assert_near(points[4], Point::new(1.0, 1.0, 48.0));
+                let has = |x: f32, y: f32, z: f32| {
+                    let near = |p: &Point| p.distance(Point::new(x, y, z)) < 1e-5;
+                    assert!(points.iter().any(near), "{x} {y} {z}, {boundary:?}");
+                };
+                // A face point: 64/4. The edge 1–4, between two faces: (64 + 0 + 16 + 16)/4. The creased
+                // edge 3–4: its midpoint. The boundary edge 0–1: its midpoint.
+                has(0.5, 0.5, 16.0);
+                has(1.0, 0.5, 24.0);
+                has(0.5, 1.0, 32.0);
+                has(0.5, 0.0, 0.0);
+            }
         }
     }
 }

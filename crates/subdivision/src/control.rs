@@ -160,3 +160,134 @@ pub(crate) fn renumbered<M: Representation>(
     corners.sort_by(|a, b| a.1.total_cmp(&b.1));
     Creases::sorted(edges, corners)
 }
+
+#[cfg(test)]
+mod tests {
+    use indexed_face_set::IndexedFaceSet;
+    use mesh_core::{FaceId, Point};
+
+    use super::*;
+    use crate::{Method, Scheme, subdivide};
+
+    /// ```text
+    ///   12 ── 13 ── 14 ── 15      nine quads, row by row from below
+    ///   │  6  │  7  │  8  │
+    ///   8 ─── 9 ─── 10 ── 11
+    ///   │  3  │  4  │  5  │
+    ///   4 ─── 5 ─── 6 ─── 7
+    ///   │  0  │  1  │  2  │
+    ///   0 ─── 1 ─── 2 ─── 3
+    /// ```
+    fn nine() -> PolygonMesh {
+        let at = |i: u32| Point::new((i % 4) as f32, (i / 4) as f32, 0.0);
+        let quad = |i: u32| [i, i + 1, i + 5, i + 4];
+        let points: Vec<Point> = (0..16).map(at).collect();
+        let lower = [0, 1, 2, 4, 5, 6, 8, 9, 10];
+        PolygonMesh::new(points, lower.map(quad)).expect("nine quads")
+    }
+
+    /// The faces that stay with boundary `none`, and those there are after a step.
+    fn staying(sharp: impl Fn([u32; 2]) -> f32, rim_corners: f32) -> (Vec<usize>, usize) {
+        let nine = nine();
+        let uses = nine.edge_uses();
+        let rim = uses.iter().filter(|edge| edge.is_boundary());
+        let rim: Vec<[u32; 2]> = rim
+            .map(|edge| edge.ends.map(|v| v.index() as u32))
+            .collect();
+        let corners: Vec<_> = rim.iter().map(|&[a, _]| (a, rim_corners)).collect();
+        let edges = rim.iter().map(|&ends| (ends, sharp(ends)));
+        let creases = Creases::new(&nine, edges, corners).expect("edges of the rim");
+        let scheme = Subdivision {
+            boundary: Boundary::None,
+            ..Subdivision::new(Scheme::CatmullClark)
+        };
+        let out = scheme.left_out(&nine, &creases).expect("of boundary none");
+        let faces = nine.faces().iter().map(|(f, _): (FaceId, _)| f.index());
+        let stay: Vec<usize> = faces.filter(|&f| !out[f]).collect();
+        let step =
+            subdivide::<IndexedFaceSet>(&scheme, Method::Gather, &nine, &creases, 1, |_, _| ());
+        (stay, step.expect("quads").polygons.face_count())
+    }
+
+    #[test]
+    fn faces_at_an_open_boundary_are_left_out() {
+        assert_eq!(staying(|_| 0.0, 0.0), (vec![4], 4));
+        // What wears off does not close a boundary, nor do corners.
+        assert_eq!(staying(|_| 9.99, f32::INFINITY), (vec![4], 4));
+        // All edges of the rim sharp for ever.
+        let all: Vec<usize> = (0..9).collect();
+        assert_eq!(staying(|_| 10.0, 0.0), (all, 36));
+        // The left side alone: 4 and 8 keep both edges, 0 and 12 do not.
+        let left = |[a, b]: [u32; 2]| if a % 4 == 0 && b % 4 == 0 { 10.0 } else { 0.0 };
+        assert_eq!(staying(left, 0.0), (vec![3, 4], 8));
+    }
+
+    #[test]
+    fn only_boundary_none_leaves_faces_out() {
+        for boundary in [Boundary::EdgeAndCorner, Boundary::EdgeOnly] {
+            let scheme = Subdivision {
+                boundary,
+                ..Subdivision::new(Scheme::CatmullClark)
+            };
+            assert_eq!(scheme.left_out(&nine(), &Creases::default()), None);
+        }
+    }
+
+    /// What the rules make sharp in a mesh without creases: edges by their ends, and vertices.
+    fn sharp(points: u32, faces: &[&[u32]], boundary: Boundary) -> (Vec<[usize; 2]>, Vec<usize>) {
+        let points: Vec<Point> = (0..points).map(|i| Point::splat(i as f32)).collect();
+        let polygons = PolygonMesh::new(points, faces).expect("faces");
+        let mesh = IndexedFaceSet::from_polygons(&polygons).expect("holds all");
+        let scheme = Subdivision {
+            boundary,
+            ..Subdivision::new(Scheme::CatmullClark)
+        };
+        let creases = scheme.control(&mesh, &polygons, &Creases::default());
+        let creases = creases.expect("creases");
+        let edges = creases.edges().iter();
+        let edges = edges.map(|(ends, _)| ends.ends().map(|v| v.index()));
+        let corners = creases.corners().iter().map(|(v, _)| v.index());
+        (edges.collect(), corners.collect())
+    }
+
+    #[test]
+    fn vertices_of_one_face_are_corners_on_demand() {
+        let two: [&[u32]; 2] = [&[0, 1, 2], &[2, 1, 3]];
+        assert_eq!(
+            sharp(4, &two, Boundary::EdgeAndCorner),
+            (vec![], vec![0, 3])
+        );
+        assert_eq!(sharp(4, &two, Boundary::EdgeOnly), (vec![], vec![]));
+    }
+
+    #[test]
+    fn what_is_no_manifold_is_sharp() {
+        // Two faces that run 1 → 2 both.
+        let same_way: [&[u32]; 2] = [&[0, 1, 2, 3], &[1, 2, 5, 4]];
+        let expected = (vec![[1, 2]], vec![1, 2]);
+        assert_eq!(sharp(6, &same_way, Boundary::EdgeOnly), expected);
+        // Two fans at 0.
+        let bow_tie: [&[u32]; 2] = [&[0, 1, 2], &[0, 3, 4]];
+        assert_eq!(sharp(5, &bow_tie, Boundary::EdgeOnly), (vec![], vec![0]));
+        // Three pages along 0, 1, 2: the ends are corners, 1 is not.
+        let book: [&[u32]; 6] = [
+            &[0, 3, 4, 1],
+            &[1, 4, 5, 2],
+            &[0, 6, 7, 1],
+            &[2, 8, 7, 1],
+            &[0, 9, 10, 1],
+            &[1, 10, 11, 2],
+        ];
+        let spine = vec![[0, 1], [1, 2]];
+        assert_eq!(
+            sharp(12, &book, Boundary::EdgeOnly),
+            (spine.clone(), vec![0, 2])
+        );
+        // With a page torn at 1 it has a boundary edge, and is a corner; 1–2 has two faces now, that
+        // run opposite ways.
+        assert_eq!(
+            sharp(12, &book[..5], Boundary::EdgeOnly),
+            (vec![[0, 1]], vec![0, 1])
+        );
+    }
+}

@@ -250,3 +250,169 @@ fn transition(own: f32, around: &[Spoke]) -> f32 {
     let (count, sum) = ending.fold((0_u32, 0.0), |(count, sum), s| (count + 1, sum + s));
     (sum / count.max(1) as f32).min(1.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use indexed_face_set::IndexedFaceSet;
+    use mesh_core::{PolygonMesh, Representation};
+
+    use super::*;
+    use crate::{Boundary, Scheme, Step, Subdivision};
+
+    const INF: f32 = f32::INFINITY;
+
+    /// ```text
+    ///   6 ── 7 ── 8      the vertex 4 at height 1, all others at 0; z after a Catmull–Clark step:
+    ///   │    │    │      vertex 4  smooth   1/2 · 1 + 4 faces/16 of height 1/4 = 9/16
+    ///   3 ── 4 ── 5                crease   3/4
+    ///   │    │    │                corner   1
+    ///   0 ── 1 ── 2      its edges smooth   (1 + 0 + 1/4 + 1/4)/4 = 3/8, sharp 1/2
+    /// ```
+    fn hill() -> PolygonMesh {
+        let at = |i: u32| Point::new((i % 3) as f32, (i / 3) as f32, f32::from(u8::from(i == 4)));
+        let quad = |i: u32| [i, i + 1, i + 4, i + 3];
+        let points: Vec<Point> = (0..9).map(at).collect();
+        PolygonMesh::new(points, [0, 1, 3, 4].map(quad)).expect("four quads")
+    }
+
+    /// A step of the hill with the edges from 4 to 1, 3, 5, 7 so sharp, and 4 itself.
+    fn step(creasing: Creasing, spokes: &[f32], own: f32) -> Step {
+        let hill = hill();
+        let mesh = IndexedFaceSet::from_polygons(&hill).expect("quads");
+        let edges = [1, 3, 5, 7].into_iter().zip(spokes);
+        let edges = edges.map(|(far, &s)| ([4, far], s));
+        let creases = Creases::new(&hill, edges, [(4, own)]).expect("edges at 4");
+        let subdivision = Subdivision {
+            creasing,
+            boundary: Boundary::EdgeOnly,
+            ..Subdivision::new(Scheme::CatmullClark)
+        };
+        let creases = subdivision.control(&mesh, &hill, &creases);
+        let step = subdivision.gather(&mesh, &creases.expect("creases"), 0);
+        step.expect("quads")
+    }
+
+    /// The point of the edge from 4 to `far`: by the symmetry of the hill above its middle.
+    fn edge_point(step: &Step, far: usize) -> VertexId {
+        let middle = midpoint([hill().positions()[4], hill().positions()[far]]);
+        let above = |p: Point| p.truncate().distance(middle.truncate()) < 1e-6;
+        let mut points = step.polygons.vertices().skip(9 + 4);
+        points
+            .find(|&v| above(step.polygons.position(v)))
+            .expect("there")
+    }
+
+    fn assert_heights(creasing: Creasing, cases: &[(f32, &[f32], f32)]) {
+        for &(own, spokes, expected) in cases {
+            let z = step(creasing, spokes, own).polygons.positions()[4].z;
+            assert!(
+                (z - expected).abs() < 1e-6,
+                "{own} with {spokes:?}: {z}, not {expected}"
+            );
+        }
+    }
+
+    /// w · (what it is) + (1 − w) · (what it will be), worked out by hand.
+    #[test]
+    fn a_vertex_goes_between_what_it_is_and_what_it_will_be() {
+        assert_heights(
+            Creasing::Uniform,
+            &[
+                (0.0, &[], 0.5625),
+                // A dart moves as smooth, and does not blend.
+                (0.0, &[0.3], 0.5625),
+                (0.0, &[INF], 0.5625),
+                // Crease to smooth or to dart: 0.3 · 0.75 + 0.7 · 0.5625; the mean of 0.3, 0.7.
+                (0.0, &[0.3, 0.3], 0.61875),
+                (0.0, &[0.3, 1.5], 0.61875),
+                (0.0, &[0.3, INF], 0.61875),
+                (0.0, &[0.3, 0.7], 0.65625),
+                (0.0, &[1.0, 1.0], 0.75),
+                (0.0, &[1.5, 1.5], 0.75),
+                // Corner to dart: 0.4 + 0.6 · 0.5625; to crease: 0.3 + 0.7 · 0.75, 0.45 + 0.55 · 0.75.
+                (0.0, &[0.3, 0.5, INF], 0.7375),
+                (0.0, &[0.3, INF, INF], 0.825),
+                (0.0, &[0.3, 0.6, 2.0, 2.0], 0.8625),
+                // Corner to corner.
+                (0.0, &[0.3, 2.0, 2.0, 2.0], 1.0),
+                // Sharp by itself: w has a part in the mean.
+                (0.4, &[], 0.7375),
+                (0.4, &[0.8], 0.825),
+                (0.4, &[3.0], 0.7375),
+                (0.4, &[INF, INF], 0.85),
+                (0.4, &[0.8, 0.8], 2.0 / 3.0 + 0.5625 / 3.0),
+                (2.0, &[0.5, 0.5], 1.0),
+            ],
+        );
+    }
+
+    #[test]
+    fn an_edge_point_is_as_sharp_as_its_edge() {
+        for (sharpness, expected) in [(0.0, 0.375), (0.3, 0.4125), (1.0, 0.5), (2.5, 0.5)] {
+            let step = step(Creasing::Uniform, &[sharpness], 0.0);
+            let z = step.polygons.position(edge_point(&step, 1)).z;
+            assert!((z - expected).abs() < 1e-6, "{sharpness}: {z}");
+        }
+    }
+
+    /// The halves of spokes that are so sharp: at the vertex 4, and at the far end.
+    fn halves(creasing: Creasing, spokes: &[f32]) -> Vec<[f32; 2]> {
+        let step = step(creasing, spokes, 0.0);
+        let spokes = [1, 3, 5, 7].into_iter().zip(spokes);
+        let halves = spokes.map(|(far, _)| {
+            let middle = edge_point(&step, far);
+            let half = |end: usize| step.creases.edge(VertexId::new(end as u32), middle);
+            [half(4), half(far)]
+        });
+        halves.collect()
+    }
+
+    fn assert_halves(creasing: Creasing, spokes: &[f32], expected: &[[f32; 2]]) {
+        let got = halves(creasing, spokes);
+        for (got, expected) in got.iter().flatten().zip(expected.iter().flatten()) {
+            let is_near = got == expected || (got - expected).abs() < 1e-6;
+            assert!(is_near, "{spokes:?}: {got}, not {expected}");
+        }
+        assert_eq!(got.len(), expected.len());
+    }
+
+    #[test]
+    fn halves_are_less_sharp_by_one() {
+        let uniform = |spokes: &[f32], expected: &[[f32; 2]]| {
+            assert_halves(Creasing::Uniform, spokes, expected);
+        };
+        uniform(
+            &[INF, 10.0, 9.99, 0.4],
+            &[[INF; 2], [INF; 2], [8.99; 2], [0.0; 2]],
+        );
+        uniform(&[1.0, 1.25], &[[0.0; 2], [0.25; 2]]);
+    }
+
+    /// 3/4 of its own and 1/4 of the mean of the others, less 1, at the vertex 4; less 1 alone at the
+    /// far end, where there are none.
+    #[test]
+    fn chaikin_evens_out_sharpness() {
+        let chaikin = |spokes: &[f32], expected: &[[f32; 2]]| {
+            assert_halves(Creasing::Chaikin, spokes, expected);
+        };
+        chaikin(&[1.5], &[[0.5, 0.5]]);
+        // What is sharp for ever has no part in a mean.
+        chaikin(&[1.5, INF], &[[0.5, 0.5], [INF, INF]]);
+        chaikin(&[0.5, 2.0], &[[0.0, 0.0], [0.625, 1.0]]);
+        chaikin(&[1.2, 0.2, 2.0], &[[0.175, 0.2], [0.0, 0.0], [0.675, 1.0]]);
+        chaikin(&[0.8, 4.0], &[[0.6, 0.0], [2.2, 3.0]]);
+        assert_heights(
+            Creasing::Chaikin,
+            &[
+                // Both halves at 4 stay sharp: it is a crease and will be one.
+                (0.0, &[0.8, 4.0], 0.75),
+                // 1.2 reaches zero here too: w is the mean of 1.2 and 0.1.
+                (0.0, &[1.2, 0.1], 0.65 * 0.75 + 0.35 * 0.5625),
+            ],
+        );
+        // One half of 0.8 is not sharp: w = 0.8.
+        let step = step(Creasing::Chaikin, &[0.8, 4.0], 0.0);
+        let z = step.polygons.position(edge_point(&step, 1)).z;
+        assert!((z - 0.475).abs() < 1e-6, "{z}");
+    }
+}

@@ -85,7 +85,12 @@ impl Mask for Loop {
 
 #[cfg(test)]
 mod tests {
+    use indexed_face_set::IndexedFaceSet;
+    use mesh_core::{Creases, PolygonMesh};
+
     use super::*;
+    use crate::alike::assert_near;
+    use crate::{Method, Scheme, Subdivision, subdivide};
 
     #[test]
     fn the_weights_are_those_of_the_papers() {
@@ -100,5 +105,78 @@ mod tests {
         );
         let scheme = Loop::new(LoopWeights::Warren);
         assert_eq!(scheme.beta(40), (3.0_f64 / 320.0) as f32);
+    }
+
+    /// The points of a step, by gather and by scatter.
+    fn steps(weights: LoopWeights, polygons: &PolygonMesh) -> [Vec<Point>; 2] {
+        let scheme = Subdivision {
+            loop_weights: weights,
+            ..Subdivision::new(Scheme::Loop)
+        };
+        let none = Creases::default();
+        [Method::Gather, Method::Scatter].map(|method| {
+            let step = subdivide::<IndexedFaceSet>(&scheme, method, polygons, &none, 1, |_, _| ());
+            step.expect("triangles").polygons.positions().to_vec()
+        })
+    }
+
+    /// Around its centre the four neighbours of a vertex v add up to 0, and so do the far corners of
+    /// an edge: v goes to (1 − 4β) v, an edge point to 3/8 (a + b).
+    #[test]
+    fn an_octahedron_goes_where_the_paper_says() {
+        let octahedron = octahedron();
+        // β = (5/8 − (3/8)²)/4 = 31/256, and Warren's 3/32.
+        let of_loop = steps(LoopWeights::Loop, &octahedron).map(|points| (points, 33.0 / 64.0));
+        let of_warren = steps(LoopWeights::Warren, &octahedron).map(|points| (points, 5.0 / 8.0));
+        for (points, shrunk) in of_loop.into_iter().chain(of_warren) {
+            assert_eq!(points.len(), 6 + 12);
+            for (old, new) in octahedron.positions().iter().zip(&points) {
+                assert_near(*new, *old * shrunk);
+            }
+            for p in &points[6..] {
+                let mut sizes = p.abs().to_array();
+                sizes.sort_by(f32::total_cmp);
+                assert_near(Point::from(sizes), Point::new(0.0, 0.375, 0.375));
+            }
+        }
+    }
+
+    fn octahedron() -> PolygonMesh {
+        let axes = [Point::X, Point::Y, Point::Z];
+        let corners = axes.map(|axis| [axis, -axis]).concat();
+        // Corner 2k is +, 2k + 1 is − on axis k; with an odd number of minuses a face runs backwards.
+        let faces = (0..8_u32).map(|signs| {
+            let [x, y, z] = [0, 1, 2].map(|axis| 2 * axis + (signs >> axis & 1));
+            if signs.count_ones() % 2 == 0 {
+                [x, y, z]
+            } else {
+                [x, z, y]
+            }
+        });
+        PolygonMesh::new(corners, faces.collect::<Vec<_>>()).expect("eight triangles")
+    }
+
+    /// Around its centre the other three corners of a tetrahedron add up to −v, and with β = 3/16
+    /// v goes to 7/16 v − 3/16 v = v/4. The far corners of an edge add up to −(a + b), and its point is
+    /// 3/8 (a + b) − 1/8 (a + b) = (a + b)/4.
+    #[test]
+    fn a_tetrahedron_goes_where_the_paper_says() {
+        let corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]];
+        let corners = corners.map(|at: [i8; 3]| Point::from(at.map(f32::from)));
+        let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+        let tetrahedron = PolygonMesh::new(corners, faces).expect("four triangles");
+        let all = LoopWeights::ALL.map(|weights| steps(weights, &tetrahedron));
+        for points in all.as_flattened() {
+            assert_eq!(points.len(), 4 + 6);
+            for (old, new) in corners.iter().zip(points) {
+                assert_near(*new, *old * 0.25);
+            }
+            // Half-way along an axis of the cube around it.
+            for p in &points[4..] {
+                let mut sizes = p.abs().to_array();
+                sizes.sort_by(f32::total_cmp);
+                assert_near(Point::from(sizes), Point::new(0.0, 0.0, 0.5));
+            }
+        }
     }
 }

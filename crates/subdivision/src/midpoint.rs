@@ -35,3 +35,27 @@ impl Mask for Midpoint {
         at
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::PolygonMesh;
+
+    use super::*;
+    use crate::Scheme;
+    use crate::alike::all_ways;
+
+    /// Boundaries are no curves here: corners stay, and so do all vertices.
+    #[test]
+    fn a_triangle_keeps_its_corners() {
+        let corners = [Point::ZERO, Point::X, Point::Y];
+        let triangle = PolygonMesh::new(corners, [[0, 1, 2]]).expect("a triangle");
+        for mesh in all_ways(Scheme::Midpoint, &triangle, 0).expect("a triangle") {
+            assert_eq!(mesh.positions()[..3], corners);
+            for middle in [[0.5, 0.0], [0.0, 0.5], [0.5, 0.5]] {
+                let middle = Point::new(middle[0], middle[1], 0.0);
+                assert!(mesh.positions()[3..].contains(&middle), "{middle}");
+            }
+            assert_eq!([mesh.vertex_count(), mesh.face_count()], [6, 4]);
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! A machine whose speed drifts and structures whose costs are known.
+
+use std::cell::Cell;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::Mutex;
+
+use rand_chacha::rand_core::SeedableRng;
+use sixfold::subdivision::Method;
+use sixfold::{QueryCost, Relation};
+
+use super::*;
+use crate::plan::FEWEST_ELEMENTS;
+use crate::statistics::Median;
+
+/// A machine that slows down by half, jumps, and stutters; time passes only while it works.
+#[derive(Clone, Default)]
+struct Machine {
+    /// The time, and how often it has worked.
+    state: Arc<Mutex<(f64, u64)>>,
+}
+
+impl Machine {
+    fn work(&self, ns: f64) {
+        let (time, steps) = &mut *self.state.lock().expect("no panics");
+        *steps += 1;
+        let drift = 1.0 + 0.5 * (*steps as f64 / 900.0).sin();
+        let stutter = if steps.is_multiple_of(17) { 1.6 } else { 1.0 };
+        let jump = if (*steps / 400).is_multiple_of(2) {
+            1.0
+        } else {
+            1.8
+        };
+        *time += ns * drift * stutter * jump;
+    }
+
+    fn ns(&self) -> f64 {
+        self.state.lock().expect("no panics").0
+    }
+}
+
+impl Clock for Machine {
+    fn now(&self) -> Time {
+        Time {
+            cpu_ns: None,
+            wall_ns: self.ns(),
+        }
+    }
+}
+
+/// A structure whose every element costs the same, known, time.
+struct Synthetic {
+    machine: Machine,
+    ns_per_element: f64,
+    elements: usize,
+    costs: [QueryCost; 9],
+    asked: Rc<Cell<usize>>,
+}
+
+impl Subject for Synthetic {
+    fn name(&self) -> &'static str {
+        "synthetic"
+    }
+    fn costs(&self) -> [QueryCost; 9] {
+        self.costs
+    }
+    fn merged_vertices(&self) -> usize {
+        0
+    }
+    fn bytes(&self) -> usize {
+        1
+    }
+    fn run(&mut self, job: &Job, runs: u32, clock: &dyn Clock, _: bool) -> Run {
+        let size = job
+            .sample
+            .map_or(self.elements, |s| s.size.min(self.elements));
+        self.asked.set(self.asked.get().max(size));
+        let start = clock.now();
+        for _ in 0..runs {
+            self.machine.work(self.ns_per_element * size as f64);
+        }
+        let scale = self.elements as f64 / size as f64 / f64::from(runs);
+        Run::done((clock.now() - start).scaled(scale), None)
+    }
+}
+
+const VV: Operation = Operation::Relation(Relation::VertexVertices);
+
+fn measured(costs_ns: &[f64], scanning: bool, budget: Duration, stop: bool) -> Vec<Entry> {
+    bench(costs_ns, scanning, budget, stop, false).0
+}
+
+/// What was measured, and how long that took.
+fn bench(
+    costs_ns: &[f64],
+    scanning: bool,
+    budget: Duration,
+    stop: bool,
+    skewed: bool,
+) -> (Vec<Entry>, Duration) {
+    let machine = Machine::default();
+    let cost = if scanning {
+        QueryCost::Scan
+    } else {
+        QueryCost::Local
+    };
+    let subject = |&ns_per_element: &f64| {
+        Box::new(Synthetic {
+            machine: machine.clone(),
+            ns_per_element,
+            elements: 10_000,
+            costs: [cost; 9],
+            asked: Rc::default(),
+        }) as Box<dyn Subject>
+    };
+    let mut subjects: Vec<_> = costs_ns.iter().map(subject).collect();
+    let stop = AtomicBool::new(stop);
+    let mut bench = Bench {
+        subjects: &mut subjects,
+        population: [10_000; 3],
+        skewed,
+        clock: &machine,
+        budget,
+        named: false,
+        random: ChaCha8Rng::seed_from_u64(3),
+        stop: &stop,
+        progress: &mut |_| (),
+    };
+    let entries = bench.measure(&[VV, Operation::Circulate, Operation::FfBfs]);
+    (entries, Duration::from_nanos(machine.ns() as u64))
+}
+
+fn ratio(entries: &[Entry], a: usize, b: usize) -> Median {
+    let pairs = entries[a].samples.iter().zip(&entries[b].samples);
+    Median::of(pairs.map(|((_, a), (_, b))| a.ns() / b.ns())).expect("samples")
+}
+
+#[test]
+fn ratios_within_rounds_survive_a_drifting_machine() {
+    let entries = measured(&[7.0, 10.0, 7.1], false, Duration::from_secs(2), false);
+    assert!(entries.iter().all(|e| e.samples.len() >= 20), "20 rounds");
+    for first in [0, 3, 6] {
+        let slower = ratio(&entries, first + 1, first).value;
+        assert!((slower / (10.0 / 7.0) - 1.0).abs() < 0.04, "{slower}");
+        let alike = ratio(&entries, first + 2, first).value;
+        assert!((alike - 1.0).abs() < 0.05, "{alike}");
+    }
+    // The drift is no straw man: single samples of one entry differ by more than those two costs.
+    let own = Median::of(entries[0].samples.iter().map(|(_, t)| t.ns())).expect("samples");
+    let most = entries[0]
+        .samples
+        .iter()
+        .map(|(_, t)| t.ns())
+        .fold(0.0, f64::max);
+    assert!(most / own.least > 10.0 / 7.0, "{most} / {}", own.least);
+}
+
+#[test]
+fn scans_are_sampled_or_estimated_to_fit_the_budget() {
+    // 10,000 elements of 200 µs: 2 s a run, and three operations in a budget of 2 s.
+    let entries = measured(&[200_000.0], true, Duration::from_secs(2), false);
+    for entry in &entries[..2] {
+        let sample = entry.job.sample.expect("a sample");
+        assert!(
+            (FEWEST_ELEMENTS..2_000).contains(&sample.size),
+            "{sample:?}"
+        );
+        assert!(entry.samples.len() >= 5, "{} rounds", entry.samples.len());
+        let ns = Median::of(entry.samples.iter().map(|(_, t)| t.ns())).expect("samples");
+        assert!((1e9..1e10).contains(&ns.value), "{ns:?}");
+    }
+    let estimate = entries[2]
+        .estimate
+        .expect("a search that scans takes too long");
+    assert!((1e9..1e10).contains(&estimate.ns()), "{estimate:?}");
+    assert!(entries[2].samples.is_empty() && entries[2].times().is_empty());
+    // With time enough nothing is sampled and nothing left out.
+    let entries = measured(&[40_000.0], true, Duration::from_secs(200), false);
+    assert!(
+        entries
+            .iter()
+            .all(|e| e.job.sample.is_none() && e.samples.len() >= 5)
+    );
+}
+
+#[test]
+fn a_skewed_mesh_is_sampled_on_whatever_structure() {
+    // 2 s a run on each of three structures that do not scan: six operations walk around.
+    let costs = [200_000.0; 3];
+    let budget = Duration::from_secs(2);
+    let (entries, took) = bench(&costs, false, budget, false, true);
+    assert!(took < budget * 3 / 2, "{took:?}");
+    for entry in &entries[..6] {
+        assert!(entry.job.sample.is_some() && !entry.times().is_empty());
+    }
+    assert!(entries[6..].iter().all(|e| e.estimate.is_some()));
+    // What is cheap is run in full there too.
+    let (entries, _) = bench(&[7.0], false, budget, false, true);
+    assert!(entries.iter().all(|e| e.job.sample.is_none()));
+    assert!(entries.iter().all(|e| e.samples.len() >= 5));
+    // Nothing was gained where the mesh is not skewed: this is what the samples save.
+    let (_, took) = bench(&costs, false, budget, false, false);
+    assert!(took > budget * 5, "{took:?}");
+}
+
+#[test]
+fn a_search_that_fits_the_budget_once_is_run_once() {
+    // 1 s a run: too long for rounds within 5 s, and yet no reason to leave it out.
+    let (entries, took) = bench(&[100_000.0], true, Duration::from_secs(6), false, false);
+    let search = &entries[2];
+    assert!(search.estimate.is_none() && search.samples.is_empty());
+    assert_eq!(search.times().len(), 1);
+    assert!(took < Duration::from_secs(8), "{took:?}");
+    assert!(
+        entries[0].samples.len() >= 5,
+        "the others keep their rounds"
+    );
+}
+
+#[test]
+fn a_stopped_study_ends_at_once_and_a_spent_budget_keeps_the_warm_up() {
+    let entries = measured(&[7.0, 9.0], false, Duration::from_secs(1), true);
+    assert!(entries.iter().all(|e| e.times().is_empty()));
+    let entries = measured(&[7.0, 9.0], false, Duration::from_nanos(1), false);
+    assert!(entries.iter().all(|e| e.times().len() == 1));
+}
+
+#[test]
+fn a_subdivision_is_estimated_first_and_left_out_if_it_is_long_and_nobody_asked() {
+    let machine = Machine::default();
+    let stop = AtomicBool::new(false);
+    let planned = |ns_per_element: f64, cost: QueryCost, named: bool| {
+        let asked: Rc<Cell<usize>> = Rc::default();
+        let mut subjects: Vec<Box<dyn Subject>> = vec![Box::new(Synthetic {
+            machine: machine.clone(),
+            ns_per_element,
+            elements: 10_000,
+            costs: [cost; 9],
+            asked: asked.clone(),
+        })];
+        let mut bench = Bench {
+            subjects: &mut subjects,
+            population: [10_000; 3],
+            skewed: false,
+            clock: &machine,
+            budget: Duration::from_secs(2),
+            named,
+            random: ChaCha8Rng::seed_from_u64(3),
+            stop: &stop,
+            progress: &mut |_| (),
+        };
+        let entries = bench.measure(&[Operation::CatmullClark(Method::Gather)]);
+        (entries[0].clone(), asked.get())
+    };
+    // A millisecond a run, and no search: it has its rounds.
+    let (entry, _) = planned(100.0, QueryCost::Local, false);
+    assert!(entry.samples.len() >= 5 && entry.estimate.is_none());
+    // 0.3 s a run in 2 s: only estimated, from a patch; run where somebody asks for it.
+    let (entry, asked) = planned(30_000.0, QueryCost::Local, false);
+    let estimate = entry.estimate.expect("long").ns();
+    assert!((1e8..1e9).contains(&estimate) && entry.by_name_only);
+    assert!(asked < 10_000 && entry.times().is_empty());
+    let (entry, asked) = planned(30_000.0, QueryCost::Local, true);
+    assert!(entry.estimate.is_none() && entry.times().len() == 1);
+    assert_eq!(asked, 10_000);
+    // Six relations are searched for, 0.1 s each.
+    let (entry, _) = planned(10_000.0, QueryCost::Scan, false);
+    let estimate = entry.estimate.expect("long").ns();
+    assert!((3e8..2e9).contains(&estimate), "{estimate}");
+    // Longer than the budget: not even by name, and no promise that it would be.
+    for named in [false, true] {
+        let (entry, _) = planned(1e6, QueryCost::Local, named);
+        assert!(entry.estimate.is_some() && !entry.by_name_only);
+    }
+}
