@@ -18,6 +18,8 @@
 mod cases;
 #[path = "opensubdiv/judge.rs"]
 mod judge;
+#[path = "opensubdiv/names.rs"]
+mod names;
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -31,91 +33,11 @@ use sixfold::{
     for_each_refinable,
 };
 
-use judge::{Answer, Case, Judge, Level, Origin};
+use judge::{Answer, Case, Judge, Level};
+use names::{Names, upwards};
 
 /// How far apart points may be, beside the size of the control mesh.
 const NEAR: f32 = 1e-5;
-
-/// What OpenSubdiv's vertices and faces of a level are called in ours.
-struct Names {
-    vertices: Vec<usize>,
-    faces: Vec<usize>,
-}
-
-impl Names {
-    /// Of the control mesh, which both know by the same numbers.
-    fn given(polygons: &PolygonMesh) -> Self {
-        Self {
-            vertices: (0..polygons.vertex_count()).collect(),
-            faces: (0..polygons.face_count()).collect(),
-        }
-    }
-
-    /// Of the level after, whose mesh `child` is: by the origin of each vertex.
-    fn after(&self, scheme: Scheme, level: &Level, child: &PolygonMesh) -> Self {
-        let (old, faces) = (self.vertices.len(), self.faces.len());
-        let first_edge = match scheme {
-            Scheme::CatmullClark => old + faces,
-            _ => old,
-        };
-        let edge_points = edge_points(child, old, first_edge);
-        let name = |origin: Origin| match origin {
-            Origin::Given(v) => panic!("vertex {v} is said to be of the control mesh"),
-            Origin::Vertex(v) => self.vertices[v],
-            Origin::Edge(ends) => {
-                let [a, b] = ends.map(|v| self.vertices[v]);
-                edge_points[&upwards([a, b])]
-            }
-            Origin::Face(f) => old + self.faces[f],
-        };
-        let vertices = level.vertices.iter().map(|vertex| name(vertex.origin));
-        let vertices: Vec<usize> = vertices.collect();
-        let distinct: BTreeSet<_> = vertices.iter().collect();
-        assert_eq!(distinct.len(), child.vertex_count(), "vertices");
-        let mut ours: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
-        for (f, face) in child.faces().iter() {
-            ours.insert(from_the_lowest(face.iter().map(|v| v.index())), f.index());
-        }
-        assert_eq!(ours.len(), level.faces.len(), "faces");
-        let faces = level.faces.iter().map(|face| {
-            let corners = from_the_lowest(face.corners.iter().map(|&v| vertices[v]));
-            let found = ours.remove(&corners);
-            found.unwrap_or_else(|| panic!("no face {corners:?}"))
-        });
-        Self {
-            faces: faces.collect(),
-            vertices,
-        }
-    }
-}
-
-fn from_the_lowest(corners: impl Iterator<Item = usize>) -> Vec<usize> {
-    let mut corners: Vec<usize> = corners.collect();
-    let lowest = (0..corners.len()).min_by_key(|&i| corners[i]);
-    corners.rotate_left(lowest.unwrap_or(0));
-    corners
-}
-
-fn upwards([a, b]: [usize; 2]) -> [usize; 2] {
-    [a.min(b), a.max(b)]
-}
-
-/// The points of edges, by the two old vertices beside each; these are those before `old`.
-fn edge_points(child: &PolygonMesh, old: usize, first_edge: usize) -> BTreeMap<[usize; 2], usize> {
-    let mut ends = vec![Vec::new(); child.vertex_count()];
-    for edge in child.edge_uses() {
-        let [a, b] = edge.ends.map(|v| v.index());
-        if a < old && b >= first_edge {
-            ends[b].push(a);
-        }
-    }
-    let points = ends.iter().enumerate().skip(first_edge);
-    let by_ends = points.map(|(point, ends)| match ends[..] {
-        [a, b] => (upwards([a, b]), point),
-        _ => panic!("{point} is beside the old vertices {ends:?}"),
-    });
-    by_ends.collect()
-}
 
 /// Holds one level of ours to be OpenSubdiv's.
 fn hold_level(level: &Level, names: &Names, polygons: &PolygonMesh, creases: &Creases, near: f32) {

@@ -1,18 +1,17 @@
 //! What every scheme keeps, on random manifolds with random creases, and what it counts up to.
 
-use std::collections::BTreeMap;
+#[path = "subdivision_laws/regular.rs"]
+mod regular;
 
 use conformance::strategy::manifold_mesh;
-use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use sixfold::subdivision::{
-    Boundary, ControlGrid, Creasing, Ends, Extent, LoopWeights, Method, Scheme, Step, Subdivision,
-    subdivide, subdivide_native,
+    Boundary, Creasing, Extent, LoopWeights, Method, Scheme, Step, Subdivision, subdivide,
+    subdivide_native,
 };
 use sixfold::{
     Creases, Facts, HalfEdgeMesh, IndexedFaceSet, Point, PolygonMesh, Representation, VertexId,
-    mesh_core,
 };
 
 use crate::subdivision::{creases_on, sharpness};
@@ -147,7 +146,7 @@ fn grown(scheme: Scheme, polygons: &PolygonMesh, level: u32) -> [usize; 3] {
     match scheme {
         Scheme::CatmullClark | Scheme::Bilinear => [v + e + f, 2 * e + c, c],
         Scheme::Loop | Scheme::Butterfly | Scheme::Midpoint => [v + e, 2 * e + 3 * f, 4 * f],
-        Scheme::Sqrt3 if level % 2 == 0 => [v + f, e + 3 * f, 3 * f],
+        Scheme::Sqrt3 if level.is_multiple_of(2) => [v + f, e + 3 * f, 3 * f],
         Scheme::Sqrt3 => [v + f + 2 * b, e + 3 * f + 4 * b, 3 * f + 2 * b],
         Scheme::DooSabin => {
             let valences = valences(polygons);
@@ -375,116 +374,4 @@ fn doubled(start: &Try) -> Option<(Try, Vec<usize>)> {
         creases,
     };
     Some((double, mirror))
-}
-
-fn control_grids() -> impl Strategy<Value = ControlGrid> {
-    let all = vec![Ends::Closed, Ends::Kept, Ends::Dropped];
-    let parts = (4..7_usize, 4..6_usize, prop::array::uniform2(select(all)));
-    parts.prop_flat_map(|(columns, rows, ends)| {
-        let point = prop::array::uniform3(-1.0_f32..1.0).prop_map(Point::from);
-        let grid = move |points| ControlGrid::new(columns, points, ends).expect("4 × 4");
-        vec(point, columns * rows).prop_map(grid)
-    })
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 24, ..ProptestConfig::default() })]
-
-    /// With no coordinate above 1, a vertex is away from its limit by a sixth of the second difference
-    /// along rows and one along columns, each at most 4, and by a 36th of that of both, at most 16. A
-    /// step makes these differences a quarter, and that of both a sixteenth. So after k steps
-    ///
-    /// ```text
-    ///   |vertex − limit| ≤ 4/3 · 4⁻ᵏ + 4/9 · 16⁻ᵏ
-    /// ```
-    #[test]
-    fn regular_grids_converge_to_the_b_spline_patch(grid in control_grids()) {
-        let polygons = grid.to_polygons().expect("small");
-        let subdivision = Subdivision::new(Scheme::CatmullClark);
-        let (vertices, columns) = (polygons.vertex_count(), grid.columns());
-        let across = if grid.ends()[0] == Ends::Closed { columns } else { columns - 1 };
-        let mut compared = BTreeMap::new();
-        for levels in 0..=4 {
-            let refined = after(&subdivision, &polygons, &Creases::default(), levels).polygons;
-            // Control vertices keep their numbers, and so do the first face points.
-            let old = (0..vertices).map(|v| (v, (v % columns) as f64, (v / columns) as f64, levels));
-            let faces = (0..polygons.face_count()).filter(|_| levels > 0).map(|f| {
-                let (i, j) = (f % across, f / across);
-                (vertices + f, i as f64 + 0.5, j as f64 + 0.5, levels - 1)
-            });
-            for (v, i, j, steps) in old.chain(faces) {
-                let Some(limit) = grid.evaluate(i, j) else { continue };
-                let off = (refined.positions()[v] - limit).abs().max_element();
-                let far = 4.0 / 3.0 * 0.25_f32.powi(steps as i32)
-                    + 4.0 / 9.0 * 0.0625_f32.powi(steps as i32);
-                prop_assert!(off <= far + 1e-6, "{} {} after {} steps: off {}", i, j, steps, off);
-                *compared.entry(levels).or_insert(0) += 1;
-            }
-        }
-        prop_assert!(compared[&4] >= 5, "{:?}", compared);
-    }
-}
-
-/// A step is not told from which side a mesh is numbered: the torus is the same from every vertex.
-#[test]
-fn a_regular_torus_stays_as_regular() {
-    let torus = sixfold::shapes::torus(6, 5).expect("a small torus");
-    let step = after(
-        &Subdivision::new(Scheme::CatmullClark),
-        &torus,
-        &Creases::default(),
-        2,
-    );
-    let facts = Facts::of(&step.polygons);
-    assert_eq!([facts.vertices, facts.faces], [480, 480]);
-    assert_eq!(facts.genus, Some(1));
-    // Turned by one of the six, it is itself.
-    let turn = std::f32::consts::TAU / 6.0;
-    let (sin, cos) = turn.sin_cos();
-    let points = step.polygons.positions();
-    let size = size(&torus);
-    for p in points {
-        let turned = Point::new(cos * p.x - sin * p.y, sin * p.x + cos * p.y, p.z);
-        let off = points.iter().map(|q| q.distance(turned));
-        assert!(
-            off.fold(f32::MAX, f32::min) <= NEAR * size,
-            "none at {turned}"
-        );
-    }
-}
-
-/// What is sharp for ever stays so; just below, it wears off.
-#[test]
-fn sharpness_of_ten_stays_and_less_wears_off() {
-    let grid = sixfold::shapes::grid(2, 2).expect("a small grid");
-    for (scheme, mesh) in [
-        (Scheme::CatmullClark, grid.clone()),
-        (Scheme::Loop, grid.fan_triangulated().expect("small")),
-    ] {
-        let inner = mesh.edge_uses();
-        let inner = inner.iter().find(|edge| !edge.is_boundary());
-        let [a, b] = inner.expect("an inner edge").ends.map(|v| v.index() as u32);
-        for (given, left) in [
-            (f32::INFINITY, f32::INFINITY),
-            (10.0, f32::INFINITY),
-            (9.99, 8.99),
-            (1.25, 0.25),
-            (1.0, 0.0),
-        ] {
-            let creases = Creases::new(&mesh, [([a, b], given)], [(a, given)]).expect("an edge");
-            let subdivision = Subdivision::new(scheme);
-            let step = after(&subdivision, &mesh, &creases, 1);
-            let a = VertexId::new(a);
-            let halves: Vec<f32> = step.creases.edges().iter().map(|&(_, s)| s).collect();
-            let expected = if left > 0.0 { vec![left; 2] } else { vec![] };
-            assert_eq!(halves.len(), expected.len(), "{scheme}, {given}");
-            let near = |s: f32, left: f32| s == left || (s - left).abs() < 1e-6;
-            assert!(
-                halves.iter().all(|&s| near(s, left)),
-                "{scheme}: {halves:?}"
-            );
-            assert!(near(step.creases.corner(a), left), "{scheme}, {given}");
-        }
-    }
-    assert!(mesh_core::SHARP_FOR_EVER == 10.0);
 }

@@ -20,6 +20,7 @@ const EXAMPLES: &str = "Examples:
   sixfold study bunny.obj                    study your own
   sixfold inspect bunny.obj                  what it is, and which backends can hold it
   sixfold generate geodesic frequency=20 -o ball.obj
+  sixfold subdivide --scheme loop --levels 2 bunny.obj -o smooth.obj
 
 Exit codes: 0 done; 1 done, and the answer is no; 2 wrong usage or unusable input;
 3 not supported by this backend or scheme; 4 interrupted, finished part kept.";

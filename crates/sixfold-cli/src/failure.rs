@@ -20,6 +20,13 @@ impl Failure {
         }
     }
 
+    /// A mesh that the backend asked for does not hold, where another may.
+    pub(crate) fn not_held(refusal: impl Display) -> Self {
+        Self::unsupported(format!(
+            "{refusal}; or take another --backend: `sixfold inspect` says which hold the mesh"
+        ))
+    }
+
     /// Not supported by the backends asked for.
     pub(crate) fn unsupported(message: impl Display) -> Self {
         Self {

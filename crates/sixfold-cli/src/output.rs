@@ -37,23 +37,39 @@ pub(crate) fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Refuses two outputs to one place, and an output in the place of the input.
+/// Refuses an output in the place of an input, which is `what`.
+pub(crate) fn check_kept(
+    what: &str,
+    input: &Path,
+    outputs: &[(&str, Option<&PathBuf>)],
+) -> Result<(), Failure> {
+    let kept = place(input);
+    for &(option, path) in outputs {
+        let Some(path) = path else { continue };
+        if place(path) == kept && !is_stdout(path) {
+            return Err(Failure::usage(format!(
+                "{option} would overwrite {what} {}: name another place",
+                path.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses two outputs to one place, and an output in the place of the mesh.
 pub(crate) fn check_places(
     mesh: Option<&Path>,
     outputs: &[(&str, Option<&PathBuf>)],
 ) -> Result<(), Failure> {
+    if let Some(mesh) = mesh {
+        check_kept("the mesh", mesh, outputs)?;
+    }
     let asked = outputs
         .iter()
         .filter_map(|&(option, path)| Some((option, path?)));
     let mut taken: Vec<(&str, PathBuf)> = Vec::new();
-    let mesh = mesh.map(place);
     for (option, path) in asked {
         let (place, shown) = (place(path), path.display());
-        if mesh.as_ref() == Some(&place) && !is_stdout(path) {
-            return Err(Failure::usage(format!(
-                "{option} would overwrite the mesh {shown}: name another place"
-            )));
-        }
         if let Some((other, _)) = taken.iter().find(|(_, there)| *there == place) {
             return Err(Failure::usage(format!(
                 "{other} and {option} both write to {shown}: name two places"
@@ -159,6 +175,16 @@ impl Output {
         match done {
             // Whoever read standard output has seen enough.
             Err(cause) if cause.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+            // No fault of the place, but of the mesh; what the system refuses has its own number.
+            Err(cause)
+                if cause.kind() == io::ErrorKind::InvalidInput
+                    && cause.raw_os_error().is_none() =>
+            {
+                Err(Failure::usage(format!(
+                    "{}: not written, {cause}: scale the mesh down, coordinates are 32 bits",
+                    self.shown
+                )))
+            }
             Err(cause) => Err(self.failure(&cause)),
             Ok(()) => Ok(()),
         }

@@ -11,7 +11,7 @@ use crate::arguments::Render;
 use crate::failure::Failure;
 use crate::load;
 use crate::numbers::counted;
-use crate::output::{Output, check_places};
+use crate::output::{Output, check_kept};
 use crate::progress::{Waiting, end_on_interrupt};
 use crate::text::{Text, tame};
 
@@ -19,9 +19,12 @@ use crate::text::{Text, tame};
 pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     end_on_interrupt();
     let format = Format::of(&arguments.output)?;
-    let inputs = arguments.meshes.iter().chain(&arguments.creases);
-    for input in inputs {
-        check_places(Some(input), &[("--output", Some(&arguments.output))])?;
+    let outputs = [("--output", Some(&arguments.output))];
+    for mesh in &arguments.meshes {
+        check_kept("the mesh", mesh, &outputs)?;
+    }
+    for creases in &arguments.creases {
+        check_kept("the crease file", creases, &outputs)?;
     }
     let settings = settings(arguments)?;
     let loaded = loaded(arguments)?;

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use sixfold::mesh_io::write_obj;
-use sixfold::operators::{Smoothing, dual, oriented, smoothed, triangulated};
+use sixfold::operators::{Smoothing, SmoothingError, dual, oriented, smoothed, triangulated};
 use sixfold::{PolygonMesh, Representation, Visitor, visit};
 
 use crate::arguments::{Dual, Smooth, Triangulate};
@@ -12,8 +12,8 @@ use crate::failure::Failure;
 use crate::load;
 use crate::numbers::counted;
 use crate::output::{Output, check_places, is_stdout};
-use crate::progress::end_on_interrupt;
-use crate::text::{Text, tame};
+use crate::progress::{Waiting, end_on_interrupt};
+use crate::text::{Text, complain, tame};
 
 /// Smooths the mesh and writes it.
 pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
@@ -60,12 +60,22 @@ fn reshaped(
     what: &str,
     change: impl FnOnce(&PolygonMesh) -> Result<PolygonMesh, Failure>,
 ) -> Result<ExitCode, Failure> {
-    end_on_interrupt();
     check_places(Some(from), &[("--output", Some(&to.to_owned()))])?;
-    let specimen = load::specimen(from)?;
+    end_on_interrupt();
+    let (polygons, creases) = load::with_creases(from)?;
+    if !creases.is_empty() {
+        let from = from.display();
+        complain(&format!(
+            "note: {from}: sharp edges and vertices are not carried over"
+        ));
+    }
     // Opened before the work, so that nobody waits for a failure.
     let output = Output::open(to)?;
-    let changed = change(&specimen.polygons)?;
+    let faces = counted(polygons.face_count(), "face", "faces");
+    let waiting = Waiting::shown(format!("working on {faces}"));
+    let changed = change(&polygons);
+    waiting.clear();
+    let changed = changed?;
     output.finish(|writer| write_obj(&changed, writer))?;
     let mut text = Text::shown(!is_stdout(to));
     let place = tame(&to.display().to_string());
@@ -78,16 +88,19 @@ fn reshaped(
 
 /// Something that is done with a structure.
 trait Work {
-    fn done<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, String>;
+    fn done<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, Failure>;
 }
 
 struct Smoothed(Smoothing);
 
 impl Work for Smoothed {
-    fn done<M: Representation>(&self, mut mesh: M) -> Result<PolygonMesh, String> {
-        let positions = smoothed(&mesh, &self.0).map_err(|error| error.to_string())?;
-        let moved = mesh.set_positions(&positions);
-        moved.map_err(|error| error.to_string())?;
+    fn done<M: Representation>(&self, mut mesh: M) -> Result<PolygonMesh, Failure> {
+        let positions = smoothed(&mesh, &self.0).map_err(|error| match error {
+            SmoothingError::Step { .. } | SmoothingError::StepBack { .. } => Failure::usage(error),
+            _ => Failure::unsupported(error),
+        })?;
+        mesh.set_positions(&positions)
+            .map_err(Failure::unsupported)?;
         Ok(mesh.to_polygons())
     }
 }
@@ -95,8 +108,8 @@ impl Work for Smoothed {
 struct Dualised;
 
 impl Work for Dualised {
-    fn done<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, String> {
-        dual(&mesh).map_err(|error| error.to_string())
+    fn done<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, Failure> {
+        dual(&mesh).map_err(Failure::unsupported)
     }
 }
 
@@ -109,18 +122,19 @@ fn on_backend(
     struct On<'a, W>(&'a PolygonMesh, &'a W);
 
     impl<W: Work> Visitor for On<'_, W> {
-        type Output = Result<PolygonMesh, String>;
+        type Output = Result<PolygonMesh, Failure>;
 
         fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
             let mesh = M::from_polygons(self.0);
-            let mesh =
-                mesh.map_err(|refusal| format!("{} cannot hold the mesh: {refusal}", M::NAME))?;
+            let mesh = mesh.map_err(|refusal| {
+                Failure::not_held(format!("{} cannot hold the mesh: {refusal}", M::NAME))
+            })?;
             self.1.done(mesh)
         }
     }
 
     match visit(backend, &mut On(polygons, work)) {
-        Some(done) => done.map_err(Failure::unsupported),
+        Some(done) => done,
         None => Err(Failure::usage(format!("no backend is called `{backend}`"))),
     }
 }

@@ -54,6 +54,10 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
         table.add_row(line);
     }
     add_bytes(&mut table, &columns, intervals, bold, &mut signs);
+    // All six and their names fit into a hundred columns.
+    if let Some(names) = table.column_mut(0) {
+        names.set_padding((0, 1));
+    }
     let mut text = table.trim_fmt();
     for line in signs.legend(report) {
         text += "\n";
@@ -215,7 +219,7 @@ fn unrun(row: &ResultRow) -> Option<String> {
     } = row;
     Some(match row.by_name_only {
         true => format!(
-            "? {operation} on {backend} was left out: some {time} a run; ask for it with --operations {operation}"
+            "? {operation} on {backend} was left out, some {time} a run: name it to --operations"
         ),
         false => format!(
             "? {operation} on {backend} was not run: one run would take about {time}, too long for the budget"

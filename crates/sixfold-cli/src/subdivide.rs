@@ -21,10 +21,11 @@ use crate::arguments::Subdivide;
 use crate::failure::Failure;
 use crate::load;
 use crate::numbers::{counted, duration, figure, grouped};
-use crate::output::{Output, check_places, is_stdout};
+use crate::output::{Output, check_kept, check_places, is_stdout};
 use crate::progress::{Faces, end_on_interrupt};
 use crate::text::{Text, tame};
 use forecast::Forecast;
+use limit::Limits;
 
 /// Refines the mesh and writes it.
 pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
@@ -35,6 +36,9 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         ("--creases-left", arguments.creases_left.as_ref()),
     ];
     check_places(Some(&arguments.mesh), &places)?;
+    if let Some(creases) = &arguments.creases {
+        check_kept("the crease file", creases, &places)?;
+    }
     let data = places.iter().filter_map(|&(_, path)| path);
     let mut text = Text::shown(!data.into_iter().any(|path| is_stdout(path)));
     let subdivision = options(arguments)?;
@@ -43,6 +47,7 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     }
     let method = method(arguments)?;
     let (polygons, mut creases) = load::with_creases(&arguments.mesh)?;
+    check_tags(arguments, &creases)?;
     if let Some(path) = &arguments.creases {
         let told = read_creases(path, &polygons).map_err(Failure::usage)?;
         creases = creases.with(&told);
@@ -53,13 +58,14 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         &arguments.backend,
         &polygons,
         arguments.levels,
+        arguments.limit.is_some(),
     )?;
-    text.say(&forecast.told());
     forecast.check(arguments.force)?;
     // Opened before the work, so that nobody waits for a failure.
     let output = Output::open(&arguments.output)?;
     let limit = Output::open_if(arguments.limit.as_ref())?;
     let left = Output::open_if(arguments.creases_left.as_ref())?;
+    text.say(&forecast.told());
     let mut job = Job {
         subdivision,
         method,
@@ -69,17 +75,22 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         bar: Faces::of(forecast.faces_in_all()),
         done: Vec::new(),
     };
-    let step = job.run(&arguments.backend, arguments.threads)?;
+    let step = job.run(&arguments.backend, arguments.threads.unwrap_or(0))?;
     for line in &job.done {
         text.say(&line.told());
     }
+    // Taken before the first file is there: all are written, or none.
+    let limits = match limit {
+        Some(output) => Some((output, Limits::of(&subdivision, &step, arguments.levels)?)),
+        None => None,
+    };
     output.finish(|writer| write_obj(&step.polygons, writer))?;
     if let Some(left) = left {
         left.finish(|writer| write_creases(&step.creases, writer))?;
     }
-    if let (Some(limit), Some(path)) = (limit, &arguments.limit) {
-        let lines = limit::write(&subdivision, &step, arguments.levels, limit, path)?;
-        lines.iter().for_each(|line| text.say(line));
+    if let (Some((output, limits)), Some(path)) = (limits, &arguments.limit) {
+        output.finish(|writer| limits.write(writer))?;
+        limits.told(path).iter().for_each(|line| text.say(line));
     }
     let place = tame(&arguments.output.display().to_string());
     let vertices = counted(step.polygons.vertex_count(), "vertex", "vertices");
@@ -131,6 +142,18 @@ fn options(arguments: &Subdivide) -> Result<Subdivision, Failure> {
     })
 }
 
+/// A scheme without rules for creases refuses a mesh file that tells of some.
+fn check_tags(arguments: &Subdivide, creases: &Creases) -> Result<(), Failure> {
+    let scheme = arguments.scheme;
+    if creases.is_empty() || scheme.kind().creases {
+        return Ok(());
+    }
+    Err(Failure::unsupported(format!(
+        "{}: the file has sharp edges or vertices, and {scheme} has no rule for them: take its lines `t crease` and `t corner` out, or choose catmull-clark or loop",
+        arguments.mesh.display()
+    )))
+}
+
 /// The method asked for, or the best that the backend has for the scheme; checked before any work.
 fn method(arguments: &Subdivide) -> Result<Method, Failure> {
     let Subdivide {
@@ -147,12 +170,17 @@ fn method(arguments: &Subdivide) -> Result<Method, Failure> {
             "{scheme} makes {makes}, and {backend} holds triangles alone: level 2 cannot be made on it, choose another backend"
         )));
     }
-    match arguments.method {
-        None => row
-            .best()
-            .ok_or_else(|| Failure::unsupported(format!("{scheme} does not run on {backend}"))),
-        Some(method) if row.methods.contains(&method) => Ok(method),
-        Some(method) => Err(Failure::unsupported(format!(
+    let best = row.best();
+    let best =
+        best.ok_or_else(|| Failure::unsupported(format!("{scheme} does not run on {backend}")))?;
+    match arguments.method.unwrap_or(best) {
+        method if row.methods.contains(&method) => match arguments.threads {
+            Some(2..) if method != Method::Native => Err(Failure::unsupported(format!(
+                "{scheme} by {method} on {backend} runs on one thread: leave --threads out, or see `sixfold schemes` for a native method"
+            ))),
+            _ => Ok(method),
+        },
+        method => Err(Failure::unsupported(format!(
             "{scheme} does not run by {method} on {backend}: choose {names}, or see `sixfold schemes`"
         ))),
     }
@@ -180,7 +208,7 @@ impl Done {
     fn told(&self) -> String {
         let Self { level, faces, time } = self;
         let ns = time.as_nanos() as f64;
-        let each = figure(ns / (*faces).max(1) as f64);
+        let each = figure(ns / *faces as f64);
         let (faces, time) = (grouped(*faces), duration(ns));
         format!("level {level:<3} {faces:>14} faces  {time:>9}  {each:>6} ns a face")
     }
@@ -203,6 +231,7 @@ impl Job<'_> {
         self.bar.clear();
         match done {
             Some(Ok(step)) => Ok(step),
+            Some(Err(refusal @ SubdivisionError::Build { .. })) => Err(Failure::not_held(refusal)),
             Some(Err(refusal)) => Err(Failure::unsupported(refusal)),
             None => Err(Failure::usage(format!("no backend is called `{backend}`"))),
         }

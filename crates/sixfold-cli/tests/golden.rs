@@ -38,9 +38,19 @@ fn help() {
         ("help_inspect.txt", &["inspect", "--help"]),
         ("help_generate.txt", &["generate", "--help"]),
         ("help_render.txt", &["render", "--help"]),
+        ("help_schemes.txt", &["schemes", "--help"]),
+        ("help_subdivide.txt", &["subdivide", "--help"]),
+        ("help_smooth.txt", &["smooth", "--help"]),
+        ("help_dual.txt", &["dual", "--help"]),
+        ("help_triangulate.txt", &["triangulate", "--help"]),
     ] {
         golden(name, &printed(&sixfold, arguments));
     }
+}
+
+#[test]
+fn schemes() {
+    golden("schemes.txt", &printed(&Sixfold::new(), &["schemes"]));
 }
 
 #[test]

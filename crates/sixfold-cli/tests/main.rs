@@ -8,3 +8,4 @@ mod outputs;
 mod places;
 mod render;
 mod run;
+mod subdivision;

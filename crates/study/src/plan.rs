@@ -74,9 +74,13 @@ impl Bench<'_, '_> {
             if self.stopped() {
                 return;
             }
-            let unasked = entry.job.operation.subdivides() && !self.named;
-            if wall_ns > left * if unasked { SMALL_SHARE } else { ONCE } {
-                entry.by_name_only = unasked && wall_ns <= ONCE * budget;
+            let part = match (entry.job.operation.subdivides(), self.named) {
+                (false, _) => ONCE,
+                (true, false) => SMALL_SHARE,
+                (true, true) => 1.0, // whoever names it wants to see it
+            };
+            if wall_ns > part * left {
+                entry.by_name_only = part == SMALL_SHARE && wall_ns <= ONCE * budget;
                 continue;
             }
             self.report(0.1, "warming up", entry);

@@ -90,6 +90,11 @@ pub(crate) fn is_semi_sharp(sharpness: f32) -> bool {
 }
 
 impl SharpLevel {
+    /// Whether nothing is sharp.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.edges.is_empty() && self.corners.is_empty()
+    }
+
     /// Places the points at what is sharp, and yields the sharpness of the next level.
     ///
     /// `points` holds the vertex points from 0 and the edge points from `first_edge`, all placed as

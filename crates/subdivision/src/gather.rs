@@ -67,6 +67,9 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
         }
     });
     outline.split_faces(mesh, |v| numbers[v], |e| edge_points[e])?;
+    if level.is_empty() {
+        return outline.finish(Creases::default());
+    }
     let old = by_number(mesh);
     let creases = level.place(old, &mut outline.points, first_edge, creasing);
     outline.finish(creases)

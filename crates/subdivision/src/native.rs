@@ -63,7 +63,7 @@ pub(crate) fn step<M: Refine, K: Mask>(
         corners: creases.corners().to_vec(),
     };
     level.edges.extend(creased(mesh, creases, numbers));
-    if level.edges.is_empty() && level.corners.is_empty() {
+    if level.is_empty() {
         return Ok(Creases::default());
     }
     let old = |v: u32| mesh.position_rows()[v as usize];

@@ -35,9 +35,9 @@ pub(crate) struct Smooth {
     #[arg(long, value_name = "RULE", default_value = "fixed", value_parser = boundary)]
     pub(crate) boundary: Boundary,
     /// How often
-    #[arg(long, value_name = "N", default_value_t = 10)]
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = iterations, allow_hyphen_values = true)]
     pub(crate) iterations: usize,
-    /// How far to go each time, of the way to the mean of the neighbours: 0 to 1
+    /// What part of the way to the mean of the neighbours to go: 0 to 1
     #[arg(
         long,
         value_name = "PART",
@@ -96,12 +96,17 @@ pub(crate) struct Triangulate {
     /// Where to write the result (- for standard output)
     #[arg(short, long, value_name = "OUT.obj")]
     pub(crate) output: PathBuf,
-    /// ears: right for any simple polygon; fan: quicker, and right for convex ones
+    /// ears, for any simple polygon, or fan, for convex ones
     #[arg(long, value_name = "NAME", default_value = "ears", value_parser = triangulation)]
     pub(crate) method: Triangulation,
     /// Turn faces over until neighbours agree: majority, as most of them face, or outward
     #[arg(long, value_name = "RULE", value_parser = facing)]
     pub(crate) orient: Option<Facing>,
+}
+
+fn iterations(text: &str) -> Result<usize, String> {
+    let parsed = text.trim().parse();
+    parsed.map_err(|_| format!("a number of iterations is from 0 to {}", usize::MAX))
 }
 
 fn weights(text: &str) -> Result<Weights, String> {

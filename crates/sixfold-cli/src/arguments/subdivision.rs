@@ -13,16 +13,28 @@ const EXAMPLES: &str = "Examples:
   sixfold subdivide --scheme midpoint --select box:0,0,0,1,1,1 part.obj -o finer.obj
   sixfold subdivide --scheme loop --method scatter --backend polygon-soup in.obj -o out.obj
 
+Schemes: catmull-clark, loop, sqrt3, butterfly, doo-sabin, midpoint, bilinear.
+
 A crease file has lines `edge a b sharpness` and `corner v sharpness`: vertices from 0, sharpness a
 number from 0 on, or inf; # begins a comment. From 10 on an edge is sharp for ever, below it gets
 smoother by one a level. What an OBJ file says of creases (t crease, t corner) holds as well.
 `sixfold schemes` lists what runs on which backend.
 
-Exit codes: 0 done; 2 wrong usage or unusable input; 3 the scheme or the backend does not support
-the mesh or the option; 4 interrupted, nothing written.";
+--select takes the faces that a file lists (numbers from 0), those that touch a box, or those that
+bend from a neighbour by more than an angle; neighbours are halved so that no gaps are left.
+
+Exit codes: 0 done; 2 wrong usage or unusable input; 3 the scheme, the backend or the memory does not
+allow the mesh, the option or the levels; 4 interrupted, nothing written.";
+
+const SCHEMES_EXAMPLES: &str = "Examples:
+  sixfold schemes
+  sixfold schemes --json -                   for machines
+
+Exit codes: 0 done; 2 wrong usage.";
 
 /// Say what subdivision schemes there are, and what runs on which backend.
 #[derive(Debug, Args)]
+#[command(after_help = SCHEMES_EXAMPLES)]
 pub(crate) struct Schemes {
     /// Write both tables as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
@@ -42,14 +54,13 @@ pub(crate) struct Subdivide {
     /// Where to write the result (- for standard output)
     #[arg(short, long, value_name = "OUT.obj")]
     pub(crate) output: PathBuf,
-    /// catmull-clark, loop, sqrt3, butterfly, doo-sabin, midpoint or bilinear
+    /// The scheme: see the list below
     #[arg(long, value_name = "NAME", default_value = "catmull-clark", value_parser = scheme)]
     pub(crate) scheme: Scheme,
     /// How many steps to take
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = levels, allow_hyphen_values = true)]
     pub(crate) levels: u32,
-    /// Refine only some triangles, and their neighbours as far as it takes to leave no gaps:
-    /// faces:FILE (numbers from 0), box:X0,Y0,Z0,X1,Y1,Z1 or angle:DEGREES
+    /// With midpoint, refine only faces:FILE, box:X0,Y0,Z0,X1,Y1,Z1 or angle:DEGREES
     #[arg(long, value_name = "WHAT", value_parser = select, allow_hyphen_values = true)]
     pub(crate) select: Option<Select>,
     /// The structure to do it with
@@ -58,9 +69,9 @@ pub(crate) struct Subdivide {
     /// gather, scatter or native; without it the last of these that the backend has
     #[arg(long, value_name = "NAME", value_parser = method)]
     pub(crate) method: Option<Method>,
-    /// Threads of a native step; 0 for as many as there are processors
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
-    pub(crate) threads: usize,
+    /// Threads of a native step; without it, or for 0, as many as there are processors
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
+    pub(crate) threads: Option<usize>,
     /// Sharp edges and vertices, beside those that the mesh file tells
     #[arg(long, value_name = "FILE")]
     pub(crate) creases: Option<PathBuf>,
@@ -155,6 +166,15 @@ fn creasing(text: &str) -> Result<Creasing, String> {
 
 fn loop_weights(text: &str) -> Result<LoopWeights, String> {
     named(&LoopWeights::ALL, LoopWeights::name, text)
+}
+
+/// No more levels than 32-bit coordinates can be halved; a mesh that grows ends far before.
+fn levels(text: &str) -> Result<u32, String> {
+    const MOST: u32 = 1000;
+    match text.trim().parse() {
+        Ok(levels) if levels <= MOST => Ok(levels),
+        _ => Err(format!("a number of levels is from 0 to {MOST}")),
+    }
 }
 
 /// No more threads than any machine has use for.

@@ -7,6 +7,12 @@ use sysinfo::{MemoryRefreshKind, System};
 use crate::failure::Failure;
 use crate::numbers::{bytes, counted};
 
+/// What a pass over the faces adds up for each edge, in a hash map where edges have no rows.
+const SUMS_BYTES: usize = 120;
+
+/// What is kept for each vertex while limits are taken.
+const LIMIT_BYTES: usize = 128;
+
 /// The sizes of all levels, and the most memory that making them takes.
 pub(crate) struct Forecast {
     /// Of the control mesh and of each level.
@@ -23,6 +29,7 @@ impl Forecast {
         backend: &str,
         polygons: &PolygonMesh,
         levels: u32,
+        limit: bool,
     ) -> Result<Self, Failure> {
         let mut extent = Extent::of(polygons);
         let mut counts = vec![extent.counts];
@@ -48,16 +55,25 @@ impl Forecast {
             counts.push(extent.counts);
         }
         let peak = counts.windows(2).map(|pair| {
-            let before = held(backend, &pair[0]) + flat(&pair[0]);
+            let [old, new] = [&pair[0], &pair[1]];
             match method {
                 // Two meshes, and at the end the polygons that are written.
-                Method::Native => held(backend, &pair[1]) + before.max(flat(&pair[1])),
+                Method::Native => held(backend, old) + held(backend, new) + flat(new),
                 // The polygons of both, the structure, and data by handle beside it.
-                _ => before + flat(&pair[1]) + 2 * held(backend, &pair[0]),
+                Method::Gather => flat(old) + flat(new) + 3 * held(backend, old),
+                Method::Scatter => {
+                    flat(old) + flat(new) + held(backend, old) + old.edges * SUMS_BYTES
+                }
             }
         });
+        let steps = peak.max().unwrap_or_else(|| flat(&counts[0]));
+        let result = &counts[counts.len() - 1];
+        let limits = match limit {
+            true => 2 * flat(result) + held("face-vertex", result) + result.vertices * LIMIT_BYTES,
+            false => 0,
+        };
         Ok(Self {
-            peak: peak.max().unwrap_or_else(|| flat(&counts[0])),
+            peak: steps.max(limits),
             levels: counts,
         })
     }
@@ -80,14 +96,21 @@ impl Forecast {
 
     /// Refuses what the machine has no room for, unless told to go on.
     pub(crate) fn check(&self, force: bool) -> Result<(), Failure> {
-        match free_memory() {
-            Some(free) if self.peak as u64 > free && !force => Err(Failure::usage(format!(
-                "the result takes some {}, and {} are free: take fewer levels, or go on with --force",
-                bytes(self.peak),
-                bytes(free as usize)
-            ))),
-            _ => Ok(()),
-        }
+        let result = &self.levels[self.levels.len() - 1];
+        let faces = counted(result.faces, "face", "faces");
+        check_memory(&format!("a result of {faces}"), self.peak, force)
+    }
+}
+
+/// Refuses `what` if it takes more than the memory that is free, unless told to go on.
+pub(super) fn check_memory(what: &str, peak: usize, force: bool) -> Result<(), Failure> {
+    match free_memory() {
+        Some(free) if peak as u64 > free && !force => Err(Failure::unsupported(format!(
+            "{what} takes some {}, and {} are free: take fewer levels, or go on with --force",
+            bytes(peak),
+            bytes(free as usize)
+        ))),
+        _ => Ok(()),
     }
 }
 

@@ -5,34 +5,48 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use sixfold::mesh_io::write_obj;
-use sixfold::subdivision::{LocalError, LocalMesh, Scheme, Selection, refine_locally};
+use sixfold::subdivision::{LocalError, LocalMesh, Scheme, Selection};
 use sixfold::{FaceId, Point, PolygonMesh, Representation, Visitor, visit};
 
 use crate::arguments::{Select, Subdivide};
 use crate::failure::Failure;
 use crate::load;
-use crate::numbers::counted;
-use crate::output::{Output, is_stdout};
+use crate::numbers::{counted, grouped};
+use crate::output::{Output, check_kept, is_stdout};
+use crate::progress::Waiting;
 use crate::text::{Text, tame};
+
+use super::check_tags;
+use super::forecast::check_memory;
 
 /// Refines the chosen triangles and writes the mesh.
 pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Failure> {
     check(arguments)?;
-    let specimen = load::specimen(&arguments.mesh)?;
+    if let Select::Faces(path) = select {
+        let outputs = [("--output", Some(&arguments.output))];
+        check_kept("the list of faces", path, &outputs)?;
+    }
+    let (polygons, creases) = load::with_creases(&arguments.mesh)?;
+    check_tags(arguments, &creases)?;
     let selection = selection(select)?;
+    selection
+        .check(polygons.face_count())
+        .map_err(|error| match select {
+            Select::Faces(path) => Failure::usage(format!("{}: {error}", path.display())),
+            _ => Failure::usage(error),
+        })?;
     let output = Output::open(&arguments.output)?;
+    let waiting = Waiting::shown(format!("refining {}", arguments.mesh.display()));
     let mut work = Locally {
-        polygons: &specimen.polygons,
+        polygons: &polygons,
         selection: &selection,
         levels: arguments.levels,
+        force: arguments.force,
     };
     let refined = visit(&arguments.backend, &mut work);
+    waiting.clear();
     let refined = refined
-        .ok_or_else(|| Failure::usage(format!("no backend is called `{}`", arguments.backend)))?
-        .map_err(|error| match error {
-            LocalError::MissingFace { .. } => Failure::usage(error),
-            _ => Failure::unsupported(error),
-        })?;
+        .ok_or_else(|| Failure::usage(format!("no backend is called `{}`", arguments.backend)))??;
     let mesh = refined.polygons();
     output.finish(|writer| write_obj(mesh, writer))?;
     let mut text = Text::shown(!is_stdout(&arguments.output));
@@ -42,7 +56,8 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
     let all = mesh.faces().iter();
     let green = all.filter(|&(f, _)| refined.is_green(f)).count();
     text.say(&format!(
-        "{place}: {vertices}, {faces}, of which {green} are halves; refined on {}",
+        "{place}: {vertices}, {faces}, of which {} are halves; refined on {}",
+        grouped(green),
         arguments.backend
     ));
     text.finish()?;
@@ -59,6 +74,10 @@ fn check(arguments: &Subdivide) -> Result<(), Failure> {
     }
     let others = [
         ("--method", arguments.method.is_some()),
+        (
+            "--threads",
+            arguments.threads.is_some_and(|threads| threads > 1),
+        ),
         ("--creases", arguments.creases.is_some()),
         ("--boundary", arguments.boundary.is_some()),
         ("--creasing", arguments.creasing.is_some()),
@@ -87,8 +106,11 @@ fn selection(select: &Select) -> Result<Selection, Failure> {
 /// The faces that a file lists: numbers from 0 between blanks, `#` begins a comment.
 fn listed(path: &Path) -> Result<Vec<FaceId>, Failure> {
     let shown = path.display();
-    let text = fs::read_to_string(path)
-        .map_err(|cause| Failure::usage(format!("{shown}: cannot be read ({cause})")))?;
+    let text = fs::read_to_string(path).map_err(|cause| {
+        Failure::usage(format!(
+            "{shown}: cannot be read ({cause}): name a text file with numbers of faces"
+        ))
+    })?;
     let mut faces = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {
         let said = line.split('#').next().unwrap_or_default();
@@ -104,17 +126,51 @@ fn listed(path: &Path) -> Result<Vec<FaceId>, Failure> {
     Ok(faces)
 }
 
+/// Bytes for a level of a mesh with so many faces, of which some are chosen: each of these becomes four
+/// and takes some neighbours with it, as far as there are faces.
+fn most_bytes(faces: usize, chosen: usize) -> usize {
+    /// Polygons, structure and what the step knows, for each old face and each new one.
+    const BYTES: usize = 200;
+    let grown = faces.saturating_add(chosen.saturating_mul(12));
+    grown.min(faces.saturating_mul(4)).saturating_mul(BYTES)
+}
+
 /// Local refinement with a structure that is chosen at run time.
 struct Locally<'a> {
     polygons: &'a PolygonMesh,
     selection: &'a Selection,
     levels: u32,
+    force: bool,
 }
 
 impl Visitor for Locally<'_> {
-    type Output = Result<LocalMesh, LocalError>;
+    type Output = Result<LocalMesh, Failure>;
 
+    /// As `refine_locally`, but how much a level takes is known only when its faces are chosen.
     fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
-        refine_locally::<M>(self.polygons, self.selection, self.levels)
+        let mut local = LocalMesh::new(self.polygons.clone()).map_err(Failure::unsupported)?;
+        for level in 0..self.levels {
+            let mesh = M::from_polygons(local.polygons()).map_err(|refusal| {
+                let structure = M::NAME;
+                Failure::not_held(LocalError::Build {
+                    structure,
+                    level,
+                    refusal,
+                })
+            })?;
+            let chosen = match self.selection {
+                Selection::Faces(_) if level > 0 => local.chosen_parts(),
+                _ => self.selection.faces(&mesh).map_err(Failure::unsupported)?,
+            };
+            if chosen.is_empty() {
+                break;
+            }
+            let peak = most_bytes(local.polygons().face_count(), chosen.len());
+            check_memory(&format!("level {}", level + 1), peak, self.force)?;
+            local = local
+                .refined(&mesh, &chosen)
+                .map_err(Failure::unsupported)?;
+        }
+        Ok(local)
     }
 }

@@ -1,0 +1,484 @@
+//! `sixfold subdivide`, `smooth`, `dual` and `triangulate`: results that can be counted, and refusals.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use crate::bad_input::refused;
+use crate::run::{Run, Sixfold, TETRAHEDRON};
+
+/// Four vertices at the corners of a square, and one face.
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+/// Two triangles that make a square.
+const TRIANGLES: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
+/// Three faces at one edge.
+const BOOK: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
+
+/// A mesh as the text of its file.
+struct Obj {
+    positions: Vec<[f32; 3]>,
+    faces: Vec<Vec<usize>>,
+}
+
+impl Obj {
+    fn of(text: &str) -> Self {
+        let rows = |kind: &str| {
+            let of_kind = move |line: &str| Some(line.strip_prefix(kind)?.trim().to_owned());
+            text.lines().filter_map(of_kind).collect::<Vec<_>>()
+        };
+        let position = |row: &String| {
+            let numbers: Vec<f32> = row
+                .split(' ')
+                .map(|x| x.parse().expect("a number"))
+                .collect();
+            numbers.try_into().expect("three coordinates")
+        };
+        let corner = |word: &str| word.split('/').next().expect("a vertex").parse();
+        let face = |row: &String| {
+            row.split(' ')
+                .map(|word| corner(word).expect("a row"))
+                .collect()
+        };
+        Self {
+            positions: rows("v ").iter().map(position).collect(),
+            faces: rows("f ").iter().map(face).collect(),
+        }
+    }
+
+    fn counts(&self) -> [usize; 2] {
+        [self.positions.len(), self.faces.len()]
+    }
+
+    /// How many edges have one face.
+    fn boundary_edges(&self) -> usize {
+        let mut uses = BTreeMap::new();
+        for face in &self.faces {
+            for (i, &a) in face.iter().enumerate() {
+                let b = face[(i + 1) % face.len()];
+                *uses.entry((a.min(b), a.max(b))).or_insert(0) += 1;
+            }
+        }
+        uses.values().filter(|&&faces| faces == 1).count()
+    }
+}
+
+fn text(sixfold: &Sixfold, name: &str) -> String {
+    fs::read_to_string(sixfold.folder().join(name)).expect("the file")
+}
+
+fn done(sixfold: &Sixfold, arguments: &[&str]) -> Run {
+    let run = sixfold.run(arguments);
+    assert_eq!(run.code, Some(0), "{arguments:?}: {run:?}");
+    run
+}
+
+/// What `sixfold subdivide` with these arguments writes.
+fn subdivided(sixfold: &Sixfold, arguments: &[&str]) -> Obj {
+    done(
+        sixfold,
+        &[&["subdivide", "-o", "out.obj"], arguments].concat(),
+    );
+    Obj::of(&text(sixfold, "out.obj"))
+}
+
+#[test]
+fn results_have_the_size_of_the_closed_forms() {
+    let sixfold = Sixfold::new();
+    sixfold.file("t.obj", TETRAHEDRON);
+    // V, E, F = 4, 6, 4 with 12 corners, closed.
+    for (scheme, levels, counts) in [
+        ("catmull-clark", "1", [14, 12]),
+        ("catmull-clark", "2", [50, 48]),
+        ("bilinear", "1", [14, 12]),
+        ("loop", "1", [10, 16]),
+        ("loop", "2", [34, 64]),
+        ("midpoint", "1", [10, 16]),
+        ("butterfly", "1", [10, 16]),
+        ("sqrt3", "1", [8, 12]),
+        ("sqrt3", "2", [20, 36]),
+        ("doo-sabin", "1", [12, 14]),
+        ("doo-sabin", "2", [48, 50]),
+    ] {
+        let obj = subdivided(&sixfold, &["--scheme", scheme, "--levels", levels, "t.obj"]);
+        assert_eq!(obj.counts(), counts, "{scheme}, level {levels}");
+        assert_eq!(obj.boundary_edges(), 0, "{scheme}, level {levels}");
+    }
+    let run = done(
+        &sixfold,
+        &["subdivide", "--levels", "2", "t.obj", "-o", "out.obj"],
+    );
+    assert!(
+        run.stdout.contains("to make: 50 vertices, 48 faces"),
+        "{run:?}"
+    );
+    assert_eq!(run.stderr, "", "progress is for terminals");
+    let obj = subdivided(&sixfold, &["--levels", "0", "t.obj"]);
+    assert_eq!(obj.positions, Obj::of(TETRAHEDRON).positions);
+    assert_eq!(obj.faces, Obj::of(TETRAHEDRON).faces);
+}
+
+#[test]
+fn creases_of_files_and_tags_stay_sharp() {
+    let sixfold = Sixfold::new();
+    sixfold.file("plain.obj", TETRAHEDRON);
+    let tags = "t crease 2/1/0 0 1 inf\nt corner 1/1/0 0 inf\n";
+    sixfold.file("tagged.obj", &format!("{TETRAHEDRON}{tags}"));
+    sixfold.file("sharp.txt", "# both\r\nedge 1 0 inf\r\ncorner 0 inf\r\n");
+    let [plain, tagged] = ["plain.obj", "tagged.obj"].map(|file| subdivided(&sixfold, &[file]));
+    let with_file = [
+        "--creases",
+        "sharp.txt",
+        "--creases-left",
+        "left.txt",
+        "plain.obj",
+    ];
+    let sharp = subdivided(&sixfold, &with_file);
+    let old = Obj::of(TETRAHEDRON).positions;
+    assert_ne!(plain.positions[0], old[0], "a smooth vertex moves");
+    assert_eq!(sharp.positions[0], old[0], "a corner stays");
+    let middle = [0, 1, 2].map(|i| (old[0][i] + old[1][i]) / 2.0);
+    assert!(sharp.positions.contains(&middle), "a crease is halved");
+    assert!(!plain.positions.contains(&middle));
+    assert_eq!(sharp.positions, tagged.positions);
+    let left = text(&sixfold, "left.txt");
+    assert_eq!(
+        left.matches("inf\n").count(),
+        3,
+        "two halves and a corner: {left}"
+    );
+}
+
+#[test]
+fn limits_lie_on_the_surface() {
+    let sixfold = Sixfold::new();
+    sixfold.file("square.obj", SQUARE);
+    // Corners stay, and the boundary of a square is a curve that later levels come closer to.
+    let arguments = ["--levels", "2", "--limit", "limit.obj", "square.obj"];
+    let level = subdivided(&sixfold, &arguments);
+    let limit_text = text(&sixfold, "limit.obj");
+    let limit = Obj::of(&limit_text);
+    assert_eq!(limit.faces, level.faces);
+    assert!(
+        limit_text.lines().any(|line| line == "vn 0 0 1"),
+        "{limit_text}"
+    );
+    let far = subdivided(&sixfold, &["--levels", "6", "square.obj"]);
+    for (v, limit) in limit.positions.iter().enumerate() {
+        // Old vertices come first at every level.
+        let apart = |p: [f32; 3]| (0..3).map(|i| (p[i] - limit[i]).abs()).fold(0.0, f32::max);
+        assert!(apart(far.positions[v]) < 1e-3, "v{v}");
+    }
+    assert_ne!(limit.positions, level.positions);
+    let run = done(
+        &sixfold,
+        &["subdivide", "square.obj", "-o", "a.obj", "--limit", "-"],
+    );
+    assert!(
+        run.stdout
+            .lines()
+            .all(|line| line.starts_with(['#', 'v', 'f'])),
+        "{run:?}"
+    );
+}
+
+#[test]
+fn a_part_of_a_mesh_is_refined_without_gaps() {
+    let sixfold = Sixfold::new();
+    sixfold.file("t.obj", TETRAHEDRON);
+    sixfold.file("first.txt", "0 # the first\n");
+    // One face in four, its three neighbours halved.
+    let part = ["--scheme", "midpoint", "--select", "faces:first.txt"];
+    let one = subdivided(&sixfold, &[&part[..], &["t.obj"]].concat());
+    assert_eq!(one.counts(), [4 + 3, 4 + 3 * 2]);
+    let deep = subdivided(&sixfold, &[&part[..], &["--levels", "3", "t.obj"]].concat());
+    for obj in [one, deep] {
+        assert_eq!(obj.boundary_edges(), 0, "a T-junction is a gap");
+        // A closed surface like a sphere.
+        assert_eq!(obj.faces.len(), 2 * obj.positions.len() - 4);
+    }
+    sixfold.file(
+        "tagged.obj",
+        &format!("{TETRAHEDRON}t crease 2/1/0 0 1 2\n"),
+    );
+    sixfold.file("wrong.txt", "0\n4\n");
+    sixfold.file("words.txt", "0\nall\n");
+    let select = |what| {
+        [
+            "subdivide",
+            "--scheme",
+            "midpoint",
+            "-o",
+            "x.obj",
+            "t.obj",
+            "--select",
+            what,
+        ]
+    };
+    for (what, says) in [
+        ("faces:wrong.txt", "wrong.txt: face f4 is not there"),
+        ("faces:words.txt", "words.txt:2"),
+        ("faces:missing.txt", "missing.txt"),
+        ("box:1,0,0,0,1,1", "comes first"),
+        ("box:0,0,0,nan,1,1", "finite"),
+        ("angle:181", "0 to 180"),
+        ("all", "box:X0"),
+    ] {
+        refused(&sixfold, &select(what), 2, says);
+    }
+    let mut arguments = select("faces:first.txt");
+    arguments[4] = "first.txt";
+    refused(&sixfold, &arguments, 2, "would overwrite the list of faces");
+    arguments = select("angle:1");
+    arguments[5] = "tagged.obj";
+    refused(
+        &sixfold,
+        &arguments,
+        3,
+        "tagged.obj: the file has sharp edges",
+    );
+    arguments = select("angle:1");
+    arguments[2] = "loop";
+    refused(&sixfold, &arguments, 3, "--scheme midpoint");
+}
+
+#[test]
+fn threads_and_standard_output_change_nothing() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let arguments = ["subdivide", "--scheme", "loop", "--levels", "2", "grid.obj"];
+    let run = |more: &[&str]| done(&sixfold, &[&arguments[..], more].concat());
+    run(&["--threads", "1", "-o", "one.obj"]);
+    run(&["--threads", "2", "-o", "two.obj"]);
+    let one = text(&sixfold, "one.obj");
+    assert_eq!(one, text(&sixfold, "two.obj"));
+    let shown = run(&["-o", "-"]);
+    assert_eq!(shown.stdout, one);
+    assert_eq!(shown.stderr, "");
+}
+
+#[test]
+fn what_cannot_be_subdivided_is_refused_before_anything_is_written() {
+    let sixfold = Sixfold::new();
+    sixfold.file("t.obj", TETRAHEDRON);
+    sixfold.file("square.obj", SQUARE);
+    sixfold.file(
+        "tagged.obj",
+        &format!("{TETRAHEDRON}t crease 2/1/0 0 1 2\n"),
+    );
+    for (file, line, says) in [
+        ("nobody", "edge 0 9 1", "vertex 9 is not there"),
+        ("negative", "edge 0 1 -1", "from 0 to inf"),
+        ("nan", "corner 0 nan", "from 0 to inf"),
+        ("short", "edge 0 1", "edge a b sharpness"),
+        ("word", "crease 0 1 2", "is no entry"),
+    ] {
+        sixfold.file(file, &format!("# creases\n{line}\n"));
+        let run = refused(
+            &sixfold,
+            &["subdivide", "t.obj", "-o", "x.obj", "--creases", file],
+            2,
+            &format!("{file}:2: "),
+        );
+        assert!(run.stderr.contains(says), "{run:?}");
+    }
+    sixfold.file("diagonal", "edge 0 2 1\n");
+    for (arguments, code, says) in [
+        (
+            &["square.obj", "--creases", "diagonal"][..],
+            2,
+            "diagonal:1: v0 and v2",
+        ),
+        (&["t.obj", "--creases", "missing"], 2, "missing"),
+        (
+            &["t.obj", "--creases", "x.obj"],
+            2,
+            "would overwrite the crease file",
+        ),
+        (&["t.obj", "--limit", "x.obj"], 2, "two places"),
+        (&["t.obj", "--levels", "40"], 3, "take fewer levels"),
+        (&["t.obj", "--levels", "-1"], 2, "from 0 to 1000"),
+        (&["t.obj", "--levels", "4000000000"], 2, "from 0 to 1000"),
+        (&["t.obj", "--threads", "5000"], 2, "0 to 1024"),
+        (
+            &["t.obj", "--threads", "2", "--method", "gather"],
+            3,
+            "one thread",
+        ),
+        (&["t.obj", "--scheme", "cube"], 2, "doo-sabin"),
+        (&["t.obj", "--boundary", "open"], 2, "edge-only"),
+        (
+            &["t.obj", "--scheme", "sqrt3", "--boundary", "none"],
+            3,
+            "--boundary",
+        ),
+        (
+            &["t.obj", "--scheme", "sqrt3", "--limit", "y.obj"],
+            3,
+            "--limit",
+        ),
+        (&["t.obj", "--loop-weights", "warren"], 3, "choose loop"),
+        (
+            &["t.obj", "--boundary", "none", "--limit", "y.obj"],
+            3,
+            "leave one",
+        ),
+        (
+            &["t.obj", "--method", "native", "--backend", "polygon-soup"],
+            3,
+            "gather or scatter",
+        ),
+        (
+            &["t.obj", "--levels", "2", "--backend", "corner-table"],
+            3,
+            "another backend",
+        ),
+        (
+            &["tagged.obj", "--scheme", "butterfly"],
+            3,
+            "tagged.obj: the file has sharp edges",
+        ),
+        (&["missing.obj"], 2, "missing.obj"),
+    ] {
+        refused(
+            &sixfold,
+            &[&["subdivide", "-o", "x.obj"], arguments].concat(),
+            code,
+            says,
+        );
+    }
+    refused(
+        &sixfold,
+        &["subdivide", "t.obj", "-o", "./t.obj"],
+        2,
+        "would overwrite the mesh",
+    );
+}
+
+#[test]
+fn a_mesh_is_refused_by_name_where_the_structure_or_the_scheme_cannot_have_it() {
+    let sixfold = Sixfold::new();
+    sixfold.file("book.obj", BOOK);
+    sixfold.file("square.obj", SQUARE);
+    sixfold.file(
+        "huge.obj",
+        "v 3e38 0 0\nv 3e38 3e38 0\nv 3e38 3e38 3e38\nf 1 2 3\n",
+    );
+    for (arguments, code, says) in [
+        (
+            &["book.obj"][..],
+            3,
+            "half-edge cannot hold level 0: edge v0–v1 has 3 faces",
+        ),
+        (&["book.obj"], 3, "another --backend"),
+        (
+            &[
+                "book.obj",
+                "--scheme",
+                "doo-sabin",
+                "--backend",
+                "face-vertex",
+            ],
+            3,
+            "v0–v1",
+        ),
+        (
+            &["square.obj", "--scheme", "loop"],
+            3,
+            "face f0 has 4 corners",
+        ),
+        (
+            &[
+                "square.obj",
+                "--scheme",
+                "loop",
+                "--levels",
+                "0",
+                "--limit",
+                "y.obj",
+            ],
+            3,
+            "face f0",
+        ),
+        (&["huge.obj"], 2, "scale the mesh down"),
+    ] {
+        // What is to be made may have been said before.
+        let run = sixfold.run(&[&["subdivide", "-o", "x.obj"], arguments].concat());
+        assert_eq!(run.code, Some(code), "{arguments:?}: {run:?}");
+        assert_eq!(run.stderr.lines().count(), 1, "{run:?}");
+        assert!(run.stderr.contains(says), "{arguments:?}: {run:?}");
+        assert_eq!(sixfold.names(), ["book.obj", "huge.obj", "square.obj"]);
+    }
+    // Others hold it, and an edge of three faces stays as a crease does.
+    let obj = subdivided(&sixfold, &["--backend", "face-vertex", "book.obj"]);
+    assert_eq!(obj.counts(), [5 + 7 + 3, 9]);
+    assert!(obj.positions.contains(&[0.5, 0.0, 0.0]));
+}
+
+#[test]
+fn boundary_none_leaves_out_the_faces_at_the_boundary() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 5);
+    let loops = ["--scheme", "loop", "grid.obj", "--boundary"];
+    let kept = subdivided(&sixfold, &[&loops[..], &["edge-only"]].concat());
+    let fewer = subdivided(&sixfold, &[&loops[..], &["none"]].concat());
+    // Of the 32 triangles 8 have no corner on the boundary: the two of each inner cell.
+    assert_eq!(kept.faces.len(), 32 * 4);
+    assert_eq!(fewer.faces.len(), 8 * 4);
+}
+
+#[test]
+fn other_shapes_and_faces_are_counted_and_refused() {
+    let sixfold = Sixfold::new();
+    sixfold.file("t.obj", TETRAHEDRON);
+    sixfold.file("square.obj", SQUARE);
+    sixfold.file("triangles.obj", TRIANGLES);
+    sixfold.file("book.obj", BOOK);
+    sixfold.file("tagged.obj", &format!("{SQUARE}t crease 2/1/0 0 1 2\n"));
+    for (arguments, counts) in [
+        (&["smooth", "t.obj", "--weights", "cotangent"][..], [4, 4]),
+        (&["smooth", "book.obj", "--backend", "face-vertex"], [5, 3]),
+        (&["dual", "t.obj"], [4, 4]),
+        (&["triangulate", "square.obj"], [4, 2]),
+        (
+            &["triangulate", "triangles.obj", "--orient", "outward"],
+            [4, 2],
+        ),
+    ] {
+        let run = done(&sixfold, &[arguments, &["-o", "out.obj"]].concat());
+        assert_eq!(run.stderr, "", "{run:?}");
+        assert_eq!(
+            Obj::of(&text(&sixfold, "out.obj")).counts(),
+            counts,
+            "{arguments:?}"
+        );
+    }
+    let run = done(&sixfold, &["triangulate", "tagged.obj", "-o", "-"]);
+    assert_eq!(Obj::of(&run.stdout).counts(), [4, 2]);
+    assert!(run.stderr.contains("not carried over"), "{run:?}");
+    for (arguments, code, says) in [
+        (&["smooth", "book.obj"][..], 3, "another --backend"),
+        (
+            &["smooth", "square.obj", "--weights", "cotangent"],
+            3,
+            "triangulate the mesh",
+        ),
+        (&["smooth", "t.obj", "--step", "2"], 2, "between 0 and 1"),
+        (&["smooth", "t.obj", "--step-back", "nan"], 2, "NaN"),
+        (&["smooth", "t.obj", "--iterations", "-1"], 2, "from 0 to"),
+        (&["dual", "square.obj"], 3, "fill the hole"),
+        (&["dual", "missing.obj"], 2, "missing.obj"),
+        (&["triangulate", "t.obj", "--method", "saw"], 2, "ears, fan"),
+    ] {
+        refused(
+            &sixfold,
+            &[arguments, &["-o", "x.obj"]].concat(),
+            code,
+            says,
+        );
+    }
+    refused(
+        &sixfold,
+        &["dual", "t.obj", "-o", "t.obj"],
+        2,
+        "would overwrite",
+    );
+}

@@ -1,0 +1,243 @@
+//! Makes `reports/subdivision`: what a subdivision costs on each structure, by each method.
+//!
+//! `cargo run --release -p study --example subdivision_report -- reports/subdivision [ROUNDS]`
+//!
+//! Every round runs each scheme, way and structure once at each level, one after the other, on one
+//! thread; the table has the medians of thread-CPU time over the rounds, and its figure shows them.
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use plotters::prelude::*;
+use serde_json::json;
+use sixfold::subdivision::{Scheme, SubdivisionError};
+use sixfold::{Creases, PolygonMesh, roster, shapes};
+use study::{Clock, Environment, MachineClock, Refiner, Refining, Way};
+
+/// The schemes of the report; both take the control mesh, of triangles.
+const SCHEMES: [Scheme; 2] = [Scheme::CatmullClark, Scheme::Loop];
+
+/// The most levels.
+const LEVELS: u32 = 4;
+
+/// A run that takes longer than this, at the level before, is not taken a level further.
+const TOO_LONG_NS: f64 = 4e8;
+
+/// What the figures say wherever they were made.
+const READING: &str = "
+## What it shows
+
+Gathering asks EF and VV at every point: what a soup and an indexed face set have to search for, so that their lines
+rise with the size of the mesh. Scattering rescues both: it asks only for what they store, and the face set, which
+has next to nothing to build, is then the quickest of all that go by polygons. Of the structures that know their
+neighbours, only those on which a walk is dear gain by it. Native steps take the rebuilding away, and with it most of
+the time; what is refined into the tables of the run before saves the first touch of new memory as well.
+";
+
+/// One line of the figure: a scheme run one way on one structure.
+type Line = (&'static str, &'static str, &'static str);
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut words = std::env::args().skip(1);
+    let folder = words
+        .next()
+        .ok_or("usage: subdivision_report FOLDER [ROUNDS]")?;
+    let rounds = words.next().map_or(Ok(5), |word| word.parse())?;
+    let machine = Environment::here(0, 0.0);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let polygons = shapes::geodesic(16)?;
+    let samples = pool.install(|| measured(&polygons, rounds))?;
+    let folder = Path::new(&folder);
+    fs::create_dir_all(folder)?;
+    fs::write(folder.join("README.md"), text(&machine, rounds, &samples)?)?;
+    figure(&folder.join("growth.svg"), &samples)?;
+    let rows: Vec<_> = samples
+        .iter()
+        .map(|(&((scheme, way, backend), level), sample)| {
+            json!({"scheme": scheme, "way": way, "backend": backend, "level": level,
+                   "faces": sample.faces, "cpu_ns": sample.ns})
+        })
+        .collect();
+    let data = json!({"environment": machine, "rounds": rounds, "results": rows});
+    let data = serde_json::to_string_pretty(&data)? + "\n";
+    fs::write(folder.join("subdivision.json"), data)?;
+    Ok(())
+}
+
+/// The times of one line at one level.
+#[derive(Default)]
+struct Sample {
+    faces: usize,
+    ns: Vec<f64>,
+}
+
+impl Sample {
+    /// Nanoseconds for each face of the last level: the median.
+    fn ns_per_face(&self) -> f64 {
+        let mut ns = self.ns.clone();
+        ns.sort_by(f64::total_cmp);
+        let middle = f64::midpoint(ns[(ns.len() - 1) / 2], ns[ns.len() / 2]);
+        middle / self.faces as f64
+    }
+}
+
+type Samples = BTreeMap<(Line, u32), Sample>;
+
+fn measured(polygons: &PolygonMesh, rounds: usize) -> Result<Samples, SubdivisionError> {
+    let mut samples = Samples::new();
+    let mut jobs: Vec<(Line, u32, Box<dyn Refiner>)> = Vec::new();
+    let clock = MachineClock::start();
+    for scheme in SCHEMES {
+        for way in Way::ALL {
+            for backend in roster() {
+                let line = (scheme.name(), way.name(), backend.name);
+                for level in 1..=LEVELS {
+                    let job = Refining::new(scheme, way, level);
+                    let ready = job.on(backend.name, polygons, &Creases::default());
+                    let Some(Ok(mut refiner)) = ready else { break };
+                    let began = clock.now();
+                    if refiner.run().is_err() {
+                        break;
+                    }
+                    let time = (clock.now() - began).ns();
+                    jobs.push((line, level, refiner));
+                    if time > TOO_LONG_NS {
+                        break;
+                    }
+                }
+            }
+        }
+    }
+    for _ in 0..rounds {
+        for (line, level, refiner) in &mut jobs {
+            let began = clock.now();
+            refiner.run()?;
+            let time = clock.now() - began;
+            let sample = samples.entry((*line, *level)).or_default();
+            sample.faces = refiner.result().0;
+            sample.ns.push(time.ns());
+        }
+    }
+    Ok(samples)
+}
+
+fn text(
+    machine: &Environment,
+    rounds: usize,
+    samples: &Samples,
+) -> Result<String, std::fmt::Error> {
+    let mut text = String::from("# What subdivision costs on each structure\n\n");
+    let cpu = machine.cpu_model.as_deref().unwrap_or("unknown processor");
+    let load = machine.load_average.unwrap_or(f64::NAN);
+    writeln!(
+        text,
+        "```sh\ncargo run --release -p study --example subdivision_report -- reports/subdivision {rounds}\n```\n"
+    )?;
+    writeln!(
+        text,
+        "{cpu}, {} cores, load {load:.1} at the start; {} {} {}; one thread, thread-CPU time, medians of {rounds} rounds in which all take turns. Control mesh: a geodesic sphere of 5,120 triangles. Nanoseconds for each face of the last level, all levels made.\n",
+        machine.cores.unwrap_or(0),
+        machine.rustc,
+        machine.profile,
+        machine.rustflags,
+    )?;
+    text += "`gather` asks for the neighbourhood of each new point, `scatter` makes one pass over the faces; after both the structure is built anew from polygons. `native_fresh` splits the structure's own tables into tables that are allocated for it, `native` into those of the run before.\n\n![Nanoseconds for each new face, by size](growth.svg)\n";
+    for scheme in SCHEMES {
+        writeln!(text, "\n## {scheme}\n")?;
+        let mut head = String::from("| | structure |");
+        let mut rule = String::from("|---|---|");
+        for level in 1..=LEVELS {
+            write!(head, " level {level} |")?;
+            rule += "---:|";
+        }
+        writeln!(text, "{head}\n{rule}")?;
+        for way in Way::ALL {
+            for backend in roster() {
+                let line = (scheme.name(), way.name(), backend.name);
+                let at = |level| samples.get(&(line, level)).map(Sample::ns_per_face);
+                if at(1).is_none() {
+                    continue;
+                }
+                write!(text, "| {way} | {} |", backend.name)?;
+                for level in 1..=LEVELS {
+                    match at(level) {
+                        Some(ns) if ns >= 1000.0 => write!(text, " {ns:.0} |")?,
+                        Some(ns) => write!(text, " {ns:.1} |")?,
+                        None => text += " – |",
+                    }
+                }
+                text.push('\n');
+            }
+        }
+    }
+    text += READING;
+    text += "\n–: left out, since the level before took more than 0.4 s, or the structure does not hold the quads.\n";
+    Ok(text)
+}
+
+/// Time for each new face against the faces of the last level, both logarithmic.
+fn figure(path: &Path, samples: &Samples) -> Result<(), Box<dyn Error>> {
+    const COLOURS: [RGBColor; 6] = [
+        RGBColor(0xd6, 0x27, 0x28),
+        RGBColor(0xff, 0x7f, 0x0e),
+        RGBColor(0x2c, 0xa0, 0x2c),
+        RGBColor(0x94, 0x67, 0xbd),
+        RGBColor(0x1f, 0x77, 0xb4),
+        RGBColor(0x8c, 0x56, 0x4b),
+    ];
+    let ways = [Way::Gather, Way::Scatter, Way::Native];
+    let root = SVGBackend::new(path, (1200, 760)).into_drawing_area();
+    root.fill(&WHITE)?;
+    let panels = root.split_evenly((SCHEMES.len(), ways.len()));
+    for (panel, (scheme, way)) in panels
+        .iter()
+        .zip(SCHEMES.into_iter().flat_map(|s| ways.map(|w| (s, w))))
+    {
+        let mut chart = ChartBuilder::on(panel)
+            .caption(format!("{scheme}, {way}"), ("sans-serif", 17))
+            .margin(8)
+            .x_label_area_size(34)
+            .y_label_area_size(46)
+            .build_cartesian_2d((1e4..2e6_f64).log_scale(), (5.0..3e5_f64).log_scale())?;
+        chart
+            .configure_mesh()
+            .x_desc("faces of the last level")
+            .y_desc("ns a face")
+            .x_label_formatter(&|x| format!("{x:.0e}"))
+            .y_label_formatter(&|y| format!("{y}"))
+            .light_line_style(WHITE)
+            .draw()?;
+        for (backend, colour) in roster().iter().zip(COLOURS) {
+            let line = (scheme.name(), way.name(), backend.name);
+            let points: Vec<(f64, f64)> = (1..=LEVELS)
+                .filter_map(|level| samples.get(&(line, level)))
+                .map(|sample| (sample.faces as f64, sample.ns_per_face()))
+                .collect();
+            if points.is_empty() {
+                continue;
+            }
+            let dots = points.iter().map(|&at| Circle::new(at, 3, colour.filled()));
+            chart.draw_series(dots)?;
+            chart
+                .draw_series(LineSeries::new(points, colour.stroke_width(2)))?
+                .label(backend.name)
+                .legend(move |(x, y)| {
+                    PathElement::new([(x, y), (x + 14, y)], colour.stroke_width(2))
+                });
+        }
+        chart
+            .configure_series_labels()
+            .position(match way {
+                Way::Gather | Way::Scatter => SeriesLabelPosition::LowerRight,
+                _ => SeriesLabelPosition::UpperRight,
+            })
+            .background_style(WHITE.mix(0.85))
+            .label_font(("sans-serif", 12))
+            .draw()?;
+    }
+    root.present()?;
+    Ok(())
+}
