@@ -50,11 +50,7 @@ pub fn write_obj_with_normals(
     written(polygons, normals, out)
 }
 
-fn written(
-    polygons: &PolygonMesh,
-    normals: &[Option<Point>],
-    out: impl Write,
-) -> io::Result<()> {
+fn written(polygons: &PolygonMesh, normals: &[Option<Point>], out: impl Write) -> io::Result<()> {
     let positions = polygons.positions();
     if let Some(v) = positions.iter().position(|p| !p.is_finite()) {
         let message = format!("vertex v{v} is not at a finite place: OBJ has no word for it");
@@ -129,7 +125,10 @@ mod tests {
         let mut text = Vec::new();
         write_obj_with_normals(&mesh, &normals, &mut text).expect("a vector takes all");
         let text = String::from_utf8(text).expect("ASCII");
-        assert!(text.ends_with("vn 0 0 1\nf 1//1 2//2 3//3\nf 2 4 3\n"), "{text}");
+        assert!(
+            text.ends_with("vn 0 0 1\nf 1//1 2//2 3//3\nf 2 4 3\n"),
+            "{text}"
+        );
         assert!(write_obj_with_normals(&mesh, &normals[1..], &mut Vec::new()).is_err());
     }
 

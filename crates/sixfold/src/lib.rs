@@ -18,9 +18,7 @@ pub use winged_edge::{self, WingedEdgeMesh};
 mod roster;
 mod support;
 
-pub use roster::{
-    BackendInfo, RefineVisitor, Visitor, roster, visit, visit_all, visit_refinable,
-};
+pub use roster::{BackendInfo, RefineVisitor, Visitor, roster, visit, visit_all, visit_refinable};
 pub use support::{Support, support};
 
 /// The examples of the README, compiled and run as tests.

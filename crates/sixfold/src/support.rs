@@ -70,7 +70,8 @@ mod tests {
         let row = |scheme| {
             let rows = support(scheme);
             let mut rows = rows.into_iter();
-            rows.find(|row| row.backend == "corner-table").expect("one of six")
+            rows.find(|row| row.backend == "corner-table")
+                .expect("one of six")
         };
         assert!(!row(Scheme::CatmullClark).methods.contains(&Method::Native));
         assert!(!row(Scheme::CatmullClark).holds_result);
