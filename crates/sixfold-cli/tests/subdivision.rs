@@ -151,8 +151,16 @@ fn creases_of_files_and_tags_stay_sharp() {
 fn limits_lie_on_the_surface() {
     let sixfold = Sixfold::new();
     sixfold.file("square.obj", SQUARE);
-    // Corners stay, and the boundary of a square is a curve that later levels come closer to.
-    let arguments = ["--levels", "2", "--limit", "limit.obj", "square.obj"];
+    // The boundary of a square is a curve that later levels come closer to.
+    let arguments = [
+        "--levels",
+        "2",
+        "--boundary",
+        "edge-only",
+        "--limit",
+        "limit.obj",
+        "square.obj",
+    ];
     let level = subdivided(&sixfold, &arguments);
     let limit_text = text(&sixfold, "limit.obj");
     let limit = Obj::of(&limit_text);
@@ -161,7 +169,10 @@ fn limits_lie_on_the_surface() {
         limit_text.lines().any(|line| line == "vn 0 0 1"),
         "{limit_text}"
     );
-    let far = subdivided(&sixfold, &["--levels", "6", "square.obj"]);
+    let far = subdivided(
+        &sixfold,
+        &["--levels", "6", "--boundary", "edge-only", "square.obj"],
+    );
     for (v, limit) in limit.positions.iter().enumerate() {
         // Old vertices come first at every level.
         let apart = |p: [f32; 3]| (0..3).map(|i| (p[i] - limit[i]).abs()).fold(0.0, f32::max);

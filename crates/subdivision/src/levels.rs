@@ -23,11 +23,14 @@ pub fn subdivide<M: Representation>(
     levels: u32,
     mut watch: impl FnMut(u32, usize),
 ) -> Result<Step, SubdivisionError> {
-    let mut left_out = subdivision.left_out(polygons, creases);
     let mut at = Step {
         polygons: polygons.clone(),
         creases: creases.clone(),
     };
+    if levels == 0 {
+        return Ok(at);
+    }
+    let mut left_out = subdivision.left_out(polygons, creases);
     for level in 0..levels {
         let mesh = built::<M>(&at.polygons, level)?;
         let creases = if level == 0 {
@@ -68,13 +71,15 @@ pub fn subdivide_native<M: Refine>(
     levels: u32,
     mut watch: impl FnMut(u32, usize),
 ) -> Result<Step, SubdivisionError> {
+    if levels == 0 {
+        return Ok(Step {
+            polygons: polygons.clone(),
+            creases: creases.clone(),
+        });
+    }
     let mut left_out = subdivision.left_out(polygons, creases);
     let mut mesh = built::<M>(polygons, 0)?;
-    let mut creases = if levels == 0 {
-        creases.clone()
-    } else {
-        subdivision.control(&mesh, polygons, creases)?
-    };
+    let mut creases = subdivision.control(&mesh, polygons, creases)?;
     let mut numbers = M::EdgeNumbers::default();
     for level in 0..levels {
         let mut child = M::empty();
@@ -88,11 +93,7 @@ pub fn subdivide_native<M: Refine>(
         mesh = child;
         watch(level + 1, mesh.face_count());
     }
-    let polygons = if levels == 0 {
-        polygons.clone()
-    } else {
-        mesh.to_polygons()
-    };
+    let polygons = mesh.to_polygons();
     Ok(without(Step { polygons, creases }, left_out))
 }
 

@@ -32,7 +32,7 @@ pub(crate) struct Render {
     /// Pixels of the whole picture; without it 480 × 480 for each mesh
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<Size>,
-    /// Where to look from: degrees to the right and up, or iso
+    /// Look from: degrees right and up, or iso
     #[arg(long, value_name = "AZIMUTH,ELEVATION", default_value = "30,22", value_parser = view, allow_hyphen_values = true)]
     pub(crate) view: [f64; 2],
     /// Which axis points up: y or z

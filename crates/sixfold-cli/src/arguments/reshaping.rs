@@ -37,7 +37,7 @@ pub(crate) struct Smooth {
     /// How often
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = iterations, allow_hyphen_values = true)]
     pub(crate) iterations: usize,
-    /// What part of the way to the mean of the neighbours to go: 0 to 1
+    /// Part of the way to the mean of the neighbours: 0 to 1
     #[arg(
         long,
         value_name = "PART",
@@ -99,7 +99,7 @@ pub(crate) struct Triangulate {
     /// ears, for any simple polygon, or fan, for convex ones
     #[arg(long, value_name = "NAME", default_value = "ears", value_parser = triangulation)]
     pub(crate) method: Triangulation,
-    /// Turn faces over until neighbours agree: majority, as most of them face, or outward
+    /// Turn faces over to agree: majority (as most face) or outward
     #[arg(long, value_name = "RULE", value_parser = facing)]
     pub(crate) orient: Option<Facing>,
 }

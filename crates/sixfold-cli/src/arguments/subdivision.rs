@@ -20,11 +20,12 @@ number from 0 on, or inf; # begins a comment. From 10 on an edge is sharp for ev
 smoother by one a level. What an OBJ file says of creases (t crease, t corner) holds as well.
 `sixfold schemes` lists what runs on which backend.
 
---select takes the faces that a file lists (numbers from 0), those that touch a box, or those that
-bend from a neighbour by more than an angle; neighbours are halved so that no gaps are left.
+--select, with midpoint, takes the faces that a file lists (numbers from 0), those that touch a
+box, or those that bend from a neighbour by more than an angle; neighbours are halved so that no
+gaps are left.
 
-Exit codes: 0 done; 2 wrong usage or unusable input; 3 the scheme, the backend or the memory does not
-allow the mesh, the option or the levels; 4 interrupted, nothing written.";
+Exit codes: 0 done; 2 wrong usage or unusable input; 3 the scheme, the backend or the memory does
+not allow the mesh, the option or the levels; 4 interrupted, nothing written.";
 
 const SCHEMES_EXAMPLES: &str = "Examples:
   sixfold schemes
@@ -60,16 +61,16 @@ pub(crate) struct Subdivide {
     /// How many steps to take
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = levels, allow_hyphen_values = true)]
     pub(crate) levels: u32,
-    /// With midpoint, refine only faces:FILE, box:X0,Y0,Z0,X1,Y1,Z1 or angle:DEGREES
+    /// Refine only faces:FILE, box:X0,Y0,Z0,X1,Y1,Z1 or angle:DEGREES
     #[arg(long, value_name = "WHAT", value_parser = select, allow_hyphen_values = true)]
     pub(crate) select: Option<Select>,
     /// The structure to do it with
     #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
     pub(crate) backend: String,
-    /// gather, scatter or native; without it the last of these that the backend has
+    /// gather, scatter or native [default: the last the backend has]
     #[arg(long, value_name = "NAME", value_parser = method)]
     pub(crate) method: Option<Method>,
-    /// Threads of a native step; without it, or for 0, as many as there are processors
+    /// Threads of a native step; 0 for one on each processor
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub(crate) threads: Option<usize>,
     /// Sharp edges and vertices, beside those that the mesh file tells
@@ -84,7 +85,7 @@ pub(crate) struct Subdivide {
     /// loop or warren
     #[arg(long, value_name = "WHOSE", value_parser = loop_weights)]
     pub(crate) loop_weights: Option<LoopWeights>,
-    /// Write the result at its limit positions, with limit normals, here as well
+    /// Write limit positions and normals here as well
     #[arg(long, value_name = "LIMIT.obj")]
     pub(crate) limit: Option<PathBuf>,
     /// Write the sharpness that is left, as a crease file
