@@ -3,7 +3,7 @@
 use std::fmt;
 
 use serde::{Serialize, Serializer};
-use sixfold::subdivision::{Method, Scheme, Step, Subdivision, SubdivisionError};
+use sixfold::subdivision::{Method, Scheme, Subdivision, SubdivisionError, renumbered};
 use sixfold::{
     Creases, Point, PolygonMesh, Refine, RefineVisitor, Representation, Visitor, visit,
     visit_refinable,
@@ -169,7 +169,7 @@ impl Visitor for Start<'_> {
             job: self.job,
             mesh,
             creases,
-            last: None,
+            last: PolygonMesh::default(),
         }))
     }
 }
@@ -194,7 +194,8 @@ struct Rebuilt<M> {
     job: Refining,
     mesh: M,
     creases: Creases,
-    last: Option<M>,
+    /// The last level as it was made. Its structure may have merged vertices that have met.
+    last: PolygonMesh,
 }
 
 impl<M: Representation + 'static> Refiner for Rebuilt<M> {
@@ -202,28 +203,25 @@ impl<M: Representation + 'static> Refiner for Rebuilt<M> {
         let subdivision = &self.job.subdivision;
         let mut creases = self.creases.clone();
         // Let go of what the run before has made, as every run must be the same.
-        self.last = None;
+        self.last = PolygonMesh::default();
         let mut at: Option<M> = None;
         for level in 0..self.job.levels {
             let mesh = at.as_ref().unwrap_or(&self.mesh);
-            let Step {
-                polygons,
-                creases: next,
-            } = match self.job.way {
+            let step = match self.job.way {
                 Way::Gather => subdivision.gather(mesh, &creases, level)?,
                 _ => subdivision.scatter(mesh, &creases, level)?,
             };
-            at = Some(built::<M>(&polygons, level + 1)?);
-            creases = next;
+            let next = built::<M>(&step.polygons, level + 1)?;
+            creases = renumbered(&next, &step.polygons, &step.creases);
+            self.last = step.polygons;
+            at = Some(next);
         }
-        self.last = at;
         Ok(())
     }
 
     fn result(&self) -> (usize, f64) {
-        let mesh = self.last.as_ref().unwrap_or(&self.mesh);
-        let points = mesh.vertices().map(|v| mesh.position(v));
-        (mesh.face_count(), checksum(points))
+        let points = self.last.positions().iter().copied();
+        (self.last.face_count(), checksum(points))
     }
 }
 

@@ -133,7 +133,7 @@ impl Around {
 
 /// The creases of `polygons` as those of `mesh.to_polygons()`, where a vertex may be its coordinates.
 /// Of two edges or vertices that have become one the sharper counts.
-pub(crate) fn renumbered<M: Representation>(
+pub fn renumbered<M: Representation>(
     mesh: &M,
     polygons: &PolygonMesh,
     creases: &Creases,

@@ -43,6 +43,7 @@ mod step;
 mod subdivision;
 mod tangent;
 
+pub use control::renumbered;
 pub use curve::{Ends, chaikin, cubic_b_spline, cubic_b_spline_at};
 pub use error::{CurveError, LocalError, SubdivisionError};
 pub use extent::Extent;
