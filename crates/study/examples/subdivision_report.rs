@@ -231,7 +231,7 @@ fn figure(path: &Path, samples: &Samples) -> Result<(), Box<dyn Error>> {
         chart
             .configure_series_labels()
             .position(match way {
-                Way::Gather | Way::Scatter => SeriesLabelPosition::LowerRight,
+                Way::Gather => SeriesLabelPosition::MiddleRight,
                 _ => SeriesLabelPosition::UpperRight,
             })
             .background_style(WHITE.mix(0.85))
