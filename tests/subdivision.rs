@@ -169,7 +169,9 @@ fn agree(
             match (done, &first) {
                 (None, _) => {}
                 // Two edges with the same ends fit no table of edges; polygons are made all the same.
-                (Some(Err(_)), _) if method == Method::Native => {}
+                (Some(Err(why)), Some(_)) if method == Method::Native => {
+                    assert!(why.contains("share two edges"), "{what}: {why}");
+                }
                 (Some(Err(_)), _) => refused += 1,
                 (Some(Ok(step)), None) => first = Some((step, what)),
                 (Some(Ok(step)), Some((other, before))) => {

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use mesh_core::{
     Counts, EdgeId, FaceId, MeshQuery, PART, Point, Ranks, Refine, RefineError, Slot, Split, Table,
-    VertexId, all_rows, check_split, in_parts, row,
+    VertexId, all_rows, check_split, in_parts, row, row_parts, rows_of_part,
 };
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
@@ -48,14 +48,11 @@ impl Refine for HalfEdgeMesh {
     }
 
     fn edge_parts(&self, _: &Ranks) -> Vec<usize> {
-        let starts = (0..self.edge_count()).step_by(PART);
-        starts.chain([self.edge_count()]).collect()
+        row_parts(self.edge_count())
     }
 
     fn edges_of_part(&self, _: &Ranks, part: usize) -> impl Iterator<Item = EdgeId> {
-        let start = (part * PART).min(self.edge_count());
-        let end = (start + PART).min(self.edge_count());
-        (row(start)..row(end)).map(EdgeId::new)
+        rows_of_part(self.edge_count(), part).map(EdgeId::new)
     }
 
     fn edge_number(&self, _: &Ranks, e: EdgeId) -> usize {

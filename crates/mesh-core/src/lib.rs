@@ -49,7 +49,9 @@ pub use polygon_mesh::PolygonMesh;
 pub use probe::{Access, AccessKind, Probe, Traced, Untraced};
 pub use query::{EdgeMap, FaceMap, MeshQuery, VertexMap};
 pub use ranks::Ranks;
-pub use refine::{PART, Refine, Split, all_rows, check_split, in_given_parts, in_parts};
+pub use refine::{
+    PART, Refine, Split, all_rows, check_split, in_given_parts, in_parts, row_parts, rows_of_part,
+};
 pub use representation::{Counts, QueryCost, Relation, Representation};
 pub use row_id::{EdgeId, FaceId, MAX_ROWS, RowId, Slot, VertexId, row};
 pub use scan::hits_in;

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::Point;
 use crate::error::RefineError;
 use crate::representation::{Counts, Representation};
-use crate::row_id::{FaceId, MAX_ROWS, VertexId};
+use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
 
 /// A way to split every face of a mesh at once; positions are another matter.
 ///
@@ -219,6 +219,18 @@ pub fn check_split<M: Refine>(
 /// How many rows a thread takes at a time: few enough to share evenly, many enough to be worth it.
 pub const PART: usize = 4096;
 
+/// Where parts of [`PART`] rows start, and at the end how many rows there are: the
+/// [`edge_parts`](Refine::edge_parts) of structures whose edges are rows.
+pub fn row_parts(rows: usize) -> Vec<usize> {
+    (0..rows).step_by(PART).chain([rows]).collect()
+}
+
+/// The rows of such a part.
+pub fn rows_of_part(rows: usize, part: usize) -> Range<u32> {
+    let start = (part * PART).min(rows);
+    row(start)..row((start + PART).min(rows))
+}
+
 /// Calls `work` with every part of `rows`, `part` rows long but for the last, and the number of its
 /// first row; the parts are shared by the threads of the current rayon pool.
 ///
@@ -317,6 +329,12 @@ mod tests {
 
     #[test]
     fn parts_cover_every_row_once() {
+        for rows in [0, 1, PART, PART + 1, 3 * PART] {
+            let starts = row_parts(rows);
+            let parts = (0..starts.len() - 1).flat_map(|part| rows_of_part(rows, part));
+            assert!(parts.eq(0..rows as u32));
+            assert_eq!(starts.last(), Some(&rows));
+        }
         for rows in [0, 1, 7, 8, 9, 100] {
             let mut seen = vec![0_usize; rows];
             in_parts(&mut seen, 8, |first, rows| {

@@ -9,7 +9,7 @@ use crate::numbers::{duration, figure};
 use crate::text::{WIDTH, wrapped};
 
 /// Two blanks between columns, and one line under the header.
-const STYLE: TableStyle =
+pub(crate) const STYLE: TableStyle =
     TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
 /// The table of times and bytes, and what its signs mean.

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use comfy_table::{Cell, ContentArrangement, LineStyle, Table, TableStyle};
+use comfy_table::{Cell, ContentArrangement, Table};
 use serde_json::json;
 use sixfold::subdivision::{Kind, Method, Primitive, Scheme};
 use sixfold::{Support, roster, support};
@@ -10,11 +10,8 @@ use sixfold::{Support, roster, support};
 use crate::arguments::Schemes;
 use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
+use crate::results_table::STYLE;
 use crate::text::Text;
-
-/// Two blanks between columns, and one line under the header.
-const STYLE: TableStyle =
-    TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
 /// Prints the classification, and the table of schemes and backends.
 pub(crate) fn run(arguments: &Schemes) -> Result<ExitCode, Failure> {

@@ -132,9 +132,13 @@ fn text(
     let mut text = String::from("# What subdivision costs on each structure\n\n");
     let cpu = machine.cpu_model.as_deref().unwrap_or("unknown processor");
     let load = machine.load_average.unwrap_or(f64::NAN);
+    let flags = match machine.rustflags.as_str() {
+        "" => String::new(),
+        flags => format!("RUSTFLAGS=\"{flags}\" "),
+    };
     writeln!(
         text,
-        "```sh\ncargo run --release -p study --example subdivision_report -- reports/subdivision {rounds}\n```\n"
+        "```sh\n{flags}cargo run --release -p study --example subdivision_report -- reports/subdivision {rounds}\n```\n"
     )?;
     writeln!(
         text,

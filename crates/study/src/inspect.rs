@@ -40,7 +40,7 @@ impl Specimen {
 
 /// Asks each backend whether it can hold the mesh, and builds none; O(corners) expected for each.
 pub fn inspect(specimen: &Specimen) -> Inspection {
-    let counts = counts(&specimen.polygons, specimen.facts.edges);
+    let counts = specimen.polygons.counts(specimen.facts.edges);
     let backends = Backend::roster().into_iter().map(|backend| {
         let verdict = backend.info.verdict(&specimen.polygons);
         unbuilt(&backend, &counts, verdict)
@@ -78,16 +78,4 @@ pub(crate) fn unbuilt(
 /// `bytes` for each vertex, if there are any.
 pub(crate) fn per_vertex(bytes: usize, counts: &Counts) -> Option<f64> {
     (counts.vertices > 0).then(|| bytes as f64 / counts.vertices as f64)
-}
-
-/// The sizes that decide what a structure for `polygons`, which has so many `edges`, weighs.
-pub(crate) fn counts(polygons: &PolygonMesh, edges: usize) -> Counts {
-    let faces = polygons.faces();
-    Counts {
-        vertices: polygons.vertex_count(),
-        edges,
-        faces: faces.len(),
-        corners: faces.corners().len(),
-        uniform: faces.is_empty() || faces.uniform_degree().is_some(),
-    }
 }

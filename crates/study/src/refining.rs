@@ -3,7 +3,7 @@
 use std::fmt;
 
 use serde::{Serialize, Serializer};
-use sixfold::subdivision::{Method, Scheme, Subdivision, SubdivisionError, renumbered};
+use sixfold::subdivision::{Method, Scheme, Subdivision, SubdivisionError, built, renumbered};
 use sixfold::{
     Creases, Point, PolygonMesh, Refine, RefineVisitor, Representation, Visitor, visit,
     visit_refinable,
@@ -150,14 +150,6 @@ impl Start<'_> {
             .control(&mesh, self.polygons, self.creases)?;
         Ok((mesh, creases))
     }
-}
-
-fn built<M: Representation>(polygons: &PolygonMesh, level: u32) -> Result<M, SubdivisionError> {
-    M::from_polygons(polygons).map_err(|refusal| SubdivisionError::Build {
-        structure: M::NAME,
-        level,
-        refusal,
-    })
 }
 
 impl Visitor for Start<'_> {

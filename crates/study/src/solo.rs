@@ -5,7 +5,6 @@ use sixfold::{Facts, PolygonMesh};
 use crate::backend::Backend;
 use crate::candidate::{Job, Subject};
 use crate::clock::{Clock, Time};
-use crate::inspect::counts;
 use crate::operation::Operation;
 use crate::sample::Draw;
 use crate::study::{StudyError, put_on_the_bench};
@@ -40,7 +39,7 @@ impl<'a> Solo<'a> {
             .find(|found| found.name() == backend);
         let found = found.ok_or(StudyError::UnknownBackend { name })?;
         let draw: Option<&Draw> = None;
-        let counts = counts(polygons, Facts::of(polygons).edges);
+        let counts = polygons.counts(Facts::of(polygons).edges);
         let (report, subject) = put_on_the_bench(&found, polygons, draw, &counts);
         let refusals = || vec![(report.name, report.reason.unwrap_or_default())];
         let subject = subject.ok_or_else(|| StudyError::NoneHolds {

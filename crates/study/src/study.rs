@@ -12,7 +12,7 @@ use crate::backend::Backend;
 use crate::candidate::Subject;
 use crate::clock::{MachineClock, Time};
 use crate::environment::Environment;
-use crate::inspect::{Specimen, counts, per_vertex, unbuilt};
+use crate::inspect::{Specimen, per_vertex, unbuilt};
 use crate::measure::{Bench, Entry, Progress};
 use crate::operation::Operation;
 use crate::report::{Agreement, BackendReport, Refusal, Report, ResultRow, SCHEMA};
@@ -142,7 +142,7 @@ pub fn study(
         return Err(StudyError::NoFaces);
     }
     let environment = Environment::here(settings.seed, settings.budget.as_secs_f64());
-    let counts = counts(polygons, specimen.facts.edges);
+    let counts = polygons.counts(specimen.facts.edges);
     let skewed = is_skewed(&specimen.facts);
     let draw = chosen
         .iter()

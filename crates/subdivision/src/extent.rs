@@ -38,7 +38,7 @@ impl Extent {
         let boundary = vertices().filter(|&(_, &open)| open);
         let pinched = vertices().filter(|&(&corners, &open)| corners == 2 && !open);
         Self {
-            counts: polygons.counts(),
+            counts: polygons.counts(uses.len()),
             boundary_edges,
             boundary_corners: boundary.map(|(&corners, _)| corners).sum(),
             isolated_vertices: vertices().filter(|&(&corners, _)| corners == 0).count(),

@@ -97,7 +97,12 @@ pub fn subdivide_native<M: Refine>(
     Ok(without(Step { polygons, creases }, left_out))
 }
 
-fn built<M: Representation>(polygons: &PolygonMesh, level: u32) -> Result<M, SubdivisionError> {
+/// The structure of a level, from its polygons.
+///
+/// # Errors
+///
+/// [`SubdivisionError::Build`] with the refusal, and the level, counted from the control mesh at 0.
+pub fn built<M: Representation>(polygons: &PolygonMesh, level: u32) -> Result<M, SubdivisionError> {
     M::from_polygons(polygons).map_err(|refusal| SubdivisionError::Build {
         structure: M::NAME,
         level,

@@ -47,7 +47,7 @@ pub use control::renumbered;
 pub use curve::{Ends, chaikin, cubic_b_spline, cubic_b_spline_at};
 pub use error::{CurveError, LocalError, SubdivisionError};
 pub use extent::Extent;
-pub use levels::{subdivide, subdivide_native};
+pub use levels::{built, subdivide, subdivide_native};
 pub use limit::{LimitNormal, LimitPoint, NoLimit};
 pub use local::{LocalMesh, refine_locally};
 pub use options::{Boundary, Creasing, LoopWeights};

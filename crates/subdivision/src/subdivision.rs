@@ -12,6 +12,19 @@ use crate::scheme::{Method, Scheme};
 use crate::step::Step;
 use crate::{butterfly, doo_sabin, gather, native, scatter, sqrt3};
 
+/// A step by the mask of the scheme, for those that are no more than a mask; then the other schemes.
+macro_rules! by_mask {
+    ($self:ident, $mask:ident => $step:expr, { $($others:tt)* }) => {
+        match $self.scheme {
+            Scheme::CatmullClark => { let $mask = CatmullClark; $step }
+            Scheme::Loop => { let $mask = Loop::new($self.loop_weights); $step }
+            Scheme::Midpoint => { let $mask = Midpoint; $step }
+            Scheme::Bilinear => { let $mask = Bilinear; $step }
+            $($others)*
+        }
+    };
+}
+
 /// A scheme and its options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Subdivision {
@@ -51,17 +64,11 @@ impl Subdivision {
         level: u32,
     ) -> Result<Step, SubdivisionError> {
         self.check(mesh)?;
-        match self.scheme {
-            Scheme::CatmullClark => gather::step(mesh, CatmullClark, creases, self.creasing),
-            Scheme::Loop => {
-                gather::step(mesh, Loop::new(self.loop_weights), creases, self.creasing)
-            }
-            Scheme::Midpoint => gather::step(mesh, Midpoint, creases, self.creasing),
-            Scheme::Bilinear => gather::step(mesh, Bilinear, creases, self.creasing),
+        by_mask!(self, mask => gather::step(mesh, mask, creases, self.creasing), {
             Scheme::Sqrt3 => sqrt3::gather(mesh, is_second(level)),
             Scheme::Butterfly => butterfly::gather(mesh),
             Scheme::DooSabin => doo_sabin::gather(mesh),
-        }
+        })
     }
 
     /// One step, by a pass over the faces. As [`gather`](Self::gather), but for the order of edge
@@ -77,17 +84,11 @@ impl Subdivision {
         level: u32,
     ) -> Result<Step, SubdivisionError> {
         self.check(mesh)?;
-        match self.scheme {
-            Scheme::CatmullClark => scatter::step(mesh, CatmullClark, creases, self.creasing),
-            Scheme::Loop => {
-                scatter::step(mesh, Loop::new(self.loop_weights), creases, self.creasing)
-            }
-            Scheme::Midpoint => scatter::step(mesh, Midpoint, creases, self.creasing),
-            Scheme::Bilinear => scatter::step(mesh, Bilinear, creases, self.creasing),
+        by_mask!(self, mask => scatter::step(mesh, mask, creases, self.creasing), {
             Scheme::Sqrt3 => sqrt3::scatter(mesh, is_second(level)),
             Scheme::Butterfly => Err(self.no_method(Method::Scatter, "gather or native")),
             Scheme::DooSabin => doo_sabin::scatter(mesh),
-        }
+        })
     }
 
     /// One step in the structure's own tables, into `child`, whose tables are used again where they
@@ -109,21 +110,11 @@ impl Subdivision {
         child: &mut M,
     ) -> Result<Creases, SubdivisionError> {
         mesh.number_edges(numbers);
-        let creasing = self.creasing;
-        match self.scheme {
-            Scheme::CatmullClark => {
-                native::step(mesh, CatmullClark, creases, creasing, numbers, child)
-            }
-            Scheme::Loop => {
-                let mask = Loop::new(self.loop_weights);
-                native::step(mesh, mask, creases, creasing, numbers, child)
-            }
-            Scheme::Midpoint => native::step(mesh, Midpoint, creases, creasing, numbers, child),
-            Scheme::Bilinear => native::step(mesh, Bilinear, creases, creasing, numbers, child),
+        by_mask!(self, mask => native::step(mesh, mask, creases, self.creasing, numbers, child), {
             Scheme::Sqrt3 => sqrt3::native(mesh, numbers, is_second(level), child),
             Scheme::Butterfly => butterfly::native(mesh, numbers, child),
             Scheme::DooSabin => Err(self.not_by_polygons()),
-        }
+        })
     }
 
     /// How step `level`, counted from 0, splits faces; `None` if it does not.

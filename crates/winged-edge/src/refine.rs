@@ -38,7 +38,7 @@ use std::ops::Range;
 
 use mesh_core::{
     Counts, EdgeId, FaceId, MeshQuery, PART, Point, Ranks, Refine, RefineError, RowId, Slot, Split,
-    Table, VertexId, all_rows, check_split, in_parts, row,
+    Table, VertexId, all_rows, check_split, in_parts, row, row_parts, rows_of_part,
 };
 
 use crate::edge::Edge;
@@ -68,14 +68,12 @@ impl Refine for WingedEdgeMesh {
     }
 
     fn edge_parts(&self, _: &Ranks) -> Vec<usize> {
-        let edges = self.edges.len();
-        (0..edges).step_by(PART).chain([edges]).collect()
+        row_parts(self.edges.len())
     }
 
     #[inline]
     fn edges_of_part(&self, _: &Ranks, part: usize) -> impl Iterator<Item = EdgeId> {
-        let end = self.edges.len().min((part + 1) * PART);
-        (row(part * PART)..row(end)).map(EdgeId::new)
+        rows_of_part(self.edges.len(), part).map(EdgeId::new)
     }
 
     /// Its row; O(1).
