@@ -3,8 +3,7 @@
 use std::ops::Range;
 
 use crate::error::PolygonError;
-use crate::memory::TableBytes;
-use crate::probe::{Probe, Untraced};
+use crate::face_spans::FaceSpans;
 use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
 use crate::table::Table;
 
@@ -153,148 +152,6 @@ fn check_corners(corners: usize) -> Result<(), PolygonError> {
     Ok(())
 }
 
-/// How a flat table of corners falls into faces: one degree for all, or a table of offsets.
-#[derive(Clone, Debug)]
-pub enum FaceSpans<P: Probe = Untraced> {
-    /// Every face has `degree` corners.
-    Uniform {
-        /// The corners of each face.
-        degree: u32,
-        /// How many faces there are.
-        faces: u32,
-    },
-    /// Face `f` has the corners `offsets[f]..offsets[f + 1]`.
-    Mixed(Table<u32, P>),
-}
-
-impl<P: Probe> FaceSpans<P> {
-    /// How many faces there are.
-    #[inline]
-    pub fn len(&self) -> usize {
-        match self {
-            Self::Uniform { faces, .. } => *faces as usize,
-            Self::Mixed(offsets) => offsets.len() - 1,
-        }
-    }
-
-    /// Whether there is no face.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// Which corners are those of `face`; reads two offsets where degrees are mixed.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such face.
-    #[inline]
-    pub fn range(&self, face: FaceId) -> Range<usize> {
-        let f = face.index();
-        match self {
-            Self::Uniform { degree, faces } => {
-                if face.index() >= *faces as usize {
-                    no_such_face(face, *faces as usize);
-                }
-                let degree = *degree as usize;
-                f * degree..(f + 1) * degree
-            }
-            Self::Mixed(offsets) => {
-                if f + 1 >= offsets.len() {
-                    no_such_face(face, offsets.len() - 1);
-                }
-                *offsets.read(f) as usize..*offsets.read(f + 1) as usize
-            }
-        }
-    }
-
-    /// The face of a corner: a division, or a binary search where degrees are mixed.
-    ///
-    /// Of a corner that is not there it says nothing of use.
-    ///
-    /// # Panics
-    ///
-    /// If there is no face at all.
-    pub fn face_of(&self, corner: usize) -> FaceId {
-        let face = match self {
-            Self::Uniform { degree, .. } => corner / *degree as usize,
-            Self::Mixed(offsets) => {
-                let (mut low, mut high) = (0, offsets.len() - 1);
-                while high - low > 1 {
-                    let middle = low.midpoint(high);
-                    if *offsets.read(middle) as usize <= corner {
-                        low = middle;
-                    } else {
-                        high = middle;
-                    }
-                }
-                low
-            }
-        };
-        FaceId::new(row(face))
-    }
-
-    /// The face of a corner, and the corners before, at and after it there.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such corner.
-    pub fn around(&self, corner: usize) -> (FaceId, [usize; 3]) {
-        let face = self.face_of(corner);
-        let range = self.range(face);
-        let (first, last) = (range.start, range.end - 1);
-        let before = if corner == first { last } else { corner - 1 };
-        let after = if corner == last { first } else { corner + 1 };
-        (face, [before, corner, after])
-    }
-
-    /// Whether the spans divide `corners` corners into faces of three or more: what is wrong if not.
-    ///
-    /// # Errors
-    ///
-    /// The first face whose corners are not there or too few, or the corners that no face has.
-    pub fn check(&self, corners: usize) -> Result<(), String> {
-        if let Self::Mixed(offsets) = self
-            && offsets.is_empty()
-        {
-            return Err("the offsets lack even a first".to_owned());
-        }
-        let mut end = 0;
-        for face in (0..row(self.len())).map(FaceId::new) {
-            let range = self.range(face);
-            if range.start != end || range.end < range.start + 3 || range.end > corners {
-                return Err(format!("{face} has the corners {range:?} of {corners}"));
-            }
-            end = range.end;
-        }
-        if end != corners {
-            return Err(format!("corners {end}..{corners} belong to no face"));
-        }
-        Ok(())
-    }
-
-    /// The same spans watched by `probe`.
-    pub fn probed<Q: Probe>(self, probe: Q) -> FaceSpans<Q> {
-        match self {
-            Self::Uniform { degree, faces } => FaceSpans::Uniform { degree, faces },
-            Self::Mixed(offsets) => FaceSpans::Mixed(offsets.probed(probe)),
-        }
-    }
-
-    /// The bytes of the offsets, if there are any.
-    pub fn bytes(&self) -> Option<TableBytes> {
-        match self {
-            Self::Uniform { .. } => None,
-            Self::Mixed(offsets) => Some(offsets.bytes()),
-        }
-    }
-}
-
-#[cold]
-#[inline(never)]
-fn no_such_face(face: FaceId, faces: usize) -> ! {
-    panic!("no face {face}: there are {faces}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -322,45 +179,6 @@ mod tests {
                 .collect();
             assert_eq!(spanned, degrees);
         }
-    }
-
-    #[test]
-    #[should_panic(expected = "no face f2: there are 2")]
-    fn a_missing_face_panics_by_name() {
-        list(&[3, 3]).spans().range(FaceId::new(2));
-    }
-
-    #[test]
-    #[should_panic(expected = "no face f2: there are 2")]
-    fn a_missing_face_panics_by_name_among_mixed_degrees_too() {
-        list(&[3, 4]).spans().range(FaceId::new(2));
-    }
-
-    #[test]
-    fn a_corner_knows_its_face_and_those_beside_it() {
-        for degrees in [&[3, 3, 3][..], &[4, 3, 5], &[3, 3, 4, 3, 6, 3]] {
-            let spans = list(degrees).spans();
-            let faces = (0..row(degrees.len())).map(FaceId::new);
-            for (face, corners) in faces.map(|f| (f, spans.range(f))) {
-                let (first, last) = (corners.start, corners.end - 1);
-                assert_eq!(spans.around(first), (face, [last, first, first + 1]));
-                assert_eq!(spans.around(last), (face, [last - 1, last, first]));
-                for corner in first + 1..last {
-                    let beside = [corner - 1, corner, corner + 1];
-                    assert_eq!(spans.around(corner), (face, beside));
-                    assert_eq!(spans.face_of(corner), face);
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn spans_must_divide_the_corners() {
-        assert_eq!(list(&[3, 4]).spans().check(7), Ok(()));
-        assert!(list(&[3, 4]).spans().check(8).is_err());
-        assert!(list(&[3, 4]).spans().check(6).is_err());
-        assert!(list(&[3, 3]).spans().check(5).is_err());
-        assert!(list(&[3, 2]).spans().check(5).is_err());
     }
 
     #[test]

@@ -24,9 +24,26 @@ pub trait Handle: Copy + Eq + Ord + Hash + Debug + Send + Sync {
 /// Data kept for each element of one kind, by handle.
 ///
 /// Every handle reads the value that the map was filled with until it is written.
-pub trait HandleMap<H, T>: Index<H, Output = T> + IndexMut<H> + Clone {
+pub trait HandleMap<H: Copy, T: Clone>: Index<H, Output = T> + IndexMut<H> + Clone {
     /// A map that reads `value` everywhere; `rows` bounds the rows of handles that are rows.
     fn filled(rows: usize, value: T) -> Self;
+
+    /// Keeps `value` for `handle`, which may be new: where data is by row the map grows up to it, and
+    /// rows in between, which are no elements yet, read `value` too. O(1) amortised.
+    fn insert(&mut self, handle: H, value: T);
+
+    /// Forgets what is kept for `handle`, an element that is no more. O(1).
+    fn remove(&mut self, handle: H);
+
+    /// What is kept for `old` is kept for `new` from now on. O(1) amortised.
+    ///
+    /// One name after the other: where several elements exchange their names, as an edit may have
+    /// them do, [`Changes::follow`](crate::Changes::follow) does it for all at once.
+    fn rename(&mut self, old: H, new: H) {
+        let value = self[old].clone();
+        self.remove(old);
+        self.insert(new, value);
+    }
 }
 
 /// A [`HandleMap`] for handles that are rows: a vector.
@@ -50,6 +67,20 @@ impl<H: RowId, T: Clone> HandleMap<H, T> for RowMap<H, T> {
             names: PhantomData,
         }
     }
+
+    #[inline]
+    fn insert(&mut self, handle: H, value: T) {
+        let at = handle.row() as usize;
+        if at >= self.values.len() {
+            self.values.resize(at + 1, value);
+        } else {
+            self.values[at] = value;
+        }
+    }
+
+    /// A row of its own is nobody else's: it stays as it is until somebody writes it.
+    #[inline]
+    fn remove(&mut self, _: H) {}
 }
 
 impl<H: RowId, T> Index<H> for RowMap<H, T> {
@@ -95,6 +126,14 @@ impl<H: Handle, T: Clone> HandleMap<H, T> for HashHandleMap<H, T> {
             written: FxHashMap::default(),
             otherwise: value,
         }
+    }
+
+    fn insert(&mut self, handle: H, value: T) {
+        self.written.insert(handle, value);
+    }
+
+    fn remove(&mut self, handle: H) {
+        self.written.remove(&handle);
     }
 }
 

@@ -7,6 +7,9 @@
 //! - [`BuildError`]: why a structure refuses a mesh; [`Capabilities`] decides it in one place.
 //! - [`Table`] and [`Probe`]: storage whose reads and writes can be watched.
 //! - [`Refine`] and [`Split`]: structures that split every face in their own tables.
+//! - [`MeshEdit`], [`EditRecord`] and [`EditError`]: changing a mesh in place, what became of its
+//!   names, and why not; [`Holes`]: the rows that deleting leaves.
+//! - [`ScannedFaces`]: queries and edits of structures that find the faces at a vertex by a scan.
 //! - [`Creases`]: how sharp edges and vertices stay under subdivision.
 //! - [`Facts`]: the topology of a face list, exact and independent of any structure.
 //!
@@ -15,10 +18,15 @@
 mod capability;
 mod creases;
 mod distinct;
+mod edit;
+mod edit_error;
 mod error;
 mod face_list;
+mod face_spans;
 mod facts;
+mod few;
 mod handle;
+mod holes;
 mod incidence;
 mod memory;
 mod pairing;
@@ -31,17 +39,24 @@ mod refine;
 mod representation;
 mod row_id;
 mod scan;
+mod scan_edit;
+mod scanned;
 mod sides;
 mod table;
 
 pub use capability::Capabilities;
 pub use creases::{Creases, SHARP_FOR_EVER};
 pub use distinct::{Distinct, DistinctWalk, IteratorExt};
+pub use edit::{Changes, Edit, EditLog, EditRecord, MeshEdit, OldToNew, Refusal};
+pub use edit_error::EditError;
 pub use error::{BuildError, CreaseError, InvariantError, MoveError, PolygonError, RefineError};
-pub use face_list::{FaceList, FaceSpans};
+pub use face_list::FaceList;
+pub use face_spans::{FaceSpans, Span};
 pub use facts::{Facts, Spread};
+pub use few::{Few, Lookup};
 pub use glam::Vec3 as Point;
 pub use handle::{Handle, HandleMap, HashHandleMap, Pair, RowMap};
+pub use holes::{Holes, SolidRows};
 pub use incidence::EdgeUse;
 pub use memory::{MemoryFootprint, TableBytes};
 pub use pairing::TwinPairs;
@@ -55,4 +70,6 @@ pub use refine::{
 pub use representation::{Counts, QueryCost, Relation, Representation};
 pub use row_id::{EdgeId, FaceId, MAX_ROWS, RowId, Slot, VertexId, row};
 pub use scan::hits_in;
+pub use scan_edit::ScannedMesh;
+pub use scanned::{Hit, ScannedFaces, ScannedVertex, Sought};
 pub use table::Table;

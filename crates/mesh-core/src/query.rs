@@ -86,6 +86,12 @@ pub trait MeshQuery {
     /// FF: the faces that share an edge with `f`.
     fn face_faces(&self, f: Self::Face) -> impl Iterator<Item = Self::Face>;
 
+    /// The edge between `a` and `b`, if there is one; the cost of VE and EV.
+    fn edge_between(&self, a: Self::Vertex, b: Self::Vertex) -> Option<Self::Edge> {
+        self.vertex_edges(a)
+            .find(|&e| self.edge_vertices(e).contains(&b) && a != b)
+    }
+
     /// No vertex handle that is a row is this large or larger; O(1).
     fn vertex_rows(&self) -> usize;
     /// No edge handle that is a row is this large or larger; O(1).
@@ -149,7 +155,7 @@ fn spoke<V: Eq + Copy>(corners: impl Iterator<Item = V>, v: V) -> [V; 2] {
 }
 
 /// Chains spokes `[after, before]` into one ring: each runs from its first to its second vertex.
-fn ring<V: Ord + Copy>(mut spokes: Vec<[V; 2]>) -> Option<Vec<V>> {
+pub(crate) fn ring<V: Ord + Copy>(mut spokes: Vec<[V; 2]>) -> Option<Vec<V>> {
     let Some(&[any, _]) = spokes.first() else {
         return Some(Vec::new());
     };

@@ -1,9 +1,11 @@
 //! The sides of all faces, in buckets by their lower end: how edges are found without hashing.
 
-use crate::face_list::{FaceList, FaceSpans};
+use crate::face_list::FaceList;
+use crate::face_spans::FaceSpans;
 use crate::handle::Pair;
+use crate::holes::Holes;
 use crate::probe::Probe;
-use crate::row_id::{FaceId, VertexId, row};
+use crate::row_id::{VertexId, row};
 use crate::table::Table;
 
 /// Faces whose sides can be gone through, as often as it takes.
@@ -18,39 +20,46 @@ impl Sides for FaceList {
         match self.uniform_degree() {
             Some(3) => sides_of_uniform::<3>(self.corners(), visit),
             Some(4) => sides_of_uniform::<4>(self.corners(), visit),
-            _ => sides_of_each(self.iter().map(|(_, face)| face), visit),
+            _ => sides_of_each(
+                self.iter().map(|(f, face)| (self.range(f).start, face)),
+                visit,
+            ),
         }
     }
 }
 
-impl<P: Probe> Sides for (&FaceSpans<P>, &Table<VertexId, P>) {
+impl<P: Probe> Sides for (&FaceSpans<P>, &Table<VertexId, P>, &Holes<P>) {
     #[inline(always)]
     fn for_each_side(&self, visit: impl FnMut(VertexId, VertexId, u32)) {
-        let (spans, corners) = *self;
+        let (spans, corners, holes) = *self;
         let all = || corners.read_range(0..corners.len());
         match spans {
-            FaceSpans::Uniform { degree: 3, .. } => sides_of_uniform::<3>(all(), visit),
-            FaceSpans::Uniform { degree: 4, .. } => sides_of_uniform::<4>(all(), visit),
+            FaceSpans::Uniform { degree: 3, .. } if holes.is_empty() => {
+                sides_of_uniform::<3>(all(), visit);
+            }
+            FaceSpans::Uniform { degree: 4, .. } if holes.is_empty() => {
+                sides_of_uniform::<4>(all(), visit);
+            }
             _ => {
-                let faces = (0..row(spans.len())).map(FaceId::new);
-                sides_of_each(faces.map(|f| corners.read_range(spans.range(f))), visit);
+                let ranges = holes.handles(spans.len()).map(|f| spans.range(f));
+                let faces = ranges.map(|range| (range.start, corners.read_range(range)));
+                sides_of_each(faces, visit);
             }
         }
     }
 }
 
-/// Visits the sides of one face after another: side `i` joins corners `i` and `i + 1`.
+/// Visits the sides of one face after another, each face with its first corner: side `i` joins
+/// corners `i` and `i + 1`.
 #[inline(always)]
 fn sides_of_each<'a>(
-    faces: impl Iterator<Item = &'a [VertexId]>,
+    faces: impl Iterator<Item = (usize, &'a [VertexId])>,
     mut visit: impl FnMut(VertexId, VertexId, u32),
 ) {
-    let mut corner = 0;
-    for face in faces {
-        for (i, &a) in face.iter().enumerate() {
+    for (start, face) in faces {
+        for (i, (corner, &a)) in (row(start)..).zip(face).enumerate() {
             let b = face[if i + 1 == face.len() { 0 } else { i + 1 }];
             visit(a, b, corner);
-            corner += 1;
         }
     }
 }
@@ -103,7 +112,7 @@ impl<T: Copy + Default> Buckets<T> {
 }
 
 impl<P: Probe> FaceSpans<P> {
-    /// Every edge of the faces that have these corners, once, by the lower end.
+    /// Every edge of the faces that have these corners and are no holes, once, by the lower end.
     ///
     /// The higher ends are put into one bucket for each lower end (a counting sort over all sides);
     /// in a bucket, each is yielded when it is new there. O(corners + vertices), and no faces are
@@ -115,10 +124,11 @@ impl<P: Probe> FaceSpans<P> {
     pub fn edges(
         &self,
         corners: &Table<VertexId, P>,
+        holes: &Holes<P>,
         vertices: usize,
     ) -> impl Iterator<Item = Pair<VertexId>> + use<P> {
         let higher_end = |a: VertexId, b: VertexId, _| a.max(b).index() as u32;
-        let Buckets { entries, ends } = Buckets::of(vertices, &(self, corners), higher_end);
+        let Buckets { entries, ends } = Buckets::of(vertices, &(self, corners, holes), higher_end);
         // By higher end: the lower end that met it last. No vertex is lower than itself.
         let mut met: Vec<u32> = (0..row(vertices)).collect();
         let (mut low, mut at) = (0_u32, 0);
@@ -155,7 +165,8 @@ mod tests {
             list.spans().probed(probe.clone()),
             corners.probed(probe.clone()),
         );
-        let edges = spans.edges(&corners, vertices);
+        let holes = Holes::none("face holes").probed(probe.clone());
+        let edges = spans.edges(&corners, &holes, vertices);
         let ends = edges.map(|edge| edge.ends().map(VertexId::index)).collect();
         let log = probe.take();
         (

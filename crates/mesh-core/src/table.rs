@@ -123,6 +123,60 @@ impl<T, P: Probe> Table<T, P> {
         &mut self.rows[row]
     }
 
+    /// Adds a row at the end; O(1) amortised.
+    ///
+    /// Whether there may be one more row, the caller has asked: see [`MAX_ROWS`](crate::MAX_ROWS).
+    #[inline]
+    pub fn push(&mut self, value: T) {
+        self.probe.write(self.name, self.rows.len(), size_of::<T>());
+        self.rows.push(value);
+    }
+
+    /// Adds rows at the end; O(rows) amortised.
+    #[inline]
+    pub fn extend(&mut self, values: impl IntoIterator<Item = T>) {
+        for value in values {
+            self.push(value);
+        }
+    }
+
+    /// A table of other rows, watched by the same probe.
+    pub fn beside<U>(
+        &self,
+        name: &'static str,
+        element: &'static str,
+        rows: Vec<U>,
+    ) -> Table<U, P> {
+        Table {
+            rows,
+            name,
+            element,
+            probe: self.probe.clone(),
+        }
+    }
+
+    /// Other rows in the place of these. Unwatched.
+    pub fn replace(&mut self, rows: Vec<T>) {
+        self.rows = rows;
+    }
+
+    /// Drops the rows from `len` on. Unwatched.
+    pub fn truncate(&mut self, len: usize) {
+        self.rows.truncate(len);
+    }
+
+    /// Drops all rows, and the memory they were in. Unwatched.
+    pub fn clear(&mut self) {
+        self.rows = Vec::new();
+    }
+
+    /// Gives memory back where less than half of it is used. Unwatched.
+    pub fn give_back(&mut self) {
+        if self.rows.len() < self.rows.capacity() / 2 {
+            self.rows.shrink_to_fit();
+        }
+    }
+
     /// All rows as they lie in memory, unwatched: for whole-table passes and for raw access.
     #[inline]
     pub fn rows(&self) -> &[T] {

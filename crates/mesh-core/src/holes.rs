@@ -1,0 +1,288 @@
+//! Rows that are there no longer: what deleting leaves behind until a mesh is compacted.
+
+use crate::memory::TableBytes;
+use crate::probe::{Probe, Untraced};
+use crate::row_id::{RowId, row};
+use crate::table::Table;
+
+/// How many rows a word of bits stands for.
+const WORD: usize = u64::BITS as usize;
+
+/// Which rows of a structure's tables are holes, a bit a row.
+///
+/// ```text
+/// row     0 1 2 3 4 5 6 7
+/// hole        •     • •        rows() = 0 1 3 4 7     new_rows()[4] = 3
+/// ```
+///
+/// Nothing at all is kept until the first row is deleted: a mesh that is only queried pays nothing.
+#[derive(Clone, Debug)]
+pub struct Holes<P: Probe = Untraced> {
+    /// A word for 64 rows; rows beyond the last word are no holes.
+    words: Table<u64, P>,
+    count: usize,
+}
+
+impl Holes {
+    /// No holes; `name` is what the table of bits is called, once there is one (`"face holes"`).
+    pub fn none(name: &'static str) -> Self {
+        Self {
+            words: Table::new(name, "64 rows", Vec::new()),
+            count: 0,
+        }
+    }
+}
+
+impl<P: Probe> Holes<P> {
+    /// The same holes watched by `probe`.
+    pub fn probed<Q: Probe>(self, probe: Q) -> Holes<Q> {
+        Holes {
+            words: self.words.probed(probe),
+            count: self.count,
+        }
+    }
+
+    /// How many holes there are; O(1).
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether there is no hole; O(1).
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// Whether `row` is a hole; O(1). A row that was never there is none.
+    #[inline]
+    pub fn has(&self, row: usize) -> bool {
+        self.count > 0
+            && row / WORD < self.words.len()
+            && self.words.read(row / WORD) >> (row % WORD) & 1 == 1
+    }
+
+    /// Makes a hole of `row`; O(1) amortised: the first hole beyond all words brings words up to it.
+    ///
+    /// # Panics
+    ///
+    /// If the row is a hole already: deleting twice is a bug of the caller.
+    pub fn dig(&mut self, row: usize) {
+        while self.words.len() <= row / WORD {
+            self.words.push(0);
+        }
+        let word = self.words.write(row / WORD);
+        assert_eq!(*word >> (row % WORD) & 1, 0, "row {row} is a hole already");
+        *word |= 1 << (row % WORD);
+        self.count += 1;
+    }
+
+    /// Forgets all holes, and gives back what they were kept in: after compaction.
+    pub fn fill(&mut self) {
+        self.words.clear();
+        self.count = 0;
+    }
+
+    /// The rows below `end` that are no holes, ascending; O(end), holes included.
+    #[inline]
+    pub fn rows(&self, end: usize) -> SolidRows<'_> {
+        SolidRows {
+            next: 0,
+            end: row(end),
+            words: if self.count > 0 {
+                self.words.rows()
+            } else {
+                &[]
+            },
+        }
+    }
+
+    /// The same rows as handles.
+    #[inline]
+    pub fn handles<H: RowId>(&self, end: usize) -> impl Iterator<Item = H> + Clone + use<'_, H, P> {
+        self.rows(end).map(H::from_row)
+    }
+
+    /// For each row below `end` the row it has once all holes are closed up: as many as there are
+    /// rows before it that are no holes. O(end).
+    pub fn new_rows(&self, end: usize) -> Vec<u32> {
+        let mut new = 0;
+        let mut rows = Vec::with_capacity(end);
+        for row in 0..end {
+            rows.push(new);
+            new += u32::from(!self.has(row));
+        }
+        rows
+    }
+
+    /// The name and the bytes of the bits, if there are any.
+    pub fn bytes(&self) -> Option<TableBytes> {
+        let bytes = self.words.bytes();
+        (bytes.bytes > 0).then_some(bytes)
+    }
+
+    /// Whether `count` bits are set, all of them of rows below `end`: what is wrong if not.
+    ///
+    /// # Errors
+    ///
+    /// A sentence.
+    pub fn check(&self, end: usize) -> Result<(), String> {
+        let bits: usize = self
+            .words
+            .rows()
+            .iter()
+            .map(|w| w.count_ones() as usize)
+            .sum();
+        let below = end - self.rows(end).count();
+        if bits != self.count || below != self.count {
+            let name = self.words.bytes().table;
+            return Err(format!(
+                "{name}: {} counted, {bits} bits, {below} of them of the {end} rows",
+                self.count
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// The rows that are no holes, ascending.
+///
+/// Where there is none, a step is that of a range, up to an end that the compiler knows to be that of
+/// the tables: so the reads of a sweep keep losing their bounds checks. To keep whole runs of rows
+/// instead, and step within one, was slower by a third for that very reason.
+#[derive(Clone, Debug)]
+pub struct SolidRows<'a> {
+    next: u32,
+    end: u32,
+    /// Empty where there is no hole.
+    words: &'a [u64],
+}
+
+impl SolidRows<'_> {
+    #[inline]
+    fn is_hole(&self, row: u32) -> bool {
+        let word = self.words.get(row as usize / WORD).copied();
+        word.unwrap_or(0) >> (row as usize % WORD) & 1 == 1
+    }
+}
+
+impl Iterator for SolidRows<'_> {
+    type Item = u32;
+
+    #[inline]
+    fn next(&mut self) -> Option<u32> {
+        loop {
+            if self.next >= self.end {
+                return None;
+            }
+            let row = self.next;
+            self.next += 1;
+            if self.words.is_empty() || !self.is_hole(row) {
+                return Some(row);
+            }
+        }
+    }
+
+    #[inline]
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let rows = (self.end - self.next) as usize;
+        let least = if self.words.is_empty() { rows } else { 0 };
+        (least, Some(rows))
+    }
+
+    /// With one call of `f`: with two, one for each case, it is not inlined any more.
+    #[inline]
+    fn fold<B, F: FnMut(B, u32) -> B>(self, init: B, mut f: F) -> B {
+        let whole = self.words.is_empty();
+        (self.next..self.end).fold(init, |folded, row| {
+            if whole || !self.is_hole(row) {
+                f(folded, row)
+            } else {
+                folded
+            }
+        })
+    }
+}
+
+impl<P: Probe> Holes<P> {
+    /// Closes the holes of `table`, whose rows these are: what remains moves down in order, and
+    /// memory goes back where less than half is used. O(rows), unwatched.
+    pub fn close<T: Copy>(&self, table: &mut Table<T, P>) {
+        let mut to = 0;
+        let end = table.len();
+        if !self.is_empty() {
+            let rows = table.rows_mut();
+            for from in self.rows(end) {
+                rows[to] = rows[from as usize];
+                to += 1;
+            }
+            table.truncate(to);
+        }
+        table.give_back();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_pass_over_holes_wherever_they_are() {
+        for end in [0_usize, 1, 63, 64, 65, 130, 200] {
+            let sets: [&dyn Fn(usize) -> bool; 6] = [
+                &|_| false,
+                &|_| true,
+                &|row| row % 3 == 1,
+                &|row| row < 64,
+                &|row| row >= 64,
+                &|row| row == 0 || row + 1 == end,
+            ];
+            for (i, is_hole) in sets.iter().enumerate() {
+                let mut holes = Holes::none("holes");
+                for row in (0..end).filter(|&row| is_hole(row)).rev() {
+                    holes.dig(row);
+                }
+                let expected: Vec<u32> = (0..end).filter(|&r| !is_hole(r)).map(row).collect();
+                let rows = holes.rows(end);
+                assert!(rows.size_hint().0 <= expected.len());
+                assert_eq!(
+                    rows.clone().collect::<Vec<_>>(),
+                    expected,
+                    "set {i} of {end}"
+                );
+                assert_eq!(
+                    rows.fold(0, |sum, row| sum ^ row),
+                    expected.iter().fold(0, |sum, row| sum ^ row)
+                );
+                assert_eq!(holes.len() + expected.len(), end);
+                assert_eq!(holes.check(end), Ok(()));
+                let new = holes.new_rows(end);
+                let closed: Vec<u32> = expected.iter().map(|&old| new[old as usize]).collect();
+                assert!(closed.into_iter().eq(0..row(expected.len())));
+                let mut table = Table::new("rows", "row", (0..row(end)).collect());
+                holes.close(&mut table);
+                assert_eq!(table.rows(), expected);
+            }
+        }
+    }
+
+    #[test]
+    fn a_row_beyond_all_bits_is_no_hole() {
+        let mut holes = Holes::none("holes");
+        assert!(holes.bytes().is_none() && !holes.has(7));
+        holes.dig(3);
+        assert!(holes.has(3) && !holes.has(1000));
+        assert_eq!(holes.rows(6).collect::<Vec<_>>(), [0, 1, 2, 4, 5]);
+        assert!(holes.check(3).is_err(), "a hole beyond the rows");
+        holes.fill();
+        assert!(holes.is_empty() && !holes.has(3));
+    }
+
+    #[test]
+    #[should_panic(expected = "row 3 is a hole already")]
+    fn no_row_is_deleted_twice() {
+        let mut holes = Holes::none("holes");
+        holes.dig(3);
+        holes.dig(3);
+    }
+}
