@@ -10,6 +10,7 @@
 
 mod corner_cases;
 mod cost;
+mod edit;
 mod elements;
 mod refine;
 mod relations;
@@ -17,6 +18,7 @@ mod structure;
 
 pub use corner_cases::corner_cases;
 pub use cost::{costs, memory};
+pub use edit::{edit_costs, edits, inverse_edits};
 pub use elements::{elements, maps, missing_handles, names, positions};
 pub use refine::{refine, refine_in_parallel};
 pub use relations::{

@@ -4,6 +4,7 @@
 //! - [`law`]: what each representation must keep, one plain function a law.
 //! - [`gallery`]: small meshes made by hand, one for each corner case.
 //! - [`strategy`]: random meshes that shrink: manifolds of any topology, known faults, chaos.
+//! - [`edit`]: the model, the random scripts and the trial that hold edits to account.
 //! - [`suite!`]: one line that makes one `#[test]` of each law.
 //!
 //! A representation takes part with one line in its `tests/conformance.rs`:
@@ -16,6 +17,7 @@
 
 mod answers;
 mod caught;
+pub mod edit;
 mod element;
 mod gallery;
 pub mod law;

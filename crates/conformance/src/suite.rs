@@ -57,6 +57,27 @@ macro_rules! refine_suite {
     };
 }
 
+/// The laws of structures that can be edited: `conformance::edit_suite!(half_edge::HalfEdgeMesh);`
+#[macro_export]
+macro_rules! edit_suite {
+    ($mesh:ty) => {
+        #[test]
+        fn edits() {
+            $crate::law::edits::<$mesh>();
+        }
+
+        #[test]
+        fn inverse_edits() {
+            $crate::law::inverse_edits::<$mesh>();
+        }
+
+        #[test]
+        fn edit_costs() {
+            $crate::law::edit_costs::<$mesh>();
+        }
+    };
+}
+
 /// How many random meshes a law sees where the environment does not say.
 const CASES: u32 = 192;
 

@@ -1,0 +1,101 @@
+//! One edit, in the model's numbers.
+
+use mesh_core::{Edit, Point};
+
+/// An edit of given elements; vertices and faces by the numbers of the [`Model`](super::Model), edges
+/// by their ends.
+#[derive(Clone, Debug, PartialEq)]
+#[expect(
+    missing_docs,
+    reason = "the names are those of MeshEdit and its arguments"
+)]
+pub enum Action {
+    SetPosition {
+        v: usize,
+        to: Point,
+    },
+    AddVertex {
+        at: Point,
+    },
+    AddFace {
+        corners: Vec<usize>,
+    },
+    RemoveFace {
+        f: usize,
+    },
+    RemoveVertex {
+        v: usize,
+    },
+    RemoveIsolatedVertices,
+    SplitEdge {
+        ends: [usize; 2],
+        at: Point,
+    },
+    BisectEdge {
+        ends: [usize; 2],
+        at: Point,
+    },
+    PokeFace {
+        f: usize,
+        at: Point,
+    },
+    SplitFace {
+        f: usize,
+        ends: [usize; 2],
+    },
+    DissolveEdge {
+        ends: [usize; 2],
+    },
+    FlipEdge {
+        ends: [usize; 2],
+    },
+    /// The first of the ends is kept.
+    CollapseEdge {
+        ends: [usize; 2],
+        to: Point,
+    },
+    SplitVertex {
+        v: usize,
+        left: Option<usize>,
+        right: Option<usize>,
+        at: Point,
+    },
+    Compact,
+}
+
+impl Action {
+    /// Which edit it is.
+    pub fn edit(&self) -> Edit {
+        match self {
+            Self::SetPosition { .. } => Edit::SetPosition,
+            Self::AddVertex { .. } => Edit::AddVertex,
+            Self::AddFace { .. } => Edit::AddFace,
+            Self::RemoveFace { .. } => Edit::RemoveFace,
+            Self::RemoveVertex { .. } => Edit::RemoveVertex,
+            Self::RemoveIsolatedVertices => Edit::RemoveIsolatedVertices,
+            Self::SplitEdge { .. } => Edit::SplitEdge,
+            Self::BisectEdge { .. } => Edit::BisectEdge,
+            Self::PokeFace { .. } => Edit::PokeFace,
+            Self::SplitFace { .. } => Edit::SplitFace,
+            Self::DissolveEdge { .. } => Edit::DissolveEdge,
+            Self::FlipEdge { .. } => Edit::FlipEdge,
+            Self::CollapseEdge { .. } => Edit::CollapseEdge,
+            Self::SplitVertex { .. } => Edit::SplitVertex,
+            Self::Compact => Edit::Compact,
+        }
+    }
+
+    /// Where it puts a vertex.
+    pub(crate) fn place(&self) -> Option<Point> {
+        match self {
+            Self::SetPosition { to: at, .. }
+            | Self::CollapseEdge { to: at, .. }
+            | Self::AddVertex { at }
+            | Self::SplitEdge { at, .. }
+            | Self::BisectEdge { at, .. }
+            | Self::PokeFace { at, .. }
+            | Self::SplitVertex { at, .. } => Some(*at),
+            _ => None,
+        }
+    }
+}

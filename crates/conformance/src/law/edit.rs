@@ -1,0 +1,387 @@
+//! Editing, held to the model of [`edit`](crate::edit).
+
+use std::cell::{Cell, RefCell};
+use std::fmt::{Debug, Write};
+
+use mesh_core::{Edit, MeshEdit, Point, PolygonMesh, QueryCost, Representation, Traced};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestCaseError, TestError, TestRunner};
+
+use crate::caught::caught;
+use crate::edit::{Action, Step, Trial, script};
+use crate::print::compact;
+use crate::strategy::{any_mesh, manifold_mesh};
+
+/// How many scripts, and how many steps each has at most, where the environment does not say.
+const SCRIPTS: u32 = 64;
+const STEPS: usize = 160;
+
+/// Of the steps of each edit at least one in this many is accepted: scripts of refusals prove nothing.
+const ONE_IN: usize = 12;
+
+/// Random scripts: after every step mesh and model are the same, names and records agree, the
+/// invariants hold, and a refused edit has changed nothing; every so often all relations are right.
+///
+/// `PROPTEST_CASES` sets the number of scripts.
+pub fn edits<M: Representation + MeshEdit + Debug>() {
+    let mut config = Config {
+        failure_persistence: None,
+        max_shrink_iters: 4000,
+        ..Config::default()
+    };
+    if std::env::var_os("PROPTEST_CASES").is_none() {
+        config.cases = SCRIPTS;
+    }
+    let shares = Cell::new([[0_usize; 2]; Edit::ALL.len()]);
+    let start = if M::CAPABILITIES.non_manifold_edges {
+        prop_oneof![manifold_mesh(), any_mesh()].boxed()
+    } else {
+        manifold_mesh().boxed()
+    };
+    let start = start.prop_map(|polygons| {
+        if M::CAPABILITIES.polygons {
+            polygons
+        } else {
+            polygons.fan_triangulated().expect("small")
+        }
+    });
+    let cases = (start, script(&Edit::ALL, STEPS)).prop_map(|(start, steps)| Case { start, steps });
+    let outcome = TestRunner::new(config).run(&cases, |Case { start, steps }| {
+        let done = RefCell::new(Vec::new());
+        caught(|| run::<M>(&start, &steps, &shares, &done))
+            .map_err(|fault| TestCaseError::fail(fault.to_string()))
+    });
+    match outcome {
+        Ok(()) => accepted_enough::<M>(&shares.get()),
+        Err(TestError::Fail(_, Case { start, steps })) => {
+            let done = RefCell::new(Vec::new());
+            let fault = caught(|| run::<M>(&start, &steps, &shares, &done)).err();
+            let mut script = String::new();
+            for (action, accepted) in done.take() {
+                let _ = write!(
+                    script,
+                    "\n  {}{action:?}",
+                    if accepted { "" } else { "(refused) " }
+                );
+            }
+            let fault = fault.map_or_else(String::new, |fault| fault.to_string());
+            panic!(
+                "{} departs on {}{script}\n{fault}",
+                M::NAME,
+                compact(&start)
+            )
+        }
+        Err(TestError::Abort(reason)) => panic!("{}: no verdict: {reason}", M::NAME),
+    }
+}
+
+fn run<M: Representation + MeshEdit + Debug>(
+    start: &PolygonMesh,
+    steps: &[Step],
+    shares: &Cell<[[usize; 2]; Edit::ALL.len()]>,
+    done: &RefCell<Vec<(Action, bool)>>,
+) {
+    let Some(mut trial) = Trial::<M>::of(start) else {
+        return;
+    };
+    let mut counts = shares.get();
+    for (number, step) in steps.iter().enumerate() {
+        let Some(action) = step.action(&trial.model, number) else {
+            continue;
+        };
+        done.borrow_mut().push((action.clone(), false));
+        let accepted = trial.take(&action);
+        if let Some(last) = done.borrow_mut().last_mut() {
+            last.1 = accepted;
+        }
+        counts[action.edit() as usize][usize::from(!accepted)] += 1;
+        if number % 16 == 15 {
+            trial.inspect();
+        }
+    }
+    trial.inspect();
+    trial.take(&Action::Compact);
+    trial.inspect();
+    shares.set(counts);
+}
+
+fn accepted_enough<M: MeshEdit + Representation>(shares: &[[usize; 2]; Edit::ALL.len()]) {
+    let tried: usize = shares.iter().flatten().sum();
+    for (edit, [accepted, refused]) in Edit::ALL.into_iter().zip(shares) {
+        let share = 100.0 * *accepted as f64 / (accepted + refused).max(1) as f64;
+        println!(
+            "{}: {edit} accepted {accepted} of {} ({share:.0} %)",
+            M::NAME,
+            accepted + refused
+        );
+        // Few scripts may miss an edit.
+        if M::offers(edit) && tried > 3000 {
+            assert!(
+                accepted * ONE_IN >= accepted + refused && *accepted > 0,
+                "{}: {edit} is accepted {accepted} times, and refused {refused} times",
+                M::NAME
+            );
+        }
+        if !M::offers(edit) {
+            assert_eq!(*accepted, 0, "{} does not offer {edit}", M::NAME);
+        }
+    }
+}
+
+/// Edits that undo each other lead back to the same mesh.
+pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
+    let sized = "a shape of this size can be made";
+    let starts = [
+        shapes::icosahedron(),
+        shapes::triangle_torus(5, 4).expect(sized),
+        shapes::triangle_grid(4, 4).expect(sized),
+        shapes::mixed_grid(4, 4).expect(sized),
+        shapes::dodecahedron(),
+    ];
+    let mut undone = [0_usize; 6];
+    for start in starts {
+        let Some(trial) = Trial::<M>::of(&start) else {
+            continue;
+        };
+        let at = Point::new(50.0, 60.0, 70.0);
+        for (ends, _) in trial.model.edges() {
+            let fresh = trial.model.vertices().last().map_or(0, |v| v + 1);
+            let keep = trial.model.position(ends[0]).expect("an end is there");
+            let back = Action::CollapseEdge {
+                ends: [ends[0], fresh],
+                to: keep,
+            };
+            for (i, there) in [
+                Action::SplitEdge { ends, at },
+                Action::BisectEdge { ends, at },
+            ]
+            .into_iter()
+            .enumerate()
+            {
+                undone[i] += usize::from(there_and_back(&trial, &[there, back.clone()]));
+            }
+            let mut flipped = trial.clone();
+            if flipped.take(&Action::FlipEdge { ends }) {
+                let along = trial.model.edges().remove(&ends).expect("it is there");
+                let apexes = along.iter().map(|&(f, _)| {
+                    let face = trial.model.face(f).into_iter().flatten();
+                    let mut apex = face.copied().filter(|v| !ends.contains(v));
+                    apex.next().expect("a triangle")
+                });
+                let apexes: Vec<usize> = apexes.collect();
+                flipped.take(&Action::FlipEdge {
+                    ends: [apexes[0], apexes[1]],
+                });
+                assert_same(&flipped, &trial, "flip_edge twice");
+                undone[2] += 1;
+            }
+            // The neighbours that both ends share are the sides to split at again.
+            let [one, other] = ends.map(|v| trial.model.neighbours(v));
+            let common: Vec<usize> = (&one & &other).into_iter().collect();
+            if let [left, right] = common[..] {
+                let collapse = Action::CollapseEdge { ends, to: keep };
+                let gone = trial.model.position(ends[1]).expect("an end is there");
+                let back = |left, right| Action::SplitVertex {
+                    v: ends[0],
+                    left: Some(left),
+                    right: Some(right),
+                    at: gone,
+                };
+                let mut collapsed = trial.clone();
+                if collapsed.take(&collapse) {
+                    let ways = [back(left, right), back(right, left)];
+                    let same = ways.iter().any(|back| {
+                        let mut again = collapsed.clone();
+                        again.take(back) && again.is_same_mesh(&trial)
+                    });
+                    assert!(same, "{}: split_vertex does not undo {collapse:?}", M::NAME);
+                    undone[3] += 1;
+                }
+            }
+        }
+        for (f, face) in trial.model.faces() {
+            let fresh = trial.model.vertices().last().map_or(0, |v| v + 1);
+            let mut poked = trial.clone();
+            if poked.take(&Action::PokeFace { f, at })
+                && poked.take(&Action::RemoveVertex { v: fresh })
+                // Where a vertex is its coordinates, corners without another face went along.
+                && face.iter().all(|&v| poked.model.position(v).is_some())
+                && poked.take(&Action::AddFace {
+                    corners: face.to_vec(),
+                })
+            {
+                assert_same(&poked, &trial, "poke_face, remove_vertex, add_face");
+                undone[4] += 1;
+            }
+            if face.len() > 3 {
+                let ends = [face[0], face[2]];
+                let there = [Action::SplitFace { f, ends }, Action::DissolveEdge { ends }];
+                undone[5] += usize::from(there_and_back(&trial, &there));
+            }
+        }
+    }
+    let needs = [
+        &[Edit::SplitEdge][..],
+        &[Edit::BisectEdge],
+        &[Edit::FlipEdge],
+        &[Edit::SplitVertex],
+        &[Edit::PokeFace],
+        &[Edit::SplitFace, Edit::DissolveEdge],
+    ];
+    for (count, edits) in undone.into_iter().zip(needs) {
+        let offered = edits.iter().all(|&edit| M::offers(edit));
+        assert!(
+            !offered || count >= 10,
+            "{}: {edits:?} undone {count} times",
+            M::NAME
+        );
+    }
+}
+
+/// Whether all of `actions` are accepted; then the mesh is what it was.
+fn there_and_back<M: Representation + MeshEdit + Debug>(
+    trial: &Trial<M>,
+    actions: &[Action],
+) -> bool {
+    let mut turned = trial.clone();
+    if !actions.iter().all(|action| turned.take(action)) {
+        return false;
+    }
+    assert_same(&turned, trial, &format!("{actions:?}"));
+    true
+}
+
+fn assert_same<M: Representation + MeshEdit + Debug>(got: &Trial<M>, from: &Trial<M>, did: &str) {
+    assert!(
+        got.is_same_mesh(from),
+        "{}: {did} do not lead back",
+        M::NAME
+    );
+}
+
+/// `EDITS` hold, in rows read and written.
+///
+/// - Constant and Local: a number of accesses that does not depend on the size of the mesh.
+/// - Scan: one that grows with the mesh; to declare a scan where there is none sells it short.
+///
+/// Two tori of valence six, one sixteen times the other. Tables that grow by doubling are not charged:
+/// only rows are counted.
+pub fn edit_costs<M>()
+where
+    M: Representation + MeshEdit,
+    M::Probed<Traced>: MeshEdit<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face>,
+{
+    let sizes = [6, 24].map(|side| shapes::triangle_torus(side, side).expect("a torus"));
+    for (i, edit) in Edit::ALL.into_iter().enumerate() {
+        let Some(cost) = M::EDITS[i] else { continue };
+        // What these do they do to the whole mesh, unwatched.
+        if matches!(edit, Edit::Compact) {
+            continue;
+        }
+        let [few, many] = [0, 1].map(|size| accesses::<M>(&sizes[size], edit));
+        let name = M::NAME;
+        println!("{name}: {edit} touches {few} rows on 72 faces and {many} on 1152");
+        let fits = match cost {
+            QueryCost::Scan => many > 4 * few,
+            _ => 2 * many <= 3 * few + 16,
+        };
+        assert!(
+            fits,
+            "{name}: {edit} is declared {cost:?}; it touches {few} rows on 72 faces and {many} on 1152"
+        );
+    }
+}
+
+/// The most rows that `edit` touches, over a few places of the mesh.
+fn accesses<M>(polygons: &PolygonMesh, edit: Edit) -> usize
+where
+    M: Representation + MeshEdit,
+    M::Probed<Traced>: MeshEdit<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face>,
+{
+    let mut mesh = M::from_polygons(polygons).expect("a closed triangle mesh is held by all");
+    // The first hole brings the bits for all rows before it: let that have happened.
+    let last = mesh.faces().last().expect("a face");
+    let n = mesh
+        .poke_face(last, Point::splat(500.0), &mut ())
+        .expect("always legal");
+    let spoke = mesh.vertex_edges(n).next().expect("three edges");
+    let [a, b] = mesh.edge_vertices(spoke);
+    let keep = if a == n { b } else { a };
+    let at = mesh.position(keep);
+    let undone = mesh.collapse_edge(spoke, keep, at, &mut ());
+    undone.expect("an inner vertex of valence three is collapsed");
+    let at = Point::new(300.0, 301.0, 302.0);
+    let mut most = 0;
+    for place in [0, 1, 2, 3] {
+        let mut mesh = mesh.clone();
+        let count = mesh.face_count();
+        let f = mesh
+            .faces()
+            .nth((place * count / 4).max(2))
+            .expect("a face");
+        let [a, b, c] = three(mesh.face_vertices(f));
+        let e = mesh.edge_between(a, b).expect("a side");
+        let quad = (edit == Edit::SplitFace)
+            .then(|| mesh.dissolve_edge(e, &mut ()).expect("two triangles"));
+        if edit == Edit::AddFace {
+            mesh.remove_face(f, &mut ()).expect("an inner face");
+        }
+        let beyond: Vec<M::Vertex> = mesh.vertex_vertices(a).collect();
+        let ends = quad.map(|quad| {
+            let corners: Vec<M::Vertex> = mesh.face_vertices(quad).collect();
+            [corners[0], corners[2]]
+        });
+        let probe = Traced::default();
+        let mut watched = mesh.probed(probe.clone());
+        probe.take();
+        let log = &mut ();
+        let refusal = match edit {
+            Edit::SetPosition => watched.set_position(a, at, log).err(),
+            Edit::AddVertex => watched.add_vertex(at, log).err(),
+            Edit::AddFace => watched.add_face(&[a, b, c], log).err(),
+            Edit::RemoveFace => watched.remove_face(f, log).err(),
+            Edit::RemoveVertex => watched.remove_vertex(a, log).err(),
+            Edit::RemoveIsolatedVertices => {
+                watched.remove_isolated_vertices(log);
+                None
+            }
+            Edit::SplitEdge => watched.split_edge(e, at, log).err(),
+            Edit::BisectEdge => watched.bisect_edge(e, at, log).err(),
+            Edit::PokeFace => watched.poke_face(f, at, log).err(),
+            Edit::SplitFace => {
+                let quad = quad.expect("made above");
+                watched.split_face(quad, ends.expect("a quad"), log).err()
+            }
+            Edit::DissolveEdge => watched.dissolve_edge(e, log).err(),
+            Edit::FlipEdge => watched.flip_edge(e, log).err(),
+            Edit::CollapseEdge => watched.collapse_edge(e, a, at, log).err(),
+            Edit::SplitVertex => {
+                let other = beyond.iter().copied().find(|&v| v != b);
+                watched.split_vertex(a, Some(b), other, at, log).err()
+            }
+            Edit::Compact => None,
+        };
+        if let Some(refusal) = refusal {
+            panic!("{}: {edit} is refused on a torus: {refusal}", M::NAME);
+        }
+        most = most.max(probe.take().len());
+    }
+    most
+}
+
+fn three<V: Copy>(corners: impl Iterator<Item = V>) -> [V; 3] {
+    let corners: Vec<V> = corners.collect();
+    <[V; 3]>::try_from(corners.as_slice()).expect("a triangle")
+}
+
+/// A start and a script that proptest prints on a few lines.
+struct Case {
+    start: PolygonMesh,
+    steps: Vec<Step>,
+}
+
+impl Debug for Case {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} and {} steps", compact(&self.start), self.steps.len())
+    }
+}
