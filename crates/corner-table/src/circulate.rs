@@ -240,7 +240,7 @@ impl<'a, P: Probe> EdgeEdges<'a, P> {
         let c = e.corner();
         Self {
             mesh,
-            far: *mesh.opposite.read(c.index()),
+            far: mesh.across(e),
             near: Slot::some(c),
             at: Some(c.prev()),
             turn: Turn::Counterclockwise,

@@ -1,12 +1,12 @@
 //! In from polygons, and out again.
 
 use mesh_core::{
-    BuildError, Capabilities, Counts, FaceId, FaceList, InvariantError, MemoryFootprint, MoveError,
-    Point, PolygonMesh, Probe, QueryCost, Representation, RowId, RowMap, Slot, Table, TwinPairs,
-    VertexId,
+    BuildError, Capabilities, Counts, FaceId, FaceList, Holes, InvariantError, MemoryFootprint,
+    MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, RowId, RowMap,
+    Slot, Table, TwinPairs, VertexId,
 };
 
-use crate::mesh::{CornerId, CornerTable};
+use crate::mesh::{CornerId, CornerTable, FACE_HOLES, VERTEX_HOLES};
 
 impl Representation for CornerTable {
     const NAME: &'static str = "corner-table";
@@ -39,12 +39,23 @@ impl Representation for CornerTable {
             corner: Table::new("corner", "vertex", corner),
             vertex: Table::new("vertex", "corner", faces.corners().to_vec()),
             opposite: Table::new("opposite", "corner", links.opposite),
+            vertex_holes: Holes::none(VERTEX_HOLES),
+            face_holes: Holes::none(FACE_HOLES),
         })
     }
 
     fn to_polygons(&self) -> PolygonMesh {
-        let faces = FaceList::uniform(3, self.vertex.rows().to_vec()).expect("I1");
-        PolygonMesh::from_faces(self.positions().to_vec(), faces).expect("I1")
+        let (positions, corners) = if self.vertex_holes.is_empty() && self.face_holes.is_empty() {
+            (self.positions().to_vec(), self.vertex_rows().to_vec())
+        } else {
+            let new = self.vertex_holes.new_rows(self.positions.len());
+            let corners = self.faces().flat_map(|t| self.vertices_of(t));
+            let corners = corners.map(|v| VertexId::new(new[v.index()]));
+            let positions = self.vertices().map(|v| self.position(v));
+            (positions.collect(), corners.collect())
+        };
+        let faces = FaceList::uniform(3, corners).expect("I1");
+        PolygonMesh::from_faces(positions, faces).expect("I1")
     }
 
     fn vertex_name(_: &PolygonMesh, v: VertexId) -> VertexId {
@@ -65,15 +76,20 @@ impl Representation for CornerTable {
             corner,
             vertex,
             opposite,
+            vertex_holes,
+            face_holes,
         } = self;
-        [
+        let tables = [
             positions.bytes(),
             corner.bytes(),
             vertex.bytes(),
             opposite.bytes(),
-        ]
-        .into_iter()
-        .collect()
+        ];
+        let holes = [vertex_holes.bytes(), face_holes.bytes()];
+        tables
+            .into_iter()
+            .chain(holes.into_iter().flatten())
+            .collect()
     }
 
     fn layout_bytes(counts: &Counts) -> usize {
@@ -89,7 +105,9 @@ impl Representation for CornerTable {
             positions: self.positions.probed(probe.clone()),
             corner: self.corner.probed(probe.clone()),
             vertex: self.vertex.probed(probe.clone()),
-            opposite: self.opposite.probed(probe),
+            opposite: self.opposite.probed(probe.clone()),
+            vertex_holes: self.vertex_holes.probed(probe.clone()),
+            face_holes: self.face_holes.probed(probe),
         }
     }
 }

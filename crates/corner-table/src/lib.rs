@@ -26,6 +26,29 @@
 //! | building | O(corners + vertices) | |
 //! | refining (triangles, √3) | O(corners + vertices) | each row once, in closed form |
 //!
+//! # Edits
+//!
+//! [`MeshEdit`](mesh_core::MeshEdit), in place. The rows of what is deleted stay holes until `compact`.
+//!
+//! | edit | cost | which records change |
+//! |---|---|---|
+//! | `set_position` | O(1) | one row of `positions` |
+//! | `add_vertex` | O(1) | one more of `positions` and `corner` |
+//! | `add_face` | O(valence) to find the place | a new triangle; `opposite` across its sides, `corner` of its vertices |
+//! | `remove_face` | O(1) | its rows; `opposite` across its sides, `corner` of its vertices |
+//! | `remove_vertex` | O(valence) | the same of all its triangles |
+//! | `remove_isolated_vertices` | O(vertices) | a bit for each of them |
+//! | `bisect_edge` | O(1) | two rows of `vertex`, two triangles more, `opposite` across four corners |
+//! | `poke_face` | O(1) | one row of `vertex`, two triangles more, `opposite` across four corners |
+//! | `flip_edge` | O(valence) to be legal | two rows of `vertex`, six of `opposite`; no position |
+//! | `collapse_edge` | O(valence) | `vertex` around the end that goes, four rows of `opposite`, two triangles deleted |
+//! | `split_vertex` | O(valence) | `vertex` around the new vertex, two triangles more, `opposite` across four corners |
+//! | `split_edge`, `split_face`, `dissolve_edge` | | not offered: they make polygons |
+//! | `compact` | O(corners + vertices) | every row |
+//!
+//! Where a corner comes to face another edge, the edge may be called by another corner from then on;
+//! the [`EditLog`](mesh_core::EditLog) is told.
+//!
 //! Corner `c` belongs to triangle `c / 3`, and `next` and `prev` are arithmetic: what a half-edge
 //! mesh stores for each half, this one computes. An edge is named by the corner that faces it, of
 //! two the lower, so that data by edge is a vector with a row for each corner: no hashing, but half
@@ -65,6 +88,7 @@
 
 mod circulate;
 mod construct;
+mod edit;
 mod mesh;
 mod query;
 mod refine;

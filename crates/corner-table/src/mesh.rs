@@ -1,6 +1,6 @@
 //! The tables, their invariants, and the classic operators.
 
-use mesh_core::{FaceId, Point, Probe, Slot, Table, Untraced, VertexId, row_id};
+use mesh_core::{FaceId, Holes, Point, Probe, Slot, Table, Untraced, VertexId, row_id};
 
 row_id! {
     /// The name of one corner, `c7`; the corners of triangle `t` are `3t`, `3t + 1` and `3t + 2`.
@@ -73,20 +73,36 @@ impl EdgeCorner {
 /// - I5  If `v` is on a boundary, `corner(v)` has no `unswing`: the fan is entered at its start.
 /// - I6  Swinging from `corner(v)` meets all corners at `v`: every vertex is manifold.
 /// - I7  No two edges have the same ends.
+/// - I8  The corners of a deleted triangle are at no vertex (the row `u32::MAX`), and each is opposite
+///   to itself, as no other corner is; a deleted vertex has no corner. `face_holes` and `vertex_holes`
+///   have just these rows.
+///
+/// I1 to I7 are about what is not deleted. By I8 a corner names an edge exactly where what is opposite
+/// comes after it, or is none: a deleted corner names none, and nobody has to ask the holes.
 ///
 /// # Memory
 ///
 /// 12 bytes a vertex for its position and 4 for `corner`, 24 a triangle: 64 bytes, or 16 words, per
-/// vertex of a large closed mesh.
+/// vertex of a large closed mesh. Once something was deleted, a bit a row besides.
 #[derive(Clone, Debug)]
 pub struct CornerTable<P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) corner: Table<Slot<CornerId>, P>,
     pub(crate) vertex: Table<VertexId, P>,
     pub(crate) opposite: Table<Slot<CornerId>, P>,
+    pub(crate) vertex_holes: Holes<P>,
+    pub(crate) face_holes: Holes<P>,
 }
 
+/// The vertex that the corners of a deleted triangle are at: a row that no table has.
+pub(crate) const NOWHERE: VertexId = VertexId::new(u32::MAX);
+
+/// What the tables of holes are called.
+pub(crate) const VERTEX_HOLES: &str = "vertex holes";
+pub(crate) const FACE_HOLES: &str = "face holes";
+
 /// The classic operators, each O(1). One that reads a table panics, and names the row, if there is none.
+/// They do not look whether a triangle was deleted: what they say of its corners is I8.
 impl<P: Probe> CornerTable<P> {
     /// The vertex that `c` is at.
     #[inline]
@@ -148,14 +164,18 @@ impl<P: Probe> CornerTable<P> {
     /// A corner at `v`, the first of the fan if `v` is on a boundary; none if `v` is isolated; O(1).
     #[inline]
     pub fn corner_at(&self, v: VertexId) -> Option<CornerId> {
-        self.corner.read(v.index()).get()
+        let corner = self.corner.read(v.index()).get();
+        if corner.is_none() {
+            self.expect_vertex(v);
+        }
+        corner
     }
 
-    /// The three corners of `t`, counter-clockwise; O(1), and no table is read.
+    /// The three corners of `t`, counter-clockwise; O(1).
     #[inline]
     pub fn corners_of(&self, t: FaceId) -> [CornerId; 3] {
-        if 3 * t.index() >= self.vertex.len() {
-            no_such_triangle(t, self.vertex.len() / 3);
+        if 3 * t.index() >= self.vertex.len() || *self.vertex.read(3 * t.index()) == NOWHERE {
+            self.no_such_triangle(t);
         }
         corners_of(t)
     }
@@ -175,7 +195,7 @@ impl<P: Probe> CornerTable<P> {
     /// How many corners there are: three for each triangle.
     #[inline]
     pub fn corner_count(&self) -> usize {
-        self.vertex.len()
+        self.vertex.len() - 3 * self.face_holes.len()
     }
 }
 
@@ -184,24 +204,102 @@ impl<P: Probe> CornerTable<P> {
     /// The vertices of `t`.
     #[inline]
     pub(crate) fn vertices_of(&self, t: FaceId) -> [VertexId; 3] {
-        rows_of(&self.vertex, t)
+        let [a, b, c] = self.rows_of(&self.vertex, t);
+        if a == NOWHERE {
+            self.no_such_triangle(t);
+        }
+        [a, b, c]
     }
 
     /// The corners of `t`, each with the one opposite to it.
     #[inline]
     pub(crate) fn opposites_of(&self, t: FaceId) -> [(CornerId, Slot<CornerId>); 3] {
-        let [a, b, c] = rows_of(&self.opposite, t);
         let [i, j, k] = corners_of(t);
+        // Not by the marks of I8: to compare what was read costs a sweep over sides a cycle each.
+        if !self.face_holes.is_empty() {
+            self.expect_triangle(t);
+        }
+        let [a, b, c] = self.rows_of(&self.opposite, t);
         [(i, a), (j, b), (k, c)]
     }
 
-    /// The two corners after the one that `e` is named by: those at its ends.
+    /// The vertices at the two corners after the one that `e` is named by: its ends.
     #[inline]
-    pub(crate) fn ends_of(&self, e: EdgeCorner) -> [CornerId; 2] {
+    pub(crate) fn ends_of(&self, e: EdgeCorner) -> [VertexId; 2] {
         if e.index() >= self.vertex.len() {
-            no_such_edge(e, self.vertex.len());
+            self.no_such_edge(e);
         }
-        [e.corner().next(), e.corner().prev()]
+        let [a, b] = [e.corner().next(), e.corner().prev()].map(|c| self.vertex(c));
+        if a == NOWHERE {
+            self.no_such_edge(e);
+        }
+        [a, b]
+    }
+
+    /// The corner across `e`; none if `e` is a boundary edge.
+    #[inline]
+    pub(crate) fn across(&self, e: EdgeCorner) -> Slot<CornerId> {
+        let across = *self.opposite.read(e.index());
+        if across == Slot::some(e.corner()) {
+            self.no_such_edge(e);
+        }
+        across
+    }
+
+    /// Panics if `v` was deleted: for where there is no corner at it.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn expect_vertex(&self, v: VertexId) {
+        if self.vertex_holes.has(v.index()) {
+            self.no_such_vertex(v);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn no_such_vertex(&self, v: VertexId) -> ! {
+        panic!("no vertex {v}: it was deleted")
+    }
+
+    /// The three rows of a triangle in a table by corner.
+    #[inline]
+    fn rows_of<T: Copy>(&self, table: &Table<T, P>, t: FaceId) -> [T; 3] {
+        let start = 3 * t.index();
+        if start + 3 > table.len() {
+            self.no_such_triangle(t);
+        }
+        match *table.read_range(start..start + 3) {
+            [a, b, c] => [a, b, c],
+            _ => unreachable!("a range of three rows"),
+        }
+    }
+
+    /// Panics if `t` was deleted: for a mesh with holes.
+    #[inline(never)]
+    fn expect_triangle(&self, t: FaceId) {
+        if self.face_holes.has(t.index()) {
+            self.no_such_triangle(t);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn no_such_triangle(&self, t: FaceId) -> ! {
+        let triangles = self.vertex.len() / 3;
+        if t.index() < triangles {
+            panic!("no face {t}: it was deleted");
+        }
+        panic!("no face {t}: there are {triangles} triangles")
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn no_such_edge(&self, e: EdgeCorner) -> ! {
+        let corners = self.vertex.len();
+        if e.index() < corners {
+            panic!("no edge {e}: the triangle of that corner was deleted");
+        }
+        panic!("no edge {e}: it is named by one of {corners} corners")
     }
 }
 
@@ -212,42 +310,23 @@ fn corners_of(t: FaceId) -> [CornerId; 3] {
     [c, c + 1, c + 2].map(CornerId::new)
 }
 
-/// The three rows of a triangle in a table by corner.
-#[inline]
-fn rows_of<T: Copy, P: Probe>(table: &Table<T, P>, t: FaceId) -> [T; 3] {
-    let start = 3 * t.index();
-    if start + 3 > table.len() {
-        no_such_triangle(t, table.len() / 3);
-    }
-    match *table.read_range(start..start + 3) {
-        [a, b, c] => [a, b, c],
-        _ => unreachable!("a range of three rows"),
-    }
-}
-
-#[cold]
-#[inline(never)]
-fn no_such_triangle(t: FaceId, triangles: usize) -> ! {
-    panic!("no face {t}: there are {triangles} triangles")
-}
-
-#[cold]
-#[inline(never)]
-fn no_such_edge(e: EdgeCorner, corners: usize) -> ! {
-    panic!("no edge {e}: it is named by one of {corners} corners")
-}
-
 /// The edge that `c` and `across` face: the lower of the two names it.
 #[inline]
 pub(crate) fn edge_between(c: CornerId, across: Slot<CornerId>) -> EdgeCorner {
-    let lower = match across.get() {
-        Some(other) if other < c => other,
-        _ => c,
-    };
+    let lower = Slot::some(c).min(across).get().unwrap_or(c);
     EdgeCorner::new(lower.index() as u32)
 }
 
-/// The tables as they lie in memory, for export and for loops of one's own.
+/// Whether `c`, with `across` opposite to it, is the corner that names the edge; of a deleted
+/// triangle no corner is, being its own opposite.
+#[inline(always)]
+pub(crate) fn names_edge(c: CornerId, across: Slot<CornerId>) -> bool {
+    // An empty slot comes after every corner.
+    Slot::some(c) < across
+}
+
+/// The tables as they lie in memory, for export and for loops of one's own; with their holes (I8),
+/// if something was deleted and [`compact`](mesh_core::MeshEdit::compact) has not been called since.
 impl<P: Probe> CornerTable<P> {
     /// Positions by vertex.
     pub fn positions(&self) -> &[Point] {
@@ -287,7 +366,7 @@ mod tests {
     }
 
     fn corners(mesh: &CornerTable) -> impl Iterator<Item = CornerId> {
-        (0..mesh.corner_count() as u32).map(CornerId::new)
+        (0..mesh.vertex.len() as u32).map(CornerId::new)
     }
 
     #[test]

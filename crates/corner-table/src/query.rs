@@ -1,9 +1,9 @@
 //! The nine relations.
 
-use mesh_core::{FaceId, MeshQuery, Point, Probe, VertexId, row};
+use mesh_core::{FaceId, MeshQuery, Point, Probe, RowId, VertexId, row};
 
 use crate::circulate::{EdgeEdges, Neighbours, Spokes};
-use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
+use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between, names_edge};
 
 impl<P: Probe> MeshQuery for CornerTable<P> {
     type Vertex = VertexId;
@@ -12,7 +12,7 @@ impl<P: Probe> MeshQuery for CornerTable<P> {
 
     #[inline]
     fn vertices(&self) -> impl Iterator<Item = VertexId> {
-        (0..row(self.positions.len())).map(VertexId::new)
+        self.vertex_holes.handles(self.positions.len())
     }
 
     /// Every corner that has none opposite, or a higher one; reads `opposite` once through.
@@ -22,18 +22,18 @@ impl<P: Probe> MeshQuery for CornerTable<P> {
         // corners without a branch, and then to visit them, was slower all the same.
         let corners = (0..row(self.opposite.len())).map(CornerId::new);
         corners.filter_map(|c| {
-            let edge = self.edge(c);
-            (edge.corner() == c).then_some(edge)
+            let across = *self.opposite.read(c.index());
+            names_edge(c, across).then(|| EdgeCorner::new(c.row()))
         })
     }
 
     #[inline]
     fn faces(&self) -> impl Iterator<Item = FaceId> {
-        (0..row(self.face_count())).map(FaceId::new)
+        self.face_holes.handles(self.vertex.len() / 3)
     }
 
     fn vertex_count(&self) -> usize {
-        self.positions.len()
+        self.positions.len() - self.vertex_holes.len()
     }
 
     /// No table has edges, so they are counted; O(corners).
@@ -41,17 +41,21 @@ impl<P: Probe> MeshQuery for CornerTable<P> {
         let opposite = self.opposite.read_range(0..self.opposite.len());
         let boundary = opposite.iter().filter(|across| across.get().is_none());
         let boundary = boundary.count();
-        boundary + (opposite.len() - boundary) / 2
+        boundary + (self.corner_count() - boundary) / 2
     }
 
     #[inline]
     fn face_count(&self) -> usize {
-        self.vertex.len() / 3
+        self.vertex.len() / 3 - self.face_holes.len()
     }
 
     #[inline]
     fn position(&self, v: VertexId) -> Point {
-        *self.positions.read(v.index())
+        let at = *self.positions.read(v.index());
+        if self.vertex_holes.has(v.index()) {
+            self.no_such_vertex(v);
+        }
+        at
     }
 
     #[inline]
@@ -71,7 +75,7 @@ impl<P: Probe> MeshQuery for CornerTable<P> {
 
     #[inline]
     fn edge_vertices(&self, e: EdgeCorner) -> [VertexId; 2] {
-        self.ends_of(e).map(|c| self.vertex(c))
+        self.ends_of(e)
     }
 
     #[inline]
@@ -81,8 +85,7 @@ impl<P: Probe> MeshQuery for CornerTable<P> {
 
     #[inline]
     fn edge_faces(&self, e: EdgeCorner) -> impl Iterator<Item = FaceId> {
-        let c = e.corner();
-        let sides = [Some(c), self.opposite(c)];
+        let sides = [Some(e.corner()), self.across(e).get()];
         sides.into_iter().flatten().map(CornerId::triangle)
     }
 
@@ -120,7 +123,7 @@ impl<P: Probe> MeshQuery for CornerTable<P> {
     }
 
     fn face_rows(&self) -> usize {
-        self.face_count()
+        self.vertex.len() / 3
     }
 
     /// The walk around `v` as it is: neighbours come counter-clockwise, from the boundary.

@@ -2,12 +2,15 @@
 
 use std::collections::HashSet;
 
-use mesh_core::{InvariantError, MeshQuery, row};
+use mesh_core::{InvariantError, MeshQuery, Slot, VertexId, row};
 
-use crate::mesh::{CornerId, CornerTable};
+use crate::mesh::{CornerId, CornerTable, NOWHERE};
 
-/// Checks I1 to I7 in turn; the later ones rely on the earlier ones.
+/// Checks that the columns fit each other, what was deleted, and I1 to I7 in turn; the later ones rely
+/// on the earlier ones.
 pub(crate) fn validate(mesh: &CornerTable) -> Result<(), InvariantError> {
+    columns(mesh)?;
+    holes(mesh)?;
     triangles(mesh)?;
     opposites(mesh)?;
     sides_agree(mesh)?;
@@ -22,26 +25,59 @@ fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> 
 }
 
 fn corners(mesh: &CornerTable) -> impl Iterator<Item = CornerId> {
-    (0..row(mesh.corner_count())).map(CornerId::new)
+    mesh.faces().flat_map(|t| mesh.corners_of(t))
 }
 
-fn triangles(mesh: &CornerTable) -> Result<(), InvariantError> {
+fn columns(mesh: &CornerTable) -> Result<(), InvariantError> {
     let (corners, opposites) = (mesh.vertex_rows().len(), mesh.opposite_rows().len());
     if !corners.is_multiple_of(3) || opposites != corners {
         let detail = format!("{corners} corners, {opposites} with an opposite, are no triangles");
         return fails("I1", detail);
     }
-    if mesh.corner_rows().len() != mesh.vertex_count() {
+    if mesh.corner_rows().len() != mesh.positions().len() {
         return fails("I1", "not every vertex has a row in `corner`".into());
     }
+    Ok(())
+}
+
+fn holes(mesh: &CornerTable) -> Result<(), InvariantError> {
+    let rows = [
+        (&mesh.vertex_holes, mesh.positions().len()),
+        (&mesh.face_holes, mesh.vertex_rows().len() / 3),
+    ];
+    for (holes, end) in rows {
+        if let Err(detail) = holes.check(end) {
+            return fails("I8", detail);
+        }
+    }
+    for c in (0..row(mesh.vertex_rows().len())).map(CornerId::new) {
+        let deleted = mesh.face_holes.has(c.triangle().index());
+        let marks = [mesh.vertex(c) == NOWHERE, mesh.opposite(c) == Some(c)];
+        if marks != [deleted; 2] {
+            return fails(
+                "I8",
+                format!("{c} is marked as deleted, or not, and should not be"),
+            );
+        }
+    }
+    for v in (0..row(mesh.positions().len())).map(VertexId::new) {
+        if mesh.vertex_holes.has(v.index()) && mesh.corner_rows()[v.index()] != Slot::NONE {
+            return fails("I8", format!("{v} was deleted and has a corner"));
+        }
+    }
+    Ok(())
+}
+
+fn triangles(mesh: &CornerTable) -> Result<(), InvariantError> {
     for t in mesh.faces() {
         let [a, b, c] = mesh.vertices_of(t);
         if a == b || b == c || c == a {
             return fails("I1", format!("{t} names {a}, {b} and {c}"));
         }
-        let last = a.max(b).max(c);
-        if last.index() >= mesh.vertex_count() {
-            return fails("I1", format!("{t} names {last}, which is not there"));
+        let is_there =
+            |v: &VertexId| v.index() < mesh.positions().len() && !mesh.vertex_holes.has(v.index());
+        if let Some(v) = [a, b, c].into_iter().find(|v| !is_there(v)) {
+            return fails("I1", format!("{t} names {v}, which is not there"));
         }
     }
     Ok(())
@@ -50,7 +86,7 @@ fn triangles(mesh: &CornerTable) -> Result<(), InvariantError> {
 fn opposites(mesh: &CornerTable) -> Result<(), InvariantError> {
     for c in corners(mesh) {
         if let Some(across) = mesh.opposite(c) {
-            if across.index() >= mesh.corner_count() {
+            if across.index() >= mesh.vertex_rows().len() {
                 return fails("I2", format!("{across}, opposite to {c}, is not there"));
             }
             if mesh.opposite(across) != Some(c) {
@@ -76,9 +112,9 @@ fn sides_agree(mesh: &CornerTable) -> Result<(), InvariantError> {
 }
 
 fn a_corner_each(mesh: &CornerTable) -> Result<(), InvariantError> {
-    let mut used = vec![false; mesh.vertex_count()];
-    for v in mesh.vertex_rows() {
-        used[v.index()] = true;
+    let mut used = vec![false; mesh.positions().len()];
+    for c in corners(mesh) {
+        used[mesh.vertex(c).index()] = true;
     }
     for v in mesh.vertices() {
         let Some(c) = mesh.corner_at(v) else {
@@ -87,7 +123,7 @@ fn a_corner_each(mesh: &CornerTable) -> Result<(), InvariantError> {
             }
             continue;
         };
-        if c.index() >= mesh.corner_count() || mesh.vertex(c) != v {
+        if c.index() >= mesh.vertex_rows().len() || mesh.vertex(c) != v {
             return fails("I4", format!("{c} is no corner at {v}"));
         }
     }
@@ -107,9 +143,9 @@ fn fans_start(mesh: &CornerTable) -> Result<(), InvariantError> {
 }
 
 fn one_fan_each(mesh: &CornerTable) -> Result<(), InvariantError> {
-    let mut all = vec![0_usize; mesh.vertex_count()];
-    for v in mesh.vertex_rows() {
-        all[v.index()] += 1;
+    let mut all = vec![0_usize; mesh.positions().len()];
+    for c in corners(mesh) {
+        all[mesh.vertex(c).index()] += 1;
     }
     for v in mesh.vertices() {
         let (met, all) = (mesh.corners_at(v).count(), all[v.index()]);
@@ -139,7 +175,7 @@ fn edges_differ(mesh: &CornerTable) -> Result<(), InvariantError> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{Point, PolygonMesh, Representation, Slot, Table, VertexId};
+    use mesh_core::{Point, PolygonMesh, Representation, Table};
 
     use super::*;
 
@@ -192,6 +228,18 @@ mod tests {
         assert_eq!(broken(|m| m.corner.rows_mut()[4] = c(0)), "I4");
         // I5: the fan around v0 is entered at its second corner.
         assert_eq!(broken(|m| m.corner.rows_mut()[0] = c(3)), "I5");
+        // I8: holes that nothing marks, and marks without a hole; a deleted vertex that has a corner,
+        // and one that a triangle has.
+        assert_eq!(broken(|m| m.face_holes.dig(0)), "I8");
+        assert_eq!(broken(|m| m.face_holes.dig(2)), "I8");
+        assert_eq!(broken(|m| m.vertex.rows_mut()[2] = NOWHERE), "I8");
+        assert_eq!(broken(|m| m.opposite.rows_mut()[2] = c(2)), "I8");
+        assert_eq!(broken(|m| m.vertex_holes.dig(1)), "I8");
+        let orphan = |m: &mut CornerTable| {
+            m.vertex_holes.dig(1);
+            m.corner.rows_mut()[1] = Slot::NONE;
+        };
+        assert_eq!(broken(orphan), "I1");
     }
 
     #[test]

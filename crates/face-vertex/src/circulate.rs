@@ -46,7 +46,7 @@ pub(crate) fn beside(face: &[VertexId], v: VertexId) -> [VertexId; 2] {
 
 /// Whether a face that has `v` runs between `v` and `other`.
 #[inline]
-fn runs_between(face: &[VertexId], v: VertexId, other: VertexId) -> bool {
+pub(crate) fn runs_between(face: &[VertexId], v: VertexId, other: VertexId) -> bool {
     match face {
         // Any two corners of a triangle follow each other.
         &[a, b, c] => (a == other) | (b == other) | (c == other),
@@ -109,7 +109,7 @@ impl<P: Probe> FaceVertexMesh<P> {
     #[inline]
     pub(crate) fn ring(&self, v: VertexId) -> Ring {
         let fan = self.fan(v);
-        let beside = |f: &FaceId| beside(self.face(*f), v);
+        let beside = |f: &FaceId| beside(self.known_face(*f), v);
         let mut few = [v; FEW];
         let (mut found, mut many) = (0, Vec::new());
         if 2 * fan.len() <= FEW {
@@ -136,9 +136,9 @@ impl<P: Probe> FaceVertexMesh<P> {
         let [a, b] = e.ends();
         let [at_a, at_b] = [a, b].map(|v| *self.fans.read(v.index()));
         if at_a.len <= at_b.len {
-            (a, self.pool.read_range(at_a.range()), b)
+            (a, self.places(a, at_a), b)
         } else {
-            (b, self.pool.read_range(at_b.range()), a)
+            (b, self.places(b, at_b), a)
         }
     }
 
@@ -147,7 +147,7 @@ impl<P: Probe> FaceVertexMesh<P> {
     pub(crate) fn faces_along(&self, e: Pair<VertexId>) -> impl Iterator<Item = FaceId> {
         let (v, fan, other) = self.shorter_fan(e);
         let fan = fan.iter().copied();
-        fan.filter(move |&f| runs_between(self.face(f), v, other))
+        fan.filter(move |&f| runs_between(self.known_face(f), v, other))
     }
 
     /// The faces that share a side with `f`, each once; those of a few sides are found in place.
@@ -184,7 +184,7 @@ impl<P: Probe> FaceVertexMesh<P> {
         for side in self.sides(f) {
             let (v, fan, other) = self.shorter_fan(side);
             for &g in fan {
-                if !known.contains(&g) && runs_between(self.face(g), v, other) {
+                if !known.contains(&g) && runs_between(self.known_face(g), v, other) {
                     known.insert(g);
                     faces.push(g);
                 }

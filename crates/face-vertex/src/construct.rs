@@ -1,9 +1,9 @@
 //! In and out.
 
 use mesh_core::{
-    BuildError, Capabilities, Counts, FaceId, FaceList, FaceSpans, InvariantError, MemoryFootprint,
-    MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, Table, VertexId,
-    VertexMap, row,
+    BuildError, Capabilities, Counts, FaceId, FaceList, FaceSpans, Holes, InvariantError,
+    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
+    Table, VertexId, VertexMap, row,
 };
 
 use crate::mesh::{FaceVertexMesh, Fan};
@@ -32,25 +32,41 @@ impl Representation for FaceVertexMesh {
             spans: faces.spans(),
             fans: Table::new("fans", "vertex", fans),
             pool: Table::new("pool", "place", pool),
+            vertex_holes: Holes::none("vertex holes"),
+            face_holes: Holes::none("face holes"),
         })
     }
 
     fn to_polygons(&self) -> PolygonMesh {
-        let corners = self.corners.rows();
         let faces = match &self.spans {
-            FaceSpans::Uniform { degree, .. } => {
-                FaceList::uniform(*degree as usize, corners.to_vec())
+            FaceSpans::Uniform { degree, .. }
+                if self.vertex_holes.is_empty() && self.face_holes.is_empty() =>
+            {
+                FaceList::uniform(*degree as usize, self.corners.rows().to_vec())
             }
-            FaceSpans::Mixed(_) => {
-                let mut faces = FaceList::with_capacity(corners.len());
+            _ => {
+                let rows = (!self.vertex_holes.is_empty())
+                    .then(|| self.vertex_holes.new_rows(self.fans.len()));
+                let name = |v: VertexId| {
+                    rows.as_ref()
+                        .map_or(v, |rows| VertexId::new(rows[v.index()]))
+                };
+                let mut faces = FaceList::with_capacity(self.corners.len());
                 let pushed = self
                     .faces()
-                    .try_for_each(|f| faces.push(self.face_vertices(f)));
+                    .try_for_each(|f| faces.push(self.face_vertices(f).map(name)));
                 pushed.map(|()| faces)
             }
         };
+        let positions = self.positions.rows();
+        let vertices = self.vertex_holes.rows(positions.len());
+        let positions = if self.vertex_holes.is_empty() {
+            positions.to_vec()
+        } else {
+            vertices.map(|v| positions[v as usize]).collect()
+        };
         let faces = faces.expect("I1 holds");
-        PolygonMesh::from_faces(self.positions().to_vec(), faces).expect("I1 holds")
+        PolygonMesh::from_faces(positions, faces).expect("I1 holds")
     }
 
     fn vertex_name(_: &PolygonMesh, v: VertexId) -> VertexId {
@@ -72,7 +88,10 @@ impl Representation for FaceVertexMesh {
             self.fans.bytes(),
             self.pool.bytes(),
         ];
-        tables.into_iter().chain(self.spans.bytes()).collect()
+        let spans = self.spans.bytes();
+        let holes = self.vertex_holes.bytes().into_iter();
+        let holes = holes.chain(self.face_holes.bytes());
+        tables.into_iter().chain(spans).chain(holes).collect()
     }
 
     fn layout_bytes(counts: &Counts) -> usize {
@@ -91,7 +110,9 @@ impl Representation for FaceVertexMesh {
             corners: self.corners.probed(probe.clone()),
             spans: self.spans.probed(probe.clone()),
             fans: self.fans.probed(probe.clone()),
-            pool: self.pool.probed(probe),
+            pool: self.pool.probed(probe.clone()),
+            vertex_holes: self.vertex_holes.probed(probe.clone()),
+            face_holes: self.face_holes.probed(probe),
         }
     }
 }

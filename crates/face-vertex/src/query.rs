@@ -1,8 +1,8 @@
 //! The nine relations.
 
-use mesh_core::{FaceId, MeshQuery, Pair, Point, Probe, VertexId, row};
+use mesh_core::{FaceId, MeshQuery, Pair, Point, Probe, VertexId};
 
-use crate::mesh::FaceVertexMesh;
+use crate::mesh::{FaceVertexMesh, deleted_vertex};
 
 impl<P: Probe> MeshQuery for FaceVertexMesh<P> {
     type Vertex = VertexId;
@@ -11,33 +11,39 @@ impl<P: Probe> MeshQuery for FaceVertexMesh<P> {
 
     #[inline]
     fn vertices(&self) -> impl Iterator<Item = VertexId> {
-        (0..row(self.fans.len())).map(VertexId::new)
+        self.vertex_holes.handles(self.fans.len())
     }
 
     /// By their lower ends.
     #[inline]
     fn edges(&self) -> impl Iterator<Item = Pair<VertexId>> {
-        self.spans.edges(&self.corners, self.fans.len())
+        self.spans
+            .edges(&self.corners, &self.face_holes, self.fans.len())
     }
 
     #[inline]
     fn faces(&self) -> impl Iterator<Item = FaceId> {
-        (0..row(self.spans.len())).map(FaceId::new)
+        self.face_holes.handles(self.spans.len())
     }
 
     #[inline]
     fn vertex_count(&self) -> usize {
-        self.fans.len()
+        self.fans.len() - self.vertex_holes.len()
     }
 
     #[inline]
     fn face_count(&self) -> usize {
-        self.spans.len()
+        self.spans.len() - self.face_holes.len()
     }
 
     #[inline]
     fn position(&self, v: VertexId) -> Point {
-        *self.positions.read(v.index())
+        // After the read, which need not wait for it then.
+        let at = *self.positions.read(v.index());
+        if self.vertex_holes.has(v.index()) {
+            deleted_vertex(v);
+        }
+        at
     }
 
     #[inline]

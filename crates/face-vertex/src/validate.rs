@@ -1,15 +1,17 @@
 //! One check for each invariant.
 
-use mesh_core::{FaceId, InvariantError, IteratorExt, MeshQuery, Probe};
+use mesh_core::{FaceId, InvariantError, IteratorExt, MeshQuery, Probe, VertexId, row};
 
-use crate::mesh::FaceVertexMesh;
+use crate::mesh::{BLANK_CORNER, BLANK_PLACE, FaceVertexMesh, Fan};
 
 impl<P: Probe> FaceVertexMesh<P> {
     pub(crate) fn check_invariants(&self) -> Result<(), InvariantError> {
         self.check_spans()?;
         self.check_faces()?;
         self.check_pool()?;
-        self.check_fans()
+        self.check_fans()?;
+        self.check_holes()?;
+        self.check_blanks()
     }
 
     /// I1, its first half: the faces divide the corners among them, at least three each.
@@ -22,8 +24,10 @@ impl<P: Probe> FaceVertexMesh<P> {
     fn check_faces(&self) -> Result<(), InvariantError> {
         let fails = |detail: String| Err(InvariantError::new("I1", detail));
         for f in self.faces() {
-            let face = self.face(f);
-            if let Some(v) = face.iter().find(|v| v.index() >= self.positions.len()) {
+            let face = self.known_face(f);
+            let is_there =
+                |v: VertexId| v.index() < self.positions.len() && !self.vertex_holes.has(v.index());
+            if let Some(v) = face.iter().find(|&&v| !is_there(v)) {
                 return fails(format!("{f} names {v}, which is not there"));
             }
             let mut once = face.iter().distinct();
@@ -44,6 +48,9 @@ impl<P: Probe> FaceVertexMesh<P> {
         let mut owner = vec![None; self.pool.len()];
         for v in self.vertices() {
             let fan = self.fans.rows()[v.index()];
+            if fan.len == 0 {
+                continue;
+            }
             let Some(places) = owner.get_mut(fan.range()) else {
                 return fails(format!("the fan of {v} reaches beyond the pool"));
             };
@@ -60,12 +67,13 @@ impl<P: Probe> FaceVertexMesh<P> {
     fn check_fans(&self) -> Result<(), InvariantError> {
         let mut expected: Vec<Vec<FaceId>> = vec![Vec::new(); self.fans.len()];
         for f in self.faces() {
-            for v in self.face(f) {
+            for v in self.known_face(f) {
                 expected[v.index()].push(f);
             }
         }
-        for (v, expected) in self.vertices().zip(expected) {
-            let mut fan = self.fan(v).to_vec();
+        for v in self.vertices() {
+            let expected = &expected[v.index()];
+            let mut fan = self.pool.rows()[self.fans.rows()[v.index()].range()].to_vec();
             fan.sort_unstable();
             let fault = if let Some(twice) = fan.windows(2).find(|pair| pair[0] == pair[1]) {
                 format!("names {} twice", twice[0])
@@ -80,14 +88,55 @@ impl<P: Probe> FaceVertexMesh<P> {
         }
         Ok(())
     }
+
+    /// I4, its first half: the holes are the vertices and faces that are marked as deleted.
+    fn check_holes(&self) -> Result<(), InvariantError> {
+        let fails = |detail: String| InvariantError::new("I4", detail);
+        self.vertex_holes.check(self.fans.len()).map_err(fails)?;
+        self.face_holes.check(self.spans.len()).map_err(fails)?;
+        for (v, fan) in (0..row(self.fans.len())).zip(self.fans.rows()) {
+            if (*fan == Fan::GONE) != self.vertex_holes.has(v as usize) {
+                let v = VertexId::new(v);
+                return Err(fails(format!("hole or not, {v} has the fan {fan:?}")));
+            }
+        }
+        let faces = (0..row(self.spans.len())).map(FaceId::new);
+        for f in faces.filter(|f| self.face_holes.has(f.index())) {
+            let face = self.known_face(f);
+            if let Some(v) = face.iter().find(|&&v| v != BLANK_CORNER) {
+                return Err(fails(format!("{f} was deleted, and has the corner {v}")));
+            }
+        }
+        Ok(())
+    }
+
+    /// I4, its second half: what belongs to no face and to no fan is blank.
+    fn check_blanks(&self) -> Result<(), InvariantError> {
+        let fails = |detail: String| Err(InvariantError::new("I4", detail));
+        let corners: usize = self.faces().map(|f| self.known_face(f).len()).sum();
+        let named = self.corners.rows().iter().filter(|&&v| v != BLANK_CORNER);
+        let named = named.count();
+        if named != corners {
+            return fails(format!(
+                "{named} corners are not blank, faces have {corners}"
+            ));
+        }
+        let fans = self.vertices().map(|v| self.fans.rows()[v.index()]);
+        let places: usize = fans.map(|fan| fan.len as usize).sum();
+        let named = self.pool.rows().iter().filter(|&&f| f != BLANK_PLACE);
+        let named = named.count();
+        if named != places {
+            return fails(format!("{named} places are not blank, fans have {places}"));
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{FaceSpans, Point, PolygonMesh, Representation, Table, VertexId};
+    use mesh_core::{FaceSpans, Point, PolygonMesh, Representation, Table};
 
     use super::*;
-    use crate::mesh::Fan;
 
     const SQUARE: [Point; 4] = [Point::ZERO, Point::X, Point::ONE, Point::Y];
 
@@ -172,10 +221,45 @@ mod tests {
     }
 
     #[test]
+    fn i4_what_is_deleted_and_does_not_show_it() {
+        let mut broken = triangles();
+        broken.vertex_holes.dig(3);
+        assert_eq!(fault(&broken), "I1 fails: f1 names v3, which is not there");
+        let mut broken = mesh(&[&[0, 1, 2]]);
+        broken.vertex_holes.dig(3);
+        let expected = "I4 fails: hole or not, v3 has the fan Fan { start: 3, len: 0 }";
+        assert_eq!(fault(&broken), expected);
+        let mut broken = triangles();
+        broken.face_holes.dig(1);
+        for v in [0, 2, 3] {
+            broken.fans.rows_mut()[v].len = 1;
+        }
+        broken.fans.rows_mut()[3].len = 0;
+        assert_eq!(
+            fault(&broken),
+            "I4 fails: f1 was deleted, and has the corner v0"
+        );
+        broken.corners.rows_mut()[3..].fill(BLANK_CORNER);
+        assert_eq!(
+            fault(&broken),
+            "I4 fails: 6 places are not blank, fans have 3"
+        );
+        for place in [1, 4, 5] {
+            broken.pool.rows_mut()[place] = BLANK_PLACE;
+        }
+        assert_eq!(broken.validate(), Ok(()));
+        let mut broken = triangles();
+        broken.pool.push(FaceId::new(0));
+        let expected = "I4 fails: 7 places are not blank, fans have 6";
+        assert_eq!(fault(&broken), expected);
+    }
+
+    #[test]
     fn a_fan_may_lie_anywhere_in_the_pool() {
         let mut edited = triangles();
         let mut pool = edited.pool.rows().to_vec();
-        pool.push(FaceId::new(0));
+        let moved = std::mem::replace(&mut pool[2], BLANK_PLACE);
+        pool.push(moved);
         edited.pool = Table::new("pool", "place", pool);
         edited.fans.rows_mut()[1].start = 6;
         assert_eq!(edited.validate(), Ok(()));

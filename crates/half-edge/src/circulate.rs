@@ -2,7 +2,7 @@
 
 use mesh_core::{EdgeId, FaceId, Probe, Slot, VertexId};
 
-use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh, deleted};
 
 /// The half-edges that leave a vertex, clockwise: each step is `h → next(twin(h))`.
 #[derive(Clone, Debug)]
@@ -183,7 +183,11 @@ impl<'a, P: Probe> EdgeEdges<'a, P> {
     #[inline]
     pub(crate) fn new(mesh: &'a HalfEdgeMesh<P>, e: EdgeId) -> Self {
         let [one, other] = mesh.halves_of(e);
-        let at = mesh.next(other);
+        let half = mesh.halves.read(other.index());
+        if half.is_deleted() {
+            deleted(e);
+        }
+        let at = half.next;
         Self {
             mesh,
             at,
@@ -200,10 +204,10 @@ impl<P: Probe> Iterator for EdgeEdges<'_, P> {
     fn next(&mut self) -> Option<EdgeId> {
         while self.at == self.stop {
             self.stop = self.then.take()?;
-            self.at = self.mesh.next(self.stop.twin());
+            self.at = self.mesh.follow(self.stop.twin());
         }
         let edge = self.at.edge();
-        self.at = self.mesh.next(self.at.twin());
+        self.at = self.mesh.follow(self.at.twin());
         Some(edge)
     }
 
@@ -220,10 +224,10 @@ impl<P: Probe> Iterator for EdgeEdges<'_, P> {
         loop {
             while at != stop {
                 folded = f(folded, at.edge());
-                at = mesh.next(at.twin());
+                at = mesh.follow(at.twin());
             }
             match then.take() {
-                Some(other) => (stop, at) = (other, mesh.next(other.twin())),
+                Some(other) => (stop, at) = (other, mesh.follow(other.twin())),
                 None => return folded,
             }
         }

@@ -2,8 +2,8 @@
 
 use mesh_core::{
     BuildError, Capabilities, Counts, FaceId, FaceList, InvariantError, MemoryFootprint, MeshQuery,
-    MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, RowMap, Slot, Table,
-    TwinPairs, VertexId, row,
+    MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, RowMap, Slot, TwinPairs,
+    VertexId, row,
 };
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
@@ -28,22 +28,33 @@ impl Representation for HalfEdgeMesh {
         if (!closed && !draft.close_boundary_loops()) || !draft.every_vertex_is_one_fan() {
             return Err(refusal());
         }
-        Ok(Self {
-            positions: Table::new("positions", "vertex", polygons.positions().to_vec()),
-            leaving: Table::new("leaving", "vertex", draft.leaving),
-            halves: Table::new("halves", "half-edge", draft.halves),
-            first: Table::new("first", "face", draft.first),
-        })
+        let positions = polygons.positions().to_vec();
+        Ok(Self::of_tables(
+            positions,
+            draft.leaving,
+            draft.halves,
+            draft.first,
+        ))
     }
 
     fn to_polygons(&self) -> PolygonMesh {
+        // Where there are holes, the rows after them move up.
+        let rows =
+            (!self.vertex_holes.is_empty()).then(|| self.vertex_holes.new_rows(self.vertex_rows()));
         let mut faces = FaceList::with_capacity(self.half_edge_count());
         for f in self.faces() {
-            faces
-                .push(self.face_vertices(f))
-                .expect("no more corners than half-edges");
+            let corners = self.face_vertices(f);
+            let pushed = match &rows {
+                None => faces.push(corners),
+                Some(rows) => faces.push(corners.map(|v| VertexId::new(rows[v.index()]))),
+            };
+            pushed.expect("no more corners than half-edges");
         }
-        PolygonMesh::from_faces(self.positions().to_vec(), faces).expect("I7")
+        let positions = match rows {
+            None => self.positions().to_vec(),
+            Some(_) => self.vertices().map(|v| self.position(v)).collect(),
+        };
+        PolygonMesh::from_faces(positions, faces).expect("I7")
     }
 
     fn vertex_name(_: &PolygonMesh, v: VertexId) -> VertexId {
@@ -64,15 +75,21 @@ impl Representation for HalfEdgeMesh {
             leaving,
             halves,
             first,
+            vertex_holes,
+            edge_holes,
+            face_holes,
         } = self;
-        [
+        let tables = [
             positions.bytes(),
             leaving.bytes(),
             halves.bytes(),
             first.bytes(),
-        ]
-        .into_iter()
-        .collect()
+        ];
+        let holes = [vertex_holes, edge_holes, face_holes];
+        tables
+            .into_iter()
+            .chain(holes.into_iter().filter_map(|holes| holes.bytes()))
+            .collect()
     }
 
     fn layout_bytes(counts: &Counts) -> usize {
@@ -88,7 +105,10 @@ impl Representation for HalfEdgeMesh {
             positions: self.positions.probed(probe.clone()),
             leaving: self.leaving.probed(probe.clone()),
             halves: self.halves.probed(probe.clone()),
-            first: self.first.probed(probe),
+            first: self.first.probed(probe.clone()),
+            vertex_holes: self.vertex_holes.probed(probe.clone()),
+            edge_holes: self.edge_holes.probed(probe.clone()),
+            face_holes: self.face_holes.probed(probe),
         }
     }
 }

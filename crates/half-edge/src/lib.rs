@@ -21,9 +21,30 @@
 //! |---|---|---|
 //! | quads, triangles, √3: all faces split | O(halves) | along a face from each half: its next, and on to its prev |
 //!
-//! Vertices, edges and faces are rows, so that counting and listing them reads nothing. `prev` is
-//! not stored: it is O(degree) along a face and O(valence) along a boundary. Stored, it made every
-//! sweep slower (one-rings 6 to 20 %, by the wider record) and nothing here faster.
+//! | edit ([`MeshEdit`](mesh_core::MeshEdit)) | cost | records that change |
+//! |---|---|---|
+//! | `set_position`, `add_vertex` | O(1) | the vertex |
+//! | `add_face` | O(valence) of its corners | its sides, new edges, the halves before and after them |
+//! | `remove_face` | O(valence) of its corners | its sides, the halves before and after those that go |
+//! | `remove_vertex` | the sum of these over its faces | theirs |
+//! | `remove_isolated_vertices` | O(vertices) | those |
+//! | `split_edge` | O(degree) of a face | both halves, a new edge, the half before |
+//! | `bisect_edge` | O(1) | both triangles, two or three new edges |
+//! | `poke_face` | O(degree) | its sides, an edge for each |
+//! | `split_face` | O(degree + valence) | the sides of one part, a new edge, the half before it |
+//! | `dissolve_edge` | O(degree) of both faces | the sides of one face, the halves before the edge |
+//! | `flip_edge` | O(valence) of a third corner | the six halves of two triangles |
+//! | `collapse_edge` | O(valence) of both ends | the halves from one end, and around its triangles |
+//! | `split_vertex` | O(valence) | the halves from the new vertex, up to three new edges |
+//! | `compact` | O(mesh) | all |
+//!
+//! Degrees and valences are those of the faces and vertices named, not of the mesh. Vertices, edges
+//! and faces keep their names but in `compact`, and what is deleted is a hole until then.
+//!
+//! Vertices, edges and faces are rows, so that counting and listing them reads nothing but the bits
+//! of deleted ones, if there are any. `prev` is not stored: it is O(degree) along a face and
+//! O(valence) along a boundary. Stored, it made every sweep slower (one-rings 6 to 20 %, by the wider
+//! record) and nothing here faster; edits come by most of the halves that they need on their way.
 //!
 //! # What the sweeps are bound by
 //!
@@ -54,6 +75,7 @@
 
 mod circulate;
 mod construct;
+mod edit;
 mod mesh;
 mod query;
 mod refine;

@@ -1,9 +1,9 @@
 //! The nine relations.
 
-use mesh_core::{DistinctWalk, EdgeId, FaceId, MeshQuery, Point, Probe, VertexId, row};
+use mesh_core::{DistinctWalk, EdgeId, FaceId, MeshQuery, Point, Probe, VertexId};
 
 use crate::circulate::EdgeEdges;
-use crate::mesh::HalfEdgeMesh;
+use crate::mesh::{Half, HalfEdgeMesh, deleted};
 
 impl<P: Probe> MeshQuery for HalfEdgeMesh<P> {
     type Vertex = VertexId;
@@ -12,34 +12,39 @@ impl<P: Probe> MeshQuery for HalfEdgeMesh<P> {
 
     #[inline]
     fn vertices(&self) -> impl Iterator<Item = VertexId> {
-        (0..row(self.positions.len())).map(VertexId::new)
+        self.vertex_holes.handles(self.vertex_rows())
     }
 
     #[inline]
     fn edges(&self) -> impl Iterator<Item = EdgeId> {
-        (0..row(self.halves.len() / 2)).map(EdgeId::new)
+        self.edge_holes.handles(self.edge_rows())
     }
 
     #[inline]
     fn faces(&self) -> impl Iterator<Item = FaceId> {
-        (0..row(self.first.len())).map(FaceId::new)
+        self.face_holes.handles(self.face_rows())
     }
 
     fn vertex_count(&self) -> usize {
-        self.positions.len()
+        self.vertex_rows() - self.vertex_holes.len()
     }
 
     fn edge_count(&self) -> usize {
-        self.halves.len() / 2
+        self.edge_rows() - self.edge_holes.len()
     }
 
     fn face_count(&self) -> usize {
-        self.first.len()
+        self.face_rows() - self.face_holes.len()
     }
 
     #[inline]
     fn position(&self, v: VertexId) -> Point {
-        *self.positions.read(v.index())
+        // The read comes first: asked before it, the question made sweeps of the corner table slower.
+        let at = *self.positions.read(v.index());
+        if self.vertex_holes.has(v.index()) {
+            deleted(v);
+        }
+        at
     }
 
     #[inline]
@@ -60,7 +65,7 @@ impl<P: Probe> MeshQuery for HalfEdgeMesh<P> {
 
     #[inline]
     fn edge_vertices(&self, e: EdgeId) -> [VertexId; 2] {
-        let [one, other] = self.halves.read_pair(e.index());
+        let [one, other] = self.pair(e);
         [one.origin, other.origin]
     }
 
@@ -71,7 +76,7 @@ impl<P: Probe> MeshQuery for HalfEdgeMesh<P> {
 
     #[inline]
     fn edge_faces(&self, e: EdgeId) -> impl Iterator<Item = FaceId> {
-        let [one, other] = self.halves.read_pair(e.index());
+        let [one, other] = self.pair(e);
         [one.face, other.face]
             .into_iter()
             .filter_map(|face| face.get())
@@ -109,5 +114,17 @@ impl<P: Probe> MeshQuery for HalfEdgeMesh<P> {
         let mut ring: Vec<VertexId> = self.vertex_vertices(v).collect();
         ring.reverse();
         Some(ring.into_iter())
+    }
+}
+
+impl<P: Probe> HalfEdgeMesh<P> {
+    /// The two halves of an edge that is there.
+    #[inline]
+    fn pair(&self, e: EdgeId) -> &[Half; 2] {
+        let pair = self.halves.read_pair(e.index());
+        if pair[0].is_deleted() {
+            deleted(e);
+        }
+        pair
     }
 }

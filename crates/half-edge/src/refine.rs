@@ -8,7 +8,7 @@ mod tests;
 use std::ops::Range;
 
 use mesh_core::{
-    Counts, EdgeId, FaceId, MeshQuery, PART, Point, Ranks, Refine, RefineError, Slot, Split, Table,
+    Counts, EdgeId, FaceId, MeshQuery, PART, Point, Ranks, Refine, RefineError, Slot, Split,
     VertexId, all_rows, check_split, in_parts, row, row_parts, rows_of_part,
 };
 
@@ -35,12 +35,7 @@ impl Refine for HalfEdgeMesh {
     type EdgeNumbers = Ranks;
 
     fn empty() -> Self {
-        Self {
-            positions: Table::new("positions", "vertex", Vec::new()),
-            leaving: Table::new("leaving", "vertex", Vec::new()),
-            halves: Table::new("halves", "half-edge", Vec::new()),
-            first: Table::new("first", "face", Vec::new()),
-        }
+        Self::of_tables(Vec::new(), Vec::new(), Vec::new(), Vec::new())
     }
 
     fn number_edges(&self, numbers: &mut Ranks) {
@@ -65,6 +60,10 @@ impl Refine for HalfEdgeMesh {
         numbers: &Ranks,
         child: &mut Self,
     ) -> Result<(), RefineError> {
+        let holes = self.hole_count();
+        if holes > 0 {
+            return Err(RefineError::Holes { holes });
+        }
         let halves = self.half_edge_count();
         assert_eq!(numbers.items(), halves, "the numbers are of another mesh");
         let (corners, boundary) = (numbers.members(), numbers.missing());
@@ -86,6 +85,9 @@ impl Refine for HalfEdgeMesh {
         child.leaving.resize(grown.vertices, Slot::NONE);
         child.halves.resize(2 * grown.edges, BLANK);
         child.first.resize(grown.faces, HalfEdgeId::new(0));
+        child.vertex_holes.fill();
+        child.edge_holes.fill();
+        child.face_holes.fill();
         // Compiled once for closed meshes, where nothing has to be looked up.
         if boundary == 0 {
             self.split_checked(split, &Corners::<true>(numbers), child);

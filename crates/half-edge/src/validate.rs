@@ -2,14 +2,16 @@
 
 use std::collections::HashSet;
 
-use mesh_core::{InvariantError, MeshQuery, RowId, VertexId, row};
+use mesh_core::{FaceId, InvariantError, MeshQuery, RowId, VertexId};
 
-use crate::mesh::{HalfEdgeId, HalfEdgeMesh};
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh, NO_HALF};
 
-/// Checks I1 to I8 in turn; the later ones rely on the earlier ones.
+/// Checks I9, and then I1 to I8 in turn; the later ones rely on the earlier ones.
 pub(crate) fn validate(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
-    names_exist(mesh)?;
     pairs(mesh)?;
+    holes(mesh)?;
+    names_exist(mesh)?;
+    one_face_at_least(mesh)?;
     permutation(mesh)?;
     faces_agree(mesh)?;
     ends_meet(mesh)?;
@@ -23,40 +25,73 @@ fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> 
     Err(InvariantError::new(invariant, detail))
 }
 
+/// All halves that are there.
 fn halves(mesh: &HalfEdgeMesh) -> impl Iterator<Item = HalfEdgeId> {
-    (0..row(mesh.half_edge_count())).map(HalfEdgeId::new)
+    mesh.edges().flat_map(|e| mesh.halves_of(e))
 }
 
-/// Every name in the tables is that of a row: without it no other check could walk.
-fn names_exist(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
-    let (vertices, halves, faces) = (
-        mesh.vertex_count(),
-        mesh.half_edge_count(),
-        mesh.face_count(),
-    );
-    for (h, half) in mesh.half_rows().iter().enumerate() {
-        let face_exists = half.face.get().is_none_or(|f| f.index() < faces);
-        if half.next.index() >= halves || half.origin.index() >= vertices || !face_exists {
-            return fails("I2", format!("h{h} names what is not there: {half:?}"));
+fn pairs(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+    match mesh.half_rows().len() {
+        rows if rows.is_multiple_of(2) => Ok(()),
+        rows => fails("I1", format!("{rows} half-edges are no pairs")),
+    }
+}
+
+/// The rows of what is deleted, and no others, are marked so.
+fn holes(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+    let kinds = [
+        (&mesh.vertex_holes, mesh.vertex_rows()),
+        (&mesh.edge_holes, mesh.edge_rows()),
+        (&mesh.face_holes, mesh.face_rows()),
+    ];
+    for (holes, rows) in kinds {
+        if let Err(detail) = holes.check(rows) {
+            return fails("I9", detail);
         }
     }
-    let leaving = mesh.leaving_rows().iter().filter_map(|slot| slot.get());
-    if let Some(h) = leaving
-        .chain(mesh.first_rows().iter().copied())
-        .find(|h| h.index() >= halves)
-    {
-        return fails("I5", format!("{h} is named but not there"));
+    for (v, leaving) in mesh.leaving_rows().iter().enumerate() {
+        if mesh.vertex_holes.has(v) && leaving.get().is_some() {
+            return fails("I9", format!("v{v} is deleted, but {leaving:?} leaves it"));
+        }
+    }
+    for (e, pair) in mesh.half_rows().as_chunks::<2>().0.iter().enumerate() {
+        let marked = pair.map(|half| half == Half::DELETED);
+        if marked != [mesh.edge_holes.has(e); 2] {
+            return fails("I9", format!("e{e} is deleted in part: {pair:?}"));
+        }
+    }
+    for (f, &first) in mesh.first_rows().iter().enumerate() {
+        if (first == NO_HALF) != mesh.face_holes.has(f) {
+            return fails("I9", format!("f{f} is deleted in part"));
+        }
     }
     Ok(())
 }
 
-fn pairs(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
-    if !mesh.half_edge_count().is_multiple_of(2) {
-        return fails(
-            "I1",
-            format!("{} half-edges are no pairs", mesh.half_edge_count()),
-        );
+/// Every name in the tables is that of a row that is no hole: without it no other check could walk.
+fn names_exist(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+    let is_vertex =
+        |v: VertexId| v.index() < mesh.vertex_rows() && !mesh.vertex_holes.has(v.index());
+    let is_half = |h: HalfEdgeId| {
+        let e = h.edge().index();
+        e < mesh.edge_rows() && !mesh.edge_holes.has(e)
+    };
+    let is_face = |f: FaceId| f.index() < mesh.face_rows() && !mesh.face_holes.has(f.index());
+    for h in halves(mesh) {
+        let half = mesh.half_rows()[h.index()];
+        if !is_half(half.next) || !is_vertex(half.origin) || !half.face.get().is_none_or(is_face) {
+            return fails("I2", format!("{h} names what is not there: {half:?}"));
+        }
     }
+    let leaving = mesh.leaving_rows().iter().filter_map(|slot| slot.get());
+    let along = mesh.faces().map(|f| mesh.half_along(f));
+    match leaving.chain(along).find(|&h| !is_half(h)) {
+        Some(h) => fails("I5", format!("{h} is named but not there")),
+        None => Ok(()),
+    }
+}
+
+fn one_face_at_least(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
     match halves(mesh).find(|&h| mesh.is_boundary(h) && mesh.is_boundary(h.twin())) {
         Some(h) => fails("I1", format!("{} has no face on either side", h.edge())),
         None => Ok(()),
@@ -64,7 +99,7 @@ fn pairs(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
 }
 
 fn permutation(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
-    let mut reached = vec![false; mesh.half_edge_count()];
+    let mut reached = vec![false; mesh.half_rows().len()];
     for h in halves(mesh) {
         let next = mesh.next(h);
         if std::mem::replace(&mut reached[next.index()], true) {
@@ -119,7 +154,7 @@ fn leaving_halves(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
 }
 
 fn one_fan_each(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
-    let mut leaving = vec![0_usize; mesh.vertex_count()];
+    let mut leaving = vec![0_usize; mesh.vertex_rows()];
     for h in halves(mesh) {
         leaving[mesh.origin(h).index()] += 1;
     }
@@ -176,7 +211,7 @@ fn edges_differ(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{FaceId, Point, PolygonMesh, Representation, Slot};
+    use mesh_core::{Point, PolygonMesh, Representation, Slot};
 
     use super::*;
 
@@ -239,6 +274,40 @@ mod tests {
         );
         let along = |m: &HalfEdgeMesh, f| m.half_along(FaceId::new(f));
         assert_eq!(broken(|m| m.first.rows_mut()[0] = along(m, 1)), "I7");
+        assert_eq!(broken(|m| m.vertex_holes.dig(0)), "I9");
+        assert_eq!(broken(|m| m.vertex_holes.dig(5)), "I9");
+        assert_eq!(broken(|m| m.edge_holes.dig(0)), "I9");
+        assert_eq!(broken(|m| m.face_holes.dig(1)), "I9");
+        assert_eq!(broken(|m| m.first.rows_mut()[1] = NO_HALF), "I9");
+        assert_eq!(broken(|m| m.halves.rows_mut()[o] = Half::DELETED), "I9");
+    }
+
+    #[test]
+    fn a_deleted_element_that_is_named_is_found() {
+        let mut mesh = sound();
+        mesh.vertex_holes.dig(4);
+        assert_eq!(mesh.validate(), Ok(()), "an isolated vertex may go");
+        let i = mesh.half_along(FaceId::new(0)).index();
+        for (name, broken) in [
+            (
+                "I2",
+                Half {
+                    origin: VertexId::new(4),
+                    ..mesh.halves.rows()[i]
+                },
+            ),
+            (
+                "I2",
+                Half {
+                    face: Slot::some(FaceId::new(2)),
+                    ..mesh.halves.rows()[i]
+                },
+            ),
+        ] {
+            let mut mesh = mesh.clone();
+            mesh.halves.rows_mut()[i] = broken;
+            assert_eq!(mesh.validate().expect_err("broken").invariant, name);
+        }
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! In and out.
 
 use mesh_core::{
-    BuildError, Capabilities, Counts, FaceId, FaceList, FaceSpans, InvariantError, MemoryFootprint,
-    MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, Table, VertexId,
-    VertexMap,
+    BuildError, Capabilities, Counts, FaceId, FaceList, FaceSpans, Holes, InvariantError,
+    MemoryFootprint, MeshQuery, MoveError, Point, PolygonError, PolygonMesh, Probe, QueryCost,
+    Representation, ScannedFaces, Table, VertexId, VertexMap,
 };
 
 use crate::mesh::IndexedFaceSet;
@@ -27,26 +27,23 @@ impl Representation for IndexedFaceSet {
         let faces = polygons.faces();
         Ok(Self {
             positions: Table::new("positions", "vertex", polygons.positions().to_vec()),
-            corners: Table::new("corners", "corner", faces.corners().to_vec()),
-            spans: faces.spans(),
+            vertex_holes: Holes::none("vertex holes"),
+            faces: ScannedFaces::new(faces.corners().to_vec(), faces.spans()),
         })
     }
 
     fn to_polygons(&self) -> PolygonMesh {
-        let faces = match &self.spans {
-            FaceSpans::Uniform { degree, .. } => {
+        let positions = self.vertices().map(|v| self.positions()[v.index()]);
+        let faces = match self.spans() {
+            FaceSpans::Uniform { degree, .. }
+                if self.vertex_holes.is_empty() && self.faces.holes.is_empty() =>
+            {
                 FaceList::uniform(*degree as usize, self.corners().to_vec())
             }
-            FaceSpans::Mixed(_) => {
-                let mut faces = FaceList::with_capacity(self.corners.len());
-                let pushed = self
-                    .faces()
-                    .try_for_each(|f| faces.push(self.face_vertices(f)));
-                pushed.map(|()| faces)
-            }
+            _ => self.faces_without_holes(),
         };
         let faces = faces.expect("I1: as many corners as came in");
-        PolygonMesh::from_faces(self.positions().to_vec(), faces).expect("I1 and I2")
+        PolygonMesh::from_faces(positions.collect(), faces).expect("I1 and I2")
     }
 
     fn vertex_name(_: &PolygonMesh, v: VertexId) -> VertexId {
@@ -62,8 +59,8 @@ impl Representation for IndexedFaceSet {
     }
 
     fn memory(&self) -> MemoryFootprint {
-        let tables = [self.positions.bytes(), self.corners.bytes()];
-        tables.into_iter().chain(self.spans.bytes()).collect()
+        let by_vertex = std::iter::once(self.positions.bytes()).chain(self.vertex_holes.bytes());
+        by_vertex.chain(self.faces.bytes()).collect()
     }
 
     fn layout_bytes(counts: &Counts) -> usize {
@@ -78,8 +75,25 @@ impl Representation for IndexedFaceSet {
     fn probed<P: Probe>(self, probe: P) -> IndexedFaceSet<P> {
         IndexedFaceSet {
             positions: self.positions.probed(probe.clone()),
-            corners: self.corners.probed(probe.clone()),
-            spans: self.spans.probed(probe),
+            vertex_holes: self.vertex_holes.probed(probe.clone()),
+            faces: self.faces.probed(probe),
         }
+    }
+}
+
+impl<P: Probe> IndexedFaceSet<P> {
+    /// The faces, by vertices numbered without a gap.
+    fn faces_without_holes(&self) -> Result<FaceList, PolygonError> {
+        let mut faces = FaceList::with_capacity(self.corners().len());
+        let renumbered = !self.vertex_holes.is_empty();
+        let new = renumbered.then(|| self.vertex_holes.new_rows(self.positions.len()));
+        let number = |v: VertexId| match &new {
+            Some(new) => VertexId::new(new[v.index()]),
+            None => v,
+        };
+        for f in self.faces() {
+            faces.push(self.face_vertices(f).map(number))?;
+        }
+        Ok(faces)
     }
 }

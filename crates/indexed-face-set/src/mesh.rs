@@ -1,6 +1,6 @@
 //! The structure itself.
 
-use mesh_core::{FaceId, FaceSpans, Point, Probe, Table, Untraced, VertexId};
+use mesh_core::{FaceId, FaceSpans, Holes, Point, Probe, ScannedFaces, Table, Untraced, VertexId};
 
 /// Vertices with positions, and faces as lists of vertices.
 ///
@@ -15,13 +15,18 @@ use mesh_core::{FaceId, FaceSpans, Point, Probe, Table, Untraced, VertexId};
 /// # Invariants
 ///
 /// - I1  Face `f` has the corners of `spans.range(f)`, at least three; these ranges follow one
-///   another through the whole table.
+///   another through the whole table, until a face gets another degree, which may leave corners
+///   between them.
 /// - I2  The corners of a face name vertices that are there, each once.
+/// - I3  Holes are rows of vertices and of faces. Blank, which names no vertex, are the corners of
+///   deleted faces and those between faces, and no others; so no scan finds them. A deleted vertex
+///   keeps its last place, which nobody reads.
 ///
 /// # Memory
 ///
 /// Words for each vertex of a large closed triangle mesh: 9, being 3 of positions and 6 of corners.
-/// Mixed degrees add the offsets of the faces.
+/// Mixed degrees add the offsets of the faces. Edits that change a degree bring two words a face and
+/// one a corner instead, deletions a bit a row, all until [`compact`](mesh_core::MeshEdit::compact).
 ///
 /// # Complexity
 ///
@@ -35,28 +40,49 @@ use mesh_core::{FaceId, FaceSpans, Point, Probe, Table, Untraced, VertexId};
 /// | `edges`, `edge_count` | all corners | O(corners + vertices), without hashing |
 ///
 /// A hit of a scan costs O(1), or O(log faces) with mixed degrees, where the face of a corner has to
-/// be looked for.
+/// be looked for until edits have brought a table for that.
+///
+/// # Edits
+///
+/// | edit | looks at | changes |
+/// |---|---|---|
+/// | `set_position` | the vertex | its place |
+/// | `add_vertex` | nothing | a new place |
+/// | `add_face` | its corners | new corners, a new span |
+/// | `remove_face`, `split_face`, `poke_face` | the corners of the face | they, and those of new faces |
+/// | `split_edge`, `dissolve_edge` | all corners, in one scan | the faces along the edge, which may move to the end of the table |
+/// | `bisect_edge` | all corners, in one scan | a corner of each face, and a new face for each |
+/// | `flip_edge` | all corners, in two scans | one corner of each face |
+/// | `collapse_edge` | all corners, in one scan, seldom two | the corners at the vertex that goes |
+/// | `split_vertex` | all corners, in one scan | the corners that the new vertex gets, and two new faces |
+/// | `remove_vertex` | all corners, in one scan | the corners of its faces |
+/// | `remove_isolated_vertices` | all corners | bits |
+/// | `compact` | everything | everything |
+///
+/// To tell a listener which sides of a face others have too, `add_face`, `remove_face`,
+/// `remove_vertex` and `split_face` scan once more. Nothing but a handle that names nothing, or the
+/// rule of the edit itself, makes one illegal: any polygon mesh is held.
 #[derive(Clone, Debug)]
 pub struct IndexedFaceSet<P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
-    pub(crate) corners: Table<VertexId, P>,
-    pub(crate) spans: FaceSpans<P>,
+    pub(crate) vertex_holes: Holes<P>,
+    pub(crate) faces: ScannedFaces<VertexId, P>,
 }
 
 impl<P: Probe> IndexedFaceSet<P> {
-    /// Where each vertex is, as it lies in memory.
+    /// Where each vertex is, as it lies in memory, deleted ones included.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
     }
 
-    /// The vertex of each corner, face by face, as it lies in memory.
+    /// The vertex of each corner, face by face, as it lies in memory, blank ones included.
     pub fn corners(&self) -> &[VertexId] {
-        self.corners.rows()
+        self.faces.corners.rows()
     }
 
-    /// How the corners fall into faces.
+    /// How the corners fall into faces, deleted ones included.
     pub fn spans(&self) -> &FaceSpans<P> {
-        &self.spans
+        &self.faces.spans
     }
 
     /// The vertices of `f`, in order.
@@ -66,7 +92,13 @@ impl<P: Probe> IndexedFaceSet<P> {
     /// If there is no such face.
     #[inline]
     pub fn face(&self, f: FaceId) -> &[VertexId] {
-        self.corners.read_range(self.spans.range(f))
+        self.faces.face(f)
+    }
+
+    /// Whether `v` is there.
+    #[inline]
+    pub(crate) fn has(&self, v: VertexId) -> bool {
+        v.index() < self.positions.len() && !self.vertex_holes.has(v.index())
     }
 
     /// `v`, if it is there: a scan for a vertex that is not would find nothing, and say nothing.
@@ -78,12 +110,23 @@ impl<P: Probe> IndexedFaceSet<P> {
     pub(crate) fn existing(&self, v: VertexId) -> VertexId {
         let vertices = self.positions.len();
         assert!(v.index() < vertices, "no vertex {v}: there are {vertices}");
+        self.check_deleted(v);
         v
     }
 
-    /// The face of a corner, and the vertices before, at and after it there.
-    pub(crate) fn around(&self, corner: usize) -> (FaceId, [VertexId; 3]) {
-        let (face, corners) = self.spans.around(corner);
-        (face, corners.map(|corner| *self.corners.read(corner)))
+    /// # Panics
+    ///
+    /// If `v` was deleted.
+    #[inline]
+    pub(crate) fn check_deleted(&self, v: VertexId) {
+        if self.vertex_holes.has(v.index()) {
+            deleted(v);
+        }
     }
+}
+
+#[cold]
+#[inline(never)]
+fn deleted(v: VertexId) -> ! {
+    panic!("no vertex {v}: it was deleted")
 }

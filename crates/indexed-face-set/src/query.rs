@@ -1,8 +1,7 @@
 //! The nine relations.
 
-use mesh_core::{FaceId, IteratorExt, MeshQuery, Pair, Point, Probe, VertexId, row};
+use mesh_core::{FaceId, MeshQuery, Pair, Point, Probe, VertexId};
 
-use crate::circulate::Sought;
 use crate::mesh::IndexedFaceSet;
 
 impl<P: Probe> MeshQuery for IndexedFaceSet<P> {
@@ -12,53 +11,52 @@ impl<P: Probe> MeshQuery for IndexedFaceSet<P> {
 
     #[inline]
     fn vertices(&self) -> impl Iterator<Item = VertexId> {
-        (0..row(self.positions.len())).map(VertexId::new)
+        self.vertex_holes.handles(self.positions.len())
     }
 
     /// By their lower ends.
     fn edges(&self) -> impl Iterator<Item = Pair<VertexId>> {
-        self.spans.edges(&self.corners, self.positions.len())
+        let faces = &self.faces;
+        let vertices = self.positions.len();
+        faces.spans.edges(&faces.corners, &faces.holes, vertices)
     }
 
     #[inline]
     fn faces(&self) -> impl Iterator<Item = FaceId> {
-        (0..row(self.spans.len())).map(FaceId::new)
+        self.faces.handles()
     }
 
     #[inline]
     fn vertex_count(&self) -> usize {
-        self.positions.len()
+        self.positions.len() - self.vertex_holes.len()
     }
 
     #[inline]
     fn face_count(&self) -> usize {
-        self.spans.len()
+        self.faces.len()
     }
 
     #[inline]
     fn position(&self, v: VertexId) -> Point {
-        *self.positions.read(v.index())
+        let at = *self.positions.read(v.index());
+        self.check_deleted(v);
+        at
     }
 
+    #[inline]
     fn vertex_vertices(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
-        let corners = self.scan(Sought::One(self.existing(v)));
-        let beside = corners.flat_map(|corner| {
-            let (_, [before, _, after]) = self.around(corner);
-            [before, after]
-        });
-        beside.distinct()
+        self.faces.vertex_vertices(self.existing(v))
     }
 
+    #[inline]
     fn vertex_edges(&self, v: VertexId) -> impl Iterator<Item = Pair<VertexId>> {
         self.vertex_vertices(v)
             .map(move |other| Pair::new(v, other))
     }
 
-    /// One corner of a face at most names `v` (I2), so no face comes twice.
     #[inline]
     fn vertex_faces(&self, v: VertexId) -> impl Iterator<Item = FaceId> {
-        let corners = self.scan(Sought::One(self.existing(v)));
-        corners.map(|corner| self.spans.face_of(corner))
+        self.faces.vertex_faces(self.existing(v))
     }
 
     #[inline]
@@ -66,24 +64,14 @@ impl<P: Probe> MeshQuery for IndexedFaceSet<P> {
         e.ends()
     }
 
-    /// Whether there is such an edge at all, only the end of the scan can tell.
+    #[inline]
     fn edge_edges(&self, e: Pair<VertexId>) -> impl Iterator<Item = Pair<VertexId>> {
-        let sides = self.sides_at(Sought::Two(e.ends()));
-        let mut edges: Vec<_> = sides.distinct().collect();
-        match edges.iter().position(|&edge| edge == e) {
-            Some(itself) => drop(edges.swap_remove(itself)),
-            None => edges.clear(),
-        }
-        edges.into_iter()
+        self.faces.edge_edges(e)
     }
 
-    /// One corner of a face at most names the first end (I2), so no face comes twice.
+    #[inline]
     fn edge_faces(&self, e: Pair<VertexId>) -> impl Iterator<Item = FaceId> {
-        let [a, b] = e.ends();
-        self.scan(Sought::One(a)).filter_map(move |corner| {
-            let (face, [before, _, after]) = self.around(corner);
-            (before == b || after == b).then_some(face)
-        })
+        self.faces.edge_faces(e)
     }
 
     #[inline]
@@ -93,20 +81,12 @@ impl<P: Probe> MeshQuery for IndexedFaceSet<P> {
 
     #[inline]
     fn face_edges(&self, f: FaceId) -> impl Iterator<Item = Pair<VertexId>> {
-        self.sides_of(f)
+        self.faces.face_edges(f)
     }
 
-    /// Every second corner of `f` ends all of its sides, so the scan need look for no more.
+    #[inline]
     fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
-        let sought = Sought::every_second(self.face(f), self.positions.len());
-        let mut sides: Vec<_> = self.sides_of(f).collect();
-        sides.sort_unstable();
-        let is_side = move |a, b| sides.binary_search(&Pair::new(a, b)).is_ok();
-        let faces = self.scan(sought).filter_map(move |corner| {
-            let (face, [before, at, after]) = self.around(corner);
-            (face != f && (is_side(before, at) || is_side(at, after))).then_some(face)
-        });
-        faces.distinct()
+        self.faces.face_faces(f)
     }
 
     #[inline]
@@ -121,6 +101,28 @@ impl<P: Probe> MeshQuery for IndexedFaceSet<P> {
 
     #[inline]
     fn face_rows(&self) -> usize {
-        self.spans.len()
+        self.faces.spans.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::{PolygonMesh, Representation};
+
+    use super::*;
+
+    #[test]
+    fn a_vertex_of_very_many_faces_has_each_edge_once() {
+        let faces = 1_000;
+        let corners = vec![Point::ZERO; faces as usize + 2];
+        // All around v0, which is the lower end of every spoke, each of them shared by two faces.
+        let fan = (1..=faces).map(|f| [0, f, f + 1]);
+        let mesh = PolygonMesh::new(corners, fan).expect("valid");
+        let mesh = IndexedFaceSet::from_polygons(&mesh).expect("anything is held");
+        assert_eq!(mesh.edge_count(), 2 * faces as usize + 1);
+        assert_eq!(
+            mesh.vertex_edges(VertexId::new(0)).count(),
+            faces as usize + 1
+        );
     }
 }

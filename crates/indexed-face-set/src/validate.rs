@@ -1,44 +1,28 @@
 //! One check for each invariant.
 
-use mesh_core::{FaceSpans, InvariantError, IteratorExt, MeshQuery, Probe};
+use mesh_core::{InvariantError, IteratorExt, MeshQuery, Probe};
 
 use crate::mesh::IndexedFaceSet;
 
 impl<P: Probe> IndexedFaceSet<P> {
-    /// Checks I1, then I2, which relies on it.
+    /// Checks I1, then I3 and I2, which rely on it.
     pub(crate) fn check_invariants(&self) -> Result<(), InvariantError> {
         self.check_spans()?;
+        self.check_holes()?;
         self.check_faces()
     }
 
     /// I1: the faces divide the corners among them, at least three each.
     fn check_spans(&self) -> Result<(), InvariantError> {
-        let fails = |detail: String| Err(InvariantError::new("I1", detail));
-        let covered = match &self.spans {
-            FaceSpans::Uniform { degree, faces } => {
-                if *degree < 3 {
-                    return fails(format!("faces have {degree} corners"));
-                }
-                u64::from(*degree) * u64::from(*faces)
-            }
-            FaceSpans::Mixed(offsets) => {
-                let offsets = offsets.rows();
-                for (f, span) in offsets.windows(2).enumerate() {
-                    if u64::from(span[0]) + 3 > u64::from(span[1]) {
-                        return fails(format!("f{f} has the corners {}..{}", span[0], span[1]));
-                    }
-                }
-                match *offsets {
-                    [0, .., end] => u64::from(end),
-                    _ => return fails("the offsets do not begin with 0 and end later".to_owned()),
-                }
-            }
-        };
-        let corners = self.corners.len();
-        if covered != corners as u64 {
-            return fails(format!("the faces have {covered} corners of {corners}"));
-        }
-        Ok(())
+        let checked = self.spans().check(self.corners().len());
+        checked.map_err(|detail| InvariantError::new("I1", detail))
+    }
+
+    /// I3: holes are rows, and blank corners are those of no face.
+    fn check_holes(&self) -> Result<(), InvariantError> {
+        let checked = self.vertex_holes.check(self.positions.len());
+        let checked = checked.and_then(|()| self.faces.check_holes());
+        checked.map_err(|detail| InvariantError::new("I3", detail))
     }
 
     /// I2: a face names vertices that are there, each once.
@@ -46,7 +30,7 @@ impl<P: Probe> IndexedFaceSet<P> {
         let fails = |detail: String| Err(InvariantError::new("I2", detail));
         for f in self.faces() {
             let face = self.face(f);
-            if let Some(v) = face.iter().find(|v| v.index() >= self.positions.len()) {
+            if let Some(v) = face.iter().find(|v| !self.has(**v)) {
                 return fails(format!("{f} names {v}, which is not there"));
             }
             let mut once = face.iter().distinct();
@@ -60,7 +44,10 @@ impl<P: Probe> IndexedFaceSet<P> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{Point, PolygonMesh, Representation, Table, VertexId};
+    use mesh_core::{
+        FaceId, FaceSpans, MeshEdit, Point, PolygonMesh, Representation, ScannedVertex, Table,
+        VertexId,
+    };
 
     use super::*;
 
@@ -82,7 +69,7 @@ mod tests {
     fn spans_that_do_not_divide_the_corners_break_i1() {
         let uniform = |degree, faces| {
             move |mesh: &mut IndexedFaceSet| {
-                mesh.spans = FaceSpans::Uniform { degree, faces };
+                mesh.faces.spans = FaceSpans::Uniform { degree, faces };
             }
         };
         for (degree, faces) in [(3, 1), (3, 3), (2, 3), (4, 2), (u32::MAX, u32::MAX)] {
@@ -98,7 +85,8 @@ mod tests {
             &[0, 3, 7, 11],
         ] {
             let mixed = |mesh: &mut IndexedFaceSet| {
-                mesh.spans = FaceSpans::Mixed(Table::new("offsets", "face", offsets.to_vec()));
+                mesh.faces.spans =
+                    FaceSpans::Mixed(Table::new("offsets", "face", offsets.to_vec()));
             };
             assert_eq!(broken(MIXED, mixed), "I1", "{offsets:?}");
         }
@@ -109,13 +97,35 @@ mod tests {
         for faces in [TRIANGLES, MIXED] {
             let name = |corner: usize, v| {
                 move |mesh: &mut IndexedFaceSet| {
-                    mesh.corners.rows_mut()[corner] = VertexId::new(v);
+                    mesh.faces.corners.rows_mut()[corner] = VertexId::new(v);
                 }
             };
             assert_eq!(broken(faces, name(4, 5)), "I2");
-            assert_eq!(broken(faces, name(4, u32::MAX)), "I2");
             assert_eq!(broken(faces, name(4, 3)), "I2");
             assert_eq!(broken(faces, name(0, 2)), "I2");
+        }
+    }
+    #[test]
+    fn holes_that_are_used_and_blanks_that_are_no_holes_break_i3() {
+        for faces in [TRIANGLES, MIXED] {
+            let blank = |mesh: &mut IndexedFaceSet| {
+                mesh.faces.corners.rows_mut()[4] = VertexId::BLANK;
+            };
+            assert_eq!(broken(faces, blank), "I3");
+            let used = |mesh: &mut IndexedFaceSet| mesh.faces.holes.dig(1);
+            assert_eq!(broken(faces, used), "I3");
+            let beyond = |mesh: &mut IndexedFaceSet| mesh.vertex_holes.dig(5);
+            assert_eq!(broken(faces, beyond), "I3");
+            let revived = |mesh: &mut IndexedFaceSet| {
+                let f = FaceId::new(1);
+                mesh.remove_face(f, &mut ()).expect("it is there");
+                assert_eq!(mesh.validate(), Ok(()));
+                mesh.faces.corners.rows_mut()[5] = VertexId::new(0);
+            };
+            assert_eq!(broken(faces, revived), "I3");
+            // A vertex that is no longer there is named: that is for I2.
+            let named = |mesh: &mut IndexedFaceSet| mesh.vertex_holes.dig(2);
+            assert_eq!(broken(faces, named), "I2");
         }
     }
 }

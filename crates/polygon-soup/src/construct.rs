@@ -3,7 +3,7 @@
 use mesh_core::{
     BuildError, Capabilities, Counts, FaceId, FaceList, InvariantError, IteratorExt,
     MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
-    Table, VertexId, VertexMap, row,
+    ScannedFaces, ScannedVertex, VertexId, VertexMap, row,
 };
 use rustc_hash::FxHashMap;
 
@@ -34,8 +34,7 @@ impl Representation for PolygonSoup {
         let faces = polygons.faces();
         let corners = faces.corners().iter().map(|v| at[v.index()]).collect();
         let mesh = Self {
-            corners: Table::new("corners", "corner", corners),
-            spans: faces.spans(),
+            faces: ScannedFaces::new(corners, faces.spans()),
         };
         if has_isolated_vertex(polygons) || mesh.faces().any(|f| coincident(mesh.face_positions(f)))
         {
@@ -48,7 +47,7 @@ impl Representation for PolygonSoup {
     fn to_polygons(&self) -> PolygonMesh {
         let mut names: FxHashMap<SoupVertex, VertexId> = FxHashMap::default();
         let mut positions = Vec::new();
-        let mut faces = FaceList::with_capacity(self.corners.len());
+        let mut faces = FaceList::with_capacity(self.corners().len());
         for f in self.faces() {
             let corners = self.face_vertices(f).map(|v| {
                 *names.entry(v).or_insert_with(|| {
@@ -72,21 +71,26 @@ impl Representation for PolygonSoup {
 
     /// Moves every corner to where the map has the vertex of its old coordinates; O(corners) expected.
     fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
-        let corners = self.corners.rows().iter();
-        let moved = corners.map(|&corner| canonical(positions[SoupVertex::at(corner)]));
+        let corners = self.corners().iter();
+        let moved = corners.map(|corner| {
+            // What no face has stays blank.
+            if SoupVertex::BLANK.is_at(corner) {
+                return *corner;
+            }
+            canonical(positions[SoupVertex::of(*corner)])
+        });
         let moved: Vec<Point> = moved.collect();
         for face in self.faces() {
-            if coincident(&moved[self.spans.range(face)]) {
+            if coincident(&moved[self.spans().range(face)]) {
                 return Err(MoveError::CoincidentCorners { face });
             }
         }
-        self.corners.rows_mut().copy_from_slice(&moved);
+        self.faces.corners.rows_mut().copy_from_slice(&moved);
         Ok(())
     }
 
     fn memory(&self) -> MemoryFootprint {
-        let offsets = self.spans.bytes();
-        offsets.into_iter().chain([self.corners.bytes()]).collect()
+        self.faces.bytes().collect()
     }
 
     fn layout_bytes(counts: &Counts) -> usize {
@@ -99,8 +103,7 @@ impl Representation for PolygonSoup {
 
     fn probed<P: Probe>(self, probe: P) -> PolygonSoup<P> {
         PolygonSoup {
-            corners: self.corners.probed(probe.clone()),
-            spans: self.spans.probed(probe),
+            faces: self.faces.probed(probe),
         }
     }
 }
@@ -118,14 +121,14 @@ fn has_isolated_vertex(polygons: &PolygonMesh) -> bool {
     used.contains(&false)
 }
 
-/// Whether two of the corners of a face are at one place.
+/// Whether two of the corners of a face, canonical as they are, are at one place.
 fn coincident(face: &[Point]) -> bool {
     match *face {
         [a, b, c] => {
-            let [a, b, c] = [a, b, c].map(SoupVertex::at);
+            let [a, b, c] = [a, b, c].map(SoupVertex::of);
             a == b || b == c || c == a
         }
-        _ => face.iter().map(|&p| SoupVertex::at(p)).distinct().count() < face.len(),
+        _ => face.iter().map(|&p| SoupVertex::of(p)).distinct().count() < face.len(),
     }
 }
 

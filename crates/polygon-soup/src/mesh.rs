@@ -1,6 +1,6 @@
 //! The structure itself.
 
-use mesh_core::{FaceId, FaceSpans, Point, Probe, Table, Untraced};
+use mesh_core::{FaceId, FaceSpans, Point, Probe, ScannedFaces, Untraced};
 
 use crate::vertex::SoupVertex;
 
@@ -15,13 +15,17 @@ use crate::vertex::SoupVertex;
 /// ```
 ///
 /// - I1  Each corner belongs to one face: face `f` has the corners of `spans.range(f)`, at least
-///   three, and these ranges follow one another through the whole table.
-/// - I2  No coordinate is −0; construction and [`set_positions`] write 0 for it.
+///   three, and these ranges follow one another through the whole table, until a face gets another
+///   degree, which may leave corners between them.
+/// - I2  No coordinate is −0; construction, [`set_positions`] and edits write 0 for it.
 /// - I3  The corners of one face are at different places; [`set_positions`] refuses what would bring
-///   two of them together.
+///   two of them together, and every edit a place that is taken.
+/// - I4  Holes are rows of faces. Blank are the corners of deleted faces and those between faces, and
+///   no others. A blank corner is a NaN that no [`SoupVertex`] is made of, so no sweep finds it.
 ///
 /// Words for each vertex of a large closed triangle mesh: 18, three points a face. Mixed degrees
-/// add the offsets of the faces.
+/// add the offsets of the faces. Edits that change a degree bring two words a face and one a corner
+/// instead, deletions a bit a face, all until [`compact`](mesh_core::MeshEdit::compact).
 ///
 /// # Complexity
 ///
@@ -37,6 +41,29 @@ use crate::vertex::SoupVertex;
 /// A hit of a sweep costs O(1), or O(log faces) with mixed degrees, where the face of a corner has
 /// to be looked for. A sweep reads 12 bytes a corner, once and in order. It is bound by the three
 /// comparisons a corner while the table fits the cache, and by the bandwidth of the memory beyond.
+///
+/// # Edits
+///
+/// | edit | looks at | changes |
+/// |---|---|---|
+/// | `set_position` | all corners, in one sweep | those at the vertex, and its name |
+/// | `add_vertex` | | not offered: a vertex is the place of a corner |
+/// | `add_face` | its corners | new corners, a new span |
+/// | `remove_face`, `split_face` | the corners of the face | they, and those of the new face |
+/// | `poke_face` | all corners, in one sweep | the corners of the face, and new faces |
+/// | `split_edge`, `dissolve_edge` | all corners, in one sweep | the faces along the edge, which may move to the end of the table |
+/// | `bisect_edge` | all corners, in one sweep | a corner of each face, and a new face for each |
+/// | `flip_edge` | all corners, in two sweeps | one corner of each face |
+/// | `collapse_edge` | all corners, in one sweep, seldom two | the corners at the vertex that goes; at both ends, if they move |
+/// | `split_vertex` | all corners, in one sweep | the corners that the new vertex gets, and two new faces |
+/// | `remove_vertex` | all corners, in one sweep | the corners of its faces |
+/// | `remove_isolated_vertices` | nothing | nothing: there are none |
+/// | `compact` | everything | everything |
+///
+/// The sweep for an edge sees as well that no vertex is where a new one is to be. To tell a listener
+/// which vertices and sides of a face others have too, `add_face`, `remove_face`, `remove_vertex` and
+/// `split_face` sweep once more. An edit is legal where its own rule holds, and no two vertices would be
+/// one.
 ///
 /// [`set_positions`]: mesh_core::Representation::set_positions
 ///
@@ -55,19 +82,18 @@ use crate::vertex::SoupVertex;
 /// ```
 #[derive(Clone, Debug)]
 pub struct PolygonSoup<P: Probe = Untraced> {
-    pub(crate) corners: Table<Point, P>,
-    pub(crate) spans: FaceSpans<P>,
+    pub(crate) faces: ScannedFaces<SoupVertex, P>,
 }
 
 impl<P: Probe> PolygonSoup<P> {
-    /// Where each corner is, face by face, as it lies in memory.
+    /// Where each corner is, face by face, as it lies in memory, blank ones included.
     pub fn corners(&self) -> &[Point] {
-        self.corners.rows()
+        self.faces.corners.rows()
     }
 
-    /// How the corners fall into faces.
+    /// How the corners fall into faces, deleted ones included.
     pub fn spans(&self) -> &FaceSpans<P> {
-        &self.spans
+        &self.faces.spans
     }
 
     /// Where the corners of `f` are, in order.
@@ -77,13 +103,6 @@ impl<P: Probe> PolygonSoup<P> {
     /// If there is no such face.
     #[inline]
     pub fn face_positions(&self, f: FaceId) -> &[Point] {
-        self.corners.read_range(self.spans.range(f))
-    }
-
-    /// The face of a corner, and the vertices before, at and after it there.
-    pub(crate) fn around(&self, corner: usize) -> (FaceId, [SoupVertex; 3]) {
-        let (face, corners) = self.spans.around(corner);
-        let vertices = corners.map(|corner| SoupVertex::at(*self.corners.read(corner)));
-        (face, vertices)
+        self.faces.face(f)
     }
 }

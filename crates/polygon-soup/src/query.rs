@@ -1,8 +1,7 @@
 //! The nine relations.
 
-use mesh_core::{FaceId, IteratorExt, MeshQuery, Pair, Point, Probe, row};
+use mesh_core::{FaceId, IteratorExt, MeshQuery, Pair, Point, Probe};
 
-use crate::circulate::Sought;
 use crate::mesh::PolygonSoup;
 use crate::vertex::SoupVertex;
 
@@ -18,16 +17,17 @@ impl<P: Probe> MeshQuery for PolygonSoup<P> {
 
     /// In the order in which faces first run along them.
     fn edges(&self) -> impl Iterator<Item = Pair<SoupVertex>> {
-        self.faces().flat_map(|f| self.sides_of(f)).distinct()
+        self.faces().flat_map(|f| self.face_edges(f)).distinct()
     }
 
+    #[inline]
     fn faces(&self) -> impl Iterator<Item = FaceId> {
-        (0..row(self.face_count())).map(FaceId::new)
+        self.faces.handles()
     }
 
     #[inline]
     fn face_count(&self) -> usize {
-        self.spans.len()
+        self.faces.len()
     }
 
     #[inline]
@@ -35,24 +35,20 @@ impl<P: Probe> MeshQuery for PolygonSoup<P> {
         v.position()
     }
 
+    #[inline]
     fn vertex_vertices(&self, v: SoupVertex) -> impl Iterator<Item = SoupVertex> {
-        let corners = self.sweep(Sought::One(v));
-        let beside = corners.flat_map(|corner| {
-            let (_, [before, _, after]) = self.around(corner);
-            [before, after]
-        });
-        beside.distinct()
+        self.faces.vertex_vertices(v)
     }
 
+    #[inline]
     fn vertex_edges(&self, v: SoupVertex) -> impl Iterator<Item = Pair<SoupVertex>> {
-        self.sides_at(Sought::One(v)).distinct()
+        self.vertex_vertices(v)
+            .map(move |other| Pair::new(v, other))
     }
 
-    /// One corner of a face at most is at `v` (I3), so no face comes twice.
     #[inline]
     fn vertex_faces(&self, v: SoupVertex) -> impl Iterator<Item = FaceId> {
-        self.sweep(Sought::One(v))
-            .map(|corner| self.spans.face_of(corner))
+        self.faces.vertex_faces(v)
     }
 
     #[inline]
@@ -60,53 +56,29 @@ impl<P: Probe> MeshQuery for PolygonSoup<P> {
         e.ends()
     }
 
-    /// Whether there is such an edge at all, only the end of the sweep can tell.
+    #[inline]
     fn edge_edges(&self, e: Pair<SoupVertex>) -> impl Iterator<Item = Pair<SoupVertex>> {
-        let sides = self.sides_at(Sought::Two(e.ends()));
-        let mut edges: Vec<_> = sides.distinct().collect();
-        match edges.iter().position(|&edge| edge == e) {
-            Some(itself) => drop(edges.swap_remove(itself)),
-            None => edges.clear(),
-        }
-        edges.into_iter()
+        self.faces.edge_edges(e)
     }
 
-    /// One corner of a face at most is at the first end (I3), so no face comes twice.
+    #[inline]
     fn edge_faces(&self, e: Pair<SoupVertex>) -> impl Iterator<Item = FaceId> {
-        let [a, b] = e.ends();
-        self.sweep(Sought::One(a)).filter_map(move |corner| {
-            let (face, [before, _, after]) = self.around(corner);
-            (before == b || after == b).then_some(face)
-        })
+        self.faces.edge_faces(e)
     }
 
     #[inline]
     fn face_vertices(&self, f: FaceId) -> impl Iterator<Item = SoupVertex> {
-        self.face_positions(f).iter().map(|&p| SoupVertex::at(p))
+        self.faces.face_vertices(f)
     }
 
     #[inline]
     fn face_edges(&self, f: FaceId) -> impl Iterator<Item = Pair<SoupVertex>> {
-        self.sides_of(f)
+        self.faces.face_edges(f)
     }
 
-    /// Every second corner of `f` ends all of its sides, so a sweep need look for no more.
+    #[inline]
     fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
-        let sought = match self.face_positions(f) {
-            &[a, _, c] | &[a, _, c, _] => Sought::Two([a, c].map(SoupVertex::at)),
-            many => {
-                let every_second = many.iter().step_by(2);
-                Sought::Many(every_second.map(|&p| SoupVertex::at(p)).collect())
-            }
-        };
-        let mut sides: Vec<Pair<SoupVertex>> = self.sides_of(f).collect();
-        sides.sort_unstable();
-        let is_side = move |a, b| sides.binary_search(&Pair::new(a, b)).is_ok();
-        let faces = self.sweep(sought).filter_map(move |corner| {
-            let (face, [before, at, after]) = self.around(corner);
-            (face != f && (is_side(before, at) || is_side(at, after))).then_some(face)
-        });
-        faces.distinct()
+        self.faces.face_faces(f)
     }
 
     fn vertex_rows(&self) -> usize {
@@ -118,13 +90,13 @@ impl<P: Probe> MeshQuery for PolygonSoup<P> {
     }
 
     fn face_rows(&self) -> usize {
-        self.face_count()
+        self.faces.spans.len()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{PolygonMesh, Representation, VertexId};
+    use mesh_core::{PolygonMesh, Representation, Sought, Traced, VertexId};
 
     use super::*;
 
@@ -194,6 +166,46 @@ mod tests {
         let stranger = SoupVertex::at(Point::splat(9.0));
         assert_eq!(soup.vertex_vertices(stranger).next(), None);
         assert_eq!(soup.vertex_edges(stranger).next(), None);
+    }
+
+    /// A fan of `sides` triangles around the origin.
+    fn fan(sides: u32) -> PolygonSoup {
+        let rim = (0..sides).map(|i| Point::new(1.0, i as f32, 0.0));
+        let positions: Vec<Point> = std::iter::once(Point::ZERO).chain(rim).collect();
+        let faces = (1..sides).map(|i| [i, i + 1, 0]);
+        PolygonSoup::from_polygons(&PolygonMesh::new(positions, faces).expect("valid"))
+            .expect("held")
+    }
+
+    #[test]
+    fn a_sweep_finds_the_corners_of_whole_and_of_broken_blocks() {
+        for sides in [2, 10, 11, 12, 21, 22, 23, 24, 33, 100] {
+            let soup = fan(sides);
+            let hub = SoupVertex::at(Point::ZERO);
+            let last = SoupVertex::at(Point::new(1.0, (sides - 1) as f32, 0.0));
+            let corners: Vec<usize> = soup.faces.scan(Sought::One(hub)).collect();
+            let expected: Vec<usize> = (2..soup.corners().len()).step_by(3).collect();
+            assert_eq!(corners, expected, "{sides} sides");
+            let either = soup.faces.scan(Sought::Two([hub, last])).count();
+            let far = [1, 2, 3].map(|i| SoupVertex::at(Point::splat(i as f32)));
+            let many = [hub, last, far[0], far[1], far[2]];
+            let many = soup.faces.scan(Sought::all(&many)).count();
+            assert_eq!((either, many), (expected.len() + 1, expected.len() + 1));
+            let nowhere = SoupVertex::at(Point::NEG_ONE);
+            assert_eq!(soup.faces.scan(Sought::One(nowhere)).next(), None);
+        }
+    }
+
+    #[test]
+    fn a_query_reads_every_corner_once_and_looks_around_its_hits() {
+        let probe = Traced::default();
+        let soup = fan(101);
+        let far = SoupVertex::at(Point::new(1.0, 50.0, 0.0));
+        let soup = soup.probed(probe.clone());
+        assert_eq!(soup.vertex_faces(far).count(), 2);
+        assert_eq!(probe.take().len(), 300);
+        assert_eq!(soup.vertex_vertices(far).count(), 3);
+        assert_eq!(probe.take().len(), 300 + 2 * 3);
     }
 
     #[test]

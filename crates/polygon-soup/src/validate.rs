@@ -1,30 +1,36 @@
 //! One check for each invariant.
 
-use mesh_core::{InvariantError, IteratorExt, MeshQuery, Probe};
+use mesh_core::{InvariantError, IteratorExt, MeshQuery, Probe, ScannedVertex};
 
 use crate::mesh::PolygonSoup;
 use crate::vertex::SoupVertex;
 
 impl<P: Probe> PolygonSoup<P> {
+    /// Checks I1, then I4, which relies on it, and the faces that are there.
     pub(crate) fn check_invariants(&self) -> Result<(), InvariantError> {
         self.check_spans()?;
+        self.check_holes()?;
         self.check_zeros()?;
         self.check_faces()
     }
 
     /// I1: the faces divide the corners among them, at least three each.
     fn check_spans(&self) -> Result<(), InvariantError> {
-        let checked = self.spans.check(self.corners.len());
+        let checked = self.spans().check(self.corners().len());
         checked.map_err(|detail| InvariantError::new("I1", detail))
     }
 
-    /// I2: no coordinate is −0.
+    /// I4: holes are faces, and blank corners are those of no face.
+    fn check_holes(&self) -> Result<(), InvariantError> {
+        let checked = self.faces.check_holes();
+        checked.map_err(|detail| InvariantError::new("I4", detail))
+    }
+
+    /// I2: no coordinate is −0, nor is x that of a blank corner unless all are.
     fn check_zeros(&self) -> Result<(), InvariantError> {
-        let stored = self.corners.rows().iter();
-        match stored
-            .enumerate()
-            .find(|(_, p)| !SoupVertex::at(**p).holds(p))
-        {
+        let stored = self.corners().iter().enumerate();
+        let mut stored = stored.filter(|(_, p)| !SoupVertex::BLANK.is_at(p));
+        match stored.find(|(_, p)| !SoupVertex::at(**p).is_at(p)) {
             Some((corner, point)) => {
                 let detail = format!("corner {corner} is at {point}, with a zero below zero");
                 Err(InvariantError::new("I2", detail))
@@ -48,7 +54,7 @@ impl<P: Probe> PolygonSoup<P> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{FaceSpans, Point, PolygonMesh, Representation, Table};
+    use mesh_core::{FaceId, FaceSpans, MeshEdit, Point, PolygonMesh, Representation, Table};
 
     use super::*;
 
@@ -72,12 +78,12 @@ mod tests {
     #[test]
     fn i1_corners_that_no_face_has() {
         let mut broken = soup(&[&[0, 1, 2], &[0, 2, 3]]);
-        broken.spans = FaceSpans::Uniform {
+        broken.faces.spans = FaceSpans::Uniform {
             degree: 3,
             faces: 1,
         };
         assert_eq!(fault(&broken), "I1 fails: corners 3..6 belong to no face");
-        broken.spans = FaceSpans::Uniform {
+        broken.faces.spans = FaceSpans::Uniform {
             degree: 2,
             faces: 3,
         };
@@ -87,22 +93,22 @@ mod tests {
     #[test]
     fn i1_offsets_that_do_not_divide_the_corners() {
         let mut broken = soup(&[&[0, 1, 2, 3], &[0, 1, 2]]);
-        broken.spans = mixed(&[0, 4, 6]);
+        broken.faces.spans = mixed(&[0, 4, 6]);
         assert_eq!(fault(&broken), "I1 fails: f1 has the corners 4..6 of 7");
-        broken.spans = mixed(&[0, 4, 2]);
+        broken.faces.spans = mixed(&[0, 4, 2]);
         assert_eq!(fault(&broken), "I1 fails: f1 has the corners 4..2 of 7");
-        broken.spans = mixed(&[0, 4, 8]);
+        broken.faces.spans = mixed(&[0, 4, 8]);
         assert_eq!(fault(&broken), "I1 fails: f1 has the corners 4..8 of 7");
-        broken.spans = mixed(&[1, 4, 7]);
+        broken.faces.spans = mixed(&[1, 4, 7]);
         assert_eq!(fault(&broken), "I1 fails: f0 has the corners 1..4 of 7");
-        broken.spans = mixed(&[]);
+        broken.faces.spans = mixed(&[]);
         assert_eq!(fault(&broken), "I1 fails: the offsets lack even a first");
     }
 
     #[test]
     fn i2_a_zero_below_zero() {
         let mut broken = soup(&[&[0, 1, 2, 3]]);
-        broken.corners.rows_mut()[3].z = -0.0;
+        broken.faces.corners.rows_mut()[3].z = -0.0;
         let expected = "I2 fails: corner 3 is at [0, 1, -0], with a zero below zero";
         assert_eq!(fault(&broken), expected);
     }
@@ -110,10 +116,24 @@ mod tests {
     #[test]
     fn i3_two_corners_at_one_place() {
         let mut broken = soup(&[&[0, 1, 2], &[0, 2, 3]]);
-        broken.corners.rows_mut()[5] = SQUARE[0];
+        broken.faces.corners.rows_mut()[5] = SQUARE[0];
         assert_eq!(
             fault(&broken),
             "I3 fails: two corners of f1 are at (0, 0, 0)"
         );
+    }
+    #[test]
+    fn i4_blank_corners_of_faces_and_others_of_none() {
+        let mut broken = soup(&[&[0, 1, 2], &[0, 2, 3]]);
+        broken.faces.holes.dig(1);
+        let expected = "I4 fails: corner 3 is not blank, and no face has it";
+        assert_eq!(fault(&broken), expected);
+        let mut broken = soup(&[&[0, 1, 2], &[0, 2, 3]]);
+        broken.remove_face(FaceId::new(0), &mut ()).expect("there");
+        assert_eq!(broken.validate(), Ok(()));
+        let blank = broken.corners()[0];
+        broken.faces.corners.rows_mut()[4] = blank;
+        let expected = "I4 fails: corner 4 is blank, and a face has it";
+        assert_eq!(fault(&broken), expected);
     }
 }

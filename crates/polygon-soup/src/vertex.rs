@@ -3,7 +3,8 @@
 use std::fmt;
 use std::hash::{Hash, Hasher};
 
-use mesh_core::{Handle, HashHandleMap, Point};
+use mesh_core::{Handle, HashHandleMap, Point, ScannedVertex};
+use rustc_hash::FxHashSet;
 
 /// A vertex of a soup: its coordinates, as bits, with −0 as 0.
 ///
@@ -17,7 +18,11 @@ impl SoupVertex {
     #[inline]
     pub fn at(point: Point) -> Self {
         // −0 + 0 is 0; every other number stays as it is.
-        Self(point.to_array().map(|x| (x + 0.0).to_bits()))
+        let [x, y, z] = point.to_array().map(|x| (x + 0.0).to_bits());
+        // Of the many bits that are no number, one stands for deleted corners: who hands them in means
+        // no number, and gets others of these.
+        let x = if x == BLANK { f32::NAN.to_bits() } else { x };
+        Self([x, y, z])
     }
 
     /// Where it is.
@@ -25,15 +30,43 @@ impl SoupVertex {
     pub fn position(self) -> Point {
         Point::from_array(self.0.map(f32::from_bits))
     }
+}
 
-    /// Whether `corner`, a row of the corner table, is at this vertex.
-    ///
-    /// I2 has made the zeros alike, so bits are compared as they lie; and all three of them, since
-    /// a branch after the first costs more than the two comparisons that it saves.
+/// The x of a blank corner, a quiet NaN: [`SoupVertex::at`] makes no vertex of it.
+const BLANK: u32 = u32::MAX;
+
+/// A corner keeps its coordinates as they lie in the name: I2 has made the zeros alike.
+impl ScannedVertex for SoupVertex {
+    type Corner = Point;
+    type Set = FxHashSet<Self>;
+    const BLANK: Self = Self([BLANK; 3]);
+    const IS_PLACE: bool = true;
+
     #[inline]
-    pub(crate) fn holds(self, corner: &Point) -> bool {
+    fn of(corner: Point) -> Self {
+        Self(corner.to_array().map(f32::to_bits))
+    }
+
+    #[inline]
+    fn corner(self) -> Point {
+        self.position()
+    }
+
+    /// All three coordinates are compared: a branch after the first costs more than the two
+    /// comparisons that it saves.
+    #[inline]
+    fn is_at(self, corner: &Point) -> bool {
         let [x, y, z] = self.0;
         (corner.x.to_bits() == x) & (corner.y.to_bits() == y) & (corner.z.to_bits() == z)
+    }
+
+    fn set(vertices: impl Iterator<Item = Self>) -> FxHashSet<Self> {
+        vertices.collect()
+    }
+
+    #[inline]
+    fn is_in(corner: &Point, set: &FxHashSet<Self>) -> bool {
+        set.contains(&Self::of(*corner))
     }
 }
 

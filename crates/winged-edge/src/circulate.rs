@@ -46,7 +46,7 @@ impl<'a, P: Probe> Iterator for RunsFrom<'a, P> {
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
         let e = self.at?;
-        let run = Run::from(self.mesh.edge(e), self.v);
+        let run = Run::from(self.mesh.record(e), self.v);
         let turned = Some(run.ccw());
         self.at = if turned == self.first { None } else { turned };
         Some((e, run))
@@ -59,7 +59,7 @@ impl<'a, P: Probe> Iterator for RunsFrom<'a, P> {
         };
         let mut folded = init;
         loop {
-            let run = Run::from(self.mesh.edge(e), self.v);
+            let run = Run::from(self.mesh.record(e), self.v);
             folded = f(folded, (e, run));
             e = run.ccw();
             if e == first {
@@ -84,7 +84,7 @@ impl<'a, P: Probe> Iterator for RunsAlong<'a, P> {
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
         let e = self.at?;
-        let run = Run::along(self.mesh.edge(e), self.f);
+        let run = Run::along(self.mesh.record(e), self.f);
         self.at = (run.next() != self.first).then_some(run.next());
         Some((e, run))
     }
@@ -96,7 +96,7 @@ impl<'a, P: Probe> Iterator for RunsAlong<'a, P> {
         };
         let mut folded = init;
         loop {
-            let run = Run::along(self.mesh.edge(e), self.f);
+            let run = Run::along(self.mesh.record(e), self.f);
             folded = f(folded, (e, run));
             e = run.next();
             if e == self.first {
@@ -142,7 +142,7 @@ impl<P: Probe> Iterator for EdgeEdges<'_, P> {
             (self.v, self.at) = self.then.take()?;
         }
         let edge = self.at;
-        self.at = Run::from(self.mesh.edge(edge), self.v).ccw();
+        self.at = Run::from(self.mesh.record(edge), self.v).ccw();
         Some(edge)
     }
 
@@ -159,7 +159,7 @@ impl<P: Probe> Iterator for EdgeEdges<'_, P> {
         loop {
             while at != e {
                 folded = f(folded, at);
-                at = Run::from(mesh.edge(at), v).ccw();
+                at = Run::from(mesh.record(at), v).ccw();
             }
             match then.take() {
                 Some(other) => (v, at) = other,

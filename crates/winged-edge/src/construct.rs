@@ -1,14 +1,14 @@
 //! In from polygons, and out again.
 
 use mesh_core::{
-    BuildError, Capabilities, Counts, EdgeId, FaceId, FaceList, InvariantError, MemoryFootprint,
-    MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, RowMap, Slot,
-    Table, TwinPairs, VertexId, row,
+    BuildError, Capabilities, Counts, EdgeId, FaceId, FaceList, Holes, InvariantError,
+    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
+    RowMap, Slot, Table, TwinPairs, VertexId, row,
 };
 
 use crate::edge::{Edge, Run};
 use crate::mesh::WingedEdgeMesh;
-use crate::wings::{Side, Wings};
+use crate::wings::Side;
 
 impl Representation for WingedEdgeMesh {
     const NAME: &'static str = "winged-edge";
@@ -30,22 +30,32 @@ impl Representation for WingedEdgeMesh {
         if (!closed && !draft.close_boundary_loops()) || !draft.every_vertex_is_one_fan() {
             return Err(refusal());
         }
-        Ok(Self {
-            positions: Table::new("positions", "vertex", polygons.positions().to_vec()),
-            spokes: Table::new("spokes", "vertex", draft.spokes),
-            edges: Table::new("edges", "edge", draft.edges),
-            sides: Table::new("sides", "face", draft.sides),
-        })
+        Ok(Self::of(
+            polygons.positions().to_vec(),
+            draft.spokes,
+            draft.edges,
+            draft.sides,
+        ))
     }
 
+    /// Without the holes: what remains moves up in order.
     fn to_polygons(&self) -> PolygonMesh {
+        const FEW: &str = "no more corners than sides of edges";
         let mut faces = FaceList::with_capacity(2 * self.edge_count());
-        for f in self.faces() {
-            faces
-                .push(self.face_vertices(f))
-                .expect("no more corners than sides of edges");
+        if self.vertex_holes.is_empty() {
+            for f in self.faces() {
+                faces.push(self.face_vertices(f)).expect(FEW);
+            }
+            return PolygonMesh::from_faces(self.positions().to_vec(), faces).expect("I7");
         }
-        PolygonMesh::from_faces(self.positions().to_vec(), faces).expect("I7")
+        let rows = self.vertex_holes.new_rows(self.positions.len());
+        for f in self.faces() {
+            let corners = self.face_vertices(f);
+            let corners = corners.map(|v| VertexId::new(rows[v.index()]));
+            faces.push(corners).expect(FEW);
+        }
+        let positions = self.vertices().map(|v| self.positions()[v.index()]);
+        PolygonMesh::from_faces(positions.collect(), faces).expect("I7")
     }
 
     fn vertex_name(_: &PolygonMesh, v: VertexId) -> VertexId {
@@ -66,7 +76,11 @@ impl Representation for WingedEdgeMesh {
             spokes,
             edges,
             sides,
+            vertex_holes,
+            edge_holes,
+            face_holes,
         } = self;
+        let holes = [vertex_holes, edge_holes, face_holes];
         [
             positions.bytes(),
             spokes.bytes(),
@@ -74,6 +88,7 @@ impl Representation for WingedEdgeMesh {
             sides.bytes(),
         ]
         .into_iter()
+        .chain(holes.into_iter().filter_map(Holes::bytes))
         .collect()
     }
 
@@ -90,7 +105,30 @@ impl Representation for WingedEdgeMesh {
             positions: self.positions.probed(probe.clone()),
             spokes: self.spokes.probed(probe.clone()),
             edges: self.edges.probed(probe.clone()),
-            sides: self.sides.probed(probe),
+            sides: self.sides.probed(probe.clone()),
+            vertex_holes: self.vertex_holes.probed(probe.clone()),
+            edge_holes: self.edge_holes.probed(probe.clone()),
+            face_holes: self.face_holes.probed(probe),
+        }
+    }
+}
+
+impl WingedEdgeMesh {
+    /// A mesh of these rows, without holes.
+    pub(crate) fn of(
+        positions: Vec<Point>,
+        spokes: Vec<Slot<EdgeId>>,
+        edges: Vec<Edge>,
+        sides: Vec<EdgeId>,
+    ) -> Self {
+        Self {
+            positions: Table::new("positions", "vertex", positions),
+            spokes: Table::new("spokes", "vertex", spokes),
+            edges: Table::new("edges", "edge", edges),
+            sides: Table::new("sides", "face", sides),
+            vertex_holes: Holes::none("vertex holes"),
+            edge_holes: Holes::none("edge holes"),
+            face_holes: Holes::none("face holes"),
         }
     }
 }
@@ -105,15 +143,9 @@ struct Draft {
 impl Draft {
     /// Writes every corner's side into its edge; sides without a face stay blank, but for their ends.
     fn link(vertices: usize, faces: &FaceList, pairs: &TwinPairs) -> Self {
-        let blank = Edge {
-            ends: [VertexId::new(0); 2],
-            faces: [Slot::NONE; 2],
-            next: Wings::BLANK,
-            prev: Wings::BLANK,
-        };
         let mut draft = Self {
             spokes: vec![Slot::NONE; vertices],
-            edges: vec![blank; pairs.edge_count],
+            edges: vec![Edge::BLANK; pairs.edge_count],
             sides: Vec::with_capacity(faces.len()),
         };
         let halves = pairs.half_of_corner.as_slice();
@@ -166,7 +198,7 @@ impl Draft {
     /// Links the blank sides into loops; false if two of them arrive at one vertex.
     fn close_boundary_loops(&mut self) -> bool {
         for e in 0..self.edges.len() {
-            let Some(side) = blank_side(&self.edges[e]) else {
+            let Some(side) = self.edges[e].blank_side() else {
                 continue;
             };
             let target = self.edges[e].ends[side.other().index()];
@@ -186,7 +218,7 @@ impl Draft {
             *spoke = Slot::some(e);
         }
         for e in 0..self.edges.len() {
-            let Some(side) = blank_side(&self.edges[e]) else {
+            let Some(side) = self.edges[e].blank_side() else {
                 continue;
             };
             // As many blank sides arrive at a vertex as leave it, and one leaves this one.
@@ -219,10 +251,4 @@ impl Draft {
         }
         met == 2 * self.edges.len()
     }
-}
-
-/// The side of an edge that has no face.
-fn blank_side(edge: &Edge) -> Option<Side> {
-    let mut sides = [Side::LEFT, Side::RIGHT].into_iter();
-    sides.find(|&side| edge.faces[side.index()] == Slot::NONE)
 }

@@ -26,7 +26,40 @@ pub struct Edge {
     pub(crate) prev: Wings,
 }
 
+/// Where a deleted edge starts and ends: no row of any table has this number.
+const NOWHERE: VertexId = VertexId::new(u32::MAX);
+
+/// The side of a deleted face: no row of any table has this number.
+pub(crate) const NO_EDGE: EdgeId = EdgeId::new(u32::MAX);
+
 impl Edge {
+    /// Nothing linked yet, from the first vertex to itself.
+    pub(crate) const BLANK: Self = Self {
+        ends: [VertexId::new(0); 2],
+        faces: [Slot::NONE; 2],
+        next: Wings::BLANK,
+        prev: Wings::BLANK,
+    };
+
+    /// What the row of a deleted edge holds.
+    pub(crate) const HOLE: Self = Self {
+        ends: [NOWHERE; 2],
+        ..Self::BLANK
+    };
+
+    /// Whether the edge is deleted.
+    #[inline(always)]
+    pub(crate) fn is_hole(&self) -> bool {
+        self.ends[0] == NOWHERE
+    }
+
+    /// The side without a face, if there is one.
+    #[inline(always)]
+    pub(crate) fn blank_side(&self) -> Option<Side> {
+        let mut sides = [Side::LEFT, Side::RIGHT].into_iter();
+        sides.find(|&side| self.faces[side.index()] == Slot::NONE)
+    }
+
     /// The vertex where it starts, and the one where it ends.
     #[inline]
     pub fn ends(&self) -> [VertexId; 2] {
@@ -62,6 +95,12 @@ pub(crate) struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
+    /// `edge` run along `side`.
+    #[inline(always)]
+    pub(crate) fn on(edge: &'a Edge, side: Side) -> Self {
+        Self { edge, side }
+    }
+
     /// `edge`, which has `v`, run away from it: the side test of a walk around a vertex.
     #[inline(always)]
     pub(crate) fn from(edge: &'a Edge, v: VertexId) -> Self {
@@ -74,6 +113,18 @@ impl<'a> Run<'a> {
     pub(crate) fn along(edge: &'a Edge, f: FaceId) -> Self {
         let side = Side::right_if(edge.faces[0] != Slot::some(f));
         Self { edge, side }
+    }
+
+    /// The side that it runs along.
+    #[inline(always)]
+    pub(crate) fn side(self) -> Side {
+        self.side
+    }
+
+    /// The same edge run back along its other side.
+    #[inline(always)]
+    pub(crate) fn back(self) -> Self {
+        Self::on(self.edge, self.side.other())
     }
 
     // No step waits for these four. What the side test has read already is selected, for that is one
@@ -127,6 +178,27 @@ impl<'a> Run<'a> {
     #[inline(always)]
     pub(crate) fn cw(self) -> EdgeId {
         self.edge.next.on(self.side.other())
+    }
+}
+
+/// A run by name, which may be kept while the records are written: what a half-edge is elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct RunId {
+    pub(crate) edge: EdgeId,
+    pub(crate) side: Side,
+}
+
+impl RunId {
+    /// `edge` run along `side`.
+    #[inline(always)]
+    pub(crate) const fn on(edge: EdgeId, side: Side) -> Self {
+        Self { edge, side }
+    }
+
+    /// The same edge run back along its other side.
+    #[inline(always)]
+    pub(crate) fn back(self) -> Self {
+        Self::on(self.edge, self.side.other())
     }
 }
 

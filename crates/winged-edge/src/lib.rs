@@ -20,6 +20,25 @@
 //!
 //! Vertices, edges and faces are rows, so that counting and listing them reads nothing.
 //!
+//! | edit | cost | which records change |
+//! |---|---|---|
+//! | `set_position`, `add_vertex` | O(1) | one vertex |
+//! | `add_face` | O(degree), and the valence of corners that get an edge | its sides, and at each corner the boundary edges |
+//! | `remove_face` | O(degree) | its sides, and at each corner the boundary edges |
+//! | `remove_vertex` | O(corners of its faces) | its faces and edges, their outline, the boundary edges there |
+//! | `split_edge` | O(1) | the edge, a new one, the two wings at its end |
+//! | `bisect_edge` | O(1) | these, and all sides of its triangles |
+//! | `poke_face` | O(degree) | its sides, and as many new edges |
+//! | `split_face` | O(degree + valence) | the sides of the smaller part, a new edge, two wings |
+//! | `dissolve_edge` | O(degrees) | the edge, its four wings, the sides of the smaller face |
+//! | `flip_edge` | O(smaller valence) of the third corners | the edge and its four wings |
+//! | `collapse_edge` | O(valences) of its ends; O(1) at an end of three triangles | the edges at the end that goes, the sides of its triangles |
+//! | `split_vertex` | O(valence) | the edges that move, those to the sides, three new ones |
+//! | `remove_isolated_vertices`, `compact` | O(rows) | all |
+//!
+//! Both wings of both sides are stored, so an edge is linked and unlinked without a search. What costs
+//! a walk is to ask whether an edit is legal, and to give the edges at a vertex another end.
+//!
 //! # The side test
 //!
 //! An edge lies in the walks around both of its ends and both of its faces, so every step has to
@@ -64,6 +83,7 @@
 mod circulate;
 mod construct;
 mod edge;
+mod edit;
 mod mesh;
 mod query;
 mod refine;

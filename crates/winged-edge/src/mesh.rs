@@ -1,8 +1,8 @@
 //! The tables, their invariants, and the classic operators.
 
-use mesh_core::{EdgeId, FaceId, Point, Probe, Slot, Table, Untraced, VertexId};
+use mesh_core::{EdgeId, FaceId, Holes, Point, Probe, Slot, Table, Untraced, VertexId};
 
-use crate::edge::{Edge, Run};
+use crate::edge::{Edge, NO_EDGE, Run};
 
 /// A mesh of edges that know their ends, their faces and the four edges around them.
 ///
@@ -38,17 +38,23 @@ use crate::edge::{Edge, Run};
 /// - I6  All edges at `v` are one cycle of turns around it: every vertex is manifold.
 /// - I7  `side(f)` has face `f`, and its cycle names at least three vertices, each once.
 /// - I8  No two edges have the same ends.
+/// - I9  A deleted vertex has no spoke, a deleted edge starts nowhere, a deleted face has no side: the
+///   last two hold a number that no row has. Nothing that is there names what is deleted.
 ///
 /// # Memory
 ///
 /// 12 bytes a vertex for its position and 4 for its spoke, 32 an edge, 4 a face: 120 bytes, or 30
-/// words, per vertex of a large closed triangle mesh.
+/// words, per vertex of a large closed triangle mesh. Once something was deleted, also a bit for each
+/// row up to the last hole.
 #[derive(Clone, Debug)]
 pub struct WingedEdgeMesh<P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) spokes: Table<Slot<EdgeId>, P>,
     pub(crate) edges: Table<Edge, P>,
     pub(crate) sides: Table<EdgeId, P>,
+    pub(crate) vertex_holes: Holes<P>,
+    pub(crate) edge_holes: Holes<P>,
+    pub(crate) face_holes: Holes<P>,
 }
 
 /// What an edge knows. Each panics, and names the edge, if the mesh does not have it; all O(1), one
@@ -57,6 +63,17 @@ impl<P: Probe> WingedEdgeMesh<P> {
     /// The record of `e`.
     #[inline]
     pub fn edge(&self, e: EdgeId) -> &Edge {
+        let edge = self.record(e);
+        // The first half does not change within a sweep, and leaves the loop.
+        if !self.edge_holes.is_empty() && edge.is_hole() {
+            no_such_edge(e);
+        }
+        edge
+    }
+
+    /// The same for walks, which never come to a deleted edge.
+    #[inline]
+    pub(crate) fn record(&self, e: EdgeId) -> &Edge {
         self.edges.read(e.index())
     }
 
@@ -121,7 +138,11 @@ impl<P: Probe> WingedEdgeMesh<P> {
     /// If there is no such vertex.
     #[inline]
     pub fn spoke(&self, v: VertexId) -> Option<EdgeId> {
-        self.spokes.read(v.index()).get()
+        let spoke = self.spokes.read(v.index()).get();
+        if spoke.is_none() && self.vertex_holes.has(v.index()) {
+            no_such_vertex(v);
+        }
+        spoke
     }
 
     /// An edge of `f`.
@@ -131,8 +152,30 @@ impl<P: Probe> WingedEdgeMesh<P> {
     /// If there is no such face.
     #[inline]
     pub fn side(&self, f: FaceId) -> EdgeId {
-        *self.sides.read(f.index())
+        let side = *self.sides.read(f.index());
+        if !self.face_holes.is_empty() && side == NO_EDGE {
+            no_such_face(f);
+        }
+        side
     }
+}
+
+#[cold]
+#[inline(never)]
+pub(crate) fn no_such_vertex(v: VertexId) -> ! {
+    panic!("no vertex {v}: it was deleted")
+}
+
+#[cold]
+#[inline(never)]
+fn no_such_edge(e: EdgeId) -> ! {
+    panic!("no edge {e}: it was deleted")
+}
+
+#[cold]
+#[inline(never)]
+fn no_such_face(f: FaceId) -> ! {
+    panic!("no face {f}: it was deleted")
 }
 
 /// Moves from an edge that know where they stand: Baumgart's ECCW, ECW and OTHER. Each panics if the

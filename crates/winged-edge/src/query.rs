@@ -1,9 +1,9 @@
 //! The nine relations.
 
-use mesh_core::{DistinctWalk, EdgeId, FaceId, MeshQuery, Point, Probe, VertexId, row};
+use mesh_core::{DistinctWalk, EdgeId, FaceId, MeshQuery, Point, Probe, Slot, VertexId};
 
 use crate::circulate::EdgeEdges;
-use crate::mesh::WingedEdgeMesh;
+use crate::mesh::{WingedEdgeMesh, no_such_vertex};
 
 impl<P: Probe> MeshQuery for WingedEdgeMesh<P> {
     type Vertex = VertexId;
@@ -12,34 +12,39 @@ impl<P: Probe> MeshQuery for WingedEdgeMesh<P> {
 
     #[inline]
     fn vertices(&self) -> impl Iterator<Item = VertexId> {
-        (0..row(self.positions.len())).map(VertexId::new)
+        self.vertex_holes.handles(self.positions.len())
     }
 
     #[inline]
     fn edges(&self) -> impl Iterator<Item = EdgeId> {
-        (0..row(self.edges.len())).map(EdgeId::new)
+        self.edge_holes.handles(self.edges.len())
     }
 
     #[inline]
     fn faces(&self) -> impl Iterator<Item = FaceId> {
-        (0..row(self.sides.len())).map(FaceId::new)
+        self.face_holes.handles(self.sides.len())
     }
 
     fn vertex_count(&self) -> usize {
-        self.positions.len()
+        self.positions.len() - self.vertex_holes.len()
     }
 
     fn edge_count(&self) -> usize {
-        self.edges.len()
+        self.edges.len() - self.edge_holes.len()
     }
 
     fn face_count(&self) -> usize {
-        self.sides.len()
+        self.sides.len() - self.face_holes.len()
     }
 
     #[inline]
     fn position(&self, v: VertexId) -> Point {
-        *self.positions.read(v.index())
+        let position = *self.positions.read(v.index());
+        // After the read, which then does not wait; without holes one comparison, the same for all.
+        if self.vertex_holes.has(v.index()) {
+            no_such_vertex(v);
+        }
+        position
     }
 
     /// Counter-clockwise; from the boundary, if `v` is on one.
@@ -71,7 +76,7 @@ impl<P: Probe> MeshQuery for WingedEdgeMesh<P> {
 
     #[inline]
     fn edge_faces(&self, e: EdgeId) -> impl Iterator<Item = FaceId> {
-        self.edge(e).faces().into_iter().flatten()
+        self.edge(e).faces.into_iter().filter_map(Slot::get)
     }
 
     #[inline]
@@ -87,6 +92,13 @@ impl<P: Probe> MeshQuery for WingedEdgeMesh<P> {
     #[inline]
     fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
         DistinctWalk::new(self.runs_along(f).map(|(_, run)| run.across()))
+    }
+
+    /// A walk around `a`.
+    #[inline]
+    fn edge_between(&self, a: VertexId, b: VertexId) -> Option<EdgeId> {
+        let mut runs = self.runs_from(a);
+        runs.find_map(|(e, run)| (run.target() == b).then_some(e))
     }
 
     fn vertex_rows(&self) -> usize {

@@ -4,11 +4,12 @@ use std::collections::HashSet;
 
 use mesh_core::{EdgeId, InvariantError, MeshQuery, Slot};
 
-use crate::edge::Run;
+use crate::edge::{Edge, NO_EDGE, Run};
 use crate::mesh::WingedEdgeMesh;
 
-/// Checks I1 to I8 in turn; the later ones rely on the earlier ones.
+/// Checks I9 and I1 to I8 in turn; the later ones rely on the earlier ones.
 pub(crate) fn validate(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+    holes_are_marked(mesh)?;
     names_exist(mesh)?;
     sides_differ(mesh)?;
     ends_meet(mesh)?;
@@ -32,24 +33,71 @@ fn runs(mesh: &WingedEdgeMesh) -> impl Iterator<Item = (EdgeId, Run<'_>)> {
     })
 }
 
-/// I1, its second half: without it no other check could walk.
+/// Each edge with its record.
+fn records(mesh: &WingedEdgeMesh) -> impl Iterator<Item = (EdgeId, &Edge)> {
+    mesh.edges().map(|e| (e, mesh.edge(e)))
+}
+
+/// I9, its first half: the rows that are marked as deleted are the holes.
+fn holes_are_marked(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+    let [vertices, edges, faces] = [mesh.spokes.len(), mesh.edges.len(), mesh.sides.len()];
+    for (holes, rows) in [
+        (&mesh.vertex_holes, vertices),
+        (&mesh.edge_holes, edges),
+        (&mesh.face_holes, faces),
+    ] {
+        if let Err(detail) = holes.check(rows) {
+            return fails("I9", detail);
+        }
+    }
+    let spoke_kept = |&v: &usize| mesh.vertex_holes.has(v) && mesh.spoke_rows()[v] != Slot::NONE;
+    if let Some(v) = (0..vertices).find(spoke_kept) {
+        return fails("I9", format!("v{v} is deleted, but has a spoke"));
+    }
+    let edge_differs = |&e: &usize| mesh.edge_holes.has(e) != mesh.edge_records()[e].is_hole();
+    if let Some(e) = (0..edges).find(edge_differs) {
+        return fails(
+            "I9",
+            format!("e{e} is marked as deleted, or a hole: not both"),
+        );
+    }
+    let face_differs = |&f: &usize| mesh.face_holes.has(f) != (mesh.side_rows()[f] == NO_EDGE);
+    match (0..faces).find(face_differs) {
+        Some(f) => fails(
+            "I9",
+            format!("f{f} is marked as deleted, or a hole: not both"),
+        ),
+        None => Ok(()),
+    }
+}
+
+/// I1, its second half, and that of I9: without it no other check could walk.
 fn names_exist(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
-    let [vertices, edges, faces] = [mesh.vertex_count(), mesh.edge_count(), mesh.face_count()];
-    if mesh.positions.len() != mesh.spokes.len() {
+    let [vertices, edges, faces] = [mesh.positions.len(), mesh.edges.len(), mesh.sides.len()];
+    if vertices != mesh.spokes.len() {
         let spokes = mesh.spokes.len();
         return fails("I1", format!("{spokes} spokes for {vertices} vertices"));
     }
-    for (e, edge) in mesh.edges().zip(mesh.edge_records()) {
+    let has_edge = |e: EdgeId| e.index() < edges;
+    for (e, edge) in records(mesh) {
         let ends = edge.ends().iter().all(|v| v.index() < vertices);
         let mut wings = edge.next().into_iter().chain(edge.prev());
         let mut sides = edge.faces().into_iter().flatten();
-        if !ends || !wings.all(|w| w.index() < edges) || !sides.all(|f| f.index() < faces) {
+        if !ends || !wings.all(has_edge) || !sides.all(|f| f.index() < faces) {
             return fails("I1", format!("{e} names what is not there: {edge:?}"));
         }
+        let ends = edge.ends().iter().any(|v| mesh.vertex_holes.has(v.index()));
+        let mut wings = edge.next().into_iter().chain(edge.prev());
+        let mut sides = edge.faces().into_iter().flatten();
+        let face = sides.any(|f| mesh.face_holes.has(f.index()));
+        if ends || face || wings.any(|w| mesh.edge_holes.has(w.index())) {
+            return fails("I9", format!("{e} names what is deleted: {edge:?}"));
+        }
     }
-    let spokes = mesh.spoke_rows().iter().filter_map(|slot| slot.get());
-    let mut named = spokes.chain(mesh.side_rows().iter().copied());
-    match named.find(|e| e.index() >= edges) {
+    let spokes = mesh.vertices().filter_map(|v| mesh.spoke(v));
+    let mut named = spokes.chain(mesh.faces().map(|f| mesh.side(f)));
+    match named.find(|&e| !has_edge(e) || mesh.edge_holes.has(e.index())) {
+        Some(e) if has_edge(e) => fails("I9", format!("{e} is named but deleted")),
         Some(e) => fails("I1", format!("{e} is named but not there")),
         None => Ok(()),
     }
@@ -57,7 +105,7 @@ fn names_exist(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
 
 /// I1, its first half.
 fn sides_differ(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
-    for (e, edge) in mesh.edges().zip(mesh.edge_records()) {
+    for (e, edge) in records(mesh) {
         let ([start, end], [left, right]) = (edge.ends(), edge.faces());
         if start == end {
             return fails("I1", format!("{e} runs from {start} to itself"));
@@ -134,7 +182,7 @@ fn spokes(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
 }
 
 fn one_fan_each(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
-    let mut edges = vec![0_usize; mesh.vertex_count()];
+    let mut edges = vec![0_usize; mesh.vertex_rows()];
     for (_, run) in runs(mesh) {
         edges[run.origin().index()] += 1;
     }
@@ -190,10 +238,9 @@ fn edges_differ(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{FaceId, Point, PolygonMesh, Representation, RowId, Table, VertexId};
+    use mesh_core::{FaceId, MeshEdit, Point, PolygonMesh, Representation, RowId, Table, VertexId};
 
     use super::*;
-    use crate::edge::Edge;
     use crate::wings::{Side, Wings};
 
     fn mesh(vertices: u16, faces: &[&[u32]]) -> WingedEdgeMesh {
@@ -235,11 +282,7 @@ mod tests {
 
     /// Writes over the wing on the left (0) or on the right (1).
     fn put(wings: &mut Wings, side: usize, wing: EdgeId) {
-        let mut both = wings.both();
-        both[side] = wing;
-        *wings = Wings::BLANK;
-        wings.link(Side::LEFT, both[0]);
-        wings.link(Side::RIGHT, both[1]);
+        wings.put(Side::right_if(side == 1), wing);
     }
 
     /// Makes one vertex of two in all records, and leaves the second without a spoke.
@@ -371,5 +414,43 @@ mod tests {
         merge(&mut mesh, 2, 3);
         let parallel = edges_differ(&mesh).expect_err("parallel edges");
         assert_eq!(parallel.invariant, "I8");
+    }
+
+    #[test]
+    fn holes_that_are_not_marked_or_still_named_break_i9() {
+        // The triangle f1 and the edges that only it has, deleted.
+        let mut edited = sound();
+        let gone = FaceId::new(1);
+        let side = between(&edited, 0, 3);
+        edited
+            .remove_face(gone, &mut ())
+            .expect("a square comes apart");
+        edited
+            .remove_vertex(VertexId::new(3), &mut ())
+            .expect("it is isolated");
+        assert_eq!(edited.validate(), Ok(()));
+        let broken = |break_it: &dyn Fn(&mut WingedEdgeMesh)| {
+            let mut mesh = edited.clone();
+            break_it(&mut mesh);
+            mesh.validate().expect_err("the mesh is broken").invariant
+        };
+        let diagonal = between(&edited, 0, 2);
+        assert_eq!(
+            broken(&|m| m.spokes.rows_mut()[3] = Slot::some(diagonal)),
+            "I9"
+        );
+        assert_eq!(broken(&|m| m.sides.rows_mut()[1] = diagonal), "I9");
+        assert_eq!(broken(&|m| m.sides.rows_mut()[0] = NO_EDGE), "I9");
+        assert_eq!(
+            broken(&|m| m.edges.rows_mut()[diagonal.index()] = Edge::HOLE),
+            "I9"
+        );
+        assert_eq!(broken(&|m| m.edge_holes.dig(diagonal.index())), "I9");
+        assert_eq!(broken(&|m| m.face_holes.dig(7)), "I9");
+        assert_eq!(broken(&|m| m.sides.rows_mut()[0] = side), "I9");
+        assert_eq!(broken(&|m| inner(m).ends[0] = VertexId::new(3)), "I9");
+        assert_eq!(broken(&|m| inner(m).faces[1] = Slot::some(gone)), "I9");
+        assert_eq!(broken(&|m| put(&mut inner(m).next, 0, side)), "I9");
+        assert_eq!(broken(&|m| m.spokes.rows_mut()[0] = Slot::some(side)), "I9");
     }
 }

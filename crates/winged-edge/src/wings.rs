@@ -76,6 +76,15 @@ impl Wings {
         debug_assert_eq!(self.on(side).row(), 0, "the side is linked already");
         self.0 |= u64::from(wing.row()) << (u32::from(side.right) << 5);
     }
+
+    /// Writes over a side, whatever it holds.
+    #[inline(always)]
+    pub(crate) fn put(&mut self, side: Side, wing: EdgeId) {
+        // All in a register: to write the half alone would keep the next load of the whole waiting.
+        let shift = u32::from(side.right) << 5;
+        let other = self.0 & !(u64::from(u32::MAX) << shift);
+        self.0 = other | u64::from(wing.row()) << shift;
+    }
 }
 
 impl fmt::Debug for Wings {
@@ -98,6 +107,10 @@ mod tests {
             wings.link(Side::LEFT, left);
             assert_eq!(wings.both(), [left, right]);
             assert_eq!(Wings::of([left, right]), wings);
+            let mut turned = Wings::of([right, left]);
+            turned.put(Side::RIGHT, right);
+            turned.put(Side::LEFT, left);
+            assert_eq!(turned, wings);
             assert_eq!(wings.on(Side::RIGHT.other()), left);
         }
     }

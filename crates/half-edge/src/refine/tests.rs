@@ -8,15 +8,16 @@ use super::*;
 type Row = (u32, u32, Option<u32>);
 
 fn mesh(vertices: usize, halves: &[Row], leaving: &[u32], first: &[u32]) -> HalfEdgeMesh {
-    let mut mesh = HalfEdgeMesh::empty();
     let slot = |f: Option<u32>| f.map(FaceId::new).into();
     let halves = halves.iter().map(|&(next, v, f)| half(next, v, slot(f)));
     let leaving = leaving.iter().map(|&h| Slot::some(HalfEdgeId::new(h)));
     let first = first.iter().map(|&h| HalfEdgeId::new(h));
-    mesh.positions = Table::new("positions", "vertex", vec![Point::ZERO; vertices]);
-    mesh.leaving = Table::new("leaving", "vertex", leaving.collect());
-    mesh.halves = Table::new("halves", "half-edge", halves.collect());
-    mesh.first = Table::new("first", "face", first.collect());
+    let mesh = HalfEdgeMesh::of_tables(
+        vec![Point::ZERO; vertices],
+        leaving.collect(),
+        halves.collect(),
+        first.collect(),
+    );
     assert_eq!(mesh.validate(), Ok(()));
     mesh
 }

@@ -1,0 +1,441 @@
+//! Changing the mesh in place.
+//!
+//! Every edit is about one triangle, about the two along an edge, or about the fan of a vertex. They
+//! are named so throughout:
+//!
+//! ```text
+//!            C
+//!           /c\              the edge e, A–B, is faced by c and, unless it is on the boundary, by o
+//!          /   \             T  corners c at C, n = next(c) at A, p = prev(c) at B
+//!    op   /  T  \   on       R  corners o at D, q = next(o) at B, r = prev(o) at A
+//!        /       \
+//!       / n     p \          What is opposite to n is called on, and so on: on lies across B–C,
+//!      A─────e─────B         op across C–A, oq across A–D, or across D–B.
+//!       \ r     q /
+//!        \       /
+//!    oq   \  R  /   or
+//!          \   /
+//!           \o/
+//!            D
+//! ```
+//!
+//! An edge is called by the lower corner of the two that face it, so wherever another corner comes to
+//! face an edge, its name may change; new triangles have the highest rows and take no name away.
+
+mod collapse;
+mod compact;
+mod faces;
+mod flip;
+mod split;
+
+use mesh_core::{
+    Edit, EditError, EditLog, FaceId, MAX_ROWS, MeshEdit, Point, Probe, QueryCost, Representation,
+    RowId, Slot, VertexId, row,
+};
+
+use crate::mesh::{CornerId, CornerTable, EdgeCorner, NOWHERE, names_edge};
+
+/// Why an edit is refused here.
+type Refused = EditError<VertexId, EdgeCorner, FaceId>;
+
+/// The most corners that a mesh may have to be built again from its polygons.
+const MAX_CORNERS: usize = MAX_ROWS / 2;
+
+impl<P: Probe> MeshEdit for CornerTable<P> {
+    const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
+        use QueryCost::{Constant, Local, Scan};
+        let mut costs = [Some(Local); Edit::ALL.len()];
+        costs[Edit::SetPosition as usize] = Some(Constant);
+        costs[Edit::AddVertex as usize] = Some(Constant);
+        costs[Edit::RemoveIsolatedVertices as usize] = Some(Scan);
+        costs[Edit::SplitEdge as usize] = None;
+        costs[Edit::SplitFace as usize] = None;
+        costs[Edit::DissolveEdge as usize] = None;
+        costs[Edit::Compact as usize] = Some(Scan);
+        costs
+    };
+
+    /// O(1); writes one row of `positions`.
+    #[inline]
+    fn set_position(
+        &mut self,
+        v: VertexId,
+        to: Point,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refused> {
+        self.check_vertex(v)?;
+        *self.positions.write(v.index()) = to;
+        Ok(v)
+    }
+
+    /// O(1) amortised.
+    #[inline]
+    fn add_vertex(&mut self, at: Point, log: &mut impl EditLog<Self>) -> Result<VertexId, Refused> {
+        self.check_room(1, 0)?;
+        let v = self.push_vertex(at, Slot::NONE);
+        log.created_vertex(v);
+        Ok(v)
+    }
+
+    /// O(valence of the corners), amortised.
+    fn add_face(
+        &mut self,
+        corners: &[VertexId],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<FaceId, Refused> {
+        self.add_triangle(corners, log)
+    }
+
+    /// O(1).
+    fn remove_face(&mut self, f: FaceId, log: &mut impl EditLog<Self>) -> Result<(), Refused> {
+        self.remove_triangle(f, log)
+    }
+
+    /// O(valence).
+    fn remove_vertex(&mut self, v: VertexId, log: &mut impl EditLog<Self>) -> Result<(), Refused> {
+        self.remove_star(v, log)
+    }
+
+    /// Reads `corner` once through.
+    fn remove_isolated_vertices(&mut self, log: &mut impl EditLog<Self>) -> usize {
+        let before = self.vertex_holes.len();
+        for v in (0..row(self.corner.len())).map(VertexId::new) {
+            let isolated = self.corner.read(v.index()).get().is_none();
+            if isolated && !self.vertex_holes.has(v.index()) {
+                self.vertex_holes.dig(v.index());
+                log.removed_vertex(v);
+            }
+        }
+        self.vertex_holes.len() - before
+    }
+
+    /// Never: it makes polygons.
+    fn split_edge(
+        &mut self,
+        _: EdgeCorner,
+        _: Point,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refused> {
+        Err(makes_polygons(Edit::SplitEdge))
+    }
+
+    /// O(1) amortised.
+    fn bisect_edge(
+        &mut self,
+        e: EdgeCorner,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refused> {
+        self.bisect(e, at, log)
+    }
+
+    /// O(1) amortised.
+    #[inline]
+    fn poke_face(
+        &mut self,
+        f: FaceId,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refused> {
+        self.poke(f, at, log)
+    }
+
+    /// Never: it needs polygons.
+    fn split_face(
+        &mut self,
+        _: FaceId,
+        _: [VertexId; 2],
+        _: &mut impl EditLog<Self>,
+    ) -> Result<EdgeCorner, Refused> {
+        Err(makes_polygons(Edit::SplitFace))
+    }
+
+    /// Never: it makes polygons.
+    fn dissolve_edge(
+        &mut self,
+        _: EdgeCorner,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<FaceId, Refused> {
+        Err(makes_polygons(Edit::DissolveEdge))
+    }
+
+    /// O(valence of a third corner) to find that the new edge is none yet, and O(1) to make it.
+    #[inline]
+    fn flip_edge(
+        &mut self,
+        e: EdgeCorner,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<EdgeCorner, Refused> {
+        self.flip(e, log)
+    }
+
+    /// O(valence of both ends).
+    #[inline]
+    fn collapse_edge(
+        &mut self,
+        e: EdgeCorner,
+        keep: VertexId,
+        to: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refused> {
+        self.collapse(e, keep, to, log)
+    }
+
+    /// O(valence), amortised.
+    fn split_vertex(
+        &mut self,
+        v: VertexId,
+        left: Option<VertexId>,
+        right: Option<VertexId>,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refused> {
+        self.split_fan(v, [left, right], at, log)
+    }
+
+    fn compact(&mut self, log: &mut impl EditLog<Self>) {
+        self.close_holes(log);
+    }
+}
+
+#[cold]
+fn makes_polygons(edit: Edit) -> Refused {
+    EditError::Unsupported {
+        structure: CornerTable::NAME,
+        edit,
+    }
+}
+
+/// What every edit asks before it writes.
+impl<P: Probe> CornerTable<P> {
+    /// The corner at `v`, if it is there and not isolated.
+    #[inline]
+    fn check_vertex(&self, v: VertexId) -> Result<Slot<CornerId>, Refused> {
+        if v.index() < self.corner.len() {
+            let corner = *self.corner.read(v.index());
+            if corner != Slot::NONE || !self.vertex_holes.has(v.index()) {
+                return Ok(corner);
+            }
+        }
+        Err(EditError::NoSuchVertex { vertex: v })
+    }
+
+    /// The corner across `e`, if that is the name of an edge.
+    #[inline]
+    fn check_edge(&self, e: EdgeCorner) -> Result<Slot<CornerId>, Refused> {
+        if e.index() < self.opposite.len() {
+            let across = *self.opposite.read(e.index());
+            if names_edge(e.corner(), across) {
+                return Ok(across);
+            }
+        }
+        Err(EditError::NoSuchEdge { edge: e })
+    }
+
+    /// The vertices of `f`, if it is there.
+    #[inline]
+    fn check_face(&self, f: FaceId) -> Result<[VertexId; 3], Refused> {
+        let first = 3 * f.index();
+        if first < self.vertex.len()
+            && let &[a, b, c] = self.vertex.read_range(first..first + 3)
+            && a != NOWHERE
+        {
+            return Ok([a, b, c]);
+        }
+        Err(EditError::NoSuchFace { face: f })
+    }
+
+    /// Whether handles can name so many vertices and triangles more.
+    #[inline]
+    fn check_room(&self, vertices: usize, triangles: usize) -> Result<(), Refused> {
+        let (elements, limit) = if self.positions.len() + vertices > MAX_ROWS {
+            ("vertices", MAX_ROWS)
+        } else if self.vertex.len() + 3 * triangles > MAX_CORNERS {
+            ("corners", MAX_CORNERS)
+        } else {
+            return Ok(());
+        };
+        Err(EditError::TooMany { elements, limit })
+    }
+
+    /// Whether `v`, which has a corner, is on a boundary: by I5 its corner then is the first.
+    #[inline]
+    fn is_on_boundary(&self, v: VertexId) -> bool {
+        let first = self.corner.read(v.index()).get();
+        first.is_some_and(|first| *self.opposite.read(first.prev().index()) == Slot::NONE)
+    }
+}
+
+/// The steps that edits are made of.
+impl<P: Probe> CornerTable<P> {
+    #[inline]
+    fn push_vertex(&mut self, at: Point, corner: Slot<CornerId>) -> VertexId {
+        let v = VertexId::new(row(self.positions.len()));
+        self.positions.push(at);
+        self.corner.push(corner);
+        v
+    }
+
+    /// The corners of the `i`-th triangle to be pushed from now on.
+    #[inline]
+    fn new_corners(&self, i: u32) -> [CornerId; 3] {
+        let first = row(self.vertex.len()) + 3 * i;
+        [first, first + 1, first + 2].map(CornerId::new)
+    }
+
+    #[inline]
+    fn push_triangle(&mut self, vertices: [VertexId; 3], opposites: [Slot<CornerId>; 3]) {
+        self.vertex.extend(vertices);
+        self.opposite.extend(opposites);
+    }
+
+    /// Lets `across`, if it is there, be opposite to `c`: the other half of a link.
+    #[inline]
+    fn answer(&mut self, across: Slot<CornerId>, c: Slot<CornerId>) {
+        if let Some(across) = across.get() {
+            *self.opposite.write(across.index()) = c;
+        }
+    }
+
+    /// Lets the fan of `v` be entered at `new`, if it was at `old`.
+    #[inline]
+    fn reenter(&mut self, v: VertexId, old: CornerId, new: CornerId) {
+        if *self.corner.read(v.index()) == Slot::some(old) {
+            *self.corner.write(v.index()) = Slot::some(new);
+        }
+    }
+
+    /// Marks `f` as I8 says. Nobody is opposite to its corners any more.
+    #[inline]
+    fn delete_triangle(&mut self, f: FaceId) {
+        let first = 3 * f.row();
+        for c in [first, first + 1, first + 2].map(CornerId::new) {
+            *self.vertex.write(c.index()) = NOWHERE;
+            *self.opposite.write(c.index()) = Slot::some(c);
+        }
+        self.face_holes.dig(f.index());
+    }
+
+    /// Deletes `v`, which has no triangle any more.
+    #[inline]
+    fn delete_vertex(&mut self, v: VertexId) {
+        *self.corner.write(v.index()) = Slot::NONE;
+        self.vertex_holes.dig(v.index());
+    }
+}
+
+/// The edge that `c` faces, called by it.
+#[inline]
+fn faced_by(c: CornerId) -> EdgeCorner {
+    EdgeCorner::new(c.row())
+}
+
+/// Tells a new name, if it is one.
+#[inline]
+fn tell_renamed<P: Probe>(
+    log: &mut impl EditLog<CornerTable<P>>,
+    old: EdgeCorner,
+    new: EdgeCorner,
+) {
+    if old != new {
+        log.renamed_edge(old, new);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::{MeshQuery, PolygonMesh};
+
+    use super::*;
+
+    pub(super) fn table(vertices: u16, triangles: &[[u32; 3]]) -> CornerTable {
+        let positions: Vec<_> = (0..vertices).map(|i| Point::splat(i.into())).collect();
+        let polygons = PolygonMesh::new(positions, triangles.iter().copied()).expect("valid");
+        CornerTable::from_polygons(&polygons).expect("manifold")
+    }
+
+    /// Two triangles and a third apart; the third, v4 and all that is theirs are deleted.
+    fn with_holes() -> CornerTable {
+        let mut mesh = table(8, &[[0, 1, 2], [0, 2, 3], [4, 5, 6]]);
+        mesh.remove_face(FaceId::new(2), &mut ())
+            .expect("it is there");
+        mesh.remove_vertex(VertexId::new(4), &mut ())
+            .expect("it is isolated");
+        assert_eq!(mesh.validate(), Ok(()));
+        mesh
+    }
+
+    #[test]
+    fn deleted_elements_are_nowhere() {
+        let mesh = with_holes();
+        assert_eq!(
+            [mesh.vertex_count(), mesh.edge_count(), mesh.face_count()],
+            [7, 5, 2]
+        );
+        assert_eq!(mesh.corner_count(), 6);
+        assert!(mesh.edges().all(|e| e.index() < 6));
+        let bytes = mesh.memory();
+        let of_holes = bytes
+            .tables
+            .iter()
+            .filter(|table| table.table.contains("holes"));
+        assert_eq!(of_holes.count(), 2);
+    }
+
+    #[test]
+    fn names_of_nothing_are_refused() {
+        let mut mesh = with_holes();
+        for row in [4, 8, u32::MAX] {
+            let vertex = VertexId::new(row);
+            let refused = mesh.set_position(vertex, Point::ZERO, &mut ());
+            assert_eq!(refused, Err(EditError::NoSuchVertex { vertex }));
+        }
+        // c5 faces the edge of c1, which names it; c7 is a deleted corner, c9 none.
+        for row in [5, 7, 9, u32::MAX] {
+            let edge = EdgeCorner::new(row);
+            let refused = mesh.flip_edge(edge, &mut ());
+            assert_eq!(refused, Err(EditError::NoSuchEdge { edge }));
+        }
+        for row in [2, 3, u32::MAX] {
+            let face = FaceId::new(row);
+            let refused = mesh.poke_face(face, Point::ZERO, &mut ());
+            assert_eq!(refused, Err(EditError::NoSuchFace { face }));
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "no vertex v4: it was deleted")]
+    fn a_deleted_vertex_panics_by_name() {
+        let _ = with_holes().vertex_edges(VertexId::new(4)).count();
+    }
+
+    #[test]
+    #[should_panic(expected = "no vertex v4: it was deleted")]
+    fn a_deleted_vertex_is_at_no_place() {
+        with_holes().position(VertexId::new(4));
+    }
+
+    #[test]
+    #[should_panic(expected = "no face f2: it was deleted")]
+    fn a_deleted_face_has_no_corners() {
+        let _ = with_holes().face_vertices(FaceId::new(2)).count();
+    }
+
+    #[test]
+    #[should_panic(expected = "no face f2: it was deleted")]
+    fn a_deleted_face_has_no_neighbours() {
+        let _ = with_holes().face_faces(FaceId::new(2)).count();
+    }
+
+    #[test]
+    #[should_panic(expected = "no edge e7: the triangle of that corner was deleted")]
+    fn a_deleted_edge_has_no_ends() {
+        with_holes().edge_vertices(EdgeCorner::new(7));
+    }
+
+    #[test]
+    #[should_panic(expected = "no edge e7: the triangle of that corner was deleted")]
+    fn a_deleted_edge_has_no_neighbours() {
+        let _ = with_holes().edge_edges(EdgeCorner::new(7)).count();
+    }
+}

@@ -1,0 +1,248 @@
+//! Two vertices made one.
+
+use mesh_core::{EditError, EditLog, Few, Lookup, Point, Probe, Slot, VertexId};
+
+use super::{Refused, faced_by, tell_renamed};
+use crate::mesh::{CornerId, CornerTable, EdgeCorner, NOWHERE, edge_between};
+
+/// The fan of an end of an edge, without the triangles along the edge.
+#[derive(Clone, Copy)]
+struct Rest {
+    /// Across the last of them, counter-clockwise.
+    after: Slot<CornerId>,
+    /// Across the first of them.
+    before: Slot<CornerId>,
+    /// What a walk from `after` comes to where the fan is closed: a corner of the first of them.
+    stop: Slot<CornerId>,
+}
+
+impl Rest {
+    /// Whether a single triangle, a closed fan's, is all of it.
+    #[inline]
+    fn is_one_triangle(self) -> bool {
+        let [after, before] = [self.after, self.before].map(|c| c.get().map(CornerId::triangle));
+        after.is_some() && after == before
+    }
+}
+
+impl<P: Probe> CornerTable<P> {
+    /// Makes one vertex of the ends of `e`, where the link condition holds (Dey, Edelsbrunner, Guha &
+    /// Nekhayev 1999): the only neighbours of both are C and D, no triangle of one end comes to lie on
+    /// a triangle of the other, and two boundaries do not meet.
+    ///
+    /// ```text
+    ///         C                 C          T and R are deleted, on and op become opposite, and or
+    ///       / | \               |          and oq. The corners at the end that goes are moved.
+    ///   op / T T \ on      op   |   on
+    ///     A───────B     →       A          Around the one that stays, counter-clockwise: the fan of B
+    ///   oq \ R R / or      oq   |   or     up to C, that of A from C to D, that of B from D.
+    ///       \ | /               |
+    ///         D                 D
+    /// ```
+    #[inline]
+    pub(super) fn collapse(
+        &mut self,
+        e: EdgeCorner,
+        keep: VertexId,
+        to: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refused> {
+        let across = self.check_edge(e)?.get();
+        let c = e.corner();
+        let [n, p] = [c.next(), c.prev()];
+        let [vc, va, vb] = [c, n, p].map(|c| *self.vertex.read(c.index()));
+        if keep != va && keep != vb {
+            return Err(EditError::NotAnEnd {
+                edge: e,
+                vertex: keep,
+            });
+        }
+        let [on, op] = [n, p].map(|c| *self.opposite.read(c.index()));
+        // Of a boundary edge the other side is blank.
+        let (mut q, mut r, mut vd) = (c, c, NOWHERE);
+        let (mut oq, mut or) = (Slot::NONE, Slot::NONE);
+        if let Some(o) = across {
+            [q, r] = [o.next(), o.prev()];
+            [oq, or] = [q, r].map(|c| *self.opposite.read(c.index()));
+            vd = *self.vertex.read(o.index());
+            if vc == vd {
+                return Err(EditError::LastFace { vertex: keep });
+            }
+            if oq == Slot::NONE && or == Slot::NONE {
+                return Err(EditError::LastFace { vertex: vd });
+            }
+        }
+        if on == Slot::NONE && op == Slot::NONE {
+            return Err(EditError::LastFace { vertex: vc });
+        }
+        let of_a = Rest {
+            after: op,
+            before: oq,
+            stop: across.map_or(Slot::NONE, |_| Slot::some(q)),
+        };
+        let of_b = Rest {
+            after: or,
+            before: on,
+            stop: Slot::some(n),
+        };
+        let keeps_a = keep == va;
+        let (gone, of_gone, of_keep) = if keeps_a {
+            (vb, of_b, of_a)
+        } else {
+            (va, of_a, of_b)
+        };
+
+        let (mut moved, mut beyond) = (Few::new(), Few::new());
+        let closed = self.visit(of_gone, |corner, v| {
+            moved.push(corner);
+            if v != vc && v != vd {
+                beyond.push(v);
+            }
+            true
+        });
+        if beyond.as_slice().is_empty() {
+            // Nothing but C and D: the fan is open, or one triangle C–D is left of it.
+            if closed && of_keep.is_one_triangle() {
+                return Err(EditError::Pillow { edge: e });
+            }
+        } else if let Some(vertex) = self.common(of_keep, beyond) {
+            return Err(EditError::CommonNeighbour { edge: e, vertex });
+        }
+        if !closed && across.is_some() && self.is_on_boundary(keep) {
+            return Err(EditError::AcrossBoundary { edge: e });
+        }
+
+        // The boundary of the two fans, if there is one, begins the fan that they become.
+        let entered = match across {
+            None => vb,
+            Some(_) if !closed => gone,
+            Some(_) => keep,
+        };
+        let mut first = self.corner.read(entered.index()).get().expect("I4");
+        if first == n || first == p || (across.is_some() && (first == q || first == r)) {
+            let beside = if entered == vb { op } else { or };
+            first = beside
+                .get()
+                .expect("a fan goes on, or the edge is refused")
+                .next();
+        }
+        for &corner in moved.as_slice() {
+            *self.vertex.write(corner.index()) = keep;
+        }
+        *self.positions.write(keep.index()) = to;
+        *self.corner.write(keep.index()) = Slot::some(first);
+        self.delete_vertex(gone);
+        log.removed_vertex(gone);
+        log.removed_edge(e);
+        let seam = [(p, op), (n, on)];
+        self.close_seam(c, vc, if keeps_a { seam } else { [seam[1], seam[0]] }, log);
+        if let Some(o) = across {
+            let seam = [(q, oq), (r, or)];
+            self.close_seam(o, vd, if keeps_a { seam } else { [seam[1], seam[0]] }, log);
+        }
+        Ok(keep)
+    }
+
+    /// Visits the corners of `rest`, each with the vertex beyond it: counter-clockwise the one before
+    /// the corner, clockwise the one after it. Whether the fan is closed, or `visitor` has had enough.
+    #[inline]
+    fn visit(&self, rest: Rest, mut visitor: impl FnMut(CornerId, VertexId) -> bool) -> bool {
+        let mut at = rest.after;
+        while let Some(x) = at.get() {
+            if at == rest.stop || !visitor(x.next(), *self.vertex.read(x.index())) {
+                return true;
+            }
+            at = *self.opposite.read(x.prev().index());
+        }
+        at = rest.before;
+        while let Some(y) = at.get() {
+            if !visitor(y.prev(), *self.vertex.read(y.index())) {
+                return true;
+            }
+            at = *self.opposite.read(y.next().index());
+        }
+        false
+    }
+
+    /// A vertex in the fan `rest` that is among those `beyond` another.
+    #[inline]
+    fn common(&self, rest: Rest, mut beyond: Few<VertexId>) -> Option<VertexId> {
+        beyond.order();
+        let mut common = None;
+        self.visit(rest, |_, v| {
+            if beyond.has(v) {
+                common = Some(v);
+            }
+            common.is_none()
+        });
+        common
+    }
+
+    /// Deletes the triangle of `apex`, which is at `v`, and joins what lies across its two other
+    /// sides: that at the vertex that stays, and that at the one that goes.
+    #[inline]
+    fn close_seam(
+        &mut self,
+        apex: CornerId,
+        v: VertexId,
+        [(kept, over_kept), (gone, over_gone)]: [(CornerId, Slot<CornerId>); 2],
+        log: &mut impl EditLog<Self>,
+    ) {
+        let swung = if kept == apex.next() {
+            over_kept
+        } else {
+            over_gone
+        };
+        if let Some(swung) = swung.get() {
+            self.reenter(v, apex, swung.next());
+        }
+        self.answer(over_kept, over_gone);
+        self.answer(over_gone, over_kept);
+        self.delete_triangle(apex.triangle());
+        log.removed_face(apex.triangle());
+        log.removed_edge(edge_between(gone, over_gone));
+        if let Some(lower) = over_kept.min(over_gone).get() {
+            tell_renamed(log, edge_between(kept, over_kept), faced_by(lower));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::{MeshEdit, MeshQuery, Representation};
+
+    use super::super::tests::table;
+    use super::*;
+
+    /// A wheel of `n` triangles around v0, and beyond each rim edge the apex v(n + 1), so that both
+    /// have valence `n`.
+    fn double_wheel(n: u32) -> CornerTable {
+        let rim = |i: u32| 1 + i % n;
+        let triangles = (0..n).flat_map(|i| [[0, rim(i), rim(i + 1)], [n + 1, rim(i + 1), rim(i)]]);
+        table(n as u16 + 2, &triangles.collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn ends_of_any_valence_are_compared() {
+        for n in [4, 15, 16, 17, 18, 19, 20, 40] {
+            let [hub, rim] = [0, 1].map(VertexId::new);
+            for keep in [hub, rim] {
+                let mut mesh = double_wheel(n);
+                let e = mesh.edge_between(hub, rim).expect("a spoke");
+                let done = mesh.collapse_edge(e, keep, Point::ONE, &mut ());
+                assert_eq!(done, Ok(keep), "{n}");
+                assert_eq!(mesh.validate(), Ok(()), "{n}");
+                assert_eq!(mesh.face_count(), 2 * n as usize - 2);
+                // Now the hubs are neighbours, and have all the rim in common.
+                let far = VertexId::new(n + 1);
+                let e = mesh.edge_between(keep, far).expect("they came together");
+                let before = format!("{mesh:?}");
+                let refused = mesh.collapse_edge(e, keep, Point::ONE, &mut ());
+                let refused = refused.expect_err("a vertex of the rim is beside both");
+                let named = matches!(refused, EditError::CommonNeighbour { .. });
+                assert!(named || n == 4, "{n}: {refused}");
+                assert_eq!(format!("{mesh:?}"), before);
+            }
+        }
+    }
+}

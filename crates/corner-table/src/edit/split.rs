@@ -1,0 +1,259 @@
+//! Triangles cut in two or three, and a vertex split in two.
+
+use mesh_core::{EditError, EditLog, FaceId, Point, Probe, Slot, VertexId};
+
+use super::{Refused, faced_by, tell_renamed};
+use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
+
+impl<P: Probe> CornerTable<P> {
+    /// Puts m into `e`: T keeps A and R does, two new triangles have B.
+    ///
+    /// ```text
+    ///         C              T  p moves to m        new (C, m, B) has the corners t, u, w
+    ///        /|\             R  q moves to m        new (D, B, m) has the corners x, y, z
+    ///       / |t\
+    ///      /n p|u\w          n faces C–m with w     u faces B–C with on
+    ///     A────m────B        r faces m–D with y     z faces D–B with or
+    ///      \r q|z/y          t faces m–B with x
+    ///       \ |x/
+    ///        \|/
+    ///         D
+    /// ```
+    #[inline]
+    pub(super) fn bisect(
+        &mut self,
+        e: EdgeCorner,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refused> {
+        let across = self.check_edge(e)?.get();
+        let c = e.corner();
+        let [n, p] = [c.next(), c.prev()];
+        let [vc, vb] = [c, p].map(|c| *self.vertex.read(c.index()));
+        let vd = across.map(|o| *self.vertex.read(o.index()));
+        if vd == Some(vc) {
+            return Err(EditError::SameApex {
+                edge: e,
+                vertex: vc,
+            });
+        }
+        self.check_room(1, 2)?;
+
+        let [[t, u, w], [x, y, z]] = [self.new_corners(0), self.new_corners(1)];
+        let m = self.push_vertex(at, Slot::some(u));
+        let on = *self.opposite.read(n.index());
+        let below = across.map_or(Slot::NONE, |_| Slot::some(x));
+        self.push_triangle([vc, m, vb], [below, on, Slot::some(n)]);
+        *self.vertex.write(p.index()) = m;
+        *self.opposite.write(n.index()) = Slot::some(w);
+        self.answer(on, Slot::some(u));
+        self.reenter(vb, p, w);
+        log.created_vertex(m);
+        log.created_face(t.triangle());
+        log.created_edge(faced_by(t));
+        tell_cut(log, n, on, u);
+
+        if let (Some(o), Some(vd)) = (across, vd) {
+            let [q, r] = [o.next(), o.prev()];
+            let or = *self.opposite.read(r.index());
+            self.push_triangle([vd, vb, m], [Slot::some(t), Slot::some(r), or]);
+            *self.vertex.write(q.index()) = m;
+            *self.opposite.write(r.index()) = Slot::some(y);
+            self.answer(or, Slot::some(z));
+            self.reenter(vb, q, y);
+            self.reenter(vd, o, x);
+            log.created_face(x.triangle());
+            tell_cut(log, r, or, z);
+        }
+        Ok(m)
+    }
+
+    /// Puts m into the triangle (A, B, C), which keeps the side A–B.
+    ///
+    /// ```text
+    ///           C
+    ///          /|\           (A, B, m) has the corners i, j, k as before
+    ///         /u|y\          (B, C, m) has x, y, z:  x faces C–m with v, y faces m–B with i, z faces B–C
+    ///        /  |  \         (C, A, m) has u, v, w:  u faces A–m with j, and w faces C–A
+    ///       /  wmz  \
+    ///      / v/ k \x \
+    ///     / /i     j\ \
+    ///    A─────────────B
+    /// ```
+    #[inline]
+    pub(super) fn poke(
+        &mut self,
+        f: FaceId,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refused> {
+        let [a, b, c] = self.check_face(f)?;
+        self.check_room(1, 2)?;
+        let [(i, bc), (j, ca), (k, _)] = self.opposites_of(f);
+        let [[x, y, z], [u, v, w]] = [self.new_corners(0), self.new_corners(1)];
+        let m = self.push_vertex(at, Slot::some(k));
+        self.push_triangle([b, c, m], [Slot::some(v), Slot::some(i), bc]);
+        self.push_triangle([c, a, m], [Slot::some(j), Slot::some(x), ca]);
+        *self.vertex.write(k.index()) = m;
+        *self.opposite.write(i.index()) = Slot::some(y);
+        *self.opposite.write(j.index()) = Slot::some(u);
+        self.answer(bc, Slot::some(z));
+        self.answer(ca, Slot::some(w));
+        // At B the triangle (B, C, m) comes before the old one; C has the two new ones alone.
+        self.reenter(b, j, x);
+        self.reenter(c, k, u);
+
+        log.created_vertex(m);
+        log.created_face(x.triangle());
+        log.created_face(u.triangle());
+        log.created_edge(faced_by(x));
+        tell_cut(log, i, bc, z);
+        tell_cut(log, j, ca, w);
+        Ok(m)
+    }
+
+    /// Splits `v` between two of its sides: n, the new vertex, gets the corners from the edge to
+    /// `right` to the edge to `left`.
+    ///
+    /// ```text
+    ///         left
+    ///       \  /y\  /        (v, n, left) has the corners x0 = x, x1, y:   y faces v–n
+    ///        \/x x1\/        (v, right, n) has the corners u, w, z:        w faces n–v with y
+    ///     ─── v───── n ───
+    ///        /\u z/\         x1 faces left–v, x faces n–left, z faces v–right, u faces right–n
+    ///       /  \w/  \
+    ///         right
+    /// ```
+    ///
+    /// Where a side is missing, its triangle is, and the new edge is on the boundary.
+    pub(super) fn split_fan(
+        &mut self,
+        v: VertexId,
+        [left, right]: [Option<VertexId>; 2],
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refused> {
+        let Some(_) = self.check_vertex(v)?.get() else {
+            return Err(EditError::NoFan { vertex: v });
+        };
+        for side in [left, right].into_iter().flatten() {
+            self.check_vertex(side)?;
+        }
+        if left == right {
+            return Err(EditError::NoSides { vertex: v });
+        }
+        let (star, closed) = self.star(v);
+        let star = star.as_slice();
+        let count = star.len();
+        if closed && (left.is_none() || right.is_none()) {
+            return Err(EditError::NotOnBoundary { vertex: v });
+        }
+        // The neighbours are numbered as the corners they come before; of an open fan there is one more.
+        let place = |side: VertexId| {
+            let mut before = star.iter().map(|c| *self.vertex.read(c.next().index()));
+            let place = before.position(|u| u == side);
+            let is_end = || !closed && *self.vertex.read(star[count - 1].prev().index()) == side;
+            let place = place.or_else(|| is_end().then_some(count));
+            place.ok_or(EditError::NotANeighbour { vertex: v, side })
+        };
+        let from = right.map_or(Ok(0), place)?;
+        let to = left.map_or(Ok(count), place)?;
+        self.check_room(1, 2)?;
+
+        // n is given the corners from `from` to `to`, around the end of the list if need be.
+        let around = from > to;
+        let given = |i: usize| {
+            if around {
+                i >= from || i < to
+            } else {
+                i >= from && i < to
+            }
+        };
+        let both = left.is_some() && right.is_some();
+        let [lower, upper] = [
+            self.new_corners(0),
+            self.new_corners(u32::from(right.is_some())),
+        ];
+        let n = self.push_vertex(at, Slot::NONE);
+        for (_, &c) in star.iter().enumerate().filter(|&(i, _)| given(i)) {
+            *self.vertex.write(c.index()) = n;
+        }
+        // What faces the edge to neighbour `i`: in the triangle that ends there, and in the next one.
+        let ends = |i: usize| match i {
+            0 if closed => Slot::some(star[count - 1].next()),
+            0 => Slot::NONE,
+            _ => Slot::some(star[i - 1].next()),
+        };
+        let begins = |i: usize| Slot::from(star.get(i).map(|c| c.prev()));
+        if let Some(right) = right {
+            let [u, w, z] = lower;
+            let beside = if both {
+                Slot::some(upper[2])
+            } else {
+                Slot::NONE
+            };
+            self.push_triangle([v, right, n], [begins(from), beside, ends(from)]);
+            self.slit(begins(from), ends(from), u, z, log);
+            if begins(from) == Slot::NONE {
+                *self.corner.write(right.index()) = Slot::some(w);
+            }
+            log.created_face(u.triangle());
+        }
+        if let Some(left) = left {
+            let [x, x1, y] = upper;
+            let beside = if both {
+                Slot::some(lower[1])
+            } else {
+                Slot::NONE
+            };
+            self.push_triangle([v, n, left], [ends(to), begins(to), beside]);
+            self.slit(begins(to), ends(to), x1, x, log);
+            if begins(to) == Slot::NONE {
+                *self.corner.write(left.index()) = Slot::some(y);
+            }
+            log.created_face(x.triangle());
+        }
+        let (first_of_v, first_of_n) = match (left, right) {
+            // The gap of an open fan stays with one of the two, and so does its beginning.
+            (Some(_), Some(_)) if closed => (upper[0], lower[2]),
+            (Some(_), Some(_)) if around => (upper[0], if to > 0 { star[0] } else { upper[1] }),
+            (_, Some(_)) => (if from > 0 { star[0] } else { lower[0] }, lower[2]),
+            _ => (upper[0], if to > 0 { star[0] } else { upper[1] }),
+        };
+        *self.corner.write(v.index()) = Slot::some(first_of_v);
+        *self.corner.write(n.index()) = Slot::some(first_of_n);
+        log.created_vertex(n);
+        log.created_edge(faced_by(if right.is_some() { lower[1] } else { upper[2] }));
+        Ok(n)
+    }
+
+    /// Between the two corners that faced an edge comes a triangle: `begins` now faces one of its
+    /// sides with `over_begins`, and `ends` the other with `over_ends`.
+    fn slit(
+        &mut self,
+        begins: Slot<CornerId>,
+        ends: Slot<CornerId>,
+        over_begins: CornerId,
+        over_ends: CornerId,
+        log: &mut impl EditLog<Self>,
+    ) {
+        self.answer(begins, Slot::some(over_begins));
+        self.answer(ends, Slot::some(over_ends));
+        // The lower name stays; of the two edges, the other is new.
+        let [one, other] =
+            [(begins, over_begins), (ends, over_ends)].map(|(old, new)| old.get().unwrap_or(new));
+        log.created_edge(faced_by(one.max(other)));
+    }
+}
+
+/// Tells that `old` faces a new edge: the one that it faced with `across` is faced by `new` instead.
+#[inline]
+fn tell_cut<P: Probe>(
+    log: &mut impl EditLog<CornerTable<P>>,
+    old: CornerId,
+    across: Slot<CornerId>,
+    new: CornerId,
+) {
+    tell_renamed(log, edge_between(old, across), edge_between(new, across));
+    log.created_edge(faced_by(old));
+}

@@ -1,0 +1,412 @@
+//! The mesh changed in place: corners are rewritten, and the fans around them repaired.
+//!
+//! It holds every polygon mesh, so an edit is legal wherever its own rule holds: no edge is full, no
+//! fan has to stay whole, and a collapse may leave edges with many faces and faces with the same
+//! corners. The costs, and what each edit writes, are with [`FaceVertexMesh`].
+
+mod collapse;
+mod compact;
+mod corners;
+mod fans;
+mod find;
+mod split_vertex;
+#[cfg(test)]
+mod tests;
+
+use mesh_core::{
+    Edit, EditError, EditLog, FaceId, Few, MeshEdit, Pair, Point, Probe, QueryCost, Refusal,
+    VertexId, row,
+};
+
+use self::corners::{from_corner, repeated, sides, third};
+use crate::mesh::{BLANK_CORNER, FaceVertexMesh, Fan};
+
+type Edge = Pair<VertexId>;
+
+impl<P: Probe> MeshEdit for FaceVertexMesh<P> {
+    const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
+        let mut costs = [Some(QueryCost::Local); Edit::ALL.len()];
+        costs[Edit::SetPosition as usize] = Some(QueryCost::Constant);
+        costs[Edit::AddVertex as usize] = Some(QueryCost::Constant);
+        costs[Edit::RemoveIsolatedVertices as usize] = Some(QueryCost::Scan);
+        costs[Edit::Compact as usize] = Some(QueryCost::Scan);
+        costs
+    };
+
+    #[inline]
+    fn set_position(
+        &mut self,
+        v: VertexId,
+        to: Point,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.fan_of(v)?;
+        *self.positions.write(v.index()) = to;
+        Ok(v)
+    }
+
+    fn add_vertex(
+        &mut self,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.check_room(1, 0, 0)?;
+        let v = self.push_vertex(at, &[]);
+        log.created_vertex(v);
+        Ok(v)
+    }
+
+    fn add_face(
+        &mut self,
+        corners: &[VertexId],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<FaceId, Refusal<Self>> {
+        if corners.len() < 3 {
+            let corners = corners.len();
+            return Err(EditError::TooFewCorners { corners });
+        }
+        for &v in corners {
+            self.fan_of(v)?;
+        }
+        if let Some(vertex) = repeated(corners) {
+            return Err(EditError::RepeatedVertex { vertex });
+        }
+        self.check_room(0, 1, corners.len())?;
+        if listens(log) {
+            let new = sides(corners).filter(|&e| !self.has_edge(e));
+            new.for_each(|e| log.created_edge(e));
+        }
+        let f = self.spans.push(&mut self.corners, corners);
+        for &v in corners {
+            self.join(v, f);
+        }
+        log.created_face(f);
+        Ok(f)
+    }
+
+    fn remove_face(
+        &mut self,
+        f: FaceId,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal<Self>> {
+        let face = Few::from_iter(self.corners_of_face(f)?.iter().copied());
+        for &v in &*face {
+            self.leave(v, f);
+        }
+        self.delete_face(f);
+        if listens(log) {
+            log.removed_face(f);
+            self.tell_removed(sides(&face), log);
+        }
+        Ok(())
+    }
+
+    fn remove_vertex(
+        &mut self,
+        v: VertexId,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal<Self>> {
+        self.fan_of(v)?;
+        let faces = Few::from_iter(self.fan(v).iter().copied());
+        let mut along = Vec::new();
+        for &f in &*faces {
+            let face = Few::from_iter(self.known_face(f).iter().copied());
+            for &u in face.iter().filter(|&&u| u != v) {
+                self.leave(u, f);
+            }
+            self.delete_face(f);
+            if listens(log) {
+                log.removed_face(f);
+                along.extend(sides(&face));
+            }
+        }
+        self.delete_vertex(v);
+        log.removed_vertex(v);
+        along.sort_unstable();
+        along.dedup();
+        self.tell_removed(along, log);
+        Ok(())
+    }
+
+    fn remove_isolated_vertices(&mut self, log: &mut impl EditLog<Self>) -> usize {
+        let before = self.vertex_holes.len();
+        for v in (0..row(self.fans.len())).map(VertexId::new) {
+            if self.fans.read(v.index()).len == 0 {
+                self.delete_vertex(v);
+                log.removed_vertex(v);
+            }
+        }
+        self.vertex_holes.len() - before
+    }
+
+    fn split_edge(
+        &mut self,
+        e: Edge,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        let along = self.faces_of_edge(e)?;
+        let degrees = along.iter().map(|&f| self.known_face(f).len() + 1);
+        self.check_room(1, 0, degrees.sum())?;
+        let m = self.push_vertex(at, &along);
+        for &f in &*along {
+            let mut face = Few::new();
+            let old = self.known_face(f);
+            for (&corner, side) in old.iter().zip(sides(old)) {
+                face.push(corner);
+                if side == e {
+                    face.push(m);
+                }
+            }
+            self.spans
+                .rewrite(&mut self.corners, f, &face, BLANK_CORNER);
+        }
+        tell_split(e, m, log);
+        Ok(m)
+    }
+
+    fn bisect_edge(
+        &mut self,
+        e: Edge,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        let mut faces = self.faces_of_edge(e)?;
+        for &f in &*faces {
+            self.triangle(f)?;
+        }
+        let along = faces.len();
+        self.check_room(1, along, 4 * along)?;
+        let m = VertexId::new(row(self.fans.len()));
+        let mut apexes = Vec::new();
+        for i in 0..along {
+            let f = faces[i];
+            let (b, c) = third(self.triangle(f)?, e);
+            self.retarget(f, b, m);
+            let g = self.spans.push(&mut self.corners, &[m, b, c]);
+            self.swap(b, f, g);
+            self.join(c, g);
+            faces.push(g);
+            if listens(log) {
+                log.created_face(g);
+                apexes.push(c);
+            }
+        }
+        // Triangles with one third corner have one edge from there.
+        apexes.sort_unstable();
+        apexes.dedup();
+        let spokes = apexes.iter().map(|&c| Pair::new(m, c));
+        spokes.for_each(|spoke| log.created_edge(spoke));
+        self.push_vertex(at, &faces);
+        tell_split(e, m, log);
+        Ok(m)
+    }
+
+    fn poke_face(
+        &mut self,
+        f: FaceId,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        let face = Few::from_iter(self.corners_of_face(f)?.iter().copied());
+        self.check_room(1, face.len() - 1, 3 * face.len())?;
+        let n = VertexId::new(row(self.fans.len()));
+        let mut parts = Few::new();
+        parts.push(f);
+        self.spans
+            .rewrite(&mut self.corners, f, &[face[0], face[1], n], BLANK_CORNER);
+        for (i, &a) in face.iter().enumerate().skip(1) {
+            let b = face[if i + 1 == face.len() { 0 } else { i + 1 }];
+            let part = self.spans.push(&mut self.corners, &[a, b, n]);
+            // The corner at the start of the part before has both of them; the first keeps f.
+            if i > 1 {
+                self.swap(a, f, part);
+                self.join(a, parts[i - 1]);
+            } else {
+                self.join(a, part);
+            }
+            parts.push(part);
+        }
+        self.join(face[0], parts[parts.len() - 1]);
+        self.push_vertex(at, &parts);
+        if listens(log) {
+            log.created_vertex(n);
+            face.iter().for_each(|&a| log.created_edge(Pair::new(a, n)));
+            parts[1..].iter().for_each(|&part| log.created_face(part));
+        }
+        Ok(n)
+    }
+
+    /// The part that runs from the second of the ends, as `f` names them, to the first is new.
+    fn split_face(
+        &mut self,
+        f: FaceId,
+        ends: [VertexId; 2],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<Edge, Refusal<Self>> {
+        let face = self.corners_of_face(f)?;
+        let [mut i, mut j] = [0; 2];
+        for (vertex, place) in ends.into_iter().zip([&mut i, &mut j]) {
+            let found = face.iter().position(|&v| v == vertex);
+            *place = found.ok_or(EditError::NotACorner { face: f, vertex })?;
+        }
+        let (i, j) = (i.min(j), i.max(j));
+        if j - i < 2 || j - i + 2 > face.len() {
+            return Err(EditError::NothingBetween { face: f, ends });
+        }
+        let kept = Few::from_iter(face[i..=j].iter().copied());
+        let new = face[j..].iter().chain(&face[..=i]);
+        let new = Few::from_iter(new.copied());
+        self.check_room(0, 1, new.len())?;
+        let e = Pair::new(ends[0], ends[1]);
+        if listens(log) && !self.has_edge(e) {
+            log.created_edge(e);
+        }
+        let g = self.spans.push(&mut self.corners, &new);
+        self.spans
+            .rewrite(&mut self.corners, f, &kept, BLANK_CORNER);
+        for &v in &new[1..new.len() - 1] {
+            self.swap(v, f, g);
+        }
+        for v in ends {
+            self.join(v, g);
+        }
+        log.created_face(g);
+        Ok(e)
+    }
+
+    /// The face that runs `e` from its lower end stays.
+    fn dissolve_edge(
+        &mut self,
+        e: Edge,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<FaceId, Refusal<Self>> {
+        let [f, g] = self.two_faces(e)?;
+        let [low, high] = e.ends();
+        // f from the higher end to the lower, then on along g.
+        let kept = from_corner(self.known_face(f), high);
+        let gained = from_corner(self.known_face(g), low).skip(1);
+        let gained = gained.filter(|&v| v != high);
+        let gained = Few::from_iter(gained);
+        let merged = Few::from_iter(kept.chain(gained.iter().copied()));
+        if let Some(&vertex) = gained.iter().find(|&&v| self.fan(v).contains(&f)) {
+            return Err(EditError::RepeatedVertex { vertex });
+        }
+        self.check_room(0, 0, merged.len())?;
+        for &v in &*gained {
+            self.swap(v, g, f);
+        }
+        self.leave(low, g);
+        self.leave(high, g);
+        self.spans
+            .rewrite(&mut self.corners, f, &merged, BLANK_CORNER);
+        self.delete_face(g);
+        log.removed_edge(e);
+        log.removed_face(g);
+        Ok(f)
+    }
+
+    fn flip_edge(&mut self, e: Edge, log: &mut impl EditLog<Self>) -> Result<Edge, Refusal<Self>> {
+        let [f, g] = self.two_faces(e)?;
+        let [low, high] = e.ends();
+        let (_, c) = third(self.triangle(f)?, e);
+        let (_, d) = third(self.triangle(g)?, e);
+        if c == d {
+            return Err(EditError::SameApex { edge: e, vertex: c });
+        }
+        let turned = Pair::new(c, d);
+        if self.has_edge(turned) {
+            return Err(EditError::EdgeExists { ends: [c, d] });
+        }
+        for vertex in [low, high] {
+            if self.fans.read(vertex.index()).len == 3 && self.valence(vertex) == 3 {
+                return Err(EditError::LowValence { vertex });
+            }
+        }
+        self.check_room(0, 0, 2)?;
+        self.retarget(f, high, d);
+        self.retarget(g, low, c);
+        self.leave(high, f);
+        self.leave(low, g);
+        self.join(d, f);
+        self.join(c, g);
+        log.renamed_edge(e, turned);
+        Ok(turned)
+    }
+
+    fn collapse_edge(
+        &mut self,
+        e: Edge,
+        keep: VertexId,
+        to: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.collapse(e, keep, to, log)
+    }
+
+    fn split_vertex(
+        &mut self,
+        v: VertexId,
+        left: Option<VertexId>,
+        right: Option<VertexId>,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.split_fan(v, [left, right], at, log)
+    }
+
+    /// The fans come in the order of their vertices again, and each in that of its faces.
+    fn compact(&mut self, log: &mut impl EditLog<Self>) {
+        self.close_up(log);
+    }
+}
+
+impl<P: Probe> FaceVertexMesh<P> {
+    /// Makes a hole of `f`, which is in no fan any more.
+    fn delete_face(&mut self, f: FaceId) {
+        self.spans.blank(&mut self.corners, f, BLANK_CORNER);
+        self.face_holes.dig(f.index());
+    }
+
+    /// Makes a hole of `v`, at which no face is any more.
+    fn delete_vertex(&mut self, v: VertexId) {
+        let fan = std::mem::replace(self.fans.write(v.index()), Fan::GONE);
+        self.clear_places(fan.range());
+        self.vertex_holes.dig(v.index());
+    }
+
+    /// Puts `new` where `f` has its corner `old`; the fans are the caller's.
+    #[inline]
+    fn retarget(&mut self, f: FaceId, old: VertexId, new: VertexId) {
+        let range = self.spans.range(f);
+        let at = match self.corners.read_range(range.clone()) {
+            // Without a branch, for where it is follows no pattern.
+            &[_, b, c] => usize::from(b == old) + 2 * usize::from(c == old),
+            face => {
+                let at = face.iter().position(|&v| v == old);
+                at.expect("I3: a face in the fan of a vertex names it")
+            }
+        };
+        *self.corners.write(range.start + at) = new;
+    }
+
+    /// Tells which of `sides`, edges before, are edges no more.
+    fn tell_removed(&self, sides: impl IntoIterator<Item = Edge>, log: &mut impl EditLog<Self>) {
+        for e in sides.into_iter().filter(|&e| !self.has_edge(e)) {
+            log.removed_edge(e);
+        }
+    }
+}
+
+/// Whether `log` wants to be told.
+fn listens<P: Probe, L: EditLog<FaceVertexMesh<P>>>(_: &L) -> bool {
+    L::LISTENS
+}
+
+/// Tells that `m` cuts `e`, which is its lower half from now on.
+fn tell_split<P: Probe>(e: Edge, m: VertexId, log: &mut impl EditLog<FaceVertexMesh<P>>) {
+    let [low, high] = e.ends();
+    log.created_vertex(m);
+    log.renamed_edge(e, Pair::new(low, m));
+    log.created_edge(Pair::new(m, high));
+}

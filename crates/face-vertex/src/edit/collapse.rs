@@ -1,0 +1,149 @@
+//! An edge collapsed into one of its ends.
+
+use mesh_core::{EditError, EditLog, FaceId, Few, Lookup, Pair, Point, Probe, VertexId};
+
+use super::corners::third;
+use super::find::Refused;
+use super::{Edge, listens};
+use crate::mesh::{BLANK_CORNER, FaceVertexMesh};
+
+impl<P: Probe> FaceVertexMesh<P> {
+    /// [`collapse_edge`](mesh_core::MeshEdit::collapse_edge).
+    pub(super) fn collapse(
+        &mut self,
+        e: Edge,
+        keep: VertexId,
+        to: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refused> {
+        let mut both = self.faces_at_both(e);
+        both.order();
+        if !both.iter().any(|&f| self.runs(f, e)) {
+            return Err(EditError::NoSuchEdge { edge: e });
+        }
+        if !e.has(keep) {
+            return Err(EditError::NotAnEnd {
+                edge: e,
+                vertex: keep,
+            });
+        }
+        if !both.iter().all(|&f| self.runs(f, e)) {
+            return Err(EditError::RepeatedVertex { vertex: keep });
+        }
+        let [low, high] = e.ends();
+        let gone = if keep == low { high } else { low };
+        let dying = both
+            .iter()
+            .copied()
+            .filter(|&f| self.known_face(f).len() == 3);
+        let dying = Few::from_iter(dying);
+        let moving = self.fan(gone).iter().copied();
+        let moving = Few::from_iter(moving.filter(|f| !both.has(*f)));
+        self.check_last_faces(e, keep, &moving, &dying)?;
+        self.check_room(0, 0, moving.len() + self.corners_of_polygons(&both))?;
+        let met = if listens(log) {
+            self.edges_met(gone, keep)
+        } else {
+            Vec::new()
+        };
+
+        for &f in &*moving {
+            self.retarget(f, gone, keep);
+        }
+        for &f in &*dying {
+            let (_, apex) = third(self.triangle(f)?, e);
+            self.leave(apex, f);
+            self.delete_face(f);
+        }
+        if dying.len() < both.len() {
+            self.shorten(&both, gone);
+        }
+        self.exchange(keep, &dying, &moving);
+        self.delete_vertex(gone);
+        *self.positions.write(keep.index()) = to;
+
+        if listens(log) {
+            log.removed_vertex(gone);
+            log.removed_edge(e);
+            dying.iter().for_each(|&f| log.removed_face(f));
+            self.tell_met(&met, [gone, keep], log);
+        }
+        Ok(keep)
+    }
+
+    /// Whether the end that stays, and the third corners of the triangles `dying`, keep a face.
+    fn check_last_faces(
+        &self,
+        e: Edge,
+        keep: VertexId,
+        moving: &[FaceId],
+        dying: &[FaceId],
+    ) -> Result<(), Refused> {
+        let len = |v: VertexId| self.fans.read(v.index()).len as usize;
+        if moving.is_empty() && len(keep) == dying.len() {
+            return Err(EditError::LastFace { vertex: keep });
+        }
+        let mut in_doubt = Few::new();
+        for &f in dying {
+            let (_, apex) = third(self.triangle(f)?, e);
+            if len(apex) <= dying.len() {
+                in_doubt.push(apex);
+            }
+        }
+        // Triangles with the same corners have the same third corner.
+        in_doubt.sort_unstable();
+        let mut runs = in_doubt.chunk_by(|one, other| one == other);
+        match runs.find(|run| len(run[0]) == run.len()) {
+            Some(run) => Err(EditError::LastFace { vertex: run[0] }),
+            None => Ok(()),
+        }
+    }
+
+    /// How many corners the polygons among `faces` have.
+    fn corners_of_polygons(&self, faces: &[FaceId]) -> usize {
+        let degrees = faces.iter().map(|&f| self.known_face(f).len());
+        degrees.filter(|&degree| degree > 3).sum()
+    }
+
+    /// Takes the corner `gone` from those of `faces` that are there still.
+    fn shorten(&mut self, faces: &[FaceId], gone: VertexId) {
+        for &f in faces {
+            let face = self.known_face(f);
+            if face[0] != BLANK_CORNER {
+                let left = face.iter().copied().filter(|&v| v != gone);
+                let left = Few::from_iter(left);
+                self.spans
+                    .rewrite(&mut self.corners, f, &left, BLANK_CORNER);
+            }
+        }
+    }
+
+    /// The neighbours of `gone` but for `keep`, and whether they are neighbours of `keep` already.
+    fn edges_met(&self, gone: VertexId, keep: VertexId) -> Vec<(VertexId, bool)> {
+        let ring = self.ring(gone).into_vertices();
+        let others = ring.filter(|&v| v != keep);
+        others
+            .map(|v| (v, self.has_edge(Pair::new(keep, v))))
+            .collect()
+    }
+
+    /// Tells what became of the edges at `gone`, and of those at `keep` that came together with them.
+    fn tell_met(
+        &self,
+        met: &[(VertexId, bool)],
+        [gone, keep]: [VertexId; 2],
+        log: &mut impl EditLog<Self>,
+    ) {
+        for &(v, had_edge) in met {
+            let (old, new) = (Pair::new(gone, v), Pair::new(keep, v));
+            if !had_edge {
+                log.renamed_edge(old, new);
+                continue;
+            }
+            log.removed_edge(old);
+            if !self.has_edge(new) {
+                log.removed_edge(new);
+            }
+        }
+    }
+}

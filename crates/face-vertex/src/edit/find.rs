@@ -1,0 +1,236 @@
+//! What an edit looks up before it changes anything: names, faces along an edge, room for more.
+
+use mesh_core::{EditError, FaceId, Few, IteratorExt, MAX_ROWS, Pair, Probe, VertexId};
+
+use crate::circulate::{beside, runs_between};
+use crate::mesh::{BLANK_CORNER, BLANK_PLACE, FaceVertexMesh, Fan};
+
+/// Why an edit is refused here, whatever watches the tables.
+pub(super) type Refused = EditError<VertexId, Pair<VertexId>, FaceId>;
+
+/// How many places an edit may fill, those that are there included: then even if all fans move at
+/// once, and leave blanks, the pool stays below [`MAX_ROWS`].
+const MAX_PLACES: usize = MAX_ROWS / 4;
+
+/// Bit `i` for each `i` with a 1.
+#[inline]
+pub(super) fn mask<const N: usize>(hits: [u32; N]) -> u32 {
+    (0..N).fold(0, |mask, i| mask | hits[i] << i)
+}
+
+impl<P: Probe> FaceVertexMesh<P> {
+    /// The fan of `v`.
+    #[inline]
+    pub(super) fn fan_of(&self, v: VertexId) -> Result<Fan, Refused> {
+        if v.index() < self.fans.len() {
+            let fan = *self.fans.read(v.index());
+            if fan != Fan::GONE {
+                return Ok(fan);
+            }
+        }
+        Err(EditError::NoSuchVertex { vertex: v })
+    }
+
+    /// The corners of `f`.
+    #[inline]
+    pub(super) fn corners_of_face(&self, f: FaceId) -> Result<&[VertexId], Refused> {
+        if f.index() < self.spans.len() {
+            let face = self.known_face(f);
+            if face[0] != BLANK_CORNER {
+                return Ok(face);
+            }
+        }
+        Err(EditError::NoSuchFace { face: f })
+    }
+
+    /// Visits the faces with corners at both ends of `e`, side by side or not; none if an end is no
+    /// vertex.
+    ///
+    /// Short fans are compared with each other, which costs no jump to the corners of a face.
+    #[inline]
+    fn visit_both(&self, e: Pair<VertexId>, mut visit: impl FnMut(FaceId)) {
+        let [a, b] = e.ends();
+        let ([Ok(at_a), Ok(at_b)], true) = ([a, b].map(|v| self.fan_of(v)), a != b) else {
+            return;
+        };
+        let longer = at_a.len.max(at_b.len);
+        let is_done = (longer <= 8 && self.compare::<8>([at_a, at_b], &mut visit))
+            || (longer <= 16 && self.compare::<16>([at_a, at_b], &mut visit));
+        if !is_done {
+            self.search([(a, at_a), (b, at_b)], &mut visit);
+        }
+    }
+
+    /// Visits what two fans of up to `N` faces have in common; false if one of them is so near the end
+    /// of the pool that there are no `N` places.
+    ///
+    /// All are compared with all, without a branch: which are the same follows no pattern.
+    #[inline]
+    fn compare<const N: usize>(&self, fans: [Fan; 2], visit: &mut impl FnMut(FaceId)) -> bool {
+        let [Some(some), Some(others)] = fans.map(|fan| self.lanes::<N>(fan)) else {
+            return false;
+        };
+        let [len, other_len] = fans.map(|fan| fan.len as usize);
+        let mut hits = [0; N];
+        for (i, &face) in some.iter().enumerate() {
+            let face = if i < len { face } else { BLANK_PLACE };
+            for (hit, &other) in hits.iter_mut().zip(&others) {
+                *hit |= u32::from(face == other);
+            }
+        }
+        // Behind the second fan blanks may be, or what the first has, too.
+        let mut hits = mask(hits) & ((1 << other_len) - 1);
+        while hits != 0 {
+            visit(others[hits.trailing_zeros() as usize]);
+            hits &= hits - 1;
+        }
+        true
+    }
+
+    /// The same for long fans: visits the faces of the shorter that have the other vertex.
+    #[cold]
+    #[inline(never)]
+    fn search(&self, ends: [(VertexId, Fan); 2], visit: &mut impl FnMut(FaceId)) {
+        let [mut short, mut long] = ends;
+        if long.1.len < short.1.len {
+            (short, long) = (long, short);
+        }
+        for &f in self.pool.read_range(short.1.range()) {
+            if self.known_face(f).contains(&long.0) {
+                visit(f);
+            }
+        }
+    }
+
+    /// The faces with corners at both ends of `e`, side by side or not.
+    #[inline]
+    pub(super) fn faces_at_both(&self, e: Pair<VertexId>) -> Few<FaceId> {
+        let mut both = Few::new();
+        self.visit_both(e, |f| both.push(f));
+        both
+    }
+
+    /// `N` places of the pool from the start of a fan on, one load where `N` is small; `None` if the
+    /// fan is longer, or so near the end of the pool that there are fewer.
+    #[inline]
+    pub(super) fn lanes<const N: usize>(&self, fan: Fan) -> Option<[FaceId; N]> {
+        let start = fan.range().start;
+        if fan.len as usize > N || start + N > self.pool.len() {
+            return None;
+        }
+        let places = self.pool.read_range(start..start + N);
+        places.first_chunk().copied()
+    }
+
+    /// Whether `f`, which has both ends of `e`, has them side by side.
+    #[inline]
+    pub(super) fn runs(&self, f: FaceId, e: Pair<VertexId>) -> bool {
+        let [a, b] = e.ends();
+        runs_between(self.known_face(f), a, b)
+    }
+
+    /// The faces along `e`, of which there is one at least.
+    #[inline]
+    pub(super) fn faces_of_edge(&self, e: Pair<VertexId>) -> Result<Few<FaceId>, Refused> {
+        let mut along = Few::new();
+        self.visit_both(e, |f| {
+            if self.runs(f, e) {
+                along.push(f);
+            }
+        });
+        if along.is_empty() {
+            return Err(EditError::NoSuchEdge { edge: e });
+        }
+        Ok(along)
+    }
+
+    /// Whether `e` is an edge.
+    #[inline]
+    pub(super) fn has_edge(&self, e: Pair<VertexId>) -> bool {
+        let mut has = false;
+        self.visit_both(e, |f| has |= self.runs(f, e));
+        has
+    }
+
+    /// The two faces of `e`, that first which runs it from its lower end.
+    #[inline]
+    pub(super) fn two_faces(&self, e: Pair<VertexId>) -> Result<[FaceId; 2], Refused> {
+        let [low, high] = e.ends();
+        let mut found = 0;
+        // One of each direction: the last that runs up, and the last that runs down.
+        let mut along = [BLANK_PLACE; 2];
+        self.visit_both(e, |f| {
+            let [before, after] = beside(self.known_face(f), low);
+            if (after == high) | (before == high) {
+                along[usize::from(after != high)] = f;
+                found += 1;
+            }
+        });
+        match found {
+            0 => Err(EditError::NoSuchEdge { edge: e }),
+            2 if along.contains(&BLANK_PLACE) => Err(EditError::SameDirection { edge: e }),
+            2 => Ok(along),
+            faces => Err(EditError::NotTwoFaces { edge: e, faces }),
+        }
+    }
+
+    /// The corners of `f`, which is there, if they are three.
+    #[inline]
+    pub(super) fn triangle(&self, f: FaceId) -> Result<[VertexId; 3], Refused> {
+        let face = self.known_face(f);
+        match *face {
+            [a, b, c] => Ok([a, b, c]),
+            _ => Err(EditError::NotATriangle {
+                face: f,
+                degree: face.len(),
+            }),
+        }
+    }
+
+    /// How many edges `v` has.
+    pub(super) fn valence(&self, v: VertexId) -> usize {
+        let ends = self
+            .fan(v)
+            .iter()
+            .flat_map(|&f| beside(self.known_face(f), v));
+        ends.distinct().count()
+    }
+
+    /// Whether handles can name so many more vertices and faces, and corners and places of the pool.
+    #[inline]
+    pub(super) fn check_room(
+        &self,
+        vertices: usize,
+        faces: usize,
+        corners: usize,
+    ) -> Result<(), Refused> {
+        let is_full = self.fans.len() + vertices > MAX_ROWS
+            || self.spans.len() + faces > MAX_ROWS
+            || self.corners.len() + corners > MAX_ROWS
+            || self.pool.len() + corners > MAX_PLACES;
+        if is_full {
+            return Err(self.too_many(vertices, faces, corners));
+        }
+        Ok(())
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn too_many(&self, vertices: usize, faces: usize, corners: usize) -> Refused {
+        let limits = [
+            ("vertices", self.fans.len() + vertices, MAX_ROWS),
+            ("faces", self.spans.len() + faces, MAX_ROWS),
+            ("corners", self.corners.len() + corners, MAX_ROWS),
+            (
+                "places around vertices",
+                self.pool.len() + corners,
+                MAX_PLACES,
+            ),
+        ];
+        let (elements, _, limit) = limits
+            .into_iter()
+            .find(|&(_, number, limit)| number > limit)
+            .expect("one of them is too large");
+        EditError::TooMany { elements, limit }
+    }
+}

@@ -1,0 +1,215 @@
+//! What the laws do not see: the tables after an edit, what they cost, and who panics.
+
+use crate::mesh::BLANK_PLACE;
+use mesh_core::{
+    EditRecord, FaceSpans, MeshQuery, PolygonMesh, Refine, RefineError, Representation, Split,
+};
+
+use super::*;
+use crate::edge_numbers::EdgeNumbers;
+
+fn build(faces: &[&[u32]], vertices: u16) -> FaceVertexMesh {
+    let positions = (0..vertices).map(|i| Point::splat(f32::from(i)));
+    let polygons = PolygonMesh::new(positions.collect::<Vec<_>>(), faces).expect("valid");
+    FaceVertexMesh::from_polygons(&polygons).expect("holds everything")
+}
+
+fn v(row: u32) -> VertexId {
+    VertexId::new(row)
+}
+
+fn f(row: u32) -> FaceId {
+    FaceId::new(row)
+}
+
+fn edge(a: u32, b: u32) -> Edge {
+    Pair::new(v(a), v(b))
+}
+
+/// The fan of each vertex, as it lies in the pool.
+fn fans(mesh: &FaceVertexMesh) -> Vec<(u32, Vec<usize>)> {
+    let fan = |v: VertexId| {
+        let faces = mesh.fan(v).iter().map(|f| f.index());
+        (mesh.fans()[v.index()].start, faces.collect())
+    };
+    mesh.vertices().map(fan).collect()
+}
+
+#[test]
+fn a_flip_changes_a_corner_of_each_face_and_four_fans() {
+    // v0 v1 v2 v3 around a square cut from v0 to v2.
+    let mut mesh = build(&[&[0, 1, 2], &[0, 2, 3]], 4);
+    let mut record = EditRecord::new();
+    assert_eq!(mesh.flip_edge(edge(0, 2), &mut record), Ok(edge(1, 3)));
+    assert_eq!(mesh.validate(), Ok(()));
+    // f1 ran from v0 to v2 and keeps v0.
+    let corners: Vec<usize> = mesh.corners().iter().map(|v| v.index()).collect();
+    assert_eq!(corners, [3, 1, 2, 0, 1, 3]);
+    // Those of v0 and v2 shrank where they were; v1 had no room, and v3 was the last.
+    let expected = [(0, vec![1]), (6, vec![0, 1]), (3, vec![0]), (5, vec![1])];
+    assert_eq!(fans(&mesh)[..3], expected[..3]);
+    assert_eq!(record.edges.renamed, [[edge(0, 2), edge(1, 3)]]);
+    assert!(record.vertices.is_empty() && record.faces.is_empty());
+}
+
+#[test]
+fn a_fan_takes_the_blank_behind_it_before_it_moves() {
+    let mut mesh = build(&[&[0, 1, 2], &[0, 2, 3], &[0, 3, 4]], 5);
+    assert_eq!(mesh.fans()[0], Fan { start: 0, len: 3 });
+    mesh.remove_face(f(1), &mut ()).expect("it is there");
+    assert_eq!(mesh.fan(v(0)), [f(0), f(2)]);
+    assert_eq!(mesh.pool()[2], BLANK_PLACE);
+    let again = mesh.add_face(&[v(0), v(2), v(3)], &mut ());
+    assert_eq!(again, Ok(f(3)), "no row is used again");
+    assert_eq!(mesh.fans()[0], Fan { start: 0, len: 3 });
+    let places = mesh.pool().len();
+    let more = mesh.add_face(&[v(0), v(4), v(1)], &mut ());
+    more.expect("three vertices that are there");
+    let moved = mesh.fans()[0];
+    assert_eq!((moved.start as usize, moved.len), (places, 4));
+    assert_eq!(mesh.pool()[..3], [BLANK_PLACE; 3]);
+    // Eight places: room for four more.
+    assert_eq!(mesh.pool()[places + 4..places + 8], [BLANK_PLACE; 4]);
+    assert_eq!(mesh.validate(), Ok(()));
+}
+
+#[test]
+fn a_fan_that_grows_face_by_face_leaves_few_blanks() {
+    let mut mesh = build(&[&[0, 1, 2]], 3);
+    for next in 3..1003 {
+        let at = Point::splat(next as f32);
+        let added = mesh.add_vertex(at, &mut ()).expect("there is room");
+        let corners = [v(0), VertexId::new(next - 1), added];
+        mesh.add_face(&corners, &mut ()).expect("legal here");
+    }
+    assert_eq!(mesh.validate(), Ok(()));
+    assert_eq!(mesh.fan(v(0)).len(), 1001);
+    // The hub has moved to twice its length at each power of two, the rim once to eight places.
+    let hub = 4 * 1001;
+    assert!(mesh.pool().len() <= hub + 9 * 1002 + 3);
+    let one_by_one = mesh.pool().len();
+    mesh.compact(&mut ());
+    assert_eq!(mesh.pool().len(), 3 * 1001);
+    assert!(mesh.pool().len() < one_by_one / 2);
+}
+
+#[test]
+fn compacting_is_building_anew() {
+    let mut mesh = FaceVertexMesh::from_polygons(&shapes::icosahedron()).expect("triangles");
+    let faces: Vec<FaceId> = mesh.faces().collect();
+    for &f in &faces {
+        let at = Point::splat(f.index() as f32);
+        mesh.poke_face(f, at, &mut ()).expect("always legal");
+    }
+    mesh.remove_vertex(v(3), &mut ()).expect("it is there");
+    mesh.split_edge(edge(0, 12), Point::ONE, &mut ())
+        .expect("it is an edge");
+    let e = mesh.edges().find(|e| e.has(v(5))).expect("it has faces");
+    mesh.collapse_edge(e, v(5), Point::ZERO, &mut ())
+        .expect("many faces are left");
+    assert!(matches!(mesh.spans(), FaceSpans::Scattered { .. }));
+    let polygons = mesh.to_polygons();
+    let names = mesh.compact_with_names();
+    let anew = FaceVertexMesh::from_polygons(&polygons).expect("holds everything");
+    assert_eq!(format!("{mesh:?}"), format!("{anew:?}"));
+    assert!(
+        mesh.memory().total() <= 2 * anew.memory().total(),
+        "given back"
+    );
+    assert_eq!(mesh.vertex_rows(), mesh.vertex_count());
+    // The first edge of v5 leads to v0.
+    assert_eq!([0, 3].map(|gone| names.vertices[v(gone)]), [None; 2]);
+    assert_eq!(names.vertices[v(4)], Some(v(2)));
+}
+
+#[test]
+fn handles_that_name_nothing_are_refused() {
+    let mut mesh = build(&[&[0, 1, 2], &[0, 2, 3]], 4);
+    mesh.remove_vertex(v(3), &mut ()).expect("it is there");
+    let log = &mut ();
+    for vertex in [v(3), v(4)] {
+        let refused = Err(EditError::NoSuchVertex { vertex });
+        assert_eq!(mesh.set_position(vertex, Point::ONE, log), refused);
+        assert_eq!(
+            mesh.split_vertex(vertex, None, Some(v(0)), Point::ONE, log),
+            refused
+        );
+        assert_eq!(
+            mesh.add_face(&[v(0), v(1), vertex], log),
+            Err(EditError::NoSuchVertex { vertex })
+        );
+    }
+    for face in [f(1), f(2)] {
+        assert_eq!(
+            mesh.poke_face(face, Point::ONE, log),
+            Err(EditError::NoSuchFace { face })
+        );
+    }
+    for e in [edge(0, 3), edge(0, 4), edge(1, 1), edge(3, 3)] {
+        let refused = Err(EditError::NoSuchEdge { edge: e });
+        assert_eq!(mesh.split_edge(e, Point::ONE, log), refused);
+        assert_eq!(mesh.collapse_edge(e, v(0), Point::ONE, log), refused);
+        let refused = Err(EditError::NoSuchEdge { edge: e });
+        assert_eq!(mesh.flip_edge(e, log), refused);
+    }
+    let diagonal = build(&[&[0, 1, 2, 3]], 4).collapse_edge(edge(0, 2), v(0), Point::ONE, log);
+    assert_eq!(diagonal, Err(EditError::NoSuchEdge { edge: edge(0, 2) }));
+}
+
+/// The square without its corner v3 and the face there.
+fn without_a_corner() -> FaceVertexMesh {
+    let mut mesh = build(&[&[0, 1, 2], &[0, 2, 3]], 4);
+    mesh.remove_vertex(v(3), &mut ()).expect("it is there");
+    mesh
+}
+
+#[test]
+#[should_panic(expected = "no vertex v3: it was deleted")]
+fn the_fan_of_a_deleted_vertex_panics_by_name() {
+    let _ = without_a_corner().vertex_vertices(v(3));
+}
+
+#[test]
+#[should_panic(expected = "no vertex v3: it was deleted")]
+fn the_position_of_a_deleted_vertex_panics_by_name() {
+    let _ = without_a_corner().position(v(3));
+}
+
+#[test]
+#[should_panic(expected = "no face f1: it was deleted")]
+fn the_corners_of_a_deleted_face_panic_by_name() {
+    let _ = without_a_corner().face_vertices(f(1));
+}
+
+#[test]
+fn holes_are_not_split_but_faces_anywhere_are() {
+    let mut numbers = EdgeNumbers::default();
+    let mut child = FaceVertexMesh::empty();
+    let holes = without_a_corner();
+    holes.number_edges(&mut numbers);
+    assert_eq!(
+        holes.split_into(Split::Quads, &numbers, &mut child),
+        Err(RefineError::Holes { holes: 2 })
+    );
+
+    let mut mesh = build(&[&[0, 1, 2], &[0, 2, 3], &[0, 3, 4]], 5);
+    mesh.split_edge(edge(0, 1), Point::ONE, &mut ())
+        .expect("it is an edge");
+    assert!(matches!(mesh.spans(), FaceSpans::Scattered { .. }));
+    let split = |mesh: &FaceVertexMesh| {
+        let mut numbers = EdgeNumbers::default();
+        mesh.number_edges(&mut numbers);
+        let mut child = FaceVertexMesh::empty();
+        let done = mesh.split_into(Split::Quads, &numbers, &mut child);
+        assert_eq!(done, Ok(()));
+        assert_eq!(child.validate(), Ok(()));
+        let parent = |f| mesh.parent(&numbers, Split::Quads, f);
+        let parents: Vec<FaceId> = child.faces().map(parent).collect();
+        let edges = mesh.edges().map(|e| mesh.edge_number(&numbers, e));
+        assert!(edges.eq(0..mesh.edge_count()));
+        (format!("{child:?}"), parents)
+    };
+    let anywhere = split(&mesh);
+    mesh.compact(&mut ());
+    assert_eq!(split(&mesh), anywhere);
+}

@@ -1,0 +1,304 @@
+//! Making one vertex of the two ends of an edge.
+
+use mesh_core::{EdgeId, EditError, EditLog, FaceId, Point, Probe, Slot, VertexId};
+
+use super::Refusal;
+use super::names::Names;
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+
+/// An edge to be collapsed, from the end that goes: what was read to decide whether it may.
+struct Collapse {
+    /// From the end that goes to the end that stays.
+    h: HalfEdgeId,
+    into: Half,
+    back: Half,
+    /// The third side and the third corner of the triangle on the left, and on the right.
+    left: Option<(HalfEdgeId, Half)>,
+    right: Option<(HalfEdgeId, Half)>,
+    gone: Turn,
+    kept: Turn,
+}
+
+/// What a walk around one end, from the edge back to it, came by.
+struct Turn {
+    /// How many spokes there are; where it matters, which is up to three.
+    valence: usize,
+    /// Whether the end is on a boundary.
+    open: bool,
+    /// The spoke before the edge, and the one before that.
+    last: HalfEdgeId,
+    last_but_one: HalfEdgeId,
+}
+
+impl<P: Probe> HalfEdgeMesh<P> {
+    /// O(valence) of both ends, beyond 16 O(valence log valence); of a vertex in the middle of a
+    /// triangle, or of an edge, only what is around itself is read.
+    ///
+    /// ```text
+    ///          c                      c
+    ///    last ╱ ╲ next                │
+    ///        ╱ h ╲                    │
+    ///    gone ───► keep       →     keep
+    ///        ╲ t ╱                    │
+    ///         ╲ ╱                     │
+    ///          d                      d
+    /// ```
+    #[inline]
+    pub(super) fn collapse(
+        &mut self,
+        e: EdgeId,
+        keep: VertexId,
+        to: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal> {
+        let checked = self.check_collapse(e, keep)?;
+        self.collapse_checked(&checked, log);
+        *self.positions.write(keep.index()) = to;
+        Ok(keep)
+    }
+
+    /// The link condition (Dey et al. 1999), and that no face has an end twice.
+    #[inline]
+    fn check_collapse(&self, e: EdgeId, keep: VertexId) -> Result<Collapse, Refusal> {
+        let pair = self.existing_edge(e)?;
+        let side = usize::from(pair[0].origin == keep);
+        let (into, back) = (pair[side], pair[side ^ 1]);
+        if back.origin != keep {
+            return Err(EditError::NotAnEnd {
+                edge: e,
+                vertex: keep,
+            });
+        }
+        let h = self.halves_of(e)[side];
+        let t = h.twin();
+        let left = self.third_side(h, &into);
+        let right = self.third_side(t, &back);
+        // No neighbour is `keep` but along the edge, so it may stand for the corner that is not there.
+        let apexes = [left, right].map(|side| side.map_or(keep, |(_, third)| third.origin));
+        if apexes[0] == apexes[1] && apexes[0] != keep {
+            let vertex = apexes[0];
+            return Err(EditError::SameApex { edge: e, vertex });
+        }
+
+        let mut neighbours = Names::none();
+        let mut faces = Names::none();
+        let gone = self.turn(h, &back, |arriving| {
+            if !apexes.contains(&arriving.origin) {
+                neighbours.push(arriving.origin);
+            }
+            if let Some(f) = arriving.face.get()
+                && arriving.face != into.face
+                && arriving.face != back.face
+            {
+                faces.push(f);
+            }
+            Ok(())
+        })?;
+        neighbours.sort();
+        faces.sort();
+        let kept = match right {
+            // None of its neighbours can be a common one: no need to walk around the end that stays.
+            Some((last, _)) if neighbours.is_empty() => {
+                let found = |f: &FaceId| self.sides(*f).any(|(_, half)| half.origin == keep);
+                if faces.iter().any(found) {
+                    return Err(EditError::RepeatedVertex { vertex: keep });
+                }
+                self.glance(keep, into.next, last.twin())
+            }
+            _ => self.turn(t, &into, |arriving| {
+                if neighbours.has(arriving.origin) {
+                    let vertex = arriving.origin;
+                    return Err(EditError::CommonNeighbour { edge: e, vertex });
+                }
+                match arriving.face.get() {
+                    Some(f) if faces.has(f) => Err(EditError::RepeatedVertex { vertex: keep }),
+                    _ => Ok(()),
+                }
+            })?,
+        };
+
+        let checked = Collapse {
+            h,
+            into,
+            back,
+            left,
+            right,
+            gone,
+            kept,
+        };
+        if checked.gone.open || checked.kept.open {
+            self.check_at_boundary(e, &checked)?;
+        } else if checked.valence_after() == 2 && self.would_be_pillow(&checked) {
+            return Err(EditError::Pillow { edge: e });
+        }
+        Ok(checked)
+    }
+
+    /// Walks clockwise around the origin of `h` once, whose twin has the record `twin`, and visits the
+    /// record of each half that arrives there but `twin`.
+    #[inline]
+    fn turn(
+        &self,
+        h: HalfEdgeId,
+        twin: &Half,
+        mut visit: impl FnMut(&Half) -> Result<(), Refusal>,
+    ) -> Result<Turn, Refusal> {
+        let mut turn = Turn {
+            valence: 1,
+            open: twin.face == Slot::NONE,
+            last: h,
+            last_but_one: h,
+        };
+        let mut spoke = twin.next;
+        while spoke != h {
+            let arriving = self.row_of(spoke.twin());
+            visit(&arriving)?;
+            turn.valence += 1;
+            turn.open |= arriving.face == Slot::NONE;
+            turn.last_but_one = turn.last;
+            turn.last = spoke;
+            spoke = arriving.next;
+        }
+        Ok(turn)
+    }
+
+    /// What there is to know of `v` without a turn: its first spoke after an edge and its last one
+    /// before tell whether its valence is three; if not, it is given as four.
+    #[inline]
+    fn glance(&self, v: VertexId, first: HalfEdgeId, last: HalfEdgeId) -> Turn {
+        let leaving = self.leaving.read(v.index()).get().expect("I5");
+        Turn {
+            valence: if self.follow(first.twin()) == last {
+                3
+            } else {
+                4
+            },
+            open: !self.has_face(leaving),
+            last,
+            last_but_one: last,
+        }
+    }
+
+    /// What a boundary forbids: an inner edge across, and a third corner with no other face.
+    #[cold]
+    #[inline(never)]
+    fn check_at_boundary(&self, e: EdgeId, checked: &Collapse) -> Result<(), Refusal> {
+        let Collapse {
+            into,
+            back,
+            left,
+            right,
+            ..
+        } = checked;
+        let inner = into.face != Slot::NONE && back.face != Slot::NONE;
+        if inner && checked.gone.open && checked.kept.open {
+            return Err(EditError::AcrossBoundary { edge: e });
+        }
+        for (second, third) in [(into.next, left), (back.next, right)] {
+            if let Some((third, at_third)) = third
+                && !self.has_face(second.twin())
+                && !self.has_face(third.twin())
+            {
+                let vertex = at_third.origin;
+                return Err(EditError::LastFace { vertex });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether all faces that are left are triangles, of which there are two.
+    #[cold]
+    #[inline(never)]
+    fn would_be_pillow(&self, checked: &Collapse) -> bool {
+        let ends = [checked.into.origin, checked.back.origin];
+        let mut faces = ends.into_iter().flat_map(|v| self.spokes(v));
+        faces.all(|(_, arriving)| {
+            let along = [checked.into.face, checked.back.face].contains(&arriving.face);
+            let most = if along { 4 } else { 3 };
+            let face = arriving.face.get();
+            face.is_none_or(|f| self.around_face(f).take(most + 1).count() <= most)
+        })
+    }
+
+    fn collapse_checked(&mut self, checked: &Collapse, log: &mut impl EditLog<Self>) {
+        let Collapse {
+            h,
+            into,
+            back,
+            left,
+            right,
+            ref gone,
+            ref kept,
+        } = *checked;
+        let (t, next) = (h.twin(), into.next);
+        let [v, keep] = [into.origin, back.origin];
+        // The sides of the triangles that go need no new origin.
+        let mut spoke = match right {
+            Some(_) => self.follow(back.next.twin()),
+            None => back.next,
+        };
+        let end = left.map_or(h, |(last, _)| last.twin());
+        while spoke != end {
+            self.halves.write(spoke.index()).origin = keep;
+            spoke = self.follow(spoke.twin());
+        }
+
+        // On the left the spoke from `gone` goes, and the side from `keep` takes its place; a polygon
+        // or a boundary loop is closed where `h` was. The right may then be what the left has made it.
+        if let Some((last, at_last)) = left {
+            self.replace(gone.last_but_one.twin(), last.twin(), next);
+            self.pass_on_leaving(at_last.origin, last, next.twin());
+        } else {
+            self.link(gone.last.twin(), next);
+            self.pass_on_first(into.face, h, next);
+        }
+        let after = if let Some((last, at_last)) = right {
+            let outer = back.next.twin();
+            let before = self.prev(outer);
+            self.replace(before, outer, last);
+            self.pass_on_leaving(at_last.origin, outer, last);
+            next
+        } else {
+            let after = self.follow(t);
+            self.link(kept.last.twin(), after);
+            self.pass_on_first(back.face, t, after);
+            after
+        };
+
+        // The boundary half of either end; on the left a side has taken the place of a spoke.
+        let from = if gone.open && !kept.open { v } else { keep };
+        let leaving = self.leaving.read(from.index()).get().expect("I5");
+        let leaving = match left {
+            _ if leaving == t => after,
+            Some((last, _)) if leaving == last.twin() => next,
+            _ => leaving,
+        };
+        self.set_leaving(keep, leaving);
+
+        let mut bury = |mesh: &mut Self, triangle: Slot<FaceId>, spoke: HalfEdgeId| {
+            let f = triangle.get().expect("a triangle is a face");
+            mesh.dig_face(f);
+            mesh.dig_edge(spoke.edge());
+            log.removed_face(f);
+            log.removed_edge(spoke.edge());
+        };
+        if let Some((last, _)) = left {
+            bury(self, into.face, last);
+        }
+        if right.is_some() {
+            bury(self, back.face, back.next);
+        }
+        self.dig_edge(h.edge());
+        self.dig_vertex(v);
+        log.removed_edge(h.edge());
+        log.removed_vertex(v);
+    }
+}
+
+impl Collapse {
+    /// The valence of the vertex that is left.
+    fn valence_after(&self) -> usize {
+        let triangles = usize::from(self.left.is_some()) + usize::from(self.right.is_some());
+        self.gone.valence + self.kept.valence - 2 - triangles
+    }
+}

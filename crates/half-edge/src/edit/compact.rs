@@ -1,0 +1,70 @@
+//! Closing the holes.
+
+use mesh_core::{EditLog, FaceId, Holes, MeshQuery, Probe, RowId, VertexId};
+
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+
+impl<P: Probe> HalfEdgeMesh<P> {
+    /// O(mesh): all rows move down in order, under names that are counted once.
+    pub(super) fn close_holes<L: EditLog<Self>>(&mut self, log: &mut L) {
+        if self.hole_count() > 0 {
+            self.rename_rows(log);
+        }
+        self.vertex_holes.close(&mut self.positions);
+        self.vertex_holes.close(&mut self.leaving);
+        self.face_holes.close(&mut self.first);
+        self.halves.give_back();
+        self.vertex_holes.fill();
+        self.edge_holes.fill();
+        self.face_holes.fill();
+    }
+
+    /// Every name in the tables becomes the new one, and the halves, two rows an edge, move there.
+    fn rename_rows<L: EditLog<Self>>(&mut self, log: &mut L) {
+        let vertices = self.vertex_holes.new_rows(self.vertex_rows());
+        let edges = self.edge_holes.new_rows(self.edge_rows());
+        let faces = self.face_holes.new_rows(self.face_rows());
+        if L::LISTENS {
+            tell(&self.vertex_holes, &vertices, |old, new| {
+                log.renamed_vertex(old, new);
+            });
+            tell(&self.edge_holes, &edges, |old, new| {
+                log.renamed_edge(old, new);
+            });
+            tell(&self.face_holes, &faces, |old, new| {
+                log.renamed_face(old, new);
+            });
+        }
+
+        let half =
+            |h: HalfEdgeId| HalfEdgeId::new(edges[h.edge().index()] << 1 | (h.index() as u32 & 1));
+        for leaving in self.leaving.rows_mut() {
+            *leaving = leaving.get().map(half).into();
+        }
+        let first = self.first.rows_mut();
+        for f in self.face_holes.rows(first.len()) {
+            first[f as usize] = half(first[f as usize]);
+        }
+        let rows = self.halves.rows_mut().as_chunks_mut::<2>().0;
+        let mut to = 0;
+        for from in self.edge_holes.rows(rows.len()) {
+            rows[to] = rows[from as usize].map(|old| Half {
+                next: half(old.next),
+                origin: VertexId::new(vertices[old.origin.index()]),
+                face: old.face.get().map(|f| FaceId::new(faces[f.index()])).into(),
+            });
+            to += 1;
+        }
+        self.halves.truncate(2 * to);
+    }
+}
+
+/// Tells of each row that moves.
+fn tell<H: RowId, P: Probe>(holes: &Holes<P>, new_rows: &[u32], mut renamed: impl FnMut(H, H)) {
+    for old in holes.rows(new_rows.len()) {
+        let new = new_rows[old as usize];
+        if new != old {
+            renamed(H::from_row(old), H::from_row(new));
+        }
+    }
+}

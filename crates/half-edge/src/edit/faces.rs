@@ -1,0 +1,295 @@
+//! Faces that come, and faces that go.
+
+use mesh_core::{EditError, EditLog, FaceId, IteratorExt, Probe, Slot, VertexId};
+
+use super::Refusal;
+use super::names::Names;
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+
+impl<P: Probe> HalfEdgeMesh<P> {
+    /// O(valence) of the corners.
+    ///
+    /// A side of the new face fills a boundary half, or is new. All faces at a vertex being one fan,
+    /// the only half that can be filled from there is `leaving`, and no edge may lead there otherwise.
+    pub(super) fn add(
+        &mut self,
+        corners: &[VertexId],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<FaceId, Refusal> {
+        let new_edges = self.check_new_face(corners)?;
+        self.check_room(0, new_edges, 1)?;
+
+        let f = self.next_face();
+        let last = corners.len() - 1;
+        let mut side = |mesh: &mut Self, i: usize| {
+            let (from, to) = (corners[i], corners[if i == last { 0 } else { i + 1 }]);
+            let filled = mesh.gap_towards(from, to);
+            let side = filled.unwrap_or_else(|| {
+                let ends = [(from, Slot::some(f)), (to, Slot::NONE)];
+                let h = mesh.next_half();
+                let halves = ends.map(|(origin, face)| Half {
+                    next: h,
+                    origin,
+                    face,
+                });
+                log.created_edge(h.edge());
+                mesh.push_edge(halves)
+            });
+            (side, filled.is_none())
+        };
+        // What comes in at the first corner is the last side.
+        let closing = side(self, last);
+        let mut arriving = closing;
+        for (i, &v) in corners.iter().enumerate() {
+            let leaving = if i == last { closing } else { side(self, i) };
+            self.join(v, arriving, leaving);
+            arriving = leaving;
+        }
+        self.first.push(closing.0);
+        let mut h = closing.0;
+        for _ in corners {
+            let half = self.halves.write(h.index());
+            half.face = Slot::some(f);
+            h = half.next;
+        }
+        log.created_face(f);
+        Ok(f)
+    }
+
+    /// How many new edges a face over `corners` has, if it may be.
+    fn check_new_face(&self, corners: &[VertexId]) -> Result<usize, Refusal> {
+        let degree = corners.len();
+        if degree < 3 {
+            return Err(EditError::TooFewCorners { corners: degree });
+        }
+        for &v in corners {
+            self.check_vertex(v)?;
+        }
+        for (&v, first) in corners
+            .iter()
+            .zip(corners.iter().distinct().map(Some).chain([None]))
+        {
+            if first != Some(&v) {
+                return Err(EditError::RepeatedVertex { vertex: v });
+            }
+        }
+        let mut new_edges = 0;
+        let mut filled_before = self.gap_towards(corners[degree - 1], corners[0]).is_some();
+        for (i, &v) in corners.iter().enumerate() {
+            let next = corners[if i + 1 == degree { 0 } else { i + 1 }];
+            let filled = self.gap_towards(v, next).is_some();
+            if !filled {
+                self.check_no_edge(v, next)?;
+                new_edges += 1;
+            }
+            if !filled && !filled_before && self.half_leaving(v).is_some() {
+                return Err(EditError::SeveralFans { vertex: v });
+            }
+            filled_before = filled;
+        }
+        Ok(new_edges)
+    }
+
+    /// The half from one vertex to another, if there is one without a face.
+    fn gap_towards(&self, from: VertexId, to: VertexId) -> Option<HalfEdgeId> {
+        let h = self.leaving.read(from.index()).get()?;
+        let [half, twin] = self.both(h);
+        (half.face == Slot::NONE && twin.origin == to).then_some(h)
+    }
+
+    /// Refuses an edge between two vertices whose half between them, if there is one, has a face.
+    fn check_no_edge(&self, from: VertexId, to: VertexId) -> Result<(), Refusal> {
+        let mut spokes = self.spokes(from);
+        let Some((h, arriving)) = spokes.find(|(_, arriving)| arriving.origin == to) else {
+            return Ok(());
+        };
+        match self.row_of(h).face.get() {
+            Some(face) if arriving.face == Slot::NONE => {
+                Err(EditError::RepeatedSide { from, to, face })
+            }
+            _ => Err(EditError::FullEdge { edge: h.edge() }),
+        }
+    }
+
+    /// Joins two sides of a new face at `v`, each with whether it is new, and the boundary beside them.
+    ///
+    /// ```text
+    /// arriving  leaving     on the boundary
+    /// new       new         the twin of one leads on to that of the other: v was isolated
+    /// filled    new         the twin of `leaving` leads on to what `arriving` led to
+    /// new       filled      what led to `leaving` leads on to the twin of `arriving`
+    /// filled    filled      the gap at v is closed
+    /// ```
+    fn join(
+        &mut self,
+        v: VertexId,
+        (arriving, arriving_is_new): (HalfEdgeId, bool),
+        (leaving, leaving_is_new): (HalfEdgeId, bool),
+    ) {
+        match (arriving_is_new, leaving_is_new) {
+            (true, true) => {
+                self.link(leaving.twin(), arriving.twin());
+                self.set_leaving(v, arriving.twin());
+            }
+            (false, true) => {
+                let beyond = self.follow(arriving);
+                self.link(leaving.twin(), beyond);
+            }
+            (true, false) => {
+                let before = self.before_in_turn(leaving);
+                self.link(before, arriving.twin());
+                self.set_leaving(v, arriving.twin());
+            }
+            (false, false) => {}
+        }
+        self.link(arriving, leaving);
+    }
+
+    /// The half before `h`, found around the vertex.
+    fn before_in_turn(&self, h: HalfEdgeId) -> HalfEdgeId {
+        let mut spoke = h;
+        loop {
+            let next = self.follow(spoke.twin());
+            if next == h {
+                return spoke.twin();
+            }
+            spoke = next;
+        }
+    }
+
+    /// Whether the faces left at each corner of a face would be one fan: a corner on a boundary needs
+    /// a side there that lies on it.
+    pub(super) fn check_removable(&self, first: HalfEdgeId) -> Result<(), Refusal> {
+        let mut h = first;
+        let [mut half, mut twin] = self.both(h);
+        loop {
+            let next = half.next;
+            let beside = twin.face;
+            [half, twin] = self.both(next);
+            if beside != Slot::NONE && twin.face != Slot::NONE {
+                let vertex = half.origin;
+                let leaving = self.leaving.read(vertex.index()).get().expect("I5");
+                if !self.has_face(leaving) {
+                    return Err(EditError::SeveralFans { vertex });
+                }
+            }
+            h = next;
+            if h == first {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Whether the faces left at each neighbour of `v`, without those of `v`, would be one fan.
+    ///
+    /// O(valence) for each corner of each face of `v`.
+    pub(super) fn check_star_removable(&self, v: VertexId) -> Result<(), Refusal> {
+        let mut star = Names::none();
+        for (_, arriving) in self.spokes(v) {
+            if let Some(f) = arriving.face.get() {
+                star.push(f);
+            }
+        }
+        star.sort();
+        let stays = |half: &Half| half.face.get().is_some_and(|f| !star.has(f));
+        for f in self
+            .spokes(v)
+            .filter_map(|(_, arriving)| arriving.face.get())
+        {
+            for vertex in self
+                .sides(f)
+                .map(|(_, half)| half.origin)
+                .filter(|&u| u != v)
+            {
+                // Each fan that stays ends once on the way around.
+                let leaving = self.leaving.read(vertex.index()).get().expect("I5");
+                let (mut fans, mut before) = (0, stays(&self.row_of(leaving)));
+                for (_, arriving) in self.spokes(vertex) {
+                    let after = stays(arriving);
+                    fans += usize::from(before && !after);
+                    before = after;
+                }
+                if fans > 1 {
+                    return Err(EditError::SeveralFans { vertex });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Unlinks the faces of `v`, counter-clockwise, from the boundary if there is one: then a side of
+    /// each lies on the boundary that the one before it has left.
+    pub(super) fn unlink_star(&mut self, v: VertexId, log: &mut impl EditLog<Self>) {
+        let Some(mut out) = self.leaving.read(v.index()).get() else {
+            return;
+        };
+        if !self.has_face(out) {
+            out = self.before_in_turn(out).twin();
+        }
+        while let Some(f) = self.row_of(out).face.get() {
+            let turned = self.prev(out).twin();
+            let more = self.has_face(turned);
+            self.unlink_face(f, out, log);
+            if !more {
+                return;
+            }
+            out = turned;
+        }
+    }
+
+    /// Takes `f`, which `first` runs along, off the mesh, with the edges that only it had.
+    ///
+    /// At each corner one half now leads on to another: the side that arrives there, or the boundary
+    /// half that came before its twin if the side goes; and the side that leaves, or what came after
+    /// its twin. A corner may be between fans meanwhile, where several faces go one after the other:
+    /// each gap then has its own two halves, and the way around the vertex still meets all.
+    ///
+    /// O(valence) of the corners.
+    pub(super) fn unlink_face(
+        &mut self,
+        f: FaceId,
+        first: HalfEdgeId,
+        log: &mut impl EditLog<Self>,
+    ) {
+        let mut bury = |mesh: &mut Self, h: HalfEdgeId| {
+            mesh.dig_edge(h.edge());
+            log.removed_edge(h.edge());
+        };
+        let first_goes = !self.has_face(first.twin());
+        let (mut arriving, mut goes) = (first, first_goes);
+        let mut leaving = self.follow(first);
+        loop {
+            let [at_leaving, at_twin] = self.both(leaving);
+            let leaving_goes = at_twin.face == Slot::NONE;
+            let before = if goes {
+                self.before_in_turn(arriving.twin())
+            } else {
+                arriving
+            };
+            let after = if leaving_goes { at_twin.next } else { leaving };
+            let v = at_leaving.origin;
+            if after == arriving.twin() {
+                *self.leaving.write(v.index()) = Slot::NONE;
+            } else {
+                self.link(before, after);
+                self.set_leaving(v, after);
+            }
+            // The first side is needed once more, at the last corner.
+            if !goes {
+                self.halves.write(arriving.index()).face = Slot::NONE;
+            } else if arriving != first {
+                bury(self, arriving);
+            }
+            if leaving == first {
+                break;
+            }
+            (arriving, goes) = (leaving, leaving_goes);
+            leaving = at_leaving.next;
+        }
+        if first_goes {
+            bury(self, first);
+        }
+        self.dig_face(f);
+        log.removed_face(f);
+    }
+}

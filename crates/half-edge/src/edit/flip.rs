@@ -1,0 +1,108 @@
+//! Turning an edge within the quad of its two triangles.
+
+use mesh_core::{EdgeId, EditError, FaceId, Probe};
+
+use super::Refusal;
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+
+impl<P: Probe> HalfEdgeMesh<P> {
+    /// O(valence) of `c`: reads eight halves and one for each further edge there.
+    ///
+    /// ```text
+    ///        c                    c
+    ///   ca  ╱ ╲  bc          ca  ╱│╲  bc
+    ///      ╱ h ╲                ╱ │ ╲
+    ///     a ───► b       →     a h│t b
+    ///      ╲ t ╱                ╲ │ ╱
+    ///   ad  ╲ ╱  db          ad  ╲│╱  db
+    ///        d                    d
+    /// ```
+    #[inline]
+    pub(super) fn flip(&mut self, e: EdgeId) -> Result<EdgeId, Refusal> {
+        let [one, other] = self.existing_edge(e)?;
+        let (Some(f), Some(g)) = (one.face.get(), other.face.get()) else {
+            return Err(EditError::NotTwoFaces { edge: e, faces: 1 });
+        };
+        let [h, t] = self.halves_of(e);
+        let (bc, ad) = (one.next, other.next);
+        let [at_bc, at_cb] = self.both(bc);
+        let [at_ad, at_da] = self.both(ad);
+        let (ca, db) = (at_bc.next, at_ad.next);
+        let [at_ca, at_ac] = self.both(ca);
+        let at_db = self.row_of(db);
+        if at_ca.next != h {
+            return Err(self.no_triangle(f));
+        }
+        if at_db.next != t {
+            return Err(self.no_triangle(g));
+        }
+        let (a, b, c, d) = (one.origin, other.origin, at_ca.origin, at_db.origin);
+        if c == d {
+            return Err(EditError::SameApex { edge: e, vertex: c });
+        }
+        // Of three edges at an end, the one that is neither turned nor the first after it is the last.
+        let inner = |half: &Half| half.face.get().is_some();
+        if at_da.next == ca.twin() && inner(&at_da) {
+            return Err(EditError::LowValence { vertex: a });
+        }
+        if at_cb.next == db.twin() && inner(&at_cb) {
+            return Err(EditError::LowValence { vertex: b });
+        }
+        // From one side of the triangle at c around to the other: the edges that may lead to d.
+        let mut spoke = at_ac.next;
+        while spoke != bc.twin() {
+            let arriving = self.row_of(spoke.twin());
+            if arriving.origin == d {
+                return Err(EditError::EdgeExists { ends: [c, d] });
+            }
+            spoke = arriving.next;
+        }
+
+        *self.halves.write(h.index()) = Half {
+            next: ca,
+            origin: d,
+            ..one
+        };
+        *self.halves.write(t.index()) = Half {
+            next: db,
+            origin: c,
+            ..other
+        };
+        *self.halves.write(ad.index()) = Half {
+            next: h,
+            origin: a,
+            face: one.face,
+        };
+        *self.halves.write(bc.index()) = Half {
+            next: t,
+            origin: b,
+            face: other.face,
+        };
+        self.link(ca, ad);
+        self.link(db, bc);
+        *self.first.write(f.index()) = h;
+        *self.first.write(g.index()) = t;
+        self.pass_on_leaving(a, h, ad);
+        self.pass_on_leaving(b, t, bc);
+        Ok(e)
+    }
+
+    #[cold]
+    #[inline(never)]
+    pub(super) fn no_triangle(&self, f: FaceId) -> Refusal {
+        EditError::NotATriangle {
+            face: f,
+            degree: self.around_face(f).count(),
+        }
+    }
+
+    /// The third side of the triangle that `h`, with its record, runs along; none along a polygon or
+    /// a boundary loop.
+    #[inline]
+    pub(super) fn third_side(&self, h: HalfEdgeId, half: &Half) -> Option<(HalfEdgeId, Half)> {
+        half.face.get()?;
+        let third = self.follow(half.next);
+        let at_third = self.row_of(third);
+        (at_third.next == h).then_some((third, at_third))
+    }
+}

@@ -1,0 +1,165 @@
+//! Making two vertices of one.
+
+use mesh_core::{EditError, EditLog, Point, Probe, Slot, VertexId};
+
+use super::Refusal;
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+
+/// A spoke of the vertex that is split, and the half before it.
+#[derive(Clone, Copy)]
+struct Spoke {
+    h: HalfEdgeId,
+    before: HalfEdgeId,
+}
+
+impl<P: Probe> HalfEdgeMesh<P> {
+    /// O(valence).
+    ///
+    /// The edge to `left` goes with the new vertex and that to `right` stays, so that each new edge
+    /// takes the place of a spoke whose half before it the walk around `v` has come by.
+    ///
+    /// ```text
+    ///        left                    left
+    ///      ╲  ▲  ╱              ╲  new ╱ ╲▲ hl ╱
+    ///       ╲ │hl                ╲    ╱   ╲│  ╱
+    ///     ─── v ───     →       ─── v ───► n ───        y runs v → n, its twin x back
+    ///       ╱ │hr                ╱ hr╲    ╱  ╲
+    ///      ╱  ▼  ╲              ╱     ▼  ╱ new ╲
+    ///        right                   right
+    /// ```
+    pub(super) fn open(
+        &mut self,
+        v: VertexId,
+        left: Option<VertexId>,
+        right: Option<VertexId>,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal> {
+        self.check_vertex(v)?;
+        let first = self.half_leaving(v).ok_or(EditError::NoFan { vertex: v })?;
+        if left == right {
+            return Err(EditError::NoSides { vertex: v });
+        }
+        let [mut to_left, mut to_right] = [None; 2];
+        let mut h = first;
+        // The half before the first spoke is known when the walk is over.
+        let mut before = first;
+        loop {
+            let arriving = self.row_of(h.twin());
+            let spoke = Some(Spoke { h, before });
+            if left == Some(arriving.origin) {
+                to_left = spoke;
+            } else if right == Some(arriving.origin) {
+                to_right = spoke;
+            }
+            before = h.twin();
+            h = arriving.next;
+            if h == first {
+                break;
+            }
+        }
+        for spoke in [&mut to_left, &mut to_right].into_iter().flatten() {
+            if spoke.h == first {
+                spoke.before = before;
+            }
+        }
+        for (side, spoke) in [(left, to_left), (right, to_right)] {
+            if let (Some(side), None) = (side, spoke) {
+                return Err(EditError::NotANeighbour { vertex: v, side });
+            }
+        }
+        let two = to_left.is_some() && to_right.is_some();
+        if !two && self.has_face(first) {
+            return Err(EditError::NotOnBoundary { vertex: v });
+        }
+        let sides = if two { 2 } else { 1 };
+        self.check_room(1, 1 + sides, sides)?;
+
+        let n = self.push_vertex(at, Slot::NONE);
+        log.created_vertex(n);
+        // Clockwise from `left`, or from the boundary, to `right`, or to the boundary.
+        let from = to_left.map_or(first, |spoke| self.follow(spoke.h.twin()));
+        let to = to_right.map_or(first, |spoke| spoke.h);
+        let mut first_moves = false;
+        let mut h = from;
+        while h != to {
+            first_moves |= h == first;
+            self.halves.write(h.index()).origin = n;
+            h = self.follow(h.twin());
+        }
+
+        let blank = |origin| Half {
+            next: first,
+            origin,
+            face: Slot::NONE,
+        };
+        let y = self.push_edge([blank(v), blank(n)]);
+        let x = y.twin();
+        log.created_edge(y.edge());
+        let right = to_right.map(|spoke| (spoke.h, self.double(spoke, n, x, log)));
+        let left = to_left.map(|spoke| {
+            self.halves.write(spoke.h.index()).origin = n;
+            (spoke.h, self.double(spoke, v, y, log))
+        });
+        let (leaves_v, leaves_n) = match (left, right) {
+            // The first spoke, on the boundary if there is one, leaves one of the two, or its double.
+            (Some((hl, new_l)), Some((hr, new_r))) => {
+                if first_moves {
+                    (hr, first)
+                } else if first == hr {
+                    (hr, new_r)
+                } else if first == hl {
+                    (new_l, hl)
+                } else {
+                    (first, hl)
+                }
+            }
+            // With one triangle the other half of the new edge comes into the boundary loop.
+            (left, _) => {
+                let outer = if left.is_some() { x } else { y };
+                let after = self.follow(before);
+                self.link(before, outer);
+                self.link(outer, after);
+                if left.is_some() {
+                    (after, outer)
+                } else {
+                    (outer, after)
+                }
+            }
+        };
+        self.set_leaving(v, leaves_v);
+        self.set_leaving(n, leaves_n);
+        Ok(n)
+    }
+
+    /// Makes two edges of a spoke: a new one, from `origin`, takes its place, and the spoke is the
+    /// first side of a new triangle, before the twin of the new half and `third`. The new half.
+    fn double(
+        &mut self,
+        Spoke { h, before }: Spoke,
+        origin: VertexId,
+        third: HalfEdgeId,
+        log: &mut impl EditLog<Self>,
+    ) -> HalfEdgeId {
+        let f = self.next_face();
+        let [half, twin] = self.both(h);
+        let new = self.push_edge([
+            Half { origin, ..half },
+            Half {
+                next: third,
+                face: Slot::some(f),
+                ..twin
+            },
+        ]);
+        self.link(before, new);
+        self.pass_on_first(half.face, h, new);
+        for (side, next) in [(h, new.twin()), (third, h)] {
+            let half = self.halves.write(side.index());
+            (half.next, half.face) = (next, Slot::some(f));
+        }
+        self.first.push(h);
+        log.created_edge(new.edge());
+        log.created_face(f);
+        new
+    }
+}

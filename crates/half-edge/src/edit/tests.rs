@@ -1,0 +1,190 @@
+//! What the laws do not see: the tables themselves, panics by name, and memory.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use mesh_core::{
+    EditError, EditRecord, FaceId, MeshEdit, MeshQuery, Point, PolygonMesh, Ranks, Refine,
+    RefineError, Representation, Slot, Split, VertexId,
+};
+
+use super::*;
+
+fn v(row: u32) -> VertexId {
+    VertexId::new(row)
+}
+
+fn mesh<const N: usize>(vertices: u32, faces: impl IntoIterator<Item = [u32; N]>) -> HalfEdgeMesh {
+    let positions = (0..vertices).map(|i| Point::splat(i as f32));
+    let polygons = PolygonMesh::new(positions.collect::<Vec<_>>(), faces).expect("valid");
+    HalfEdgeMesh::from_polygons(&polygons).expect("manifold")
+}
+
+/// The rows as next, origin and face, `.` on a boundary loop.
+fn rows(mesh: &HalfEdgeMesh) -> Vec<String> {
+    let row = |half: &Half| {
+        let face = half.face.get().map_or(".".to_owned(), |f| f.to_string());
+        format!("{} {} {face}", half.next, half.origin)
+    };
+    mesh.half_rows().iter().map(row).collect()
+}
+
+fn corners(mesh: &HalfEdgeMesh, f: u32) -> Vec<VertexId> {
+    mesh.face_vertices(FaceId::new(f)).collect()
+}
+
+/// Takes an answer that nobody looks at.
+fn ask<T>(_: T) {}
+
+fn edge(mesh: &HalfEdgeMesh, a: u32, b: u32) -> EdgeId {
+    mesh.edge_between(v(a), v(b)).expect("an edge")
+}
+
+#[test]
+fn a_flip_turns_six_halves() {
+    let mut mesh = mesh(4, [[0, 1, 2], [0, 2, 3]]);
+    let before = "h6 v0 f0, h4 v1 ., h8 v0 f1, h0 v2 f0, h9 v0 ., \
+                  h2 v3 f1, h3 v1 f0, h1 v2 ., h5 v2 f1, h7 v3 .";
+    assert_eq!(rows(&mesh).join(", "), before);
+    // h2 runs v0 → v2 along f1, h3 back along f0; then h2 v1 → v3, and f1 has kept v0.
+    let e = edge(&mesh, 0, 2);
+    assert_eq!(mesh.halves_of(e), [2, 3].map(HalfEdgeId::new));
+    assert_eq!(mesh.flip_edge(e, &mut ()), Ok(e));
+    let after = "h2 v0 f1, h4 v1 ., h5 v1 f1, h6 v3 f0, h9 v0 ., \
+                 h0 v3 f1, h8 v1 f0, h1 v2 ., h3 v2 f0, h7 v3 .";
+    assert_eq!(rows(&mesh).join(", "), after);
+    assert_eq!(corners(&mesh, 0), [3, 1, 2].map(v));
+    assert_eq!(corners(&mesh, 1), [1, 3, 0].map(v));
+    assert_eq!(mesh.validate(), Ok(()));
+}
+
+#[test]
+fn a_collapse_leaves_marks_where_two_triangles_were() {
+    // A closed fan of four triangles around v4.
+    let mut mesh = mesh(5, [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);
+    let e = edge(&mesh, 0, 4);
+    let gone = [e, edge(&mesh, 1, 4), edge(&mesh, 3, 4)];
+    let mut record = EditRecord::new();
+    assert_eq!(mesh.collapse_edge(e, v(0), Point::X, &mut record), Ok(v(0)));
+    assert_eq!(mesh.validate(), Ok(()));
+    assert_eq!(corners(&mesh, 1), [1, 2, 0].map(v));
+    assert_eq!(corners(&mesh, 2), [2, 3, 0].map(v));
+    assert_eq!(mesh.position(v(0)), Point::X);
+    assert_eq!(record.vertices.removed, [v(4)]);
+    for e in gone {
+        assert!(record.edges.removed.contains(&e), "{e}");
+        for h in mesh.halves_of(e) {
+            assert_eq!(mesh.half_rows()[h.index()], Half::DELETED);
+        }
+    }
+    assert_eq!([0, 3].map(|f| mesh.first_rows()[f]), [NO_HALF; 2]);
+    assert_eq!(mesh.leaving_rows()[4], Slot::NONE);
+    assert_eq!(mesh.hole_count(), 6);
+}
+
+#[test]
+fn what_was_deleted_panics_by_name() {
+    let mut mesh = mesh(6, [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);
+    let e = edge(&mesh, 0, 4);
+    let [h, t] = mesh.halves_of(e);
+    mesh.remove_vertex(v(4), &mut ()).expect("legal");
+    mesh.remove_vertex(v(5), &mut ()).expect("isolated");
+    let f = FaceId::new(2);
+    type Ask<'a> = (&'a str, &'a dyn Fn());
+    let asked: [Ask; 16] = [
+        ("v4", &|| ask(mesh.position(v(4)))),
+        ("v5", &|| ask(mesh.position(v(5)))),
+        ("v4", &|| ask(mesh.vertex_vertices(v(4)).count())),
+        ("v5", &|| ask(mesh.vertex_edges(v(5)).count())),
+        ("v4", &|| ask(mesh.vertex_faces(v(4)).count())),
+        ("v4", &|| ask(mesh.half_leaving(v(4)))),
+        ("e1", &|| ask(mesh.edge_vertices(e))),
+        ("e1", &|| ask(mesh.edge_edges(e).count())),
+        ("e1", &|| ask(mesh.edge_faces(e).count())),
+        ("f2", &|| ask(mesh.face_vertices(f).count())),
+        ("f2", &|| ask(mesh.face_edges(f).count())),
+        ("f2", &|| ask(mesh.face_faces(f).count())),
+        ("h2", &|| ask(mesh.next(h))),
+        ("h3", &|| ask(mesh.origin(t))),
+        ("h3", &|| ask(mesh.face(t))),
+        ("h2", &|| ask(mesh.prev(h))),
+    ];
+    assert_eq!((e, h), (EdgeId::new(1), HalfEdgeId::new(2)));
+    for (i, (name, ask)) in asked.into_iter().enumerate() {
+        let panic = catch_unwind(AssertUnwindSafe(ask)).expect_err("it was deleted");
+        let told = panic.downcast_ref::<String>().expect("a message");
+        assert_eq!(*told, format!("{name} was deleted"), "question {i}");
+    }
+}
+
+#[test]
+fn names_of_nothing_are_refused() {
+    let mut mesh = mesh(4, [[0, 1, 2], [0, 2, 3]]);
+    let f = FaceId::new(1);
+    mesh.remove_face(f, &mut ()).expect("legal");
+    mesh.remove_vertex(v(3), &mut ()).expect("isolated");
+    let log = &mut ();
+    for f in [f, FaceId::new(2), FaceId::new(u32::MAX)] {
+        let refused = Err(EditError::NoSuchFace { face: f });
+        assert_eq!(mesh.remove_face(f, log), refused);
+        assert_eq!(mesh.poke_face(f, Point::ZERO, log).map(|_| ()), refused);
+        assert_eq!(mesh.split_face(f, [v(0), v(1)], log).map(|_| ()), refused);
+    }
+    for vertex in [v(3), v(4), v(u32::MAX)] {
+        let refused = Err(EditError::NoSuchVertex { vertex });
+        assert_eq!(mesh.remove_vertex(vertex, log), refused);
+        assert_eq!(
+            mesh.add_face(&[v(0), v(1), vertex], log).map(|_| ()),
+            refused
+        );
+        let moved = mesh.set_position(vertex, Point::ZERO, log);
+        assert_eq!(moved.map(|_| ()), refused);
+        let split = mesh.split_vertex(vertex, None, Some(v(0)), Point::ZERO, log);
+        assert_eq!(split.map(|_| ()), refused);
+    }
+    for edge in [2, 4, 5, u32::MAX].map(EdgeId::new) {
+        let refused = Err(EditError::NoSuchEdge { edge });
+        assert_eq!(mesh.flip_edge(edge, log).map(|_| ()), refused);
+        assert_eq!(mesh.dissolve_edge(edge, log).map(|_| ()), refused);
+        let collapsed = mesh.collapse_edge(edge, v(0), Point::ZERO, log);
+        assert_eq!(collapsed.map(|_| ()), refused);
+        assert_eq!(mesh.split_edge(edge, Point::ZERO, log).map(|_| ()), refused);
+    }
+}
+
+#[test]
+fn compacting_gives_memory_back() {
+    let polygons = shapes::triangle_grid(40, 40).expect("small");
+    let mut mesh = HalfEdgeMesh::from_polygons(&polygons).expect("manifold");
+    let whole = mesh.memory().total();
+    let last = mesh.vertex_rows() as u32;
+    for vertex in (60..last).rev().map(VertexId::new) {
+        mesh.remove_vertex(vertex, &mut ()).expect("at the rim");
+    }
+    assert!(mesh.memory().total() > whole, "rows stay, and bits come");
+    mesh.compact(&mut ());
+    assert_eq!(mesh.validate(), Ok(()));
+    assert_eq!(mesh.hole_count(), 0);
+    assert!(mesh.memory().total() < whole / 8);
+}
+
+#[test]
+fn a_mesh_with_holes_is_not_refined() {
+    let mut mesh = mesh(4, [[0, 1, 2], [0, 2, 3]]);
+    mesh.remove_face(FaceId::new(1), &mut ()).expect("legal");
+    let split = |mesh: &HalfEdgeMesh, child: &mut HalfEdgeMesh| {
+        let mut numbers = Ranks::default();
+        mesh.number_edges(&mut numbers);
+        mesh.split_into(Split::Quads, &numbers, child)
+    };
+    // One face and its two edges; the vertex stays.
+    let holes = RefineError::Holes { holes: 3 };
+    assert_eq!(split(&mesh, &mut HalfEdgeMesh::empty()), Err(holes));
+    let mut child = mesh.clone();
+    mesh.compact(&mut ());
+    assert_eq!(split(&mesh, &mut child), Ok(()));
+    assert_eq!(
+        child.validate(),
+        Ok(()),
+        "the holes of the old child are gone"
+    );
+}

@@ -1,0 +1,366 @@
+//! Editing: the faces by [`ScannedFaces`](mesh_core::ScannedFaces), and the table of vertices beside.
+
+use mesh_core::{
+    EditError, EditLog, FaceId, MAX_ROWS, MeshEdit, MeshQuery, Pair, Point, Probe, QueryCost,
+    Refusal, VertexId, row,
+};
+
+use crate::mesh::IndexedFaceSet;
+
+impl<P: Probe> MeshEdit for IndexedFaceSet<P> {
+    const EDITS: [Option<QueryCost>; 15] = {
+        let constant = Some(QueryCost::Constant);
+        let local = Some(QueryCost::Local);
+        let scan = Some(QueryCost::Scan);
+        [
+            constant, // set_position
+            constant, // add_vertex
+            constant, // add_face
+            local,    // remove_face
+            scan,     // remove_vertex
+            scan,     // remove_isolated_vertices
+            scan,     // split_edge
+            scan,     // bisect_edge
+            local,    // poke_face
+            local,    // split_face
+            scan,     // dissolve_edge
+            scan,     // flip_edge
+            scan,     // collapse_edge
+            scan,     // split_vertex
+            scan,     // compact
+        ]
+    };
+
+    /// O(1).
+    fn set_position(
+        &mut self,
+        v: VertexId,
+        to: Point,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.check(v)?;
+        *self.positions.write(v.index()) = to;
+        Ok(v)
+    }
+
+    /// O(1).
+    fn add_vertex(
+        &mut self,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        let v = self.next_vertex()?;
+        self.positions.push(at);
+        log.created_vertex(v);
+        Ok(v)
+    }
+
+    /// O(degree); one scan if somebody listens.
+    fn add_face(
+        &mut self,
+        corners: &[VertexId],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<FaceId, Refusal<Self>> {
+        corners.iter().try_for_each(|&v| self.check(v))?;
+        self.faces.add_face(corners, log)
+    }
+
+    /// O(degree); one scan if somebody listens.
+    fn remove_face(
+        &mut self,
+        f: FaceId,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal<Self>> {
+        self.faces.remove_face(f, log)
+    }
+
+    /// One scan; two if somebody listens.
+    fn remove_vertex(
+        &mut self,
+        v: VertexId,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal<Self>> {
+        self.check(v)?;
+        self.faces.remove_faces_at(v, log)?;
+        self.vertex_holes.dig(v.index());
+        log.removed_vertex(v);
+        Ok(())
+    }
+
+    /// Reads all corners, and keeps a bit for each vertex meanwhile.
+    fn remove_isolated_vertices(&mut self, log: &mut impl EditLog<Self>) -> usize {
+        let mut used = vec![false; self.positions.len()];
+        let corners = &self.faces.corners;
+        for v in corners.read_range(0..corners.len()) {
+            // A blank corner is at no vertex.
+            if let Some(used) = used.get_mut(v.index()) {
+                *used = true;
+            }
+        }
+        let before = self.vertex_count();
+        for v in (0..row(used.len())).map(VertexId::new) {
+            if !used[v.index()] && !self.vertex_holes.has(v.index()) {
+                self.vertex_holes.dig(v.index());
+                log.removed_vertex(v);
+            }
+        }
+        before - self.vertex_count()
+    }
+
+    /// One scan.
+    fn split_edge(
+        &mut self,
+        e: Pair<VertexId>,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        let m = self.next_vertex()?;
+        self.faces.split_edge(e, m, log)?;
+        self.positions.push(at);
+        Ok(m)
+    }
+
+    /// One scan.
+    fn bisect_edge(
+        &mut self,
+        e: Pair<VertexId>,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        let m = self.next_vertex()?;
+        self.faces.bisect_edge(e, m, log)?;
+        self.positions.push(at);
+        Ok(m)
+    }
+
+    /// O(degree).
+    fn poke_face(
+        &mut self,
+        f: FaceId,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        let m = self.next_vertex()?;
+        self.faces.poke_face(f, m, log)?;
+        self.positions.push(at);
+        Ok(m)
+    }
+
+    /// O(degree); one scan if somebody listens.
+    fn split_face(
+        &mut self,
+        f: FaceId,
+        ends: [VertexId; 2],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<Pair<VertexId>, Refusal<Self>> {
+        self.faces.split_face(f, ends, log)
+    }
+
+    /// One scan.
+    fn dissolve_edge(
+        &mut self,
+        e: Pair<VertexId>,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<FaceId, Refusal<Self>> {
+        self.faces.dissolve_edge(e, log)
+    }
+
+    /// Two scans.
+    fn flip_edge(
+        &mut self,
+        e: Pair<VertexId>,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<Pair<VertexId>, Refusal<Self>> {
+        self.faces.flip_edge(e, log)
+    }
+
+    /// One scan; two where a third corner may have no other face.
+    fn collapse_edge(
+        &mut self,
+        e: Pair<VertexId>,
+        keep: VertexId,
+        to: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.faces.collapse_edge(e, keep, keep, log)?;
+        let [a, b] = e.ends();
+        let gone = if a == keep { b } else { a };
+        self.vertex_holes.dig(gone.index());
+        *self.positions.write(keep.index()) = to;
+        Ok(keep)
+    }
+
+    /// One scan.
+    fn split_vertex(
+        &mut self,
+        v: VertexId,
+        left: Option<VertexId>,
+        right: Option<VertexId>,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.check(v)?;
+        let n = self.next_vertex()?;
+        self.faces.split_vertex(v, left, right, n, log)?;
+        self.positions.push(at);
+        Ok(n)
+    }
+
+    fn compact(&mut self, log: &mut impl EditLog<Self>) {
+        if !self.vertex_holes.is_empty() {
+            let new = self.vertex_holes.new_rows(self.positions.len());
+            let new = |v: VertexId| VertexId::new(new[v.index()]);
+            if listens(log) {
+                for v in self.vertices().filter(|&v| new(v) != v) {
+                    log.renamed_vertex(v, new(v));
+                }
+                for e in self.edges() {
+                    let [a, b] = e.ends().map(new);
+                    if e != Pair::new(a, b) {
+                        log.renamed_edge(e, Pair::new(a, b));
+                    }
+                }
+            }
+            self.faces.compact(log);
+            for v in self.faces.corners.rows_mut() {
+                *v = new(*v);
+            }
+        } else {
+            self.faces.compact(log);
+        }
+        self.vertex_holes.close(&mut self.positions);
+        self.vertex_holes.fill();
+    }
+}
+
+fn listens<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
+    L::LISTENS
+}
+
+impl<P: Probe> IndexedFaceSet<P> {
+    fn check(&self, v: VertexId) -> Result<(), Refusal<Self>> {
+        match self.has(v) {
+            true => Ok(()),
+            false => Err(EditError::NoSuchVertex { vertex: v }),
+        }
+    }
+
+    /// The name of the next vertex, if there is one left.
+    fn next_vertex(&self) -> Result<VertexId, Refusal<Self>> {
+        if self.positions.len() == MAX_ROWS {
+            return Err(EditError::TooMany {
+                elements: "vertices",
+                limit: MAX_ROWS,
+            });
+        }
+        Ok(VertexId::new(row(self.positions.len())))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::{EditRecord, PolygonMesh, Representation, ScannedVertex};
+
+    use super::*;
+
+    const SQUARE: [Point; 4] = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
+
+    fn square() -> IndexedFaceSet {
+        let polygons = PolygonMesh::new(SQUARE, [[0, 1, 2], [0, 2, 3]]).expect("valid");
+        IndexedFaceSet::from_polygons(&polygons).expect("anything is held")
+    }
+
+    fn v<const N: usize>(names: [u32; N]) -> [VertexId; N] {
+        names.map(VertexId::new)
+    }
+
+    #[test]
+    fn a_flip_writes_one_corner_of_each_face() {
+        let mut mesh = square();
+        let [a, b, c, d] = v([0, 1, 2, 3]);
+        let turned = mesh.flip_edge(Pair::new(a, c), &mut ());
+        assert_eq!(turned, Ok(Pair::new(b, d)));
+        // The face a b c ran c→a and keeps c, the face a c d ran a→c and keeps a.
+        assert_eq!(mesh.corners(), [d, b, c, a, b, d]);
+    }
+
+    #[test]
+    fn a_face_that_grows_moves_and_leaves_blanks_behind() {
+        let mut mesh = square();
+        let [a, b, c, d] = v([0, 1, 2, 3]);
+        let side = Pair::new(a, c);
+        assert_eq!(mesh.dissolve_edge(side, &mut ()), Ok(FaceId::new(0)));
+        assert_eq!(mesh.face(FaceId::new(0)), [a, b, c, d]);
+        let blank = VertexId::BLANK;
+        let expected = [[blank; 3].as_slice(), &[blank; 3], &[a, b, c, d]].concat();
+        assert_eq!(mesh.corners(), expected);
+        assert_eq!(
+            mesh.split_face(FaceId::new(0), [b, d], &mut ()),
+            Ok(Pair::new(b, d))
+        );
+        assert_eq!(mesh.face(FaceId::new(0)), [b, c, d]);
+        assert_eq!(mesh.face(FaceId::new(2)), [d, a, b]);
+        let full = mesh.memory().total();
+        mesh.compact(&mut ());
+        assert_eq!(mesh.corners(), [b, c, d, d, a, b]);
+        assert!(mesh.memory().total() < full);
+        let sides = mesh.memory().tables.len();
+        assert_eq!(sides, 2, "positions and corners are all that is left");
+    }
+
+    #[test]
+    fn a_name_that_names_nothing_is_refused_even_the_blank_one() {
+        let mut mesh = square();
+        let [a, c] = v([0, 2]);
+        mesh.remove_face(FaceId::new(1), &mut ())
+            .expect("it is there");
+        for vertex in [VertexId::new(4), VertexId::BLANK] {
+            let refusal = Err(EditError::NoSuchVertex { vertex });
+            assert_eq!(mesh.remove_vertex(vertex, &mut ()), refusal);
+        }
+        for ends in [[a, VertexId::BLANK], [VertexId::BLANK; 2], [a, a]] {
+            let edge = Pair::new(ends[0], ends[1]);
+            let refusal = EditError::NoSuchEdge { edge };
+            let at = Point::ONE;
+            assert_eq!(mesh.split_edge(edge, at, &mut ()), Err(refusal));
+            assert_eq!(mesh.flip_edge(edge, &mut ()), Err(refusal));
+            assert_eq!(mesh.collapse_edge(edge, ends[1], at, &mut ()), Err(refusal));
+        }
+        for face in [1, 2].map(FaceId::new) {
+            let refusal = Err(EditError::NoSuchFace { face });
+            assert_eq!(mesh.split_face(face, [a, c], &mut ()), refusal);
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "no vertex v1: it was deleted")]
+    fn a_deleted_vertex_panics_by_name() {
+        let mut mesh = square();
+        let [v] = v([1]);
+        mesh.remove_vertex(v, &mut ()).expect("it is there");
+        mesh.position(v);
+    }
+
+    #[test]
+    fn edges_at_the_vertex_that_goes_are_renamed_and_those_that_meet_another_removed() {
+        let mut mesh = square();
+        let [a, b, c, d] = v([0, 1, 2, 3]);
+        let mut record = EditRecord::new();
+        let done = mesh.collapse_edge(Pair::new(a, b), a, Point::ZERO, &mut record);
+        assert_eq!(done, Ok(a));
+        assert_eq!(record.vertices.removed, [b]);
+        assert_eq!(record.faces.removed, [FaceId::new(0)]);
+        let gone = [Pair::new(a, b), Pair::new(b, c)];
+        assert_eq!(record.edges.removed, gone);
+        assert!(record.edges.renamed.is_empty());
+        let mut record = EditRecord::new();
+        let e = mesh.split_edge(Pair::new(c, d), Point::ONE, &mut record);
+        let m = e.expect("an edge");
+        assert_eq!(record.edges.renamed, [[Pair::new(c, d), Pair::new(c, m)]]);
+        assert_eq!(record.edges.created, [Pair::new(m, d)]);
+        let mut record = EditRecord::new();
+        mesh.compact(&mut record);
+        let names = [[c, v([1])[0]], [d, v([2])[0]], [m, v([3])[0]]];
+        assert_eq!(record.vertices.renamed, names);
+    }
+}

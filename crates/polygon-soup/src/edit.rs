@@ -1,0 +1,312 @@
+//! Editing: the faces by [`ScannedFaces`](mesh_core::ScannedFaces), for there is nothing else.
+
+use mesh_core::{
+    Edit, EditError, EditLog, FaceId, MeshEdit, Pair, Point, Probe, QueryCost, Refusal,
+    Representation,
+};
+
+use crate::mesh::PolygonSoup;
+use crate::vertex::SoupVertex;
+
+impl<P: Probe> MeshEdit for PolygonSoup<P> {
+    const EDITS: [Option<QueryCost>; 15] = {
+        let constant = Some(QueryCost::Constant);
+        let local = Some(QueryCost::Local);
+        let scan = Some(QueryCost::Scan);
+        [
+            scan,     // set_position
+            None,     // add_vertex
+            constant, // add_face
+            local,    // remove_face
+            scan,     // remove_vertex
+            constant, // remove_isolated_vertices
+            scan,     // split_edge
+            scan,     // bisect_edge
+            scan,     // poke_face
+            local,    // split_face
+            scan,     // dissolve_edge
+            scan,     // flip_edge
+            scan,     // collapse_edge
+            scan,     // split_vertex
+            scan,     // compact
+        ]
+    };
+
+    /// One sweep: every corner there moves, and the vertex with its edges has another name.
+    fn set_position(
+        &mut self,
+        v: SoupVertex,
+        to: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<SoupVertex, Refusal<Self>> {
+        let to = SoupVertex::at(to);
+        self.faces.rename_vertex(v, to, log)?;
+        Ok(to)
+    }
+
+    /// Never: a vertex is the place of a corner.
+    fn add_vertex(
+        &mut self,
+        _: Point,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<SoupVertex, Refusal<Self>> {
+        Err(EditError::Unsupported {
+            structure: <PolygonSoup as Representation>::NAME,
+            edit: Edit::AddVertex,
+        })
+    }
+
+    /// O(degree); one sweep if somebody listens. Corners may be anywhere, also where no vertex is yet.
+    fn add_face(
+        &mut self,
+        corners: &[SoupVertex],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<FaceId, Refusal<Self>> {
+        self.faces.add_face(corners, log)
+    }
+
+    /// O(degree); one sweep if somebody listens.
+    fn remove_face(
+        &mut self,
+        f: FaceId,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal<Self>> {
+        self.faces.remove_face(f, log)
+    }
+
+    /// One sweep; two if somebody listens.
+    fn remove_vertex(
+        &mut self,
+        v: SoupVertex,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal<Self>> {
+        self.faces.remove_faces_at(v, log)
+    }
+
+    /// None is isolated.
+    fn remove_isolated_vertices(&mut self, _: &mut impl EditLog<Self>) -> usize {
+        0
+    }
+
+    /// One sweep.
+    fn split_edge(
+        &mut self,
+        e: Pair<SoupVertex>,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<SoupVertex, Refusal<Self>> {
+        let m = SoupVertex::at(at);
+        self.faces.split_edge(e, m, log)?;
+        Ok(m)
+    }
+
+    /// One sweep.
+    fn bisect_edge(
+        &mut self,
+        e: Pair<SoupVertex>,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<SoupVertex, Refusal<Self>> {
+        let m = SoupVertex::at(at);
+        self.faces.bisect_edge(e, m, log)?;
+        Ok(m)
+    }
+
+    /// One sweep, to see that no vertex is at the place.
+    fn poke_face(
+        &mut self,
+        f: FaceId,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<SoupVertex, Refusal<Self>> {
+        let m = SoupVertex::at(at);
+        self.faces.poke_face(f, m, log)?;
+        Ok(m)
+    }
+
+    /// O(degree); one sweep if somebody listens.
+    fn split_face(
+        &mut self,
+        f: FaceId,
+        ends: [SoupVertex; 2],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<Pair<SoupVertex>, Refusal<Self>> {
+        self.faces.split_face(f, ends, log)
+    }
+
+    /// One sweep.
+    fn dissolve_edge(
+        &mut self,
+        e: Pair<SoupVertex>,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<FaceId, Refusal<Self>> {
+        self.faces.dissolve_edge(e, log)
+    }
+
+    /// Two sweeps.
+    fn flip_edge(
+        &mut self,
+        e: Pair<SoupVertex>,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<Pair<SoupVertex>, Refusal<Self>> {
+        self.faces.flip_edge(e, log)
+    }
+
+    /// One sweep; two where a third corner may have no other face. The place of the end that goes is
+    /// free for the one that is kept.
+    fn collapse_edge(
+        &mut self,
+        e: Pair<SoupVertex>,
+        keep: SoupVertex,
+        to: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<SoupVertex, Refusal<Self>> {
+        let to = SoupVertex::at(to);
+        self.faces.collapse_edge(e, keep, to, log)?;
+        Ok(to)
+    }
+
+    /// One sweep.
+    fn split_vertex(
+        &mut self,
+        v: SoupVertex,
+        left: Option<SoupVertex>,
+        right: Option<SoupVertex>,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<SoupVertex, Refusal<Self>> {
+        let n = SoupVertex::at(at);
+        self.faces.split_vertex(v, left, right, n, log)?;
+        Ok(n)
+    }
+
+    /// Vertices and edges keep their names.
+    fn compact(&mut self, log: &mut impl EditLog<Self>) {
+        self.faces.compact(log);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::{EditRecord, MeshQuery, PolygonMesh};
+
+    use super::*;
+
+    const SQUARE: [Point; 4] = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
+
+    fn square() -> (PolygonSoup, [SoupVertex; 4]) {
+        let polygons = PolygonMesh::new(SQUARE, [[0, 1, 2], [0, 2, 3]]).expect("valid");
+        let soup = PolygonSoup::from_polygons(&polygons).expect("nothing coincides");
+        (soup, SQUARE.map(SoupVertex::at))
+    }
+
+    #[test]
+    fn a_vertex_that_moves_has_another_name_and_its_edges_too() {
+        let (mut soup, [a, b, c, d]) = square();
+        let mut record = EditRecord::new();
+        let to = soup.set_position(a, Point::new(5.0, -0.0, 0.0), &mut record);
+        let to = to.expect("nobody is there");
+        assert_eq!(to, SoupVertex::at(Point::new(5.0, 0.0, 0.0)));
+        assert_eq!(soup.validate(), Ok(()), "−0 is written as 0");
+        assert_eq!(record.vertices.renamed, [[a, to]]);
+        let mut renamed = record.edges.renamed.clone();
+        renamed.sort_unstable();
+        let mut expected = [b, c, d].map(|v| [Pair::new(a, v), Pair::new(to, v)]);
+        expected.sort_unstable();
+        assert_eq!(renamed, expected);
+        let corners = [to, b, c, to, c, d].map(SoupVertex::position);
+        assert_eq!(soup.corners(), corners);
+        let occupied = soup.set_position(to, d.position(), &mut ());
+        assert_eq!(occupied, Err(EditError::Occupied { vertex: d }));
+        let gone = soup.set_position(a, a.position(), &mut ());
+        assert_eq!(gone, Err(EditError::NoSuchVertex { vertex: a }));
+        assert_eq!(soup.set_position(to, to.position(), &mut ()), Ok(to));
+    }
+
+    #[test]
+    fn a_collapse_to_the_end_that_goes_takes_over_its_name() {
+        let (mut soup, [a, b, c, d]) = square();
+        let mut record = EditRecord::new();
+        let kept = soup.collapse_edge(Pair::new(a, b), a, b.position(), &mut record);
+        assert_eq!(kept, Ok(b));
+        assert_eq!(record.vertices.removed, [b]);
+        assert_eq!(record.vertices.renamed, [[a, b]]);
+        let mut removed = record.edges.removed.clone();
+        removed.sort_unstable();
+        let mut expected = [Pair::new(a, b), Pair::new(b, c)];
+        expected.sort_unstable();
+        assert_eq!(removed, expected);
+        let mut renamed = record.edges.renamed.clone();
+        renamed.sort_unstable();
+        let mut expected = [c, d].map(|v| [Pair::new(a, v), Pair::new(b, v)]);
+        expected.sort_unstable();
+        assert_eq!(renamed, expected);
+    }
+
+    #[test]
+    fn vertices_come_and_go_with_their_faces() {
+        let (mut soup, [a, b, c, d]) = square();
+        let mut record = EditRecord::new();
+        let peak = SoupVertex::at(Point::Z);
+        let f = soup.add_face(&[b, a, peak], &mut record).expect("a face");
+        assert_eq!(record.vertices.created, [peak]);
+        assert_eq!(record.edges.created.len(), 2);
+        record.clear();
+        soup.remove_face(f, &mut record).expect("it is there");
+        assert_eq!(record.vertices.removed, [peak]);
+        assert_eq!(record.edges.removed.len(), 2);
+        record.clear();
+        soup.remove_vertex(b, &mut record).expect("it is there");
+        assert_eq!(record.vertices.removed, [b]);
+        soup.remove_vertex(d, &mut record).expect("it is there");
+        assert_eq!(soup.vertex_count(), 0);
+        let gone = soup.remove_vertex(c, &mut ());
+        assert_eq!(gone, Err(EditError::NoSuchVertex { vertex: c }));
+    }
+
+    #[test]
+    fn coordinates_that_are_no_numbers_find_no_deleted_corner() {
+        let (mut soup, [a, b, _, _]) = square();
+        soup.remove_face(FaceId::new(0), &mut ()).expect("there");
+        let stored = soup.corners()[0];
+        let strangers = [
+            stored,
+            Point::NAN,
+            Point::splat(f32::from_bits(u32::MAX)),
+            Point::new(stored.x, 0.0, 0.0),
+        ];
+        for stranger in strangers.map(SoupVertex::at) {
+            assert_eq!(soup.vertex_faces(stranger).next(), None);
+            assert_eq!(soup.vertex_edges(stranger).next(), None);
+            let refusal = Err(EditError::NoSuchVertex { vertex: stranger });
+            assert_eq!(soup.remove_vertex(stranger, &mut ()), refusal);
+            let edge = Pair::new(stranger, a);
+            assert_eq!(soup.edge_faces(edge).next(), None);
+            // Places like any other: a face may have a corner there.
+            let mut soup = soup.clone();
+            let f = soup.add_face(&[a, b, stranger], &mut ()).expect("three");
+            assert_eq!(soup.validate(), Ok(()));
+            assert!(soup.vertex_faces(stranger).eq([f]));
+            assert!(soup.face_vertices(f).eq([a, b, stranger]));
+        }
+    }
+
+    #[test]
+    fn compaction_leaves_the_corners_of_faces_and_nothing_else() {
+        let (mut soup, [a, b, c, d]) = square();
+        let merged = soup.dissolve_edge(Pair::new(a, c), &mut ());
+        assert_eq!(merged, Ok(FaceId::new(0)));
+        let names = soup.compact_with_names();
+        assert_eq!(names.faces.values(), [Some(FaceId::new(0)), None]);
+        assert_eq!(soup.corners(), [a, b, c, d].map(SoupVertex::position));
+        assert_eq!(soup.memory().total(), 4 * 12);
+    }
+
+    #[test]
+    #[should_panic(expected = "no face f0: it was deleted")]
+    fn a_deleted_face_panics_by_name() {
+        let (mut soup, _) = square();
+        soup.remove_face(FaceId::new(0), &mut ()).expect("there");
+        let _ = soup.face_vertices(FaceId::new(0));
+    }
+}

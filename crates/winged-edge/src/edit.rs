@@ -1,0 +1,184 @@
+//! Changing the mesh in place: the surgery of Baumgart (1975).
+//!
+//! Both wings of both sides are stored, so that an edge is linked and unlinked without a search. All
+//! that costs O(valence) is to give the edges at a vertex another end, and to find out whether an edit
+//! is legal.
+//!
+//! Every edit asks first and writes afterwards. Below, a run `a→b` is the edge between `a` and `b`
+//! along the side where it runs that way.
+
+use mesh_core::{
+    EdgeId, Edit, EditLog, FaceId, MeshEdit, Point, Probe, QueryCost, Refusal, VertexId,
+};
+
+use crate::mesh::WingedEdgeMesh;
+
+mod add;
+mod collapse;
+mod compact;
+mod cut;
+mod flip;
+mod merge;
+mod remove;
+mod split_vertex;
+mod surgery;
+#[cfg(test)]
+mod tests;
+
+impl<P: Probe> MeshEdit for WingedEdgeMesh<P> {
+    const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
+        let mut costs = [Some(QueryCost::Local); Edit::ALL.len()];
+        costs[Edit::SetPosition as usize] = Some(QueryCost::Constant);
+        costs[Edit::AddVertex as usize] = Some(QueryCost::Constant);
+        costs[Edit::RemoveIsolatedVertices as usize] = Some(QueryCost::Scan);
+        costs[Edit::Compact as usize] = Some(QueryCost::Scan);
+        costs
+    };
+
+    /// O(1).
+    #[inline]
+    fn set_position(
+        &mut self,
+        v: VertexId,
+        to: Point,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.check_vertex(v)?;
+        *self.positions.write(v.index()) = to;
+        Ok(v)
+    }
+
+    /// O(1) amortised.
+    #[inline]
+    fn add_vertex(
+        &mut self,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.check_room([1, 0, 0])?;
+        Ok(self.push_vertex(at, log))
+    }
+
+    /// O(corners), and the valence of a corner from which a new edge leaves.
+    fn add_face(
+        &mut self,
+        corners: &[VertexId],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<FaceId, Refusal<Self>> {
+        self.add(corners, log)
+    }
+
+    /// O(degree).
+    fn remove_face(
+        &mut self,
+        f: FaceId,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal<Self>> {
+        self.remove(f, log)
+    }
+
+    /// O(corners of its faces), times their logarithm where the faces are no triangles.
+    fn remove_vertex(
+        &mut self,
+        v: VertexId,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal<Self>> {
+        self.remove_star(v, log)
+    }
+
+    /// O(vertices).
+    fn remove_isolated_vertices(&mut self, log: &mut impl EditLog<Self>) -> usize {
+        self.remove_isolated(log)
+    }
+
+    /// O(1): the old edge keeps its start, the new one runs on to its end.
+    fn split_edge(
+        &mut self,
+        e: EdgeId,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.check_edge(e)?;
+        self.check_room([1, 1, 0])?;
+        Ok(self.insert(e, at, log).0)
+    }
+
+    /// O(1).
+    fn bisect_edge(
+        &mut self,
+        e: EdgeId,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.bisect(e, at, log)
+    }
+
+    /// O(degree).
+    #[inline]
+    fn poke_face(
+        &mut self,
+        f: FaceId,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.poke(f, at, log)
+    }
+
+    /// O(degree), and the valence of one end: the smaller part is the new face.
+    fn split_face(
+        &mut self,
+        f: FaceId,
+        ends: [VertexId; 2],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<EdgeId, Refusal<Self>> {
+        self.split(f, ends, log)
+    }
+
+    /// O(degree) of both faces: the larger one stays.
+    fn dissolve_edge(
+        &mut self,
+        e: EdgeId,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<FaceId, Refusal<Self>> {
+        self.dissolve(e, log)
+    }
+
+    /// O(1), and the valence of one third corner.
+    #[inline]
+    fn flip_edge(
+        &mut self,
+        e: EdgeId,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<EdgeId, Refusal<Self>> {
+        self.flip(e)
+    }
+
+    /// O(valence) of both ends; O(1) where the end that goes has three edges.
+    #[inline]
+    fn collapse_edge(
+        &mut self,
+        e: EdgeId,
+        keep: VertexId,
+        to: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.collapse(e, keep, to, log)
+    }
+
+    /// O(valence).
+    fn split_vertex(
+        &mut self,
+        v: VertexId,
+        left: Option<VertexId>,
+        right: Option<VertexId>,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.split_fan(v, left, right, at, log)
+    }
+
+    /// O(rows).
+    fn compact(&mut self, log: &mut impl EditLog<Self>) {
+        self.close_holes(log);
+    }
+}

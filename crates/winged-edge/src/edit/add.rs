@@ -1,0 +1,151 @@
+//! A face over vertices that are there.
+
+use mesh_core::{
+    EditError, EditLog, FaceId, Few, Lookup, MeshQuery, Probe, Refusal, Slot, VertexId,
+};
+
+use super::surgery::both_sides;
+use crate::edge::{Edge, RunId};
+use crate::mesh::WingedEdgeMesh;
+
+impl<P: Probe> WingedEdgeMesh<P> {
+    /// Links a new face corner by corner.
+    ///
+    /// ```text
+    ///          w                      At each corner v the face has one run in, u→v, and one out,
+    ///         ╱│                      v→w. Each is there already, as a run without a face, or it is
+    ///    out ╱ │                      an edge to be made. Both there: v is closed. One there: the fan
+    ///       ╱  │  new face            at v grows at that end. None there: v had no face at all.
+    ///      v───u
+    ///        in
+    /// ```
+    pub(super) fn add(
+        &mut self,
+        corners: &[VertexId],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<FaceId, Refusal<Self>> {
+        let new_edges = self.check_new_face(corners)?;
+        self.check_room([0, new_edges, 1])?;
+        let last = corners.len() - 1;
+        let face = self.push_face(self.next_edge(), log);
+        let closing = self.side_or_new([corners[last], corners[0]], log);
+        let mut before = closing;
+        for (i, &v) in corners.iter().enumerate() {
+            let after = if i == last {
+                closing
+            } else {
+                self.side_or_new([v, corners[i + 1]], log)
+            };
+            self.link_corner(v, before, after);
+            // Not earlier: whether there is a side already, its run without a face tells.
+            self.set_face(before.run, Slot::some(face));
+            before = after;
+        }
+        self.set_side(face, closing.run.edge);
+        Ok(face)
+    }
+
+    /// How many edges a face over `corners` makes, if there may be one.
+    fn check_new_face(&self, corners: &[VertexId]) -> Result<usize, Refusal<Self>> {
+        if corners.len() < 3 {
+            let corners = corners.len();
+            return Err(EditError::TooFewCorners { corners });
+        }
+        corners.iter().try_for_each(|&v| self.check_vertex(v))?;
+        if let Some(vertex) = repeated(corners) {
+            return Err(EditError::RepeatedVertex { vertex });
+        }
+        let mut new_edges = 0;
+        let mut before_is_new = self.is_new([corners[corners.len() - 1], corners[0]])?;
+        for (i, &v) in corners.iter().enumerate() {
+            let next = corners[if i + 1 == corners.len() { 0 } else { i + 1 }];
+            let is_new = self.is_new([v, next])?;
+            if is_new && before_is_new && self.spoke(v).is_some() {
+                return Err(EditError::SeveralFans { vertex: v });
+            }
+            // On a vertex without a boundary there are no sides without a face: both are new.
+            new_edges += usize::from(is_new);
+            before_is_new = is_new;
+        }
+        Ok(new_edges)
+    }
+
+    /// Whether no edge joins the two; refused where the edge has a face already that runs it so.
+    fn is_new(&self, [from, to]: [VertexId; 2]) -> Result<bool, Refusal<Self>> {
+        if self.boundary_side([from, to]).is_some() {
+            return Ok(false);
+        }
+        let Some(edge) = self.edge_between(from, to) else {
+            return Ok(true);
+        };
+        // All sides without a face that leave `from` are one, and this is another.
+        let run = self.run(self.leaving(edge, from));
+        match (run.face().get(), run.across().get()) {
+            (Some(face), None) => Err(EditError::RepeatedSide { from, to, face }),
+            _ => Err(EditError::FullEdge { edge }),
+        }
+    }
+
+    /// The run without a face from one vertex to another, if there is one.
+    fn boundary_side(&self, [from, to]: [VertexId; 2]) -> Option<RunId> {
+        let side = self.run_after(self.boundary_into(from)?);
+        (self.run(side).target() == to).then_some(side)
+    }
+
+    /// The run without a face from one vertex to another: of an edge that is there, or of a new one.
+    fn side_or_new(&mut self, ends: [VertexId; 2], log: &mut impl EditLog<Self>) -> NewSide {
+        if let Some(run) = self.boundary_side(ends) {
+            return NewSide { run, is_new: false };
+        }
+        let edge = self.push_edge(
+            Edge {
+                ends,
+                ..Edge::BLANK
+            },
+            log,
+        );
+        let [run, _] = both_sides(edge);
+        NewSide { run, is_new: true }
+    }
+
+    fn link_corner(&mut self, v: VertexId, before: NewSide, after: NewSide) {
+        let (into, out) = (before.run, after.run);
+        match [before.is_new, after.is_new] {
+            [true, true] => {
+                self.link(out.back(), into.back());
+                self.set_spoke(v, out.edge);
+            }
+            [false, true] => {
+                let beyond = self.run_after(into);
+                self.link(out.back(), beyond);
+                self.set_spoke(v, out.edge);
+            }
+            [true, false] => {
+                let beyond = self.run_before(out);
+                self.link(beyond, into.back());
+            }
+            [false, false] => {}
+        }
+        self.link(into, out);
+    }
+}
+
+/// A side of a face that is being added.
+#[derive(Clone, Copy)]
+struct NewSide {
+    run: RunId,
+    is_new: bool,
+}
+
+/// A vertex that comes twice, if there is one.
+fn repeated(corners: &[VertexId]) -> Option<VertexId> {
+    if corners.len() <= 16 {
+        let mut pairs = corners.iter().enumerate();
+        return pairs.find_map(|(i, v)| corners[..i].contains(v).then_some(*v));
+    }
+    let mut sorted = Few::new();
+    corners.iter().for_each(|&v| sorted.push(v));
+    sorted.order();
+    let twice = sorted.as_slice().windows(2).find(|pair| pair[0] == pair[1]);
+    twice.map(|pair| pair[0])
+}

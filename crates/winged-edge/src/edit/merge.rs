@@ -1,0 +1,65 @@
+//! Two faces made one.
+
+use mesh_core::{EdgeId, EditError, EditLog, FaceId, Few, Lookup, Probe, Refusal, Slot, VertexId};
+
+use super::surgery::both_sides;
+use crate::edge::RunId;
+use crate::mesh::WingedEdgeMesh;
+
+impl<P: Probe> WingedEdgeMesh<P> {
+    /// Takes `e` out; the face with fewer sides is the one that goes.
+    pub(super) fn dissolve(
+        &mut self,
+        e: EdgeId,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<FaceId, Refusal<Self>> {
+        let edge = *self.check_edge(e)?;
+        let [Some(left), Some(right)] = edge.faces() else {
+            return Err(EditError::NotTwoFaces { edge: e, faces: 1 });
+        };
+        let [out, back] = both_sides(e);
+        let (corners, others) = (self.corners_beyond(out), self.corners_beyond(back));
+        let (degree, other_degree) = (corners.as_slice().len(), others.as_slice().len());
+        let mut sought = corners;
+        sought.order();
+        if let Some(&vertex) = others.as_slice().iter().find(|&&v| sought.has(v)) {
+            return Err(EditError::RepeatedVertex { vertex });
+        }
+        let (kept, gone, along_gone) = if degree >= other_degree {
+            (left, right, back)
+        } else {
+            (right, left, out)
+        };
+        let mut run = self.run_after(along_gone);
+        while run != along_gone {
+            self.set_face(run, Slot::some(kept));
+            run = self.run_after(run);
+        }
+        let [a, b] = edge.ends;
+        let [after_out, after_back] = [out, back].map(|run| self.run_after(run));
+        let [before_out, before_back] = [out, back].map(|run| self.run_before(run));
+        self.link(before_out, after_back);
+        self.link(before_back, after_out);
+        self.replace_spoke(a, e, after_back.edge);
+        self.replace_spoke(b, e, after_out.edge);
+        self.set_side(kept, after_out.edge);
+        self.delete_edge(e, log);
+        self.delete_face(gone, log);
+        Ok(kept)
+    }
+
+    /// The corners of the face along `run` that are none of its ends.
+    fn corners_beyond(&self, run: RunId) -> Few<VertexId> {
+        let end = self.run(run).origin();
+        let mut corners = Few::new();
+        let mut at = self.run_after(run);
+        loop {
+            let corner = self.run(at).target();
+            if corner == end {
+                return corners;
+            }
+            corners.push(corner);
+            at = self.run_after(at);
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! The steps that edits are made of: checks of names, runs by name, linking, new rows and holes.
+
+use mesh_core::{
+    EdgeId, EditError, EditLog, FaceId, MAX_ROWS, Point, Probe, Refusal, Slot, VertexId, row,
+};
+
+use crate::edge::{Edge, NO_EDGE, Run, RunId};
+use crate::mesh::WingedEdgeMesh;
+use crate::wings::Side;
+
+/// As many edges as can be built from polygons: so their corners can be numbered, too.
+const MAX_EDGES: usize = MAX_ROWS / 4;
+
+/// What names something, and whether there is room for more.
+impl<P: Probe> WingedEdgeMesh<P> {
+    #[inline(always)]
+    pub(super) fn check_vertex(&self, vertex: VertexId) -> Result<(), Refusal<Self>> {
+        let v = vertex.index();
+        if v >= self.positions.len() || self.vertex_holes.has(v) {
+            return Err(EditError::NoSuchVertex { vertex });
+        }
+        Ok(())
+    }
+
+    /// The record of `edge`, if it is there.
+    #[inline(always)]
+    pub(super) fn check_edge(&self, edge: EdgeId) -> Result<&Edge, Refusal<Self>> {
+        if edge.index() < self.edges.len() {
+            let record = self.record(edge);
+            if !record.is_hole() {
+                return Ok(record);
+            }
+        }
+        Err(EditError::NoSuchEdge { edge })
+    }
+
+    /// A side of `face`, if it is there.
+    #[inline(always)]
+    pub(super) fn check_face(&self, face: FaceId) -> Result<EdgeId, Refusal<Self>> {
+        if face.index() < self.sides.len() {
+            let side = *self.sides.read(face.index());
+            if side != NO_EDGE {
+                return Ok(side);
+            }
+        }
+        Err(EditError::NoSuchFace { face })
+    }
+
+    /// Whether handles can name so many more vertices, edges and faces.
+    #[inline(always)]
+    pub(super) fn check_room(&self, more: [usize; 3]) -> Result<(), Refusal<Self>> {
+        let [vertices, edges, faces] = more;
+        for (elements, rows, limit) in [
+            ("vertices", self.positions.len() + vertices, MAX_ROWS),
+            ("edges", self.edges.len() + edges, MAX_EDGES),
+            ("faces", self.sides.len() + faces, MAX_ROWS),
+        ] {
+            if rows > limit {
+                return Err(EditError::TooMany { elements, limit });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Runs by name; all O(1), one record read.
+impl<P: Probe> WingedEdgeMesh<P> {
+    #[inline(always)]
+    pub(super) fn run(&self, run: RunId) -> Run<'_> {
+        Run::on(self.record(run.edge), run.side)
+    }
+
+    /// `edge`, which has `v`, run away from it.
+    #[inline(always)]
+    pub(super) fn leaving(&self, edge: EdgeId, v: VertexId) -> RunId {
+        RunId::on(edge, Run::from(self.record(edge), v).side())
+    }
+
+    /// `edge`, which has `v`, run towards it.
+    #[inline(always)]
+    pub(super) fn arriving(&self, edge: EdgeId, v: VertexId) -> RunId {
+        self.leaving(edge, v).back()
+    }
+
+    /// `edge`, which lies along `f`, run with it on the left.
+    #[inline(always)]
+    pub(super) fn along(&self, edge: EdgeId, f: FaceId) -> RunId {
+        RunId::on(edge, Run::along(self.record(edge), f).side())
+    }
+
+    /// The run after `run` along its face.
+    #[inline(always)]
+    pub(super) fn run_after(&self, run: RunId) -> RunId {
+        let run = self.run(run);
+        self.leaving(run.next(), run.target())
+    }
+
+    /// The run before `run` along its face.
+    #[inline(always)]
+    pub(super) fn run_before(&self, run: RunId) -> RunId {
+        let run = self.run(run);
+        self.arriving(run.prev(), run.origin())
+    }
+
+    /// The third corner if the face on the left of `run` is a triangle; its degree if it is none.
+    pub(super) fn apex(&self, run: RunId) -> Result<VertexId, usize> {
+        let [next, prev] = [self.run(run).next(), self.run(run).prev()];
+        let after = self.run(self.run_after(run));
+        if after.next() == prev {
+            return Ok(after.target());
+        }
+        let mut at = self.leaving(next, self.run(run).target());
+        let mut degree = 1;
+        while at != run {
+            at = self.run_after(at);
+            degree += 1;
+        }
+        Err(degree)
+    }
+}
+
+/// Writes of a field.
+impl<P: Probe> WingedEdgeMesh<P> {
+    /// Makes `after` follow `before`.
+    #[inline(always)]
+    pub(super) fn link(&mut self, before: RunId, after: RunId) {
+        let record = self.edges.write(before.edge.index());
+        record.next.put(before.side, after.edge);
+        let record = self.edges.write(after.edge.index());
+        record.prev.put(after.side, before.edge);
+    }
+
+    #[inline(always)]
+    pub(super) fn set_face(&mut self, run: RunId, face: Slot<FaceId>) {
+        self.edges.write(run.edge.index()).faces[run.side.index()] = face;
+    }
+
+    /// Everything along one side: the face, and the wings ahead and behind.
+    #[inline(always)]
+    pub(super) fn set_lane(&mut self, run: RunId, face: Slot<FaceId>, next: EdgeId, prev: EdgeId) {
+        let record = self.edges.write(run.edge.index());
+        record.faces[run.side.index()] = face;
+        record.next.put(run.side, next);
+        record.prev.put(run.side, prev);
+    }
+
+    /// `edge`, which ends at `old`, ends at `new` instead.
+    #[inline(always)]
+    pub(super) fn set_end(&mut self, edge: EdgeId, old: VertexId, new: VertexId) {
+        let ends = &mut self.edges.write(edge.index()).ends;
+        ends[usize::from(ends[0] != old)] = new;
+    }
+
+    #[inline(always)]
+    pub(super) fn set_spoke(&mut self, v: VertexId, spoke: EdgeId) {
+        *self.spokes.write(v.index()) = Slot::some(spoke);
+    }
+
+    /// An edge that goes is no spoke any more: `other` is, at an inner vertex any will do.
+    #[inline(always)]
+    pub(super) fn replace_spoke(&mut self, v: VertexId, gone: EdgeId, other: EdgeId) {
+        if *self.spokes.read(v.index()) == Slot::some(gone) {
+            self.set_spoke(v, other);
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn set_side(&mut self, f: FaceId, side: EdgeId) {
+        *self.sides.write(f.index()) = side;
+    }
+}
+
+/// New rows, and holes. Whoever adds rows has asked for room.
+impl<P: Probe> WingedEdgeMesh<P> {
+    /// A vertex without an edge.
+    #[inline(always)]
+    pub(super) fn push_vertex(&mut self, at: Point, log: &mut impl EditLog<Self>) -> VertexId {
+        let v = VertexId::new(row(self.positions.len()));
+        self.positions.push(at);
+        self.spokes.push(Slot::NONE);
+        log.created_vertex(v);
+        v
+    }
+
+    #[inline(always)]
+    pub(super) fn push_edge(&mut self, edge: Edge, log: &mut impl EditLog<Self>) -> EdgeId {
+        let e = self.next_edge();
+        self.edges.push(edge);
+        log.created_edge(e);
+        e
+    }
+
+    /// The name that the next new edge has.
+    #[inline(always)]
+    pub(super) fn next_edge(&self) -> EdgeId {
+        EdgeId::new(row(self.edges.len()))
+    }
+
+    #[inline(always)]
+    pub(super) fn push_face(&mut self, side: EdgeId, log: &mut impl EditLog<Self>) -> FaceId {
+        let f = FaceId::new(row(self.sides.len()));
+        self.sides.push(side);
+        log.created_face(f);
+        f
+    }
+
+    #[inline(always)]
+    pub(super) fn delete_vertex(&mut self, v: VertexId, log: &mut impl EditLog<Self>) {
+        *self.spokes.write(v.index()) = Slot::NONE;
+        self.vertex_holes.dig(v.index());
+        log.removed_vertex(v);
+    }
+
+    #[inline(always)]
+    pub(super) fn delete_edge(&mut self, e: EdgeId, log: &mut impl EditLog<Self>) {
+        *self.edges.write(e.index()) = Edge::HOLE;
+        self.edge_holes.dig(e.index());
+        log.removed_edge(e);
+    }
+
+    #[inline(always)]
+    pub(super) fn delete_face(&mut self, f: FaceId, log: &mut impl EditLog<Self>) {
+        *self.sides.write(f.index()) = NO_EDGE;
+        self.face_holes.dig(f.index());
+        log.removed_face(f);
+    }
+}
+
+/// Around vertices.
+impl<P: Probe> WingedEdgeMesh<P> {
+    /// The run without a face that arrives at `v`, if `v` is on a boundary.
+    #[inline(always)]
+    pub(super) fn boundary_into(&self, v: VertexId) -> Option<RunId> {
+        let spoke = self.spokes.read(v.index()).get()?;
+        let run = Run::from(self.record(spoke), v);
+        (run.across() == Slot::NONE).then(|| RunId::on(spoke, run.side()).back())
+    }
+
+    /// The refusal of a face that is no triangle.
+    #[cold]
+    pub(super) fn not_a_triangle(face: Slot<FaceId>, degree: usize) -> Refusal<Self> {
+        let face = face.get().expect("a run with a face");
+        EditError::NotATriangle { face, degree }
+    }
+}
+
+/// The record of an edge from `ends[0]` to `ends[1]`, with what lies along its left and its right: a
+/// face, the wing ahead and the wing behind.
+#[inline(always)]
+pub(super) fn edge_of(
+    ends: [VertexId; 2],
+    left: (Slot<FaceId>, EdgeId, EdgeId),
+    right: (Slot<FaceId>, EdgeId, EdgeId),
+) -> Edge {
+    use crate::wings::Wings;
+    Edge {
+        ends,
+        faces: [left.0, right.0],
+        next: Wings::of([left.1, right.1]),
+        prev: Wings::of([left.2, right.2]),
+    }
+}
+
+/// Both sides of `edge`, the left first.
+#[inline(always)]
+pub(super) fn both_sides(edge: EdgeId) -> [RunId; 2] {
+    [RunId::on(edge, Side::LEFT), RunId::on(edge, Side::RIGHT)]
+}
