@@ -11,6 +11,7 @@ pub use mesh_core::{self, *};
 pub use mesh_io;
 pub use operators;
 pub use polygon_soup::{self, PolygonSoup};
+pub use remeshing;
 pub use shapes;
 pub use subdivision;
 pub use winged_edge::{self, WingedEdgeMesh};
@@ -18,7 +19,10 @@ pub use winged_edge::{self, WingedEdgeMesh};
 mod roster;
 mod support;
 
-pub use roster::{BackendInfo, RefineVisitor, Visitor, roster, visit, visit_all, visit_refinable};
+pub use roster::{
+    BackendInfo, EditVisitor, RefineVisitor, Visitor, roster, visit, visit_all, visit_editable,
+    visit_refinable,
+};
 pub use support::{Support, support};
 
 /// The examples of the README, compiled and run as tests.

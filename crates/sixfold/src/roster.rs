@@ -1,6 +1,8 @@
 //! The one list of all representations.
 
-use mesh_core::{BuildError, Capabilities, PolygonMesh, QueryCost, Refine, Representation};
+use mesh_core::{
+    BuildError, Capabilities, Edit, MeshEdit, PolygonMesh, QueryCost, Refine, Representation,
+};
 
 /// Work that is the same for every representation, chosen at run time.
 ///
@@ -58,6 +60,23 @@ macro_rules! for_each_refinable {
     };
 }
 
+/// Work that is the same for every structure that can be edited, chosen at run time.
+pub trait EditVisitor {
+    /// What the work yields.
+    type Output;
+
+    /// Does the work on `M`.
+    fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output;
+}
+
+/// As [`for_each_representation!`](crate::for_each_representation), for those that can be edited: all six.
+#[macro_export]
+macro_rules! for_each_editable {
+    ($mesh:ident => $body:block) => {
+        $crate::for_each_representation!($mesh => $body)
+    };
+}
+
 /// What the roster knows of one representation without building it.
 #[derive(Clone, Copy, Debug)]
 pub struct BackendInfo {
@@ -67,15 +86,26 @@ pub struct BackendInfo {
     pub capabilities: Capabilities,
     /// How much of the mesh each relation looks at.
     pub costs: [QueryCost; 9],
+    /// How much of it each edit looks at, in the order of [`Edit::ALL`]; `None` where there is none.
+    pub edits: [Option<QueryCost>; Edit::ALL.len()],
 }
 
 impl BackendInfo {
-    /// The row of `M`.
+    /// The row of `M`, of whose edits nothing is known.
     pub const fn of<M: Representation>() -> Self {
         Self {
             name: M::NAME,
             capabilities: M::CAPABILITIES,
             costs: M::COSTS,
+            edits: [None; Edit::ALL.len()],
+        }
+    }
+
+    /// The row of `M`, which can be edited.
+    pub const fn of_editable<M: Representation + MeshEdit>() -> Self {
+        Self {
+            edits: M::EDITS,
+            ..Self::of::<M>()
         }
     }
 
@@ -91,17 +121,9 @@ impl BackendInfo {
 
 /// What there is to know of every representation, in the order in which tables show them.
 pub fn roster() -> Vec<BackendInfo> {
-    struct Row;
-
-    impl Visitor for Row {
-        type Output = BackendInfo;
-
-        fn visit<M: Representation + 'static>(&mut self) -> BackendInfo {
-            BackendInfo::of::<M>()
-        }
-    }
-
-    visit_all(&mut Row)
+    let mut rows = Vec::new();
+    for_each_editable!(M => { rows.push(BackendInfo::of_editable::<M>()); });
+    rows
 }
 
 /// Does the work of `visitor` on every representation, in the order of [`roster`].
@@ -125,6 +147,17 @@ pub fn visit<V: Visitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
 /// does not refine its own tables.
 pub fn visit_refinable<V: RefineVisitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     for_each_refinable!(M => {
+        if name == M::NAME {
+            return Some(visitor.visit::<M>());
+        }
+    });
+    None
+}
+
+/// Does the work of `visitor` on the representation called `name`; `None` if there is none, or it
+/// cannot be edited.
+pub fn visit_editable<V: EditVisitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
+    for_each_editable!(M => {
         if name == M::NAME {
             return Some(visitor.visit::<M>());
         }

@@ -1,0 +1,159 @@
+use std::collections::BTreeSet;
+
+use half_edge::HalfEdgeMesh;
+use indexed_face_set::IndexedFaceSet;
+use mesh_core::{MeshQuery, Point, PolygonMesh};
+
+use super::*;
+
+fn to(target: Target, boundary: Boundary) -> Decimation {
+    Decimation { target, boundary }
+}
+
+fn decimated(polygons: &PolygonMesh, how: &Decimation) -> (HalfEdgeMesh, Decimated) {
+    let mut mesh = HalfEdgeMesh::from_polygons(polygons).expect("a manifold");
+    let report = decimate(&mut mesh, how).expect("triangles");
+    assert_eq!(mesh.validate(), Ok(()));
+    assert_eq!(mesh.face_count(), report.faces);
+    (mesh, report)
+}
+
+fn area(polygons: &PolygonMesh) -> f64 {
+    let faces = polygons.faces().iter();
+    let areas = faces.map(|(_, face)| {
+        let [a, b, c] = [0, 1, 2].map(|i| polygons.position(face[i]).as_dvec3());
+        (b - a).cross(c - a).length() / 2.0
+    });
+    areas.sum()
+}
+
+fn euler(mesh: &HalfEdgeMesh) -> isize {
+    mesh.vertex_count() as isize - mesh.edge_count() as isize + mesh.face_count() as isize
+}
+
+#[test]
+fn a_sphere_stays_a_sphere() {
+    let sphere = shapes::geodesic(8).expect("small");
+    let (mesh, report) = decimated(&sphere, &to(Target::Ratio(0.1), Boundary::Follow));
+    assert_eq!((report.faces, report.stop), (128, Stop::Done));
+    assert_eq!(euler(&mesh), 2);
+    for v in mesh.vertices() {
+        let radius = mesh.position(v).length();
+        assert!(
+            (0.97..1.06).contains(&radius),
+            "{v} is {radius} from the centre"
+        );
+    }
+    assert!(report.worst > 0.0 && report.collapses == (1280 - 128) / 2);
+}
+
+#[test]
+fn a_flat_square_comes_down_to_two_triangles() {
+    let grid = shapes::triangle_grid(12, 12).expect("small");
+    let (mesh, report) = decimated(&grid, &to(Target::Faces(2), Boundary::Follow));
+    assert_eq!(report.faces, 2);
+    assert!(report.worst < 1e-6, "flat is flat: {}", report.worst);
+    let out = mesh.to_polygons();
+    assert!(
+        (area(&out) - area(&grid)).abs() < 1e-3 * area(&grid),
+        "the outline stays"
+    );
+}
+
+#[test]
+fn a_fixed_boundary_stays_to_the_bit() {
+    let grid = shapes::triangle_grid(8, 8).expect("small");
+    let fresh = HalfEdgeMesh::from_polygons(&grid).expect("a manifold");
+    let outline = |mesh: &HalfEdgeMesh| -> BTreeSet<[u32; 3]> {
+        let edges = mesh.edges().filter(|&e| mesh.edge_faces(e).count() == 1);
+        let ends = edges.flat_map(|e| mesh.edge_vertices(e));
+        ends.map(|v| mesh.position(v).to_array().map(f32::to_bits))
+            .collect()
+    };
+    let (mesh, report) = decimated(&grid, &to(Target::Faces(0), Boundary::Fixed));
+    assert_eq!(outline(&mesh), outline(&fresh));
+    assert_eq!(report.stop, Stop::NothingLeft);
+    assert!(
+        report.faces <= 40,
+        "{} faces over 32 boundary edges",
+        report.faces
+    );
+}
+
+#[test]
+fn what_cannot_be_reached_is_said() {
+    let (mesh, report) = decimated(
+        &shapes::icosahedron(),
+        &to(Target::Faces(0), Boundary::Follow),
+    );
+    assert_eq!(report.stop, Stop::NothingLeft);
+    assert_eq!(
+        (report.faces, euler(&mesh)),
+        (4, 2),
+        "a tetrahedron is the least of spheres"
+    );
+    let (_, report) = decimated(
+        &shapes::icosahedron(),
+        &to(Target::Faces(99), Boundary::Follow),
+    );
+    assert_eq!(
+        (report.faces, report.collapses, report.stop),
+        (20, 0, Stop::Done)
+    );
+}
+
+#[test]
+fn bad_input_is_refused_by_name() {
+    let mut cube = HalfEdgeMesh::from_polygons(&shapes::cube()).expect("closed");
+    let refused = decimate(&mut cube, &Decimation::default()).expect_err("quads");
+    assert!(
+        matches!(refused, RemeshError::NotATriangle { degree: 4, .. }),
+        "{refused}"
+    );
+    let mut mesh = HalfEdgeMesh::from_polygons(&shapes::icosahedron()).expect("closed");
+    for ratio in [f64::NAN, -0.1, 1.1, f64::INFINITY] {
+        let how = to(Target::Ratio(ratio), Boundary::Follow);
+        let refused = decimate(&mut mesh, &how).expect_err("no ratio");
+        assert!(matches!(refused, RemeshError::BadRatio { .. }), "{refused}");
+    }
+    let nowhere = Point::new(0.0, f32::NAN, 0.0);
+    let broken = PolygonMesh::new([Point::X, Point::Y, nowhere], [[0, 1, 2]]).expect("valid");
+    let mut broken = HalfEdgeMesh::from_polygons(&broken).expect("a triangle");
+    let refused = decimate(&mut broken, &Decimation::default()).expect_err("NaN");
+    assert!(
+        matches!(refused, RemeshError::NotFinite { .. }),
+        "{refused}"
+    );
+}
+
+#[test]
+fn a_structure_that_scans_makes_the_same_mesh() {
+    for polygons in [
+        shapes::geodesic(4).expect("small"),
+        shapes::triangle_grid(9, 7).expect("small"),
+        shapes::triangle_torus(9, 8).expect("small"),
+    ] {
+        let how = to(Target::Ratio(0.3), Boundary::Follow);
+        let (walked, report) = decimated(&polygons, &how);
+        let mut scanned = IndexedFaceSet::from_polygons(&polygons).expect("holds all");
+        assert_eq!(decimate(&mut scanned, &how), Ok(report));
+        assert_eq!(
+            walked.to_polygons().positions(),
+            scanned.to_polygons().positions()
+        );
+    }
+}
+
+#[test]
+fn who_watches_may_end_it() {
+    let sphere = shapes::geodesic(32).expect("small");
+    let mut mesh = HalfEdgeMesh::from_polygons(&sphere).expect("closed");
+    let report = decimate_watched(
+        &mut mesh,
+        &to(Target::Faces(4), Boundary::Follow),
+        &mut |_| ControlFlow::Break(()),
+    );
+    let report = report.expect("triangles");
+    assert_eq!((report.stop, report.collapses), (Stop::Asked, 1024));
+    assert_eq!(mesh.validate(), Ok(()));
+}

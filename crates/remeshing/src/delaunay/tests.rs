@@ -1,0 +1,76 @@
+use half_edge::HalfEdgeMesh;
+use mesh_core::{MeshQuery, Point, PolygonMesh};
+use proptest::prelude::*;
+
+use super::*;
+
+/// A flat grid whose inner vertices are shaken, triangulated all the same way.
+fn shaken(side: usize, by: &[[f32; 2]]) -> PolygonMesh {
+    let grid = shapes::triangle_grid(side, side).expect("small");
+    let edge = |x: f32, most: f32| x <= 0.0 || x >= most;
+    let most = grid
+        .positions()
+        .iter()
+        .fold(0.0_f32, |most, p| most.max(p.x));
+    let positions = grid
+        .positions()
+        .iter()
+        .zip(by.iter().cycle())
+        .map(|(p, [x, y])| {
+            if edge(p.x, most) || edge(p.y, most) {
+                *p
+            } else {
+                *p + Point::new(*x, *y, 0.0) * 0.4 * most / side as f32
+            }
+        });
+    PolygonMesh::from_faces(positions.collect(), grid.faces().clone()).expect("the same faces")
+}
+
+proptest! {
+    #[test]
+    fn a_plane_becomes_delaunay(by in prop::collection::vec([-1.0_f32..1.0, -1.0_f32..1.0], 36)) {
+        let polygons = shaken(5, &by);
+        let mut mesh = HalfEdgeMesh::from_polygons(&polygons).expect("a manifold");
+        let report = flip_to_delaunay(&mut mesh).expect("triangles");
+        prop_assert_eq!(mesh.validate(), Ok(()));
+        prop_assert_eq!(report.stop, Stop::Done);
+        // No vertex lies in the circle around a triangle, but where a flip was refused.
+        let mut inside = 0;
+        for f in mesh.faces() {
+            let [a, b, c] = corners(&mesh, f).map(|v| at(&mesh, v));
+            for v in mesh.vertices() {
+                let d = at(&mesh, v);
+                let [a, b, c] = [a - d, b - d, c - d];
+                let lift = |p: DVec3| DVec3::new(p.x, p.y, p.length_squared());
+                let incircle = lift(a).dot(lift(b).cross(lift(c)));
+                inside += usize::from(incircle > 1e-4 * a.length() * b.length() * c.length());
+            }
+        }
+        prop_assert!(inside == 0 || report.refused > 0, "{inside} vertices in circles");
+    }
+}
+
+#[test]
+fn what_is_delaunay_stays() {
+    let mut mesh = HalfEdgeMesh::from_polygons(&shapes::icosahedron()).expect("closed");
+    let report = flip_to_delaunay(&mut mesh).expect("triangles");
+    assert_eq!(
+        (report.flips, report.refused, report.stop),
+        (0, 0, Stop::Done)
+    );
+}
+
+#[test]
+fn one_bad_edge_is_flipped() {
+    let kite = [
+        Point::new(0.0, 0.0, 0.0),
+        Point::new(4.0, 0.0, 0.0),
+        Point::new(2.0, 0.5, 0.0),
+        Point::new(2.0, -0.5, 0.0),
+    ];
+    let polygons = PolygonMesh::new(kite, [[0, 1, 2], [1, 0, 3]]).expect("valid");
+    let mut mesh = HalfEdgeMesh::from_polygons(&polygons).expect("a manifold");
+    assert_eq!(flip_to_delaunay(&mut mesh).expect("triangles").flips, 1);
+    let v = mesh_core::VertexId::new;
+    assert!(mesh.edge_between(v(2), v(3)).is_some() && mesh.edge_between(v(0), v(1)).is_none());
+}

@@ -1,0 +1,368 @@
+//! Isotropic remeshing: split long, collapse short, flip to even valences, smooth.
+
+use std::ops::ControlFlow;
+
+use glam::DVec3;
+use mesh_core::{MeshEdit, Representation};
+
+use crate::Stop;
+use crate::error::RemeshError;
+use crate::numbering::{Numbering, corners, corners_from};
+use crate::rules::{at, is_boundary, keeps_link, turns_nothing_over};
+
+/// An edge longer than this times the target is split, one shorter than that is collapsed: between
+/// them neither the halves of a split edge nor the edges around a collapsed one are at once undone.
+const LONG: f64 = 4.0 / 3.0;
+const SHORT: f64 = 4.0 / 5.0;
+
+/// A boundary that turns by less than this at a vertex is straight there: the cosine.
+const STRAIGHT: f64 = 0.9962; // 5 degrees
+
+/// How to remesh. Set the length; the default iterates ten times, up to ten million faces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Remeshing {
+    /// How long edges should be.
+    pub edge_length: f64,
+    /// How often to split, collapse, flip and smooth.
+    pub iterations: usize,
+    /// No more faces than these; a length that would take more is refused.
+    pub most_faces: usize,
+}
+
+impl Remeshing {
+    /// The default with edges of `edge_length`.
+    pub fn to(edge_length: f64) -> Self {
+        Self {
+            edge_length,
+            iterations: 10,
+            most_faces: 10_000_000,
+        }
+    }
+}
+
+/// What a remeshing came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Remeshed {
+    /// The faces there are.
+    pub faces: usize,
+    /// How many edges were split.
+    pub splits: usize,
+    /// How many were collapsed.
+    pub collapses: usize,
+    /// How many were flipped.
+    pub flips: usize,
+    /// How many iterations were done.
+    pub iterations: usize,
+    /// Why it ended.
+    pub stop: Stop,
+}
+
+/// Makes all edges about `edge_length` long and all vertices about as regular as can be.
+///
+/// Each iteration splits edges longer than 4/3 of the length in the middle, collapses edges shorter
+/// than 4/5 of it (unless a longer edge than 4/3 came of it), flips edges where that brings valences
+/// nearer to six, or four on a boundary, and moves inner vertices within their tangent planes to the
+/// middle of their neighbours (Botsch & Kobbelt 2004, without the projection back to the original).
+///
+/// Boundary vertices stay; one goes only where the boundary is straight. Nothing is done that turns a
+/// face over or breaks the link condition.
+///
+/// # Errors
+///
+/// [`RemeshError`]: a polygon, a vertex that is nowhere, a length that is none, or one that would take
+/// more faces than allowed, by the area or by the edges there are. Nothing has changed then.
+///
+/// # Complexity
+///
+/// O(edges log edges) for each iteration, and the structure's cost of the neighbours and the edit for
+/// each edge. Splits are bounded by the faces allowed; each of the other passes looks once at the edges
+/// there are when it begins.
+pub fn remesh<M: MeshEdit + Representation>(
+    mesh: &mut M,
+    remeshing: &Remeshing,
+) -> Result<Remeshed, RemeshError> {
+    remesh_watched(mesh, remeshing, &mut |_| ControlFlow::Continue(()))
+}
+
+/// As [`remesh`]; before each iteration `watch` is told how many are done, and may end it.
+///
+/// # Errors
+///
+/// Those of [`remesh`].
+pub fn remesh_watched<M: MeshEdit + Representation>(
+    mesh: &mut M,
+    remeshing: &Remeshing,
+    watch: &mut dyn FnMut(usize) -> ControlFlow<()>,
+) -> Result<Remeshed, RemeshError> {
+    let length = remeshing.edge_length;
+    if !(length.is_finite() && length > 0.0) {
+        return Err(RemeshError::BadLength { length });
+    }
+    let mut work = Work {
+        numbering: Numbering::of(mesh)?,
+        long: (LONG * length) * (LONG * length),
+        short: (SHORT * length) * (SHORT * length),
+    };
+    // Equilateral triangles over the area; where faces have next to none, along the edges.
+    let area: f64 = mesh.faces().map(|f| cross(mesh, f).length() / 2.0).sum();
+    let along: f64 = mesh
+        .edges()
+        .map(|e| {
+            let [a, b] = mesh.edge_vertices(e).map(|v| at(mesh, v));
+            a.distance(b)
+        })
+        .sum();
+    let over_area = area / (length * length * 3_f64.sqrt() / 4.0);
+    let faces = over_area.max(along / length * 2.0 / 3.0);
+    let limit = remeshing.most_faces;
+    if faces > limit as f64 {
+        return Err(RemeshError::TooFine {
+            length,
+            faces,
+            limit,
+        });
+    }
+    let mut report = Remeshed {
+        faces: mesh.face_count(),
+        splits: 0,
+        collapses: 0,
+        flips: 0,
+        iterations: 0,
+        stop: Stop::Done,
+    };
+    for done in 0..remeshing.iterations {
+        if watch(done).is_break() {
+            report.stop = Stop::Asked;
+            break;
+        }
+        let (splits, whole) = work.split_long(mesh, limit);
+        report.splits += splits;
+        report.collapses += work.collapse_short(mesh);
+        report.flips += work.even_valences(mesh);
+        work.smooth(mesh);
+        report.iterations += 1;
+        report.faces = mesh.face_count();
+        if !whole {
+            report.stop = Stop::WorkBound;
+            break;
+        }
+    }
+    Ok(report)
+}
+
+struct Work<M: MeshEdit> {
+    numbering: Numbering<M>,
+    /// The squares of the lengths between which edges stay.
+    long: f64,
+    short: f64,
+}
+
+impl<M: MeshEdit + Representation> Work<M> {
+    fn ends(&self, mesh: &M, ends: [u32; 2]) -> [DVec3; 2] {
+        ends.map(|n| at(mesh, self.numbering.name(n)))
+    }
+
+    fn length_squared(&self, mesh: &M, ends: [u32; 2]) -> f64 {
+        let [a, b] = self.ends(mesh, ends);
+        a.distance_squared(b)
+    }
+
+    /// Splits long edges, and those that come of it, while there may be more faces; how many, and
+    /// whether none was left.
+    fn split_long(&mut self, mesh: &mut M, most_faces: usize) -> (usize, bool) {
+        let mut waiting = self.numbering.edges(mesh);
+        waiting.retain(|&ends| self.length_squared(mesh, ends) > self.long);
+        let mut splits = 0;
+        let mut next = 0;
+        while let Some(&ends) = waiting.get(next) {
+            next += 1;
+            let Some(e) = self.numbering.edge(mesh, ends) else {
+                continue;
+            };
+            if mesh.face_count() + 2 > most_faces {
+                return (splits, false);
+            }
+            let [a, b] = self.ends(mesh, ends);
+            let middle = ((a + b) / 2.0).as_vec3();
+            // No step that rounding swallows: the middle must lie apart from both ends.
+            if [a, b].contains(&middle.as_dvec3()) {
+                continue;
+            }
+            let Ok(m) = mesh.bisect_edge(e, middle, &mut ()) else {
+                continue;
+            };
+            let number = self.numbering.push(m);
+            splits += 1;
+            let mut spokes: Vec<[u32; 2]> = mesh
+                .vertex_vertices(m)
+                .map(|v| [self.numbering.number(v), number])
+                .collect();
+            spokes.sort_unstable();
+            spokes.retain(|&ends| self.length_squared(mesh, ends) > self.long);
+            waiting.extend(spokes);
+        }
+        (splits, true)
+    }
+
+    /// Collapses the short edges there are, where nothing becomes too long.
+    fn collapse_short(&mut self, mesh: &mut M) -> usize {
+        let mut collapses = 0;
+        for ends in self.numbering.edges(mesh) {
+            let Some(e) = self.numbering.edge(mesh, ends) else {
+                continue;
+            };
+            if self.length_squared(mesh, ends) >= self.short {
+                continue;
+            }
+            let Some((keep, to)) = self.meeting_place(mesh, e, ends) else {
+                continue;
+            };
+            let handles = ends.map(|n| self.numbering.name(n));
+            let stays_short = handles.into_iter().all(|v| {
+                let mut around = mesh.vertex_vertices(v);
+                around
+                    .all(|u| handles.contains(&u) || at(mesh, u).distance_squared(to) <= self.long)
+            });
+            if !stays_short || !turns_nothing_over(mesh, handles, to) || !keeps_link(mesh, e) {
+                continue;
+            }
+            let place = to.as_vec3();
+            if let Ok(kept) = mesh.collapse_edge(e, self.numbering.name(keep), place, &mut ()) {
+                self.numbering.renamed(keep, kept);
+                let [a, b] = ends;
+                self.numbering.remove(if keep == a { b } else { a });
+                collapses += 1;
+            }
+        }
+        collapses
+    }
+
+    /// Which end stays and where, so that boundaries keep their shape; `None` where they would not.
+    fn meeting_place(&self, mesh: &M, e: M::Edge, ends: [u32; 2]) -> Option<(u32, DVec3)> {
+        let [p, q] = self.ends(mesh, ends);
+        let handles = ends.map(|n| self.numbering.name(n));
+        match handles.map(|v| is_boundary(mesh, v)) {
+            [false, false] => Some((ends[0], (p + q) / 2.0)),
+            [true, false] => Some((ends[0], p)),
+            [false, true] => Some((ends[1], q)),
+            [true, true] if mesh.edge_faces(e).count() == 1 => {
+                if self.is_straight(mesh, ends[1]) {
+                    Some((ends[0], p))
+                } else if self.is_straight(mesh, ends[0]) {
+                    Some((ends[1], q))
+                } else {
+                    None
+                }
+            }
+            [true, true] => None,
+        }
+    }
+
+    /// Whether the boundary runs straight through a vertex on it.
+    fn is_straight(&self, mesh: &M, number: u32) -> bool {
+        let v = self.numbering.name(number);
+        let from = at(mesh, v);
+        let spokes = mesh
+            .vertex_edges(v)
+            .filter(|&e| mesh.edge_faces(e).count() == 1);
+        let ways: Vec<DVec3> = spokes
+            .map(|e| {
+                let [a, b] = mesh.edge_vertices(e);
+                (at(mesh, if a == v { b } else { a }) - from).normalize_or_zero()
+            })
+            .collect();
+        matches!(ways[..], [one, other] if one.dot(other) <= -STRAIGHT)
+    }
+
+    /// Flips the edges whose flip brings the valences around nearer to what they should be.
+    fn even_valences(&mut self, mesh: &mut M) -> usize {
+        let mut flips = 0;
+        for ends in self.numbering.edges(mesh) {
+            let Some(e) = self.numbering.edge(mesh, ends) else {
+                continue;
+            };
+            let handles = ends.map(|n| self.numbering.name(n));
+            let mut apexes = Vec::with_capacity(2);
+            for f in mesh.edge_faces(e) {
+                let [x, y, z] = corners(mesh, f);
+                apexes.extend([x, y, z].into_iter().find(|v| !handles.contains(v)));
+            }
+            let &[c, d] = apexes.as_slice() else {
+                continue;
+            };
+            let [a, b] = handles;
+            let excess = |v: M::Vertex| {
+                let due = if is_boundary(mesh, v) { 4 } else { 6 };
+                mesh.vertex_edges(v).count() as i64 - due
+            };
+            let [va, vb, vc, vd] = [a, b, c, d].map(excess);
+            let now = va.pow(2) + vb.pow(2) + vc.pow(2) + vd.pow(2);
+            let then = (va - 1).pow(2) + (vb - 1).pow(2) + (vc + 1).pow(2) + (vd + 1).pow(2);
+            if then < now
+                && flip_stays_flat(mesh, [a, b, c, d], e)
+                && mesh.flip_edge(e, &mut ()).is_ok()
+            {
+                flips += 1;
+            }
+        }
+        flips
+    }
+
+    /// Moves inner vertices within their tangent planes, all by what was there before.
+    fn smooth(&mut self, mesh: &mut M) {
+        let mut moves: Vec<(u32, DVec3)> = Vec::new();
+        let mut vertices: Vec<u32> = mesh.vertices().map(|v| self.numbering.number(v)).collect();
+        vertices.sort_unstable();
+        for number in vertices.into_iter().filter(|&n| n != u32::MAX) {
+            let v = self.numbering.name(number);
+            if is_boundary(mesh, v) {
+                continue;
+            }
+            let from = at(mesh, v);
+            // In the order of numbers, so that rounding is the same on every structure.
+            let mut fan: Vec<([u32; 2], DVec3, DVec3)> = mesh
+                .vertex_faces(v)
+                .map(|f| {
+                    let [_, p, q] = corners_from(mesh, f, v);
+                    let ends = [p, q].map(|u| self.numbering.number(u));
+                    let [p, q] = [p, q].map(|u| at(mesh, u));
+                    (ends, (p - from).cross(q - from), p)
+                })
+                .collect();
+            fan.sort_unstable_by_key(|&(ends, ..)| ends);
+            let normal: DVec3 = fan.iter().map(|&(_, cross, _)| cross).sum();
+            let middle = fan.iter().map(|&(.., p)| p).sum::<DVec3>() / fan.len() as f64;
+            let Some(normal) = normal.try_normalize().filter(|_| !fan.is_empty()) else {
+                continue;
+            };
+            let way = middle - from;
+            moves.push((number, from + way - normal * normal.dot(way)));
+        }
+        for (number, to) in moves {
+            let v = self.numbering.name(number);
+            if turns_nothing_over(mesh, [v, v], to) {
+                self.numbering.set_position(mesh, number, to.as_vec3());
+            }
+        }
+    }
+}
+
+/// Twice the area of a face along its normal.
+fn cross<M: MeshEdit>(mesh: &M, f: M::Face) -> DVec3 {
+    let [a, b, c] = corners(mesh, f).map(|v| at(mesh, v));
+    (b - a).cross(c - a)
+}
+
+/// Whether both triangles of the flipped edge would face the way the two of today do together.
+fn flip_stays_flat<M: MeshEdit>(mesh: &M, quad: [M::Vertex; 4], e: M::Edge) -> bool {
+    let together: DVec3 = mesh.edge_faces(e).map(|f| cross(mesh, f)).sum();
+    let [a, b, c, d] = quad.map(|v| at(mesh, v));
+    // Which of the apexes is on the left does not matter here: the two crosses change sign together.
+    let new = [(d - a).cross(c - a), (c - b).cross(d - b)];
+    let signs = new.map(|n| n.dot(together));
+    signs.iter().all(|&s| s > 0.0) || signs.iter().all(|&s| s < 0.0)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,155 @@
+//! Vertices by number, in an order that is the same on every structure.
+
+use mesh_core::{HandleMap, MeshEdit, Point, Representation, VertexId, VertexMap, row};
+
+use crate::error::RemeshError;
+
+/// Every vertex by a number, and every number's vertex, through all edits.
+///
+/// Structures list vertices and walk around them in orders of their own. Decisions that went by these
+/// would differ from structure to structure; numbers do not. They follow the first face that names a
+/// vertex, each face from its least corner on.
+pub(crate) struct Numbering<M: MeshEdit> {
+    names: Vec<M::Vertex>,
+    /// Whether the vertex of a number has been removed: its name must not be asked for any more.
+    gone: Vec<bool>,
+    numbers: VertexMap<M, u32>,
+}
+
+impl<M: MeshEdit + Representation> Numbering<M> {
+    /// Numbers the vertices of a mesh of triangles; O(corners).
+    ///
+    /// # Errors
+    ///
+    /// The first face that is no triangle, and the first vertex that is nowhere.
+    pub(crate) fn of(mesh: &M) -> Result<Self, RemeshError> {
+        for (i, f) in (0..).zip(mesh.faces()) {
+            let degree = mesh.face_vertices(f).count();
+            if degree != 3 {
+                let face = mesh_core::FaceId::new(i);
+                return Err(RemeshError::NotATriangle { face, degree });
+            }
+        }
+        for (i, v) in (0..).zip(mesh.vertices()) {
+            let at = mesh.position(v);
+            if !at.is_finite() {
+                let (vertex, at) = (VertexId::new(i), at.to_array());
+                return Err(RemeshError::NotFinite { vertex, at });
+            }
+        }
+        let mut numbering = Self {
+            names: Vec::new(),
+            gone: Vec::new(),
+            numbers: mesh.vertex_map(u32::MAX),
+        };
+        for f in mesh.faces() {
+            let [a, b, c] = corners(mesh, f);
+            let bits = |v| mesh.position(v).to_array().map(f32::to_bits);
+            let least = bits(a).min(bits(b)).min(bits(c));
+            let turned = if least == bits(a) {
+                [a, b, c]
+            } else if least == bits(b) {
+                [b, c, a]
+            } else {
+                [c, a, b]
+            };
+            for v in turned {
+                if numbering.numbers[v] == u32::MAX {
+                    numbering.push(v);
+                }
+            }
+        }
+        Ok(numbering)
+    }
+
+    /// Numbers a new vertex.
+    pub(crate) fn push(&mut self, v: M::Vertex) -> u32 {
+        let number = row(self.names.len());
+        self.numbers.insert(v, number);
+        self.names.push(v);
+        self.gone.push(false);
+        number
+    }
+
+    /// Notes that the vertex has been removed.
+    #[inline]
+    pub(crate) fn remove(&mut self, number: u32) {
+        self.gone[number as usize] = true;
+    }
+
+    /// What the vertex is called now that an edit has touched it.
+    #[inline]
+    pub(crate) fn renamed(&mut self, number: u32, new: M::Vertex) {
+        let old = self.names[number as usize];
+        if old != new {
+            self.numbers.remove(old);
+            self.numbers.insert(new, number);
+            self.names[number as usize] = new;
+        }
+    }
+
+    /// Moves a vertex; where a vertex is its coordinates and another is there, it stays.
+    pub(crate) fn set_position(&mut self, mesh: &mut M, number: u32, to: Point) {
+        if let Ok(v) = mesh.set_position(self.name(number), to, &mut ()) {
+            self.renamed(number, v);
+        }
+    }
+
+    /// How many numbers have been given.
+    pub(crate) fn len(&self) -> usize {
+        self.names.len()
+    }
+
+    /// What the vertex is called.
+    #[inline]
+    pub(crate) fn name(&self, number: u32) -> M::Vertex {
+        self.names[number as usize]
+    }
+
+    /// The number of a vertex.
+    #[inline]
+    pub(crate) fn number(&self, v: M::Vertex) -> u32 {
+        self.numbers[v]
+    }
+
+    /// All edges as the numbers of their ends, in order; O(edges log edges).
+    pub(crate) fn edges(&self, mesh: &M) -> Vec<[u32; 2]> {
+        let ends = mesh.edges().map(|e| {
+            let [a, b] = mesh.edge_vertices(e).map(|v| self.number(v));
+            [a.min(b), a.max(b)]
+        });
+        let mut edges: Vec<[u32; 2]> = ends.collect();
+        edges.sort_unstable();
+        edges
+    }
+
+    /// The edge between two numbers, if there is one now.
+    #[inline]
+    pub(crate) fn edge(&self, mesh: &M, [a, b]: [u32; 2]) -> Option<M::Edge> {
+        if self.gone[a as usize] || self.gone[b as usize] {
+            return None;
+        }
+        mesh.edge_between(self.name(a), self.name(b))
+    }
+}
+
+/// The corners of a triangle, from any of them on.
+#[inline]
+pub(crate) fn corners<M: MeshEdit>(mesh: &M, f: M::Face) -> [M::Vertex; 3] {
+    let mut corners = mesh.face_vertices(f);
+    let mut next = || corners.next().expect("every face is a triangle");
+    [next(), next(), next()]
+}
+
+/// The corners of a triangle at `v`, from `v` on.
+#[inline]
+pub(crate) fn corners_from<M: MeshEdit>(mesh: &M, f: M::Face, v: M::Vertex) -> [M::Vertex; 3] {
+    let [a, b, c] = corners(mesh, f);
+    if a == v {
+        [a, b, c]
+    } else if b == v {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    }
+}

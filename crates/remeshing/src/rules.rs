@@ -1,0 +1,73 @@
+//! When an edit may be done that its structure would allow.
+
+use glam::DVec3;
+use mesh_core::{MeshEdit, Representation};
+
+use crate::numbering::{corners, corners_from};
+
+/// A normal may turn by less than this: the cosine.
+const TURN: f64 = 0.2;
+
+/// The position of `v` in doubles.
+#[inline]
+pub(crate) fn at<M: MeshEdit>(mesh: &M, v: M::Vertex) -> DVec3 {
+    mesh.position(v).as_dvec3()
+}
+
+/// Whether moving both ends of an edge to `to` turns no triangle over, of those that stay.
+pub(crate) fn turns_nothing_over<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], to: DVec3) -> bool {
+    [(a, b), (b, a)].into_iter().all(|(end, other)| {
+        let from = at(mesh, end);
+        mesh.vertex_faces(end).all(|f| {
+            let [_, p, q] = corners_from(mesh, f, end);
+            if p == other || q == other {
+                return true;
+            }
+            let [p, q] = [p, q].map(|v| at(mesh, v));
+            let before = (p - from).cross(q - from);
+            let after = (p - to).cross(q - to);
+            // A face without an area has no side to keep.
+            before == DVec3::ZERO
+                || before.dot(after)
+                    > TURN * (before.length_squared() * after.length_squared()).sqrt()
+        })
+    })
+}
+
+/// The link condition of Dey et al. (1999) in a mesh of triangles, for structures that hold what a
+/// collapse against it makes; those that hold manifolds alone keep it themselves.
+pub(crate) fn keeps_link<M: MeshEdit + Representation>(mesh: &M, e: M::Edge) -> bool {
+    if !M::CAPABILITIES.non_manifold_edges {
+        return true;
+    }
+    let [a, b] = mesh.edge_vertices(e);
+    let mut apexes = Vec::with_capacity(2);
+    for f in mesh.edge_faces(e) {
+        apexes.extend(corners(mesh, f).into_iter().find(|&v| v != a && v != b));
+    }
+    if apexes.len() > 2 || (apexes.len() == 2 && apexes[0] == apexes[1]) {
+        return false;
+    }
+    let at_b: Vec<M::Vertex> = mesh.vertex_vertices(b).collect();
+    let at_a: Vec<M::Vertex> = mesh.vertex_vertices(a).collect();
+    let common = at_a.iter().filter(|v| at_b.contains(v)).count();
+    if common != apexes.len() {
+        return false;
+    }
+    if apexes.len() == 2 {
+        // Four triangles that close up: a tetrahedron would become two triangles back to back.
+        let closed = |v| mesh.vertex_faces(v).count() == 3;
+        if at_a.len() == 3 && at_b.len() == 3 && closed(a) && closed(b) {
+            return false;
+        }
+        return !(is_boundary(mesh, a) && is_boundary(mesh, b));
+    }
+    true
+}
+
+/// Whether an edge with one face ends at `v`.
+pub(crate) fn is_boundary<M: MeshEdit>(mesh: &M, v: M::Vertex) -> bool {
+    // An open fan has one edge more than faces; nothing else in a manifold has.
+    mesh.vertex_edges(v)
+        .any(|e| mesh.edge_faces(e).count() == 1)
+}
