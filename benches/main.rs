@@ -3,6 +3,7 @@
 //! `cargo bench -p sixfold-benches -- zero_cost/` runs those whose name has the filter in it.
 
 mod construction;
+mod editing;
 mod input;
 mod query;
 mod subdivision;
@@ -26,6 +27,6 @@ criterion_group! {
     name = all;
     config = short();
     targets = zero_cost::define, construction::define, workload::define, query::define,
-        subdivision::define
+        subdivision::define, editing::define
 }
 criterion_main!(all);

@@ -95,8 +95,8 @@ fn run(arguments: &Arguments) -> Result<(), String> {
         );
     }
     for operation in Operation::ALL {
-        // Subdivisions are run below, and here only where they are named.
-        let unasked = operation.subdivides() && arguments.operations.is_empty();
+        // Subdivisions are run below, and they and edits here only where they are named.
+        let unasked = operation.makes_a_mesh() && arguments.operations.is_empty();
         if unasked || !wanted(operation.name()) {
             continue;
         }

@@ -5,6 +5,8 @@
 //! Every round runs each scheme, way and structure once at each level, one after the other, on one
 //! thread; the table has the medians of thread-CPU time over the rounds, and its figure shows them.
 
+mod report;
+
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::fmt::Write as _;
@@ -12,6 +14,7 @@ use std::fs;
 use std::path::Path;
 
 use plotters::prelude::*;
+use report::Chart;
 use serde_json::json;
 use sixfold::subdivision::{Scheme, SubdivisionError};
 use sixfold::{Creases, PolygonMesh, roster, shapes};
@@ -77,10 +80,7 @@ struct Sample {
 impl Sample {
     /// Nanoseconds for each face of the last level: the median.
     fn ns_per_face(&self) -> f64 {
-        let mut ns = self.ns.clone();
-        ns.sort_by(f64::total_cmp);
-        let middle = f64::midpoint(ns[(ns.len() - 1) / 2], ns[ns.len() / 2]);
-        middle / self.faces as f64
+        report::median(&self.ns) / self.faces as f64
     }
 }
 
@@ -130,24 +130,8 @@ fn text(
     samples: &Samples,
 ) -> Result<String, std::fmt::Error> {
     let mut text = String::from("# What subdivision costs on each structure\n\n");
-    let cpu = machine.cpu_model.as_deref().unwrap_or("unknown processor");
-    let load = machine.load_average.unwrap_or(f64::NAN);
-    let flags = match machine.rustflags.as_str() {
-        "" => String::new(),
-        flags => format!("RUSTFLAGS=\"{flags}\" "),
-    };
-    writeln!(
-        text,
-        "```sh\n{flags}cargo run --release -p study --example subdivision_report -- reports/subdivision {rounds}\n```\n"
-    )?;
-    writeln!(
-        text,
-        "{cpu}, {} cores, load {load:.1} at the start; {} {} {}; one thread, thread-CPU time, medians of {rounds} rounds in which all take turns. Control mesh: a geodesic sphere of 5,120 triangles. Nanoseconds for each face of the last level, all levels made.\n",
-        machine.cores.unwrap_or(0),
-        machine.rustc,
-        machine.profile,
-        machine.rustflags,
-    )?;
+    text += &report::opening(machine, "subdivision_report", "reports/subdivision", rounds);
+    text += " Control mesh: a geodesic sphere of 5,120 triangles. Nanoseconds for each face of the last level, all levels made.\n\n";
     text += "`gather` asks for the neighbourhood of each new point, `scatter` makes one pass over the faces; after both the structure is built anew from polygons. `native_fresh` splits the structure's own tables into tables that are allocated for it, `native` into those of the run before.\n\n![Nanoseconds for each new face, by size](growth.svg)\n";
     for scheme in SCHEMES {
         writeln!(text, "\n## {scheme}\n")?;
@@ -184,14 +168,6 @@ fn text(
 
 /// Time for each new face against the faces of the last level, both logarithmic.
 fn figure(path: &Path, samples: &Samples) -> Result<(), Box<dyn Error>> {
-    const COLOURS: [RGBColor; 6] = [
-        RGBColor(0xd6, 0x27, 0x28),
-        RGBColor(0xff, 0x7f, 0x0e),
-        RGBColor(0x2c, 0xa0, 0x2c),
-        RGBColor(0x94, 0x67, 0xbd),
-        RGBColor(0x1f, 0x77, 0xb4),
-        RGBColor(0x8c, 0x56, 0x4b),
-    ];
     let ways = [Way::Gather, Way::Scatter, Way::Native];
     let root = SVGBackend::new(path, (1200, 760)).into_drawing_area();
     root.fill(&WHITE)?;
@@ -200,47 +176,25 @@ fn figure(path: &Path, samples: &Samples) -> Result<(), Box<dyn Error>> {
         .iter()
         .zip(SCHEMES.into_iter().flat_map(|s| ways.map(|w| (s, w))))
     {
-        let mut chart = ChartBuilder::on(panel)
-            .caption(format!("{scheme}, {way}"), ("sans-serif", 17))
-            .margin(8)
-            .x_label_area_size(34)
-            .y_label_area_size(46)
-            .build_cartesian_2d((1e4..2e6_f64).log_scale(), (5.0..3e5_f64).log_scale())?;
-        chart
-            .configure_mesh()
-            .x_desc("faces of the last level")
-            .y_desc("ns a face")
-            .x_label_formatter(&|x| format!("{x:.0e}"))
-            .y_label_formatter(&|y| format!("{y}"))
-            .light_line_style(WHITE)
-            .draw()?;
-        for (backend, colour) in roster().iter().zip(COLOURS) {
-            let line = (scheme.name(), way.name(), backend.name);
-            let points: Vec<(f64, f64)> = (1..=LEVELS)
-                .filter_map(|level| samples.get(&(line, level)))
-                .map(|sample| (sample.faces as f64, sample.ns_per_face()))
-                .collect();
-            if points.is_empty() {
-                continue;
-            }
-            let dots = points.iter().map(|&at| Circle::new(at, 3, colour.filled()));
-            chart.draw_series(dots)?;
-            chart
-                .draw_series(LineSeries::new(points, colour.stroke_width(2)))?
-                .label(backend.name)
-                .legend(move |(x, y)| {
-                    PathElement::new([(x, y), (x + 14, y)], colour.stroke_width(2))
-                });
-        }
-        chart
-            .configure_series_labels()
-            .position(match way {
+        let chart = Chart {
+            caption: format!("{scheme}, {way}"),
+            x: ("faces of the last level", 1e4..2e6),
+            y: ("ns a face", 5.0..3e5),
+            legend: match way {
                 Way::Gather => SeriesLabelPosition::MiddleRight,
                 _ => SeriesLabelPosition::UpperRight,
-            })
-            .background_style(WHITE.mix(0.85))
-            .label_font(("sans-serif", 12))
-            .draw()?;
+            },
+        };
+        chart.draw(panel, |backend| {
+            let line = (1..=LEVELS).filter_map(|level| {
+                let mut lines = samples.iter();
+                lines.find(|&(&((s, w, b), l), _)| {
+                    (s, w, b, l) == (scheme.name(), way.name(), backend, level)
+                })
+            });
+            line.map(|(_, sample)| (sample.faces as f64, sample.ns_per_face()))
+                .collect()
+        })?;
     }
     root.present()?;
     Ok(())

@@ -5,6 +5,7 @@ use std::hint::black_box;
 use sixfold::{MeshQuery, PolygonMesh, QueryCost, Representation};
 
 use crate::clock::{Clock, Time, timed};
+use crate::editing::Editing;
 use crate::operation::{Kind, Operation};
 use crate::refining::Refining;
 use crate::sample::{Draw, Side};
@@ -293,6 +294,9 @@ impl<M: Representation + 'static> Subject for Candidate<'_, M> {
     fn run(&mut self, job: &Job, runs: u32, clock: &dyn Clock, check: bool) -> Run {
         let refining = job.operation.refining();
         let run = match (job.operation, job.sample, refining) {
+            (Operation::Editing(editing), sample, _) => {
+                edit::<M>(editing, self.polygons, sample, runs, clock, check)
+            }
             (_, sample, Some(refining)) => self.subdivide(refining, sample, runs, clock, check),
             (Operation::Build, ..) => self.build(runs, clock),
             (operation, Some(sample), None) => {
@@ -306,6 +310,46 @@ impl<M: Representation + 'static> Subject for Candidate<'_, M> {
             ..run
         }
     }
+}
+
+/// Runs a workload that changes the mesh, on copies, or on a patch of the mesh that stands for it.
+fn edit<M: Representation>(
+    editing: Editing,
+    polygons: &PolygonMesh,
+    sample: Option<Sample>,
+    runs: u32,
+    clock: &dyn Clock,
+    check: bool,
+) -> Run {
+    let piece = sample.map(|sample| patch(polygons, sample.size));
+    let of = piece.as_ref().unwrap_or(polygons);
+    let editor = editing.on(M::NAME, of);
+    let editor = editor.unwrap_or_else(|| Err("it cannot be edited".into()));
+    let mut editor = match editor {
+        Ok(editor) => editor,
+        Err(refusal) => {
+            return Run {
+                time: Time::none_like(clock.now()),
+                outcome: None,
+                refusal: Some(refusal),
+            };
+        }
+    };
+    editor.prepare(runs as usize);
+    let time = timed(clock, || {
+        for _ in 0..runs {
+            black_box(&mut editor).run();
+        }
+    });
+    let outcome = check.then(|| {
+        let edits = editor.result();
+        Outcome {
+            checksum: edits.checksum,
+            elements: edits.elements,
+        }
+    });
+    let scale = polygons.face_count() as f64 / of.face_count().max(1) as f64;
+    Run::done(time.scaled(scale), outcome)
 }
 
 /// The structure's own names of the first elements of the draw.

@@ -11,6 +11,7 @@ mod agreement;
 mod backend;
 mod candidate;
 mod clock;
+mod editing;
 mod environment;
 mod inspect;
 mod measure;
@@ -20,6 +21,7 @@ mod plan;
 mod refining;
 mod report;
 mod sample;
+mod single_edit;
 mod solo;
 mod standing;
 mod statistics;
@@ -30,6 +32,7 @@ mod workload;
 
 pub use backend::Backend;
 pub use clock::{Clock, MachineClock, Time};
+pub use editing::{Editing, Editor, Edits};
 pub use environment::Environment;
 pub use inspect::{Specimen, inspect};
 pub use measure::Progress;
@@ -38,5 +41,6 @@ pub use refining::{Refiner, Refining, Way};
 pub use report::{
     Agreement, BackendReport, Inspection, MeshReport, Refusal, Report, ResultRow, SCHEMA, Standing,
 };
+pub use single_edit::SingleEdit;
 pub use solo::{Solo, SoloRun};
 pub use study::{Settings, StudyError, study};

@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 use sixfold::subdivision::{Method, Scheme};
 use sixfold::{PolygonMesh, QueryCost, Relation};
 
+use crate::editing::Editing;
 use crate::refining::{Refining, Way};
 
 /// One kind of element.
@@ -74,6 +75,8 @@ pub enum Operation {
     CatmullClark(Method),
     /// One step of Loop by one method.
     Loop(Method),
+    /// A workload that changes the mesh, on a fresh copy each time.
+    Editing(Editing),
 }
 
 const RELATIONS: &[Relation; 9] = &Relation::ALL;
@@ -84,7 +87,7 @@ const AROUND_FACE: &[Relation] = &[Relation::FaceVertices, Relation::FaceEdges];
 
 impl Operation {
     /// All of them, in the order in which tables show them.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 28] = [
         Self::Build,
         Self::Relation(Relation::VertexVertices),
         Self::Relation(Relation::VertexEdges),
@@ -109,6 +112,10 @@ impl Operation {
         Self::Loop(Method::Gather),
         Self::Loop(Method::Scatter),
         Self::Loop(Method::Native),
+        Self::Editing(Editing::SplitCollapse),
+        Self::Editing(Editing::FlipAll),
+        Self::Editing(Editing::DecimateHalf),
+        Self::Editing(Editing::DecimateTenth),
     ];
 
     /// What users call it: `vv_smooth`.
@@ -130,6 +137,7 @@ impl Operation {
             Self::Loop(Method::Gather) => "loop_gather",
             Self::Loop(Method::Scatter) => "loop_scatter",
             Self::Loop(Method::Native) => "loop_native",
+            Self::Editing(editing) => editing.name(),
         }
     }
 
@@ -151,6 +159,17 @@ impl Operation {
     /// Whether it is a subdivision.
     pub const fn subdivides(self) -> bool {
         matches!(self, Self::CatmullClark(_) | Self::Loop(_))
+    }
+
+    /// Whether it makes another mesh, by subdivision or by edits, rather than ask one: it is long, and
+    /// a patch of the mesh tells what it takes.
+    pub const fn makes_a_mesh(self) -> bool {
+        self.subdivides() || matches!(self, Self::Editing(_))
+    }
+
+    /// Whether each run needs a copy of its own, made before the clock starts.
+    pub(crate) const fn works_on_copies(self) -> bool {
+        matches!(self, Self::Build | Self::VvSmooth | Self::Editing(_))
     }
 
     /// Whether every series of its runs begins with one that nobody times: it fills the tables that
@@ -180,6 +199,8 @@ impl Operation {
             Self::Build | Self::FaceBarycenter | Self::FfBfs => Kind::Face.name(),
             Self::Circulate | Self::AllQueries => "visit",
             Self::CatmullClark(_) | Self::Loop(_) => "new face",
+            Self::Editing(Editing::FlipAll) => "visit",
+            Self::Editing(_) => Kind::Face.name(),
         }
     }
 
@@ -198,6 +219,8 @@ impl Operation {
             Self::Circulate => &[Kind::Vertex, Kind::Face],
             Self::CatmullClark(Method::Scatter) | Self::Loop(Method::Scatter) => F,
             Self::CatmullClark(_) | Self::Loop(_) => &Kind::ALL,
+            Self::Editing(Editing::FlipAll) => E,
+            Self::Editing(_) => V,
             Self::FaceBarycenter | Self::FfBfs => F,
             Self::VertexNormal => &[Kind::Face, Kind::Vertex],
             Self::VvSmooth => V,
@@ -224,6 +247,10 @@ impl Operation {
             (Self::CatmullClark(_), Kind::Vertex) => AROUND_VERTEX,
             (Self::Loop(_), Kind::Vertex) => one(Relation::VertexVertices),
             (Self::CatmullClark(_) | Self::Loop(_), Kind::Edge) => AROUND_EDGE,
+            // What an edit has to find, at the least.
+            (Self::Editing(Editing::FlipAll), Kind::Edge) => one(Relation::EdgeFaces),
+            (Self::Editing(Editing::FlipAll), _) => &[],
+            (Self::Editing(_), Kind::Vertex) => one(Relation::VertexFaces),
             (Self::AllQueries, _) => &RELATIONS[3 * kind.index()..][..3],
             _ => &[],
         }
@@ -251,7 +278,7 @@ impl Operation {
 
     /// Whether some of its elements can stand for all.
     pub const fn can_be_sampled(self) -> bool {
-        !matches!(self, Self::Build | Self::FfBfs) && !self.subdivides()
+        !matches!(self, Self::Build | Self::FfBfs) && !self.makes_a_mesh()
     }
 
     /// Whether its checksum is a count, equal to the last digit for all structures.
@@ -264,6 +291,7 @@ impl Operation {
                 | Self::EdgeLength
                 | Self::CatmullClark(_)
                 | Self::Loop(_)
+                | Self::Editing(_)
         )
     }
 }

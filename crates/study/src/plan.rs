@@ -17,9 +17,9 @@ const SELDOM: u32 = 4;
 pub(crate) const FEWEST_ELEMENTS: usize = 16;
 /// What an operation that cannot be sampled may take of the time left, to be run just once.
 const ONCE: f64 = 0.5;
-/// What one run of a subdivision that nobody asked for by name may take of the time left.
+/// What one run that makes a mesh, and that nobody asked for by name, may take of the time left.
 const SMALL_SHARE: f64 = 0.02;
-/// So many faces, cut out of the mesh, tell for the first time what subdividing it would take.
+/// So many faces, cut out of the mesh, tell for the first time what subdividing or editing it takes.
 const FIRST_PATCH: usize = 1024;
 /// Structures that one sample may build or copy, in bytes.
 const MOST_BYTES: usize = 64 << 20;
@@ -48,8 +48,8 @@ impl Bench<'_, '_> {
                 let part = if others < count { 2.0 } else { 1.0 };
                 let left = (deadline - self.clock.now().wall_ns).max(0.0) / part;
                 let share = left / (f64::from(ROUNDS) * others);
-                if entry.job.operation.subdivides() {
-                    self.plan_subdivision(entry, *scans, share, left);
+                if entry.job.operation.makes_a_mesh() {
+                    self.plan_maker(entry, *scans, share, left);
                 } else if scanning {
                     self.plan_scan(entry, *scans, share, left);
                 } else {
@@ -60,8 +60,8 @@ impl Bench<'_, '_> {
         self.catch_up(entries, deadline);
     }
 
-    /// Runs once, the shortest first, what was only estimated and yet fits into the time left. A
-    /// subdivision that nobody asked for has to be content with little.
+    /// Runs once, the shortest first, what was only estimated and yet fits into the time left. What
+    /// makes a mesh, and nobody asked for, has to be content with little.
     fn catch_up(&mut self, entries: &mut [Entry], deadline: f64) {
         let budget = self.budget.as_nanos() as f64;
         let mut put_off: Vec<(f64, &mut Entry)> = entries
@@ -74,7 +74,7 @@ impl Bench<'_, '_> {
             if self.stopped() {
                 return;
             }
-            let part = match (entry.job.operation.subdivides(), self.named) {
+            let part = match (entry.job.operation.makes_a_mesh(), self.named) {
                 (false, _) => ONCE,
                 (true, false) => SMALL_SHARE,
                 (true, true) => 1.0, // whoever names it wants to see it
@@ -136,19 +136,17 @@ impl Bench<'_, '_> {
 
     /// More runs than this in a row would hold too many structures at once.
     fn most_runs(&self, entry: &Entry) -> f64 {
-        match entry.job.operation {
-            Operation::Build | Operation::VvSmooth => {
-                let bytes = self.subjects[entry.subject].bytes().max(64);
-                (MOST_BYTES / bytes).clamp(1, 100_000) as f64
-            }
-            _ => 1e7,
+        if entry.job.operation.works_on_copies() {
+            let bytes = self.subjects[entry.subject].bytes().max(64);
+            return (MOST_BYTES / bytes).clamp(1, 100_000) as f64;
         }
+        1e7
     }
 
     fn plan_rounds(&self, entry: &mut Entry, cost_ns: f64, share: f64) {
         entry.cost_ns = cost_ns;
-        // Subdivisions are many and long: where nobody asked for them the others keep their rounds.
-        let unasked = entry.job.operation.subdivides() && !self.named;
+        // What makes a mesh is long: where nobody asked for them the others keep their rounds.
+        let unasked = entry.job.operation.makes_a_mesh() && !self.named;
         let most = if unasked { 1.0 } else { 4.0 };
         entry.every = if cost_ns > most * share { SELDOM } else { 1 };
     }
@@ -219,7 +217,7 @@ impl Bench<'_, '_> {
 
     /// Estimates it first: by a patch, and by what it searches for. It is run in rounds, once, or not
     /// at all.
-    fn plan_subdivision(&mut self, entry: &mut Entry, scanned: [bool; 3], share: f64, left: f64) {
+    fn plan_maker(&mut self, entry: &mut Entry, scanned: [bool; 3], share: f64, left: f64) {
         // A single face tells what is refused.
         let run = self.run(entry.subject, &of_a_patch(entry, 1), 1, false);
         entry.refusal = run.refusal;
@@ -249,7 +247,7 @@ impl Bench<'_, '_> {
         }
     }
 
-    /// What the searches of a subdivision take together, by samples.
+    /// What the searches of an operation that makes a mesh take together, by samples.
     fn search_time(&mut self, entry: &Entry, scanned: [bool; 3], share: f64) -> Time {
         let mut total = Time::none_like(self.clock.now());
         for kind in Kind::ALL.into_iter().filter(|kind| scanned[kind.index()]) {

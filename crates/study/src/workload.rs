@@ -114,7 +114,10 @@ pub(crate) fn share<M: MeshQuery, E: Elements<M>>(
         (Operation::AllQueries, Kind::Edge) => ask_edges(mesh, elements),
         (Operation::AllQueries, Kind::Face) => ask_faces(mesh, elements),
         // Made by the candidate, not found by queries alone.
-        (Operation::Build | Operation::CatmullClark(_) | Operation::Loop(_), _) => Tally::default(),
+        (Operation::Build, _) => Tally::default(),
+        (Operation::CatmullClark(_) | Operation::Loop(_) | Operation::Editing(_), _) => {
+            Tally::default()
+        }
     }
 }
 

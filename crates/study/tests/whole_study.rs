@@ -32,7 +32,7 @@ fn scans_are_sampled_alike_and_what_takes_too_long_is_estimated() {
         match row.operation {
             Operation::FfBfs if estimated => assert_eq!(row.agreement, Agreement::Unchecked),
             // In so little time one may be run on a single structure.
-            operation if operation.subdivides() => {
+            operation if operation.makes_a_mesh() => {
                 assert!(row.agreement != Agreement::Mismatch, "{context}: {row:?}");
             }
             _ => assert_eq!(row.agreement, Agreement::Same, "{context}: {row:?}"),

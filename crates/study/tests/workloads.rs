@@ -2,9 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use conformance::edit::{Action, Model, Rules};
+use sixfold::remeshing::{Decimation, Target, decimate};
 use sixfold::subdivision::Scheme;
-use sixfold::{BackendInfo, Point, PolygonMesh, Relation, roster, shapes, support};
-use study::{MachineClock, Operation, Solo};
+use sixfold::{
+    BackendInfo, HalfEdgeMesh, Point, PolygonMesh, Relation, Representation, roster, shapes,
+    support,
+};
+use study::{Editing, MachineClock, Operation, Solo};
 
 /// What the operations should find, worked out slowly.
 struct Oracle<'a> {
@@ -194,10 +199,56 @@ impl<'a> Oracle<'a> {
             Operation::AllQueries => all(),
             Operation::CatmullClark(_) => field(self.refined(Scheme::CatmullClark).into_iter()),
             Operation::Loop(_) => field(self.refined(Scheme::Loop).into_iter()),
+            Operation::Editing(Editing::SplitCollapse) => self.edges.keys().map(length).sum(),
+            Operation::Editing(Editing::FlipAll) => self.flipped(),
+            Operation::Editing(Editing::DecimateHalf) => self.decimated(0.5),
+            Operation::Editing(Editing::DecimateTenth) => self.decimated(0.1),
         }
     }
 
+    /// The edge lengths after every edge has been flipped, twice, by the model of conformance.
+    fn flipped(&self) -> f64 {
+        let mut model = Model::of(self.mesh);
+        let rules = Rules::of::<HalfEdgeMesh>();
+        let mut edges: Vec<[usize; 2]> = Vec::new();
+        for face in &self.faces {
+            for (i, &a) in face.iter().enumerate() {
+                let b = face[(i + 1) % face.len()];
+                let edge = [a.min(b), a.max(b)];
+                if !edges.contains(&edge) {
+                    edges.push(edge);
+                }
+            }
+        }
+        for _ in 0..2 {
+            for edge in &mut edges {
+                let faces = model.edges().remove(edge).expect("edges are followed");
+                let corners = faces.iter().filter_map(|&(f, _)| model.face(f)).flatten();
+                let apexes: Vec<usize> = corners.copied().filter(|v| !edge.contains(v)).collect();
+                if let Some(after) = model.after(&Action::FlipEdge { ends: *edge }, &rules) {
+                    model = after;
+                    *edge = [apexes[0].min(apexes[1]), apexes[0].max(apexes[1])];
+                }
+            }
+        }
+        Oracle::of(&model.to_polygons()).checksum(Operation::EdgeLength)
+    }
+
+    /// The edge lengths of the decimated mesh: the operator itself has its own tests.
+    fn decimated(&self, ratio: f64) -> f64 {
+        let mut mesh = HalfEdgeMesh::from_polygons(self.mesh).expect("a manifold");
+        let to = Decimation {
+            target: Target::Ratio(ratio),
+            ..Decimation::default()
+        };
+        decimate(&mut mesh, &to).expect("triangles");
+        Oracle::of(&mesh.to_polygons()).checksum(Operation::EdgeLength)
+    }
+
     fn elements(&self, operation: Operation) -> usize {
+        if operation == Operation::Editing(Editing::FlipAll) {
+            return 2 * self.edges.len();
+        }
         match operation.per() {
             "vertex" => self.mesh.vertex_count(),
             "edge" => self.edges.len(),
@@ -259,7 +310,7 @@ fn patchwork() -> PolygonMesh {
 /// Whether the table of schemes and structures, and the degrees of the mesh, let it run.
 fn runs(operation: Operation, backend: &BackendInfo, mesh: &PolygonMesh) -> bool {
     let Some(refining) = operation.refining() else {
-        return true;
+        return !operation.makes_a_mesh() || mesh.faces().uniform_degree() == Some(3);
     };
     let scheme = refining.subdivision.scheme;
     let mut rows = support(scheme).into_iter();

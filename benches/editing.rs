@@ -1,0 +1,103 @@
+//! What does each edit, and what does a whole workload of edits, cost on each structure as the mesh grows?
+//!
+//! A figure of `edit/` is one edit: the time of a run over many places, divided by them. A structure
+//! that scans is asked at few places, and not on the largest meshes.
+
+use std::time::Duration;
+
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput};
+use sixfold::{Edit, QueryCost, roster, shapes};
+use study::{Clock, Editing, Editor, MachineClock, SingleEdit};
+
+use crate::input::inputs;
+
+/// Sides of triangle tori: about 1,000, 10,000 and 100,000 faces.
+const SIDES: [usize; 3] = [23, 71, 224];
+
+/// How many faces a structure that scans is given at most, for an edit and for a whole workload.
+const MOST_SCANNED: usize = 20_000;
+const MOST_SCANNED_BY_WORKLOADS: usize = 2_000;
+
+pub(crate) fn define(criterion: &mut Criterion) {
+    edits(criterion);
+    workloads(criterion);
+}
+
+fn edits(criterion: &mut Criterion) {
+    for edit in Edit::ALL {
+        let mut group = criterion.benchmark_group(format!("edit/{edit}"));
+        for side in SIDES {
+            let polygons = shapes::triangle_torus(side, side).expect("a small torus");
+            for backend in roster() {
+                let Some(cost) = backend.edits[edit as usize] else {
+                    continue; // the table of edits says so
+                };
+                let scans = cost == QueryCost::Scan;
+                if scans && polygons.face_count() > MOST_SCANNED {
+                    continue;
+                }
+                let places = if scans { 8 } else { 256 };
+                let job = SingleEdit { edit, places };
+                let Some(Ok(mut editor)) = job.on(backend.name, &polygons) else {
+                    continue;
+                };
+                editor.prepare(1);
+                editor.run();
+                let edits = editor.result().elements.max(1);
+                let id = BenchmarkId::new(backend.name, polygons.face_count());
+                timed(&mut group, id, editor.as_mut(), edits);
+            }
+        }
+        group.finish();
+    }
+}
+
+fn workloads(criterion: &mut Criterion) {
+    for editing in Editing::ALL {
+        let mut group = criterion.benchmark_group(format!("editing/{editing}"));
+        for input in inputs() {
+            for backend in roster() {
+                let collapse = backend.edits[Edit::CollapseEdge as usize];
+                let most = match collapse {
+                    Some(QueryCost::Scan) => MOST_SCANNED_BY_WORKLOADS,
+                    _ => usize::MAX,
+                };
+                if input.mesh.face_count() > most {
+                    continue;
+                }
+                let Some(Ok(mut editor)) = editing.on(backend.name, &input.mesh) else {
+                    continue;
+                };
+                editor.prepare(1);
+                editor.run();
+                group.throughput(Throughput::Elements(editor.result().elements));
+                let id = BenchmarkId::new(backend.name, &input.name);
+                timed(&mut group, id, editor.as_mut(), 1);
+            }
+        }
+        group.finish();
+    }
+}
+
+/// Times runs on fresh copies, each divided by `parts`.
+fn timed(
+    group: &mut BenchmarkGroup<'_, WallTime>,
+    id: BenchmarkId,
+    editor: &mut dyn Editor,
+    parts: u64,
+) {
+    let clock = MachineClock::start();
+    group.bench_function(id, |bench| {
+        bench.iter_custom(|runs| {
+            let one = |_| {
+                editor.prepare(1);
+                let began = clock.now();
+                editor.run();
+                let time = clock.now() - began;
+                Duration::from_nanos((time.wall_ns / parts as f64) as u64)
+            };
+            (0..runs).map(one).sum()
+        });
+    });
+}

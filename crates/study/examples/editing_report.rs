@@ -1,0 +1,272 @@
+//! Makes `reports/editing`: what edits cost on each structure, as the mesh grows.
+//!
+//! `cargo run --release -p study --example editing_report -- reports/editing [ROUNDS]`
+//!
+//! Every round runs each edit at spread places of each mesh, and each workload, once on each structure,
+//! on a fresh copy; the tables have the medians of thread-CPU time over the rounds.
+
+mod report;
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use plotters::prelude::*;
+use report::{Chart, median};
+use serde_json::json;
+use sixfold::{Edit, PolygonMesh, QueryCost, roster, shapes};
+use study::{Clock, Editing, Editor, Environment, MachineClock, SingleEdit};
+
+/// Sides of the tori: 1,058, 4,232, 16,200, 64,800, 259,200 and 1,036,800 triangles.
+const SIDES: [usize; 6] = [23, 46, 90, 180, 360, 720];
+
+/// How many places an edit is done at, where it does not scan, and where it does.
+const PLACES: usize = 4096;
+const PLACES_SCANNED: usize = 12;
+
+/// How many faces a workload of edits is given at most on a structure that scans.
+const MOST_SCANNED: usize = 5_000;
+
+/// Up to here the tables of every structure fit the second-level cache.
+const IN_CACHE: usize = 20_000;
+
+/// What the figures say wherever they were made.
+const READING: &str = include_str!("report/editing.md");
+
+/// One line of a figure: an edit or a workload, on a structure.
+type Line = (&'static str, &'static str);
+
+/// The times of one line at one size, for each edit or element.
+type Samples = BTreeMap<(Line, usize), Vec<f64>>;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut words = std::env::args().skip(1);
+    let folder = words
+        .next()
+        .ok_or("usage: editing_report FOLDER [ROUNDS]")?;
+    let rounds = words.next().map_or(Ok(5), |word| word.parse())?;
+    let machine = Environment::here(0, 0.0);
+    let mut samples = Samples::new();
+    for side in SIDES {
+        let polygons = shapes::triangle_torus(side, side)?;
+        measure(&polygons, rounds, &mut samples)?;
+        eprintln!("{} faces measured", polygons.face_count());
+    }
+    let folder = Path::new(&folder);
+    fs::create_dir_all(folder)?;
+    fs::write(folder.join("README.md"), text(&machine, rounds, &samples)?)?;
+    figure(&folder.join("growth.svg"), &samples)?;
+    let rows = samples.iter().map(|(&((what, backend), faces), ns)| {
+        json!({"what": what, "backend": backend, "faces": faces, "cpu_ns": ns})
+    });
+    let rows: Vec<_> = rows.collect();
+    let data = json!({"environment": machine, "rounds": rounds, "results": rows});
+    fs::write(
+        folder.join("editing.json"),
+        serde_json::to_string_pretty(&data)? + "\n",
+    )?;
+    Ok(())
+}
+
+/// Whether a whole workload scans on the structure.
+fn scans(backend: &sixfold::BackendInfo) -> bool {
+    backend.edits[Edit::CollapseEdge as usize] == Some(QueryCost::Scan)
+}
+
+/// Runs everything on one mesh, in rounds.
+fn measure(
+    polygons: &PolygonMesh,
+    rounds: usize,
+    samples: &mut Samples,
+) -> Result<(), Box<dyn Error>> {
+    let faces = polygons.face_count();
+    let mut jobs: Vec<(Line, Box<dyn Editor>)> = Vec::new();
+    for backend in roster() {
+        for edit in Edit::ALL {
+            let places = match backend.edits[edit as usize] {
+                None => continue,
+                Some(QueryCost::Scan) => PLACES_SCANNED,
+                Some(_) => PLACES,
+            };
+            // Where the soup and the face set are concerned even places have to be searched for.
+            let places = if scans(&backend) {
+                PLACES_SCANNED
+            } else {
+                places
+            };
+            let job = SingleEdit { edit, places };
+            if let Some(editor) = job.on(backend.name, polygons) {
+                jobs.push(((edit.name(), backend.name), editor?));
+            }
+        }
+        if faces <= MOST_SCANNED || !scans(&backend) {
+            for editing in Editing::ALL {
+                if let Some(editor) = editing.on(backend.name, polygons) {
+                    jobs.push(((editing.name(), backend.name), editor?));
+                }
+            }
+        }
+    }
+    let clock = MachineClock::start();
+    for _ in 0..rounds {
+        for (line, editor) in &mut jobs {
+            editor.prepare(1);
+            let began = clock.now();
+            editor.run();
+            let time = clock.now() - began;
+            let edits = editor.result();
+            if edits.refused > 0 && !Editing::ALL.iter().any(|e| e.name() == line.0) {
+                return Err(format!("{line:?}: {edits:?}").into());
+            }
+            let ns = time.ns() / edits.elements.max(1) as f64;
+            samples.entry((*line, faces)).or_default().push(ns);
+            // Room for the next: a mesh of a million faces is not small.
+            editor.prepare(0);
+        }
+    }
+    Ok(())
+}
+
+/// Size and time of a line, ascending.
+fn points(samples: &Samples, line: Line) -> Vec<(f64, f64)> {
+    let sizes = samples.iter().filter(|((other, _), _)| *other == line);
+    sizes
+        .map(|((_, faces), ns)| (*faces as f64, median(ns)))
+        .collect()
+}
+
+/// The exponent of growth: the slope of the least squares line through the logarithms.
+fn exponent(points: &[(f64, f64)]) -> Option<f64> {
+    let logs: Vec<(f64, f64)> = points
+        .iter()
+        .map(|&(x, y)| (x.ln(), y.max(0.1).ln()))
+        .collect();
+    let n = logs.len() as f64;
+    let mean = |f: fn(&(f64, f64)) -> f64| logs.iter().map(f).sum::<f64>() / n;
+    let (mx, my) = (mean(|p| p.0), mean(|p| p.1));
+    let across: f64 = logs.iter().map(|(x, y)| (x - mx) * (y - my)).sum();
+    let along: f64 = logs.iter().map(|(x, _)| (x - mx).powi(2)).sum();
+    (logs.len() > 1).then(|| across / along)
+}
+
+fn figures(ns: f64) -> String {
+    match ns {
+        ns if ns >= 1e6 => format!("{:.1} ms", ns / 1e6),
+        ns if ns >= 1e4 => format!("{:.0} µs", ns / 1e3),
+        ns if ns >= 1e3 => format!("{:.1} µs", ns / 1e3),
+        ns => format!("{ns:.0} ns"),
+    }
+}
+
+fn text(
+    machine: &Environment,
+    rounds: usize,
+    samples: &Samples,
+) -> Result<String, std::fmt::Error> {
+    let mut text = String::from("# What edits cost on each structure, as the mesh grows\n\n");
+    text += &report::opening(machine, "editing_report", "reports/editing", rounds);
+    writeln!(
+        text,
+        " Tori of triangles, 1,058 to 1,036,800 of them. Each edit is done at up to {PLACES} places spread over a fresh copy of the mesh, in no order ({PLACES_SCANNED} where the structure scans), and is checked for legality as always; nobody listens to its record.\n\n![Time of an edit against the faces of the mesh](growth.svg)\n"
+    )?;
+    writeln!(
+        text,
+        "\n## One edit\n\nTime at 16,200 faces; then the exponent of growth to there from 1,058 (in cache), and on to 1,036,800 (beyond). About 0: constant time. About 1: a scan.\n"
+    )?;
+    table(&mut text, samples, Edit::ALL.map(Edit::name), |points| {
+        let at = points.iter().rev().find(|p| p.0 <= IN_CACHE as f64)?;
+        let (near, far): (Vec<_>, Vec<_>) = points.iter().partition(|p| p.0 <= IN_CACHE as f64);
+        let far: Vec<_> = near.last().into_iter().chain(&far).copied().collect();
+        let slope = |points: &[_]| exponent(points).map_or("–".into(), |e| format!("{e:+.2}"));
+        Some(format!(
+            "{} {} {}",
+            figures(at.1),
+            slope(&near),
+            slope(&far)
+        ))
+    })?;
+    writeln!(
+        text,
+        "\n## Whole workloads\n\nFor each face of the mesh, or edge to be flipped, the time at 1,058 faces and on the largest mesh; the exponent of growth of the whole from 16,200 faces on.\n"
+    )?;
+    table(
+        &mut text,
+        samples,
+        Editing::ALL.map(Editing::name),
+        |points| {
+            let (first, last) = (points.first()?, points.last()?);
+            let large: Vec<_> = points
+                .iter()
+                .filter(|p| p.0 > 10_000.0)
+                .map(|p| (p.0, p.0 * p.1))
+                .collect();
+            let slope = exponent(&large).map_or("–".into(), |e| format!("{e:.2}"));
+            Some(format!(
+                "{} – {}, {slope}",
+                figures(first.1),
+                figures(last.1)
+            ))
+        },
+    )?;
+    text += "\n";
+    text += READING;
+    Ok(text)
+}
+
+/// A row for each of `what`, a column for each structure.
+fn table<const N: usize>(
+    text: &mut String,
+    samples: &Samples,
+    what: [&'static str; N],
+    cell: impl Fn(&[(f64, f64)]) -> Option<String>,
+) -> std::fmt::Result {
+    let backends = roster();
+    let names: Vec<&str> = backends.iter().map(|backend| backend.name).collect();
+    writeln!(
+        text,
+        "| | {} |\n|---|{}",
+        names.join(" | "),
+        "---|".repeat(names.len())
+    )?;
+    for what in what {
+        write!(text, "| `{what}` |")?;
+        for backend in &backends {
+            let points = points(samples, (what, backend.name));
+            write!(text, " {} |", cell(&points).unwrap_or("–".into()))?;
+        }
+        text.push('\n');
+    }
+    Ok(())
+}
+
+fn figure(path: &Path, samples: &Samples) -> Result<(), Box<dyn Error>> {
+    let shown = [
+        Edit::FlipEdge,
+        Edit::CollapseEdge,
+        Edit::PokeFace,
+        Edit::RemoveFace,
+        Edit::SetPosition,
+        Edit::Compact,
+    ];
+    let root = SVGBackend::new(path, (1200, 760)).into_drawing_area();
+    root.fill(&WHITE)?;
+    for (panel, edit) in root.split_evenly((2, 3)).iter().zip(shown) {
+        let chart = Chart {
+            caption: edit.name().into(),
+            x: ("faces of the mesh", 1e3..1.2e6),
+            y: ("ns an edit", 1.0..3e8),
+            legend: SeriesLabelPosition::UpperLeft,
+        };
+        chart.draw(panel, |backend| {
+            let mut lines = samples
+                .keys()
+                .filter(|((what, b), _)| (*what, *b) == (edit.name(), backend));
+            let line = lines.next().map(|&(line, _)| line);
+            line.map_or_else(Vec::new, |line| points(samples, line))
+        })?;
+    }
+    root.present()?;
+    Ok(())
+}

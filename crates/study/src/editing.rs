@@ -1,0 +1,351 @@
+//! Whole workloads that change a mesh: what programs do with edits, on one structure.
+
+use std::fmt;
+
+use sixfold::remeshing::{Decimation, Target, decimate};
+use sixfold::{
+    EdgeMap, EditLog, EditVisitor, HandleMap, MeshEdit, MeshQuery, PolygonMesh, Representation,
+    visit_editable,
+};
+
+/// One of the workloads that change a mesh of triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Editing {
+    /// A vertex into the middle of every face; then each back into a neighbour, with all checks; then
+    /// the holes are closed. The mesh is what it was.
+    SplitCollapse,
+    /// Every edge that the mesh has at the start, in the order in which the faces first name them,
+    /// flipped where that is legal; then again.
+    FlipAll,
+    /// Edge collapse by quadric error, to half of the faces.
+    DecimateHalf,
+    /// The same to a tenth.
+    DecimateTenth,
+}
+
+impl Editing {
+    /// All four.
+    pub const ALL: [Self; 4] = [
+        Self::SplitCollapse,
+        Self::FlipAll,
+        Self::DecimateHalf,
+        Self::DecimateTenth,
+    ];
+
+    /// What users call it: `split_collapse`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::SplitCollapse => "split_collapse",
+            Self::FlipAll => "flip_all",
+            Self::DecimateHalf => "decimate_half",
+            Self::DecimateTenth => "decimate_tenth",
+        }
+    }
+
+    /// Sets it up on the structure called `backend`; `None` where there is none, or none to be edited.
+    ///
+    /// # Errors
+    ///
+    /// Why the structure cannot hold `polygons`, or the workload is not for them.
+    pub fn on(
+        self,
+        backend: &str,
+        polygons: &PolygonMesh,
+    ) -> Option<Result<Box<dyn Editor>, String>> {
+        struct Start<'a>(Editing, &'a PolygonMesh);
+
+        impl EditVisitor for Start<'_> {
+            type Output = Result<Box<dyn Editor>, String>;
+
+            fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output {
+                let &mut Self(job, polygons) = self;
+                let mut faces = polygons.faces().iter();
+                if let Some((f, face)) = faces.find(|(_, face)| face.len() != 3) {
+                    let degree = face.len();
+                    return Err(format!(
+                        "face {f} has {degree} corners, and {job} needs triangles: triangulate the mesh"
+                    ));
+                }
+                let mesh = M::from_polygons(polygons).map_err(|refusal| refusal.to_string())?;
+                Ok(Box::new(Edited {
+                    job,
+                    edges: first_named(&mesh),
+                    mesh,
+                    copies: Vec::new(),
+                    done: Vec::new(),
+                }))
+            }
+        }
+
+        visit_editable(backend, &mut Start(self, polygons))
+    }
+}
+
+impl fmt::Display for Editing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A workload that is set up to be run again and again, each time on a fresh copy.
+pub trait Editor {
+    /// Makes copies for so many runs: what is not timed.
+    fn prepare(&mut self, runs: usize);
+
+    /// Runs on the next copy, if one is prepared.
+    fn run(&mut self);
+
+    /// What the last run came to.
+    fn result(&self) -> Edits;
+}
+
+/// What a run came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Edits {
+    /// What it visited: faces to be split or decimated, edges to be flipped.
+    pub elements: u64,
+    /// How many edits were done.
+    pub done: u64,
+    /// How many were refused.
+    pub refused: u64,
+    /// The sum of all edge lengths afterwards.
+    pub checksum: f64,
+}
+
+/// A workload on a structure of one type.
+struct Edited<M: MeshEdit> {
+    job: Editing,
+    mesh: M,
+    edges: Vec<M::Edge>,
+    copies: Vec<Fresh<M>>,
+    /// The meshes that were worked on: kept, for to let one go takes time.
+    done: Vec<(M, Edits)>,
+}
+
+/// A fresh mesh, and what its workload needs to know where its edges are.
+struct Fresh<M: MeshEdit> {
+    mesh: M,
+    edges: Option<Followed<M>>,
+}
+
+impl<M: Representation + MeshEdit + 'static> Editor for Edited<M> {
+    fn prepare(&mut self, runs: usize) {
+        self.done = Vec::with_capacity(runs);
+        let edges = || match self.job {
+            Editing::FlipAll => Some(Followed::of(&self.mesh, &self.edges)),
+            _ => None,
+        };
+        let copies = (0..runs).map(|_| Fresh {
+            mesh: self.mesh.clone(),
+            edges: edges(),
+        });
+        self.copies = copies.collect();
+    }
+
+    fn run(&mut self) {
+        let Some(Fresh { mut mesh, edges }) = self.copies.pop() else {
+            return;
+        };
+        let edits = match (self.job, edges) {
+            (Editing::FlipAll, Some(mut edges)) => flip_all(&mut mesh, &mut edges),
+            (Editing::DecimateHalf, _) => decimate_to(&mut mesh, 0.5),
+            (Editing::DecimateTenth, _) => decimate_to(&mut mesh, 0.1),
+            _ => split_collapse(&mut mesh),
+        };
+        self.done.push((mesh, edits));
+    }
+
+    fn result(&self) -> Edits {
+        let Some((mesh, edits)) = self.done.last() else {
+            return Edits::default();
+        };
+        let lengths = mesh.edges().map(|e| {
+            let [a, b] = mesh.edge_vertices(e).map(|v| mesh.position(v).as_dvec3());
+            a.distance(b)
+        });
+        Edits {
+            checksum: lengths.sum(),
+            ..*edits
+        }
+    }
+}
+
+#[inline(never)]
+fn split_collapse<M: MeshEdit>(mesh: &mut M) -> Edits {
+    let mut edits = Edits::default();
+    let faces: Vec<M::Face> = mesh.faces().collect();
+    let mut middles = Vec::with_capacity(faces.len());
+    for f in faces {
+        edits.elements += 1;
+        let mut sum = sixfold::Point::ZERO;
+        mesh.face_vertices(f).for_each(|v| sum += mesh.position(v));
+        match mesh.poke_face(f, sum * (1.0 / 3.0), &mut ()) {
+            Ok(middle) => middles.push(middle),
+            Err(_) => edits.refused += 1,
+        }
+    }
+    for middle in middles {
+        let Some(spoke) = mesh.vertex_edges(middle).next() else {
+            continue;
+        };
+        let [a, b] = mesh.edge_vertices(spoke);
+        let corner = if a == middle { b } else { a };
+        let at = mesh.position(corner);
+        match mesh.collapse_edge(spoke, corner, at, &mut ()) {
+            Ok(_) => edits.done += 1,
+            Err(_) => edits.refused += 1,
+        }
+    }
+    mesh.compact(&mut ());
+    edits
+}
+
+#[inline(never)]
+fn flip_all<M: MeshEdit>(mesh: &mut M, followed: &mut Followed<M>) -> Edits {
+    let mut edits = Edits::default();
+    for _ in 0..2 {
+        for i in 0..followed.edges.len() {
+            edits.elements += 1;
+            followed.flipping = i;
+            match mesh.flip_edge(followed.edges[i], followed) {
+                Ok(flipped) => {
+                    followed.edges[i] = flipped;
+                    followed.settle();
+                    edits.done += 1;
+                }
+                Err(_) => edits.refused += 1,
+            }
+        }
+    }
+    edits
+}
+
+#[inline(never)]
+fn decimate_to<M: Representation + MeshEdit>(mesh: &mut M, ratio: f64) -> Edits {
+    let elements = mesh.face_count() as u64;
+    let half = Decimation {
+        target: Target::Ratio(ratio),
+        ..Decimation::default()
+    };
+    let done = decimate(mesh, &half);
+    Edits {
+        elements,
+        done: done.as_ref().map_or(0, |done| done.collapses as u64),
+        refused: done.as_ref().map_or(elements, |done| done.refused as u64),
+        checksum: 0.0,
+    }
+}
+
+/// The edges in the order in which the faces first name them.
+fn first_named<M: MeshQuery>(mesh: &M) -> Vec<M::Edge> {
+    let mut named = mesh.edge_map(false);
+    let mut edges = Vec::new();
+    for f in mesh.faces() {
+        for e in mesh.face_edges(f) {
+            if !std::mem::replace(&mut named[e], true) {
+                edges.push(e);
+            }
+        }
+    }
+    edges
+}
+
+/// Edges by the names they have now, whatever flips call them.
+///
+/// The flipped edge is returned by its new name. Its neighbours are renamed only where an edge is
+/// named by a corner that faces it: who is who then is looked up.
+struct Followed<M: MeshEdit> {
+    edges: Vec<M::Edge>,
+    /// By edge: its place among them.
+    places: EdgeMap<M, u32>,
+    /// The place of the edge that is being flipped.
+    flipping: usize,
+    /// Places and names that the flip has told of, until it is over.
+    told: Vec<(u32, M::Edge)>,
+}
+
+impl<M: MeshEdit> Followed<M> {
+    fn of(mesh: &M, edges: &[M::Edge]) -> Self {
+        let mut places = mesh.edge_map(0);
+        // A hash map is not needed where flips rename no neighbour; rows are filled for all.
+        if mesh.edge_rows() > 0 {
+            for (place, &e) in (0..).zip(edges) {
+                places.insert(e, place);
+            }
+        }
+        Self {
+            edges: edges.to_vec(),
+            places,
+            flipping: 0,
+            told: Vec::with_capacity(8),
+        }
+    }
+
+    /// Takes the new names over, all at once: one may be another's old one.
+    #[inline]
+    fn settle(&mut self) {
+        while let Some((place, name)) = self.told.pop() {
+            self.edges[place as usize] = name;
+            self.places.insert(name, place);
+        }
+    }
+}
+
+impl<M: MeshEdit> EditLog<M> for Followed<M> {
+    #[inline]
+    fn renamed_edge(&mut self, old: M::Edge, new: M::Edge) {
+        if old == self.edges[self.flipping] {
+            self.told.push((self.flipping as u32, new));
+        } else {
+            self.told.push((self.places[old], new));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold::{roster, shapes};
+
+    use super::*;
+
+    #[test]
+    fn every_structure_does_the_same_work() {
+        let polygons = shapes::geodesic(3).expect("small");
+        for job in Editing::ALL {
+            let mut results = Vec::new();
+            for backend in roster() {
+                let editor = job.on(backend.name, &polygons);
+                let mut editor = editor.expect("all six").expect("triangles");
+                editor.prepare(2);
+                editor.run();
+                let once = editor.result();
+                editor.run();
+                assert_eq!(editor.result(), once, "{job} on {}, again", backend.name);
+                results.push((backend.name, once));
+            }
+            let (_, first) = results[0];
+            assert!(first.done > 0 && first.checksum > 0.0);
+            for (name, result) in results {
+                assert_eq!(
+                    (result.elements, result.done),
+                    (first.elements, first.done),
+                    "{job} on {name}"
+                );
+                let error = (result.checksum - first.checksum).abs();
+                assert!(error < 1e-6 * first.checksum, "{job} on {name}: {result:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn polygons_are_refused_by_name() {
+        let refused = Editing::FlipAll
+            .on("half-edge", &shapes::cube())
+            .expect("one of six");
+        let Err(refusal) = refused else {
+            panic!("quads are no triangles")
+        };
+        assert!(refusal.contains("face f0 has 4 corners"), "{refusal}");
+        assert!(Editing::FlipAll.on("abacus", &shapes::cube()).is_none());
+    }
+}
