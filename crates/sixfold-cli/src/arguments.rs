@@ -1,5 +1,6 @@
 //! What can be asked for.
 
+mod remeshing;
 mod render;
 mod reshaping;
 mod subdivision;
@@ -11,6 +12,7 @@ use ::study::Operation;
 use clap::{Args, Parser, Subcommand};
 use sixfold::shapes::Order;
 
+pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
@@ -21,6 +23,7 @@ const EXAMPLES: &str = "Examples:
   sixfold inspect bunny.obj                  what it is, and which backends can hold it
   sixfold generate geodesic frequency=20 -o ball.obj
   sixfold subdivide --scheme loop --levels 2 bunny.obj -o smooth.obj
+  sixfold decimate --ratio 0.1 bunny.obj -o small.obj
 
 Exit codes: 0 done; 1 done, and the answer is no; 2 wrong usage or unusable input;
 3 not supported by this backend or scheme; 4 interrupted, finished part kept.";
@@ -75,6 +78,12 @@ pub(crate) enum Command {
     Dual(Dual),
     /// Cut polygons into triangles
     Triangulate(Triangulate),
+    /// Say what edits each backend offers, and how much of the mesh they look at
+    Edits(Edits),
+    /// Make a mesh coarser: collapse edges, the least harmful first
+    Decimate(Decimate),
+    /// Make all edges about as long as asked, and all triangles about regular
+    Remesh(Remesh),
     /// Draw meshes with their edges and creases, as PNG or SVG
     Render(Render),
 }

@@ -80,6 +80,18 @@ pub(crate) fn with_creases(path: &Path) -> Result<(PolygonMesh, Creases), Failur
     Ok((polygons, creases))
 }
 
+/// The same for a command that carries no sharpness over: if there is any, that is said.
+pub(crate) fn without_creases(path: &Path) -> Result<PolygonMesh, Failure> {
+    let (polygons, creases) = with_creases(path)?;
+    if !creases.is_empty() {
+        let file = path.display();
+        complain(&format!(
+            "note: {file}: sharp edges and vertices are not carried over"
+        ));
+    }
+    Ok(polygons)
+}
+
 /// The built-in mesh.
 pub(crate) fn built_in() -> Specimen {
     Specimen::new("default study (built in)", shapes::default_study())

@@ -11,6 +11,7 @@
 //! | 4 | interrupted; the finished part is kept |
 
 mod arguments;
+mod edits;
 mod facts_text;
 mod failure;
 mod generate;
@@ -19,12 +20,14 @@ mod load;
 mod numbers;
 mod output;
 mod progress;
+mod remesh;
 mod render;
 mod reshape;
 mod results_table;
 mod schemes;
 mod study;
 mod subdivide;
+mod tables;
 mod text;
 mod triangulate;
 
@@ -57,6 +60,9 @@ fn main() -> ExitCode {
         Ok(Some(Command::Smooth(arguments))) => reshape::smooth(&arguments),
         Ok(Some(Command::Dual(arguments))) => reshape::make_dual(&arguments),
         Ok(Some(Command::Triangulate(arguments))) => reshape::triangulate(&arguments),
+        Ok(Some(Command::Edits(arguments))) => edits::run(&arguments),
+        Ok(Some(Command::Decimate(arguments))) => remesh::decimate(&arguments),
+        Ok(Some(Command::Remesh(arguments))) => remesh::remesh(&arguments),
         Ok(Some(Command::Render(arguments))) => render::run(&arguments),
     };
     match done {

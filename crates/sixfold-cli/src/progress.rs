@@ -80,6 +80,38 @@ impl Faces {
     }
 }
 
+/// A bar of steps of any kind, on standard error if that is a terminal.
+pub(crate) struct Steps(Option<ProgressBar>);
+
+impl Steps {
+    /// A bar for so many steps; `what` says what they are.
+    pub(crate) fn of(steps: usize, what: &str) -> Self {
+        if !io::stderr().is_terminal() {
+            return Self(None);
+        }
+        let style = ProgressStyle::with_template("{bar:30} {human_pos} of {human_len} {msg}");
+        let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+        let bar = ProgressBar::new(steps as u64).with_style(style);
+        bar.set_message(what.to_owned());
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Self(Some(bar))
+    }
+
+    /// Shows that so many of them are done.
+    pub(crate) fn reached(&self, steps: usize) {
+        if let Self(Some(bar)) = self {
+            bar.set_position(steps as u64);
+        }
+    }
+
+    /// Takes the bar away.
+    pub(crate) fn clear(&self) {
+        if let Self(Some(bar)) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 /// A line that turns while something takes a while, on standard error if that is a terminal.
 pub(crate) struct Waiting(Option<ProgressBar>);
 

@@ -13,7 +13,7 @@ use crate::load;
 use crate::numbers::counted;
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Waiting, end_on_interrupt};
-use crate::text::{Text, complain, tame};
+use crate::text::{Text, tame};
 
 /// Smooths the mesh and writes it.
 pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
@@ -62,13 +62,7 @@ fn reshaped(
 ) -> Result<ExitCode, Failure> {
     check_places(Some(from), &[("--output", Some(&to.to_owned()))])?;
     end_on_interrupt();
-    let (polygons, creases) = load::with_creases(from)?;
-    if !creases.is_empty() {
-        let from = from.display();
-        complain(&format!(
-            "note: {from}: sharp edges and vertices are not carried over"
-        ));
-    }
+    let polygons = load::without_creases(from)?;
     // Opened before the work, so that nobody waits for a failure.
     let output = Output::open(to)?;
     let faces = counted(polygons.face_count(), "face", "faces");

@@ -2,15 +2,15 @@
 
 use std::process::ExitCode;
 
-use comfy_table::{Cell, ContentArrangement, Table};
+use comfy_table::Cell;
 use serde_json::json;
 use sixfold::subdivision::{Kind, Method, Primitive, Scheme};
-use sixfold::{Support, roster, support};
+use sixfold::{Support, support};
 
 use crate::arguments::Schemes;
 use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
-use crate::results_table::STYLE;
+use crate::tables::{table, table_of_backends};
 use crate::text::Text;
 
 /// Prints the classification, and the table of schemes and backends.
@@ -32,16 +32,6 @@ pub(crate) fn run(arguments: &Schemes) -> Result<ExitCode, Failure> {
     }
     done?;
     Ok(ExitCode::SUCCESS)
-}
-
-fn table(header: Vec<Cell>) -> Table {
-    let mut table = Table::new();
-    table
-        .load_style(STYLE)
-        .set_content_arrangement(ContentArrangement::Disabled)
-        .force_no_tty()
-        .set_header(header);
-    table
 }
 
 /// One row for each scheme: what kind it is.
@@ -101,14 +91,7 @@ fn classification() -> String {
 
 /// One row for each scheme, one column for each backend: the methods there are.
 fn matrix() -> String {
-    let backends = roster();
-    let mut header = vec![Cell::new("methods")];
-    header.extend(
-        backends
-            .iter()
-            .map(|backend| Cell::new(backend.name.replace('-', "\n"))),
-    );
-    let mut methods = table(header);
+    let mut methods = table_of_backends("methods");
     let mut once = false;
     for scheme in Scheme::ALL {
         let mut row = vec![Cell::new(scheme.name())];

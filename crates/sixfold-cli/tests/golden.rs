@@ -43,6 +43,9 @@ fn help() {
         ("help_smooth.txt", &["smooth", "--help"]),
         ("help_dual.txt", &["dual", "--help"]),
         ("help_triangulate.txt", &["triangulate", "--help"]),
+        ("help_edits.txt", &["edits", "--help"]),
+        ("help_decimate.txt", &["decimate", "--help"]),
+        ("help_remesh.txt", &["remesh", "--help"]),
     ] {
         golden(name, &printed(&sixfold, arguments));
     }
@@ -51,6 +54,11 @@ fn help() {
 #[test]
 fn schemes() {
     golden("schemes.txt", &printed(&Sixfold::new(), &["schemes"]));
+}
+
+#[test]
+fn edits() {
+    golden("edits.txt", &printed(&Sixfold::new(), &["edits"]));
 }
 
 #[test]

@@ -79,6 +79,44 @@ fn no_draft_outlives_an_interrupt() {
 }
 
 #[test]
+fn an_interrupted_decimation_writes_nothing() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 100);
+    sixfold.file("out.obj", "precious");
+    // A soup searches all its faces for each collapse: it would take minutes.
+    let arguments = [
+        "decimate",
+        "grid.obj",
+        "--ratio",
+        "0.1",
+        "--backend",
+        "polygon-soup",
+        "-o",
+        "out.obj",
+    ];
+    let mut command = sixfold.command(&arguments);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let child = command.spawn().expect("the binary runs");
+    let start = Instant::now();
+    while sixfold.names().len() < 3 && start.elapsed() < Duration::from_secs(60) {
+        sleep(Duration::from_millis(5));
+    }
+    sleep(Duration::from_millis(200));
+    let sent = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(sent.expect("kill runs").success());
+    let output = child.wait_with_output().expect("it ends");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(4), "{stderr}");
+    assert!(stderr.contains("interrupted"), "{stderr}");
+    assert_eq!(output.stdout, b"");
+    assert_eq!(sixfold.names(), ["grid.obj", "out.obj"]);
+    let kept = fs::read_to_string(sixfold.folder().join("out.obj")).expect("the file");
+    assert_eq!(kept, "precious");
+}
+
+#[test]
 fn no_draft_outlives_two_interrupts_of_a_study() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 40);

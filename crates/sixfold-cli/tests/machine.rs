@@ -110,7 +110,7 @@ fn a_study_writes_its_schema_and_everybody_agrees() {
     }
     let results = report["results"].as_array().expect("a list");
     let refusals = report["refusals"].as_array().expect("a list");
-    assert_eq!(results.len() + refusals.len(), 24 * backends.len());
+    assert_eq!(results.len() + refusals.len(), 28 * backends.len());
     for refusal in refusals {
         let fields = ["backend", "operation", "reason"].map(|field| (field, "string"));
         has(refusal, &fields);

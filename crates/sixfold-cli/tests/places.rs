@@ -45,6 +45,8 @@ fn text_that_gets_lost_is_an_error() {
         &["inspect", "ok.obj"],
         &["generate", "cube", "-o", "cube.obj"],
         &["generate", "cube", "-o", "-"],
+        &["decimate", "ok.obj", "--faces", "4", "-o", "small.obj"],
+        &["edits"],
         &["--help"],
         &["study", "--help"],
         &["--version"],
@@ -58,7 +60,10 @@ fn text_that_gets_lost_is_an_error() {
         assert!(stderr.contains("standard output: cannot be written"));
     }
     // The files are written all the same.
-    assert_eq!(sixfold.names(), ["cube.obj", "ok.obj", "x.json"]);
+    assert_eq!(
+        sixfold.names(),
+        ["cube.obj", "ok.obj", "small.obj", "x.json"]
+    );
 }
 
 #[cfg(target_os = "linux")]
@@ -115,6 +120,7 @@ fn names_of_files_do_not_steer_the_terminal() {
         &["inspect", name][..],
         &["study", name, "--budget", "50ms"],
         &["inspect", "none\u{1b}[2J.obj"],
+        &["decimate", name, "--faces", "0", "-o", "x\u{1b}[2J.obj"],
         &["generate", "cube", "-o", name],
         &["generate", name, "-o", "x.obj"],
     ] {

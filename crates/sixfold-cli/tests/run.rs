@@ -89,3 +89,15 @@ impl Sixfold {
         names
     }
 }
+
+/// What is in a file of the folder.
+pub(crate) fn text(sixfold: &Sixfold, name: &str) -> String {
+    fs::read_to_string(sixfold.folder().join(name)).expect("the file")
+}
+
+/// Runs the binary, which must come to a good end.
+pub(crate) fn done(sixfold: &Sixfold, arguments: &[&str]) -> Run {
+    let run = sixfold.run(arguments);
+    assert_eq!(run.code, Some(0), "{arguments:?}: {run:?}");
+    run
+}

@@ -1,10 +1,8 @@
 //! `sixfold subdivide`, `smooth`, `dual` and `triangulate`: results that can be counted, and refusals.
 
-use std::collections::BTreeMap;
-use std::fs;
-
 use crate::bad_input::refused;
-use crate::run::{Run, Sixfold, TETRAHEDRON};
+use crate::obj::Obj;
+use crate::run::{Sixfold, TETRAHEDRON, done, text};
 
 /// Four vertices at the corners of a square, and one face.
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
@@ -12,64 +10,6 @@ const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 const TRIANGLES: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
 /// Three faces at one edge.
 const BOOK: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
-
-/// A mesh as the text of its file.
-struct Obj {
-    positions: Vec<[f32; 3]>,
-    faces: Vec<Vec<usize>>,
-}
-
-impl Obj {
-    fn of(text: &str) -> Self {
-        let rows = |kind: &str| {
-            let of_kind = move |line: &str| Some(line.strip_prefix(kind)?.trim().to_owned());
-            text.lines().filter_map(of_kind).collect::<Vec<_>>()
-        };
-        let position = |row: &String| {
-            let numbers: Vec<f32> = row
-                .split(' ')
-                .map(|x| x.parse().expect("a number"))
-                .collect();
-            numbers.try_into().expect("three coordinates")
-        };
-        let corner = |word: &str| word.split('/').next().expect("a vertex").parse();
-        let face = |row: &String| {
-            row.split(' ')
-                .map(|word| corner(word).expect("a row"))
-                .collect()
-        };
-        Self {
-            positions: rows("v ").iter().map(position).collect(),
-            faces: rows("f ").iter().map(face).collect(),
-        }
-    }
-
-    fn counts(&self) -> [usize; 2] {
-        [self.positions.len(), self.faces.len()]
-    }
-
-    /// How many edges have one face.
-    fn boundary_edges(&self) -> usize {
-        let mut uses = BTreeMap::new();
-        for face in &self.faces {
-            for (i, &a) in face.iter().enumerate() {
-                let b = face[(i + 1) % face.len()];
-                *uses.entry((a.min(b), a.max(b))).or_insert(0) += 1;
-            }
-        }
-        uses.values().filter(|&&faces| faces == 1).count()
-    }
-}
-
-fn text(sixfold: &Sixfold, name: &str) -> String {
-    fs::read_to_string(sixfold.folder().join(name)).expect("the file")
-}
-
-fn done(sixfold: &Sixfold, arguments: &[&str]) -> Run {
-    let run = sixfold.run(arguments);
-    assert_eq!(run.code, Some(0), "{arguments:?}: {run:?}");
-    run
-}
 
 /// What `sixfold subdivide` with these arguments writes.
 fn subdivided(sixfold: &Sixfold, arguments: &[&str]) -> Obj {

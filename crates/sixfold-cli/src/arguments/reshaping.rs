@@ -104,7 +104,7 @@ pub(crate) struct Triangulate {
     pub(crate) orient: Option<Facing>,
 }
 
-fn iterations(text: &str) -> Result<usize, String> {
+pub(super) fn iterations(text: &str) -> Result<usize, String> {
     let parsed = text.trim().parse();
     parsed.map_err(|_| format!("a number of iterations is from 0 to {}", usize::MAX))
 }

@@ -1,0 +1,83 @@
+//! `sixfold edits`: which edits each structure offers, and how much of the mesh they look at.
+
+use std::process::ExitCode;
+
+use comfy_table::Cell;
+use serde_json::{Value, json};
+use sixfold::{Edit, QueryCost, roster};
+
+use crate::arguments::Edits;
+use crate::failure::Failure;
+use crate::output::{Output, is_stdout};
+use crate::tables::table_of_backends;
+use crate::text::{Text, hanging};
+
+/// Prints the table of edits and backends.
+pub(crate) fn run(arguments: &Edits) -> Result<ExitCode, Failure> {
+    let json = Output::open_if(arguments.json.as_ref())?;
+    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
+    text.say(&matrix());
+    text.say("");
+    text.say(&legend());
+    let mut done = text.finish();
+    if let Some(output) = json {
+        let rows = Edit::ALL.map(row);
+        done = done.and(output.finish(|writer| {
+            serde_json::to_writer_pretty(&mut *writer, &rows)?;
+            writeln!(writer)
+        }));
+    }
+    done?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// One row for each edit, one column for each backend.
+fn matrix() -> String {
+    let backends = roster();
+    let mut costs = table_of_backends("looks at");
+    for edit in Edit::ALL {
+        let offered = backends.iter().map(|backend| backend.edits[edit as usize]);
+        let words = offered.map(|cost| Cell::new(cost.map_or("–", word)));
+        let name = Cell::new(edit.name());
+        costs.add_row([name].into_iter().chain(words).collect::<Vec<_>>());
+    }
+    costs.trim_fmt()
+}
+
+fn word(cost: QueryCost) -> &'static str {
+    match cost {
+        QueryCost::Constant => "constant",
+        QueryCost::Local => "local",
+        QueryCost::Scan => "scan",
+    }
+}
+
+/// What the words mean, and who refuses more than the table says.
+fn legend() -> String {
+    let backends = roster();
+    let manifold = backends
+        .iter()
+        .filter(|backend| !backend.capabilities.non_manifold_edges);
+    let manifold: Vec<&str> = manifold.map(|backend| backend.name).collect();
+    let lines = [
+        "constant: a few rows, whatever the mesh. local: the faces around what is edited. \
+         scan: all faces."
+            .to_owned(),
+        "–: the structure has no such edit.".to_owned(),
+        format!(
+            "{} hold oriented manifolds alone, and refuse an edit that would make anything else; \
+             the others do it.",
+            manifold.join(", ")
+        ),
+    ];
+    lines.map(|line| hanging("", &line)).join("\n")
+}
+
+/// What machines read of one edit.
+fn row(edit: Edit) -> Value {
+    let backends = roster().into_iter().map(|backend| {
+        let cost = backend.edits[edit as usize];
+        json!({ "backend": backend.name, "looks_at": cost })
+    });
+    json!({ "edit": edit, "backends": backends.collect::<Vec<_>>() })
+}

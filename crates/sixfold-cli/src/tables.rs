@@ -1,0 +1,25 @@
+//! Tables of what there is and what runs where.
+
+use comfy_table::{Cell, ContentArrangement, Table};
+use sixfold::roster;
+
+use crate::results_table::STYLE;
+
+/// A table of words under `header`, as wide as they are.
+pub(crate) fn table(header: Vec<Cell>) -> Table {
+    let mut table = Table::new();
+    table
+        .load_style(STYLE)
+        .set_content_arrangement(ContentArrangement::Disabled)
+        .force_no_tty()
+        .set_header(header);
+    table
+}
+
+/// A table of words with a column for each backend; `rows` says what the rows are.
+pub(crate) fn table_of_backends(rows: &str) -> Table {
+    let backends = roster();
+    let names = backends.iter().map(|backend| backend.name);
+    let broken = names.map(|name| Cell::new(name.replace('-', "\n")));
+    table([Cell::new(rows)].into_iter().chain(broken).collect())
+}

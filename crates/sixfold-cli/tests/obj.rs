@@ -1,0 +1,87 @@
+//! A mesh as its file tells it, counted without Sixfold.
+
+use std::collections::BTreeMap;
+
+/// A mesh as the text of its file.
+pub(crate) struct Obj {
+    pub(crate) positions: Vec<[f32; 3]>,
+    pub(crate) faces: Vec<Vec<usize>>,
+}
+
+impl Obj {
+    pub(crate) fn of(text: &str) -> Self {
+        let rows = |kind: &str| {
+            let of_kind = move |line: &str| Some(line.strip_prefix(kind)?.trim().to_owned());
+            text.lines().filter_map(of_kind).collect::<Vec<_>>()
+        };
+        let position = |row: &String| {
+            let numbers: Vec<f32> = row
+                .split(' ')
+                .map(|x| x.parse().expect("a number"))
+                .collect();
+            numbers.try_into().expect("three coordinates")
+        };
+        let corner = |word: &str| word.split('/').next().expect("a vertex").parse();
+        let face = |row: &String| {
+            row.split(' ')
+                .map(|word| corner(word).expect("a row"))
+                .collect()
+        };
+        Self {
+            positions: rows("v ").iter().map(position).collect(),
+            faces: rows("f ").iter().map(face).collect(),
+        }
+    }
+
+    pub(crate) fn counts(&self) -> [usize; 2] {
+        [self.positions.len(), self.faces.len()]
+    }
+
+    /// How many edges have one face.
+    pub(crate) fn boundary_edges(&self) -> usize {
+        self.edges().values().filter(|&&faces| faces == 1).count()
+    }
+
+    /// V − E + F.
+    pub(crate) fn euler_characteristic(&self) -> isize {
+        let [vertices, faces] = self.counts().map(usize::cast_signed);
+        vertices - self.edges().len().cast_signed() + faces
+    }
+
+    /// The lengths of all edges.
+    pub(crate) fn lengths(&self) -> Vec<f32> {
+        let at = |v: usize| self.positions[v - 1];
+        let apart = |(a, b): (usize, usize)| {
+            let squares = [0, 1, 2].map(|i| (at(a)[i] - at(b)[i]).powi(2));
+            squares.iter().sum::<f32>().sqrt()
+        };
+        self.edges().into_keys().map(apart).collect()
+    }
+
+    /// The faces as the places of their corners, each from its least corner on, sorted: the same for
+    /// any numbering of the vertices.
+    pub(crate) fn places(&self) -> Vec<Vec<[u32; 3]>> {
+        let faces = self.faces.iter().map(|face| {
+            let bits = |&v: &usize| self.positions[v - 1].map(f32::to_bits);
+            let mut places: Vec<[u32; 3]> = face.iter().map(bits).collect();
+            let least = (0..places.len()).min_by_key(|&i| places[i]);
+            places.rotate_left(least.unwrap_or(0));
+            places
+        });
+        let mut faces: Vec<_> = faces.collect();
+        faces.sort_unstable();
+        faces
+    }
+
+    /// The ends of all edges, the lower first, and how many faces each has.
+    fn edges(&self) -> BTreeMap<(usize, usize), usize> {
+        let mut uses = BTreeMap::new();
+        for face in &self.faces {
+            for (i, &a) in face.iter().enumerate() {
+                let b = face[(i + 1) % face.len()];
+                *uses.entry((a.min(b), a.max(b))).or_insert(0) += 1;
+            }
+        }
+        uses
+    }
+}

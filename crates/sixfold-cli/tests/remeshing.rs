@@ -1,0 +1,378 @@
+//! `sixfold decimate`, `remesh` and `edits`: surfaces that stay what they are, and refusals.
+
+use serde_json::Value;
+
+use crate::bad_input::refused;
+use crate::obj::Obj;
+use crate::run::{Sixfold, TETRAHEDRON, done, text};
+
+const BACKENDS: [&str; 6] = [
+    "polygon-soup",
+    "indexed-face-set",
+    "face-vertex",
+    "winged-edge",
+    "half-edge",
+    "corner-table",
+];
+const QUAD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
+const BOOK: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
+
+/// What the command with these arguments writes.
+fn made(sixfold: &Sixfold, arguments: &[&str]) -> Obj {
+    done(sixfold, &[arguments, &["-o", "out.obj"]].concat());
+    Obj::of(&text(sixfold, "out.obj"))
+}
+
+/// A shape of `sixfold generate` as `name`.
+fn generate(sixfold: &Sixfold, name: &str, shape: &[&str]) {
+    done(sixfold, &[&["generate"], shape, &["-o", name]].concat());
+}
+
+/// The area of a mesh of triangles that lies in the plane z = 0, what lies on its back counted off.
+fn flat_area(obj: &Obj) -> f64 {
+    let areas = obj.faces.iter().map(|face| {
+        let [a, b, c] = [0, 1, 2].map(|i| obj.positions[face[i] - 1].map(f64::from));
+        ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
+    });
+    areas.sum()
+}
+
+#[test]
+fn a_closed_surface_gets_the_faces_asked_for_and_stays_closed() {
+    let sixfold = Sixfold::new();
+    generate(&sixfold, "ball.obj", &["geodesic", "frequency=8"]);
+    generate(&sixfold, "ring.obj", &["triangle-torus", "m=20", "n=10"]);
+    for (file, goal, faces, chi) in [
+        ("ball.obj", ["--faces", "500"], 500, 2),
+        ("ball.obj", ["--ratio", "0.1"], 128, 2),
+        ("ball.obj", ["--ratio", "1"], 1280, 2),
+        ("ball.obj", ["--faces", "99999"], 1280, 2),
+        ("ring.obj", ["--faces", "120"], 120, 0),
+        ("ring.obj", ["--ratio", "0.25"], 100, 0),
+    ] {
+        let obj = made(&sixfold, &[&["decimate", file], &goal[..]].concat());
+        assert_eq!(obj.faces.len(), faces, "{file} {goal:?}");
+        assert_eq!(obj.euler_characteristic(), chi, "{file} {goal:?}");
+        assert_eq!(obj.boundary_edges(), 0, "{file} {goal:?}");
+    }
+    let run = done(&sixfold, &["inspect", "out.obj"]);
+    assert!(run.stdout.contains("closed, genus 1"), "{run:?}");
+    let all = ["decimate", "ball.obj", "--faces", "500", "-o", "out.obj"];
+    let run = done(&sixfold, &all);
+    assert_eq!(run.stderr, "", "progress is for terminals");
+    assert_eq!(
+        run.stdout,
+        "out.obj: 252 vertices, 500 faces; 390 edges collapsed on half-edge\n"
+    );
+}
+
+#[test]
+fn a_boundary_keeps_its_shape_or_every_vertex() {
+    let sixfold = Sixfold::new();
+    generate(&sixfold, "grid.obj", &["triangle-grid", "m=10", "n=10"]);
+    let decimate = ["decimate", "grid.obj", "--faces", "60", "--boundary"];
+    let remesh = ["remesh", "grid.obj", "--edge-length", "1.7"];
+    for arguments in [
+        &[&decimate[..], &["follow"]].concat()[..],
+        &[&decimate[..], &["fixed"]].concat(),
+        &remesh,
+    ] {
+        let obj = made(&sixfold, arguments);
+        assert_eq!(obj.euler_characteristic(), 1, "{arguments:?}");
+        assert!((flat_area(&obj) - 100.0).abs() < 1e-3, "{arguments:?}");
+        for corner in [[0.0, 0.0], [10.0_f32, 0.0], [10.0, 10.0], [0.0, 10.0]] {
+            let there = |p: &[f32; 3]| (0..2).all(|i| (p[i] - corner[i]).abs() < 1e-6);
+            assert!(obj.positions.iter().any(there), "{arguments:?}");
+        }
+        let fixed = arguments.contains(&"fixed");
+        assert_eq!(obj.boundary_edges() == 40, fixed, "{arguments:?}");
+    }
+}
+
+#[test]
+fn edges_become_as_long_as_asked() {
+    let sixfold = Sixfold::new();
+    generate(&sixfold, "ball.obj", &["geodesic", "frequency=4"]);
+    for (length, edge_length) in [(0.15, "0.15"), (0.6, "0.6")] {
+        let arguments = ["remesh", "ball.obj", "--edge-length", edge_length];
+        let obj = made(&sixfold, &arguments);
+        assert_eq!(obj.euler_characteristic(), 2);
+        assert_eq!(obj.boundary_edges(), 0);
+        let lengths = obj.lengths();
+        let mean = lengths.iter().sum::<f32>() / lengths.len() as f32;
+        assert!((mean / length - 1.0).abs() < 0.15, "{mean} for {length}");
+    }
+    let run = done(
+        &sixfold,
+        &[
+            "remesh",
+            "ball.obj",
+            "--edge-length",
+            "0.2",
+            "--iterations",
+            "1",
+            "-o",
+            "-",
+        ],
+    );
+    assert!(
+        run.stdout
+            .lines()
+            .all(|line| line.starts_with(['#', 'v', 'f'])),
+        "{run:?}"
+    );
+    let none = [
+        "remesh",
+        "ball.obj",
+        "--edge-length",
+        "0.2",
+        "--iterations",
+        "0",
+    ];
+    let obj = made(&sixfold, &none);
+    assert_eq!(obj.places(), Obj::of(&text(&sixfold, "ball.obj")).places());
+}
+
+#[test]
+fn every_backend_makes_the_same_mesh() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 9);
+    for command in [
+        &["decimate", "grid.obj", "--ratio", "0.3"][..],
+        &[
+            "remesh",
+            "grid.obj",
+            "--edge-length",
+            "1.5",
+            "--iterations",
+            "3",
+        ],
+    ] {
+        let of = |backend| {
+            let arguments = [command, &["--backend", backend]].concat();
+            made(&sixfold, &arguments).places()
+        };
+        let first = of(BACKENDS[0]);
+        for backend in &BACKENDS[1..] {
+            assert_eq!(of(backend), first, "{command:?} on {backend}");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_reached_is_said_and_the_rest_is_written() {
+    let sixfold = Sixfold::new();
+    sixfold.file("t.obj", TETRAHEDRON);
+    sixfold.file("square.obj", SQUARE);
+    sixfold.grid("grid.obj", 5);
+    sixfold.file(
+        "tagged.obj",
+        &format!("{TETRAHEDRON}t crease 2/1/0 0 1 2\n"),
+    );
+    for (arguments, faces, says) in [
+        (
+            &["decimate", "t.obj", "--faces", "0"][..],
+            4,
+            "note: out.obj: the target of 0 faces was not reached",
+        ),
+        (
+            &[
+                "decimate",
+                "grid.obj",
+                "--ratio",
+                "0",
+                "--boundary",
+                "fixed",
+            ],
+            14,
+            "move the boundary",
+        ),
+        (
+            &[
+                "remesh",
+                "square.obj",
+                "--edge-length",
+                "0.2",
+                "--max-faces",
+                "60",
+            ],
+            60,
+            "--max-faces 60",
+        ),
+        (
+            &["decimate", "tagged.obj", "--faces", "4"],
+            4,
+            "not carried over",
+        ),
+    ] {
+        let run = done(&sixfold, &[arguments, &["-o", "out.obj"]].concat());
+        let notes = run.stderr.lines();
+        assert!(
+            notes.clone().count() == 1 && notes.clone().all(|line| line.starts_with("note: ")),
+            "{run:?}"
+        );
+        assert!(run.stderr.contains(says), "{run:?}");
+        let obj = Obj::of(&text(&sixfold, "out.obj"));
+        assert_eq!(obj.faces.len(), faces, "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_structure_that_scans_says_why_it_takes_long() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 51);
+    let run = |backend| {
+        let arguments = [
+            "decimate",
+            "grid.obj",
+            "--faces",
+            "4998",
+            "-o",
+            "out.obj",
+            "--backend",
+        ];
+        done(&sixfold, &[&arguments[..], &[backend]].concat())
+    };
+    let scanning = run("polygon-soup");
+    assert!(scanning.stderr.contains("takes long"), "{scanning:?}");
+    assert!(scanning.stderr.contains("half-edge"), "{scanning:?}");
+    assert_eq!(run("half-edge").stderr, "");
+}
+
+#[test]
+fn what_cannot_be_edited_is_refused_before_anything_is_written() {
+    let sixfold = Sixfold::new();
+    sixfold.file("t.obj", TETRAHEDRON);
+    sixfold.file("quad.obj", QUAD);
+    sixfold.file("book.obj", BOOK);
+    sixfold.file("empty.obj", "");
+    std::fs::create_dir(sixfold.folder().join("folder.obj")).expect("a folder");
+    let decimate = ["decimate", "--faces", "2"];
+    let remesh = ["remesh", "--edge-length", "0.5"];
+    for command in [&decimate, &remesh] {
+        for (arguments, code, says) in [
+            (&["quad.obj"][..], 3, "face f0 has 4 corners"),
+            (&["quad.obj"], 3, "`sixfold triangulate`"),
+            (
+                &["quad.obj", "--backend", "corner-table"],
+                3,
+                "`sixfold triangulate`",
+            ),
+            (
+                &["book.obj"],
+                3,
+                "half-edge cannot hold the mesh: edge v0–v1 has 3 faces",
+            ),
+            (
+                &["book.obj"],
+                3,
+                "`sixfold inspect` says which hold the mesh",
+            ),
+            (&["t.obj", "--backend", "abacus"], 2, "corner-table"),
+            (&["missing.obj"], 2, "missing.obj"),
+            (&["empty.obj"], 2, "empty.obj"),
+            (&["folder.obj"], 2, "directory"),
+            (&["-"], 2, "standard input is not read"),
+            (&["t.obj", "--sideways"], 2, "--sideways"),
+        ] {
+            let arguments = [command, arguments, &["-o", "x.obj"]].concat();
+            refused(&sixfold, &arguments, code, says);
+        }
+        for (output, says) in [
+            ("./t.obj", "would overwrite the mesh"),
+            ("folder.obj", "is a directory"),
+            ("no/such/folder.obj", "cannot be written"),
+        ] {
+            refused(
+                &sixfold,
+                &[command, &["t.obj", "-o", output][..]].concat(),
+                2,
+                says,
+            );
+        }
+    }
+    for (arguments, code, says) in [
+        (&["decimate"][..], 2, "--faces <N>|--ratio <PART>"),
+        (
+            &["decimate", "--faces", "2", "--ratio", "0.5"],
+            2,
+            "cannot be used with",
+        ),
+        (&["decimate", "--faces", "-1"], 2, "from 0 to"),
+        (&["decimate", "--faces", "many"], 2, "from 0 to"),
+        (&["decimate", "--ratio", "1.5"], 2, "from 0 to 1"),
+        (&["decimate", "--ratio", "-0.5"], 2, "from 0 to 1"),
+        (&["decimate", "--ratio", "nan"], 2, "from 0 to 1"),
+        (
+            &["decimate", "--ratio", "0.5", "--boundary", "open"],
+            2,
+            "follow, fixed",
+        ),
+        (&["remesh"], 2, "--edge-length"),
+        (&["remesh", "--edge-length", "0"], 2, "above 0"),
+        (&["remesh", "--edge-length", "-1"], 2, "above 0"),
+        (&["remesh", "--edge-length", "nan"], 2, "above 0"),
+        (&["remesh", "--edge-length", "inf"], 2, "above 0"),
+        (&["remesh", "--edge-length", "1e-30"], 3, "e60 triangles"),
+        (&["remesh", "--edge-length", "1e-300"], 3, "take more than"),
+        (
+            &["remesh", "--edge-length", "0.1", "--max-faces", "50"],
+            3,
+            "50 are allowed",
+        ),
+        (
+            &["remesh", "--edge-length", "1", "--iterations", "-1"],
+            2,
+            "from 0 to",
+        ),
+    ] {
+        let arguments = [arguments, &["t.obj", "-o", "x.obj"]].concat();
+        refused(&sixfold, &arguments, code, says);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_an_error() {
+    let sixfold = Sixfold::new();
+    sixfold.file("t.obj", TETRAHEDRON);
+    for command in [
+        &["decimate", "--faces", "4"][..],
+        &["remesh", "--edge-length", "0.5"],
+    ] {
+        let arguments = [command, &["t.obj", "-o", "/dev/full"]].concat();
+        refused(&sixfold, &arguments, 2, "/dev/full: cannot be written");
+    }
+}
+
+#[test]
+fn others_edit_what_is_no_manifold() {
+    let sixfold = Sixfold::new();
+    sixfold.file("book.obj", BOOK);
+    let arguments = ["remesh", "book.obj", "--edge-length", "0.3", "--backend"];
+    for backend in ["face-vertex", "indexed-face-set"] {
+        let obj = made(&sixfold, &[&arguments[..], &[backend]].concat());
+        assert!(obj.faces.len() > 3 && obj.euler_characteristic() == 1);
+    }
+}
+
+#[test]
+fn machines_read_which_edits_there_are() {
+    let sixfold = Sixfold::new();
+    let run = done(&sixfold, &["edits", "--json", "-"]);
+    let rows: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    let rows = rows.as_array().expect("a list");
+    assert_eq!(rows.len(), 15);
+    for row in rows {
+        let backends = row["backends"].as_array().expect("a list");
+        let names: Vec<_> = backends.iter().map(|b| b["backend"].as_str()).collect();
+        assert_eq!(names, BACKENDS.map(Some), "{row}");
+        let words = [None, Some("constant"), Some("local"), Some("scan")];
+        let known = |b: &Value| words.contains(&b["looks_at"].as_str());
+        assert!(backends.iter().all(known), "{row}");
+    }
+    let flip = rows.iter().find(|row| row["edit"] == "flip_edge");
+    let half_edge = &flip.expect("it flips")["backends"][4];
+    assert_ne!(half_edge["looks_at"], "scan");
+}
