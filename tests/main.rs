@@ -1,5 +1,6 @@
 //! What needs several crates at once.
 
+mod editing;
 mod equivalence;
 mod facts;
 mod opensubdiv;

@@ -1,0 +1,256 @@
+//! All six edited by the same scripts, in step: they accept and refuse alike, and stay the same mesh.
+
+use std::fmt::{Debug, Write as _};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use conformance::edit::{Action, Model, Rules, Step, Trial, script};
+use conformance::strategy::{any_mesh, manifold_mesh};
+use mesh_core::{Edit, MeshEdit, PolygonMesh, Representation};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestCaseError, TestRunner};
+use sixfold::{
+    CornerTable, FaceVertexMesh, HalfEdgeMesh, IndexedFaceSet, PolygonSoup, WingedEdgeMesh,
+};
+
+/// How many scripts for each kind of start, and how many steps each.
+const SCRIPTS: u32 = 40;
+const STEPS: usize = 240;
+
+/// A structure that takes part in a script, whatever its type.
+trait Player {
+    fn name(&self) -> &'static str;
+    fn rules(&self) -> Rules;
+    fn model(&self) -> &Model;
+    fn legal(&self, action: &Action) -> bool;
+    /// Does the action on a copy, for the checks alone.
+    fn try_out(&self, action: &Action) -> bool;
+    fn take(&mut self, action: &Action) -> bool;
+    fn inspect(&mut self);
+}
+
+struct Named<M: MeshEdit>(Trial<M>);
+
+impl<M: Representation + MeshEdit + Debug> Player for Named<M> {
+    fn name(&self) -> &'static str {
+        M::NAME
+    }
+    fn rules(&self) -> Rules {
+        Rules::of::<M>()
+    }
+    fn model(&self) -> &Model {
+        &self.0.model
+    }
+    fn legal(&self, action: &Action) -> bool {
+        self.0.is_legal(action)
+    }
+    fn try_out(&self, action: &Action) -> bool {
+        self.0.clone().take(action)
+    }
+    fn take(&mut self, action: &Action) -> bool {
+        self.0.take(action)
+    }
+    fn inspect(&mut self) {
+        self.0.inspect();
+    }
+}
+
+/// Those that hold `start`; of the soup only where no vertex is isolated, which it would lose.
+fn players(start: &PolygonMesh) -> Vec<Box<dyn Player>> {
+    fn player<M: Representation + MeshEdit + Debug + 'static>(
+        start: &PolygonMesh,
+    ) -> Option<Box<dyn Player>> {
+        Some(Box::new(Named(Trial::<M>::of(start)?)) as Box<dyn Player>)
+    }
+    let all = [
+        player::<PolygonSoup>(start),
+        player::<IndexedFaceSet>(start),
+        player::<FaceVertexMesh>(start),
+        player::<WingedEdgeMesh>(start),
+        player::<HalfEdgeMesh>(start),
+        player::<CornerTable>(start),
+    ];
+    all.into_iter().flatten().collect()
+}
+
+/// What a class of structures did with a script.
+#[derive(Default)]
+struct Shares([[usize; 2]; Edit::ALL.len()]);
+
+/// Runs a script on all of them. A step that one of them refuses is tried out by the others on copies
+/// and then left out, so that all go on with the same mesh.
+fn play(start: &PolygonMesh, steps: &[Step], shares: &mut Shares) -> Result<(), String> {
+    let mut players = players(start);
+    let mut told = String::new();
+    for (number, step) in steps.iter().enumerate() {
+        let Some(first) = players.first() else {
+            return Ok(());
+        };
+        let Some(action) = step.action(first.model(), number) else {
+            continue;
+        };
+        let verdicts: Vec<bool> = players.iter().map(|player| player.legal(&action)).collect();
+        agree(&players, &verdicts, &action)?;
+        let all = verdicts.iter().all(|&legal| legal);
+        shares.0[action.edit() as usize][usize::from(!all)] += 1;
+        for player in &mut players {
+            let name = player.name();
+            let done = catch_unwind(AssertUnwindSafe(|| match all {
+                true => player.take(&action),
+                false => player.try_out(&action),
+            }));
+            done.map_err(|fault| {
+                let fault = fault.downcast_ref::<String>().cloned().unwrap_or_default();
+                format!("{name} departs at {action:?} after{told}\n{fault}")
+            })?;
+        }
+        let mark = if all { "" } else { "(not by all) " };
+        let _ = write!(told, "\n  {mark}{action:?}");
+        if number % 40 == 39 {
+            players.iter_mut().for_each(|player| player.inspect());
+        }
+    }
+    players.iter_mut().for_each(|player| player.inspect());
+    Ok(())
+}
+
+/// The three manifold structures judge alike, but for what the corner table does not offer or hold;
+/// the others accept at least what these accept, but for what their rows exclude.
+fn agree(players: &[Box<dyn Player>], verdicts: &[bool], action: &Action) -> Result<(), String> {
+    let judged = players.iter().zip(verdicts);
+    let manifold = judged
+        .clone()
+        .filter(|(p, _)| !p.rules().capabilities.non_manifold_edges);
+    let mut accepted_by_manifold = None;
+    for (player, &legal) in manifold {
+        let rules = player.rules();
+        let whole = rules.capabilities.polygons || is_offered_to_triangles(action, &rules);
+        match accepted_by_manifold {
+            Some(others) if others != legal && whole => {
+                return Err(format!(
+                    "{} judges {action:?} unlike its siblings",
+                    player.name()
+                ));
+            }
+            None if whole => accepted_by_manifold = Some(legal),
+            _ => {}
+        }
+    }
+    for (player, &legal) in judged {
+        let rules = player.rules();
+        let excused = !rules.offers[action.edit() as usize]
+            || !rules.capabilities.coincident_vertices
+            || !rules.capabilities.polygons;
+        if accepted_by_manifold == Some(true) && !legal && !excused {
+            return Err(format!(
+                "{} refuses {action:?}, which a manifold takes",
+                player.name()
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Whether triangles are all that the action makes of triangles.
+fn is_offered_to_triangles(action: &Action, rules: &Rules) -> bool {
+    let makes_polygons = matches!(action, Action::AddFace { corners } if corners.len() > 3);
+    rules.offers[action.edit() as usize] && !makes_polygons
+}
+
+/// Plays random scripts from `starts`; at least one step in `one_in` of each edit is done by all.
+fn play_all(starts: impl Strategy<Value = PolygonMesh>, edits: &[Edit], one_in: usize) {
+    let mut config = Config {
+        failure_persistence: None,
+        max_shrink_iters: 2000,
+        ..Config::default()
+    };
+    if std::env::var_os("PROPTEST_CASES").is_none() {
+        config.cases = SCRIPTS;
+    }
+    let shares = std::cell::RefCell::new(Shares::default());
+    let cases = (starts, script(edits, STEPS));
+    let cases = cases.prop_map(|(start, steps)| (Printed(start), Steps(steps)));
+    let outcome = TestRunner::new(config).run(&cases, |(start, steps)| {
+        play(&start.0, &steps.0, &mut shares.borrow_mut()).map_err(TestCaseError::fail)
+    });
+    if let Err(error) = outcome {
+        panic!("{error}");
+    }
+    for (edit, [done, left]) in Edit::ALL.into_iter().zip(shares.into_inner().0) {
+        println!("{edit}: {done} of {} done by all", done + left);
+        if edits.contains(&edit) && done + left > 100 {
+            assert!(
+                done * one_in > done + left,
+                "{edit}: {done} done by all, {left} not"
+            );
+        }
+    }
+}
+
+struct Printed(PolygonMesh);
+
+impl Debug for Printed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&conformance::compact(&self.0))
+    }
+}
+
+struct Steps(Vec<Step>);
+
+impl Debug for Steps {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} steps", self.0.len())
+    }
+}
+
+/// What makes triangles of triangles, and every structure has.
+const OF_TRIANGLES: [Edit; 11] = [
+    Edit::SetPosition,
+    Edit::AddFace,
+    Edit::RemoveFace,
+    Edit::RemoveVertex,
+    Edit::RemoveIsolatedVertices,
+    Edit::BisectEdge,
+    Edit::PokeFace,
+    Edit::FlipEdge,
+    Edit::CollapseEdge,
+    Edit::SplitVertex,
+    Edit::Compact,
+];
+
+/// Without isolated vertices: a soup loses them.
+fn used(polygons: &PolygonMesh) -> PolygonMesh {
+    conformance::welded(polygons).expect("every vertex of a manifold has a place of its own")
+}
+
+#[test]
+fn all_six_keep_in_step_on_triangles() {
+    let starts = manifold_mesh().prop_map(|m| used(&m).fan_triangulated().expect("small"));
+    play_all(starts, &OF_TRIANGLES, 8);
+}
+
+#[test]
+fn five_keep_in_step_on_polygons() {
+    // Quads keep the corner table out.
+    let starts = manifold_mesh().prop_filter_map("only triangles", |mesh| {
+        let mesh = used(&mesh);
+        let polygons = mesh.faces().iter().any(|(_, face)| face.len() > 3);
+        polygons.then_some(mesh)
+    });
+    let edits: Vec<Edit> = Edit::ALL
+        .into_iter()
+        .filter(|&e| e != Edit::AddVertex)
+        .collect();
+    play_all(starts, &edits, 12);
+}
+
+#[test]
+fn three_keep_in_step_where_nothing_is_manifold() {
+    let starts = any_mesh().prop_filter_map("two corners at one point", |mesh| {
+        conformance::welded(&mesh).ok()
+    });
+    let edits: Vec<Edit> = Edit::ALL
+        .into_iter()
+        .filter(|&e| e != Edit::AddVertex)
+        .collect();
+    play_all(starts, &edits, 20);
+}
