@@ -6,7 +6,8 @@ use super::Refusal;
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
 impl<P: Probe> HalfEdgeMesh<P> {
-    /// O(valence) of `c`: reads eight halves and one for each further edge there.
+    /// O(valence) of `c` or of `d`, whichever is less: reads eight halves, and for each further edge
+    /// there one around either.
     ///
     /// ```text
     ///        c                    c
@@ -29,7 +30,7 @@ impl<P: Probe> HalfEdgeMesh<P> {
         let [at_ad, at_da] = self.both(ad);
         let (ca, db) = (at_bc.next, at_ad.next);
         let [at_ca, at_ac] = self.both(ca);
-        let at_db = self.row_of(db);
+        let [at_db, at_bd] = self.both(db);
         if at_ca.next != h {
             return Err(self.no_triangle(f));
         }
@@ -48,14 +49,15 @@ impl<P: Probe> HalfEdgeMesh<P> {
         if at_cb.next == db.twin() && inner(&at_cb) {
             return Err(EditError::LowValence { vertex: b });
         }
-        // From one side of the triangle at c around to the other: the edges that may lead to d.
-        let mut spoke = at_ac.next;
-        while spoke != bc.twin() {
-            let arriving = self.row_of(spoke.twin());
-            if arriving.origin == d {
+        // Around both apexes at once, from one side of the triangle to the other: neither walk waits
+        // for the other, and whichever is over first has seen all that may lead across.
+        let (mut x, mut y) = (at_ac.next, at_bd.next);
+        while x != bc.twin() && y != ad.twin() {
+            let [to_c, to_d] = [x, y].map(|spoke| self.row_of(spoke.twin()));
+            if to_c.origin == d || to_d.origin == c {
                 return Err(EditError::EdgeExists { ends: [c, d] });
             }
-            spoke = arriving.next;
+            (x, y) = (to_c.next, to_d.next);
         }
 
         *self.halves.write(h.index()) = Half {
