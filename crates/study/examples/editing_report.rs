@@ -26,6 +26,9 @@ const SIDES: [usize; 6] = [23, 46, 90, 180, 360, 720];
 const PLACES: usize = 4096;
 const PLACES_SCANNED: usize = 12;
 
+/// How many faces all copies of a mesh have together at the least.
+const COPIES: usize = 64_000;
+
 /// How many faces a workload of edits is given at most on a structure that scans.
 const MOST_SCANNED: usize = 5_000;
 
@@ -112,10 +115,14 @@ fn measure(
     let clock = MachineClock::start();
     for _ in 0..rounds {
         for (line, editor) in &mut jobs {
-            editor.prepare(1);
+            // On a small mesh there are few places: more copies, so that the clock does not show.
+            let copies = (COPIES / faces).max(1);
+            editor.prepare(copies);
             let began = clock.now();
-            editor.run();
-            let time = clock.now() - began;
+            for _ in 0..copies {
+                editor.run();
+            }
+            let time = (clock.now() - began).scaled(1.0 / copies as f64);
             let edits = editor.result();
             if edits.refused > 0 && !Editing::ALL.iter().any(|e| e.name() == line.0) {
                 return Err(format!("{line:?}: {edits:?}").into());
@@ -169,7 +176,7 @@ fn text(
     text += &report::opening(machine, "editing_report", "reports/editing", rounds);
     writeln!(
         text,
-        " Tori of triangles, 1,058 to 1,036,800 of them. Each edit is done at up to {PLACES} places spread over a fresh copy of the mesh, in no order ({PLACES_SCANNED} where the structure scans), and is checked for legality as always; nobody listens to its record.\n\n![Time of an edit against the faces of the mesh](growth.svg)\n"
+        " Tori of triangles, 1,058 to 1,036,800 of them. Each edit is done at up to {PLACES} places spread over a fresh copy of the mesh, in no order ({PLACES_SCANNED} where the structure scans), after one that nobody times (a table that is exactly full moves when a row is added), and is checked for legality as always; nobody listens to its record.\n\n![Time of an edit against the faces of the mesh](growth.svg)\n"
     )?;
     writeln!(
         text,
