@@ -70,7 +70,10 @@ impl Chart<'_> {
             .x_desc(self.x.0)
             .y_desc(self.y.0)
             .x_label_formatter(&|x| format!("{x:.0e}"))
-            .y_label_formatter(&|y| format!("{y}"))
+            .y_label_formatter(&|y| match y {
+                y if *y >= 1e4 => format!("{y:.0e}"),
+                y => format!("{y}"),
+            })
             .light_line_style(WHITE)
             .draw()?;
         for (backend, colour) in roster().iter().zip(COLOURS) {
