@@ -6,6 +6,7 @@ mod facts;
 mod opensubdiv;
 mod operators;
 mod real_meshes;
+mod remeshing;
 mod seventh;
 mod subdivision;
 mod subdivision_laws;

@@ -35,23 +35,19 @@ use mesh_core::{
 
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, NOWHERE, names_edge};
 
-/// Why an edit is refused here.
-type Refused = EditError<VertexId, EdgeCorner, FaceId>;
+/// Why an edit is refused; the same whatever the probe.
+type Refusal = mesh_core::Refusal<CornerTable>;
 
 /// The most corners that a mesh may have to be built again from its polygons.
 const MAX_CORNERS: usize = MAX_ROWS / 2;
 
 impl<P: Probe> MeshEdit for CornerTable<P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
-        use QueryCost::{Constant, Local, Scan};
-        let mut costs = [Some(Local); Edit::ALL.len()];
-        costs[Edit::SetPosition as usize] = Some(Constant);
-        costs[Edit::AddVertex as usize] = Some(Constant);
-        costs[Edit::RemoveIsolatedVertices as usize] = Some(Scan);
+        let mut costs = Edit::LOCAL_COSTS;
+        // They make polygons.
         costs[Edit::SplitEdge as usize] = None;
         costs[Edit::SplitFace as usize] = None;
         costs[Edit::DissolveEdge as usize] = None;
-        costs[Edit::Compact as usize] = Some(Scan);
         costs
     };
 
@@ -62,7 +58,7 @@ impl<P: Probe> MeshEdit for CornerTable<P> {
         v: VertexId,
         to: Point,
         _: &mut impl EditLog<Self>,
-    ) -> Result<VertexId, Refused> {
+    ) -> Result<VertexId, Refusal> {
         self.check_vertex(v)?;
         *self.positions.write(v.index()) = to;
         Ok(v)
@@ -70,7 +66,7 @@ impl<P: Probe> MeshEdit for CornerTable<P> {
 
     /// O(1) amortised.
     #[inline]
-    fn add_vertex(&mut self, at: Point, log: &mut impl EditLog<Self>) -> Result<VertexId, Refused> {
+    fn add_vertex(&mut self, at: Point, log: &mut impl EditLog<Self>) -> Result<VertexId, Refusal> {
         self.check_room(1, 0)?;
         let v = self.push_vertex(at, Slot::NONE);
         log.created_vertex(v);
@@ -82,17 +78,17 @@ impl<P: Probe> MeshEdit for CornerTable<P> {
         &mut self,
         corners: &[VertexId],
         log: &mut impl EditLog<Self>,
-    ) -> Result<FaceId, Refused> {
+    ) -> Result<FaceId, Refusal> {
         self.add_triangle(corners, log)
     }
 
     /// O(1).
-    fn remove_face(&mut self, f: FaceId, log: &mut impl EditLog<Self>) -> Result<(), Refused> {
+    fn remove_face(&mut self, f: FaceId, log: &mut impl EditLog<Self>) -> Result<(), Refusal> {
         self.remove_triangle(f, log)
     }
 
     /// O(valence).
-    fn remove_vertex(&mut self, v: VertexId, log: &mut impl EditLog<Self>) -> Result<(), Refused> {
+    fn remove_vertex(&mut self, v: VertexId, log: &mut impl EditLog<Self>) -> Result<(), Refusal> {
         self.remove_star(v, log)
     }
 
@@ -115,7 +111,7 @@ impl<P: Probe> MeshEdit for CornerTable<P> {
         _: EdgeCorner,
         _: Point,
         _: &mut impl EditLog<Self>,
-    ) -> Result<VertexId, Refused> {
+    ) -> Result<VertexId, Refusal> {
         Err(makes_polygons(Edit::SplitEdge))
     }
 
@@ -125,7 +121,7 @@ impl<P: Probe> MeshEdit for CornerTable<P> {
         e: EdgeCorner,
         at: Point,
         log: &mut impl EditLog<Self>,
-    ) -> Result<VertexId, Refused> {
+    ) -> Result<VertexId, Refusal> {
         self.bisect(e, at, log)
     }
 
@@ -136,7 +132,7 @@ impl<P: Probe> MeshEdit for CornerTable<P> {
         f: FaceId,
         at: Point,
         log: &mut impl EditLog<Self>,
-    ) -> Result<VertexId, Refused> {
+    ) -> Result<VertexId, Refusal> {
         self.poke(f, at, log)
     }
 
@@ -146,7 +142,7 @@ impl<P: Probe> MeshEdit for CornerTable<P> {
         _: FaceId,
         _: [VertexId; 2],
         _: &mut impl EditLog<Self>,
-    ) -> Result<EdgeCorner, Refused> {
+    ) -> Result<EdgeCorner, Refusal> {
         Err(makes_polygons(Edit::SplitFace))
     }
 
@@ -155,7 +151,7 @@ impl<P: Probe> MeshEdit for CornerTable<P> {
         &mut self,
         _: EdgeCorner,
         _: &mut impl EditLog<Self>,
-    ) -> Result<FaceId, Refused> {
+    ) -> Result<FaceId, Refusal> {
         Err(makes_polygons(Edit::DissolveEdge))
     }
 
@@ -165,7 +161,7 @@ impl<P: Probe> MeshEdit for CornerTable<P> {
         &mut self,
         e: EdgeCorner,
         log: &mut impl EditLog<Self>,
-    ) -> Result<EdgeCorner, Refused> {
+    ) -> Result<EdgeCorner, Refusal> {
         self.flip(e, log)
     }
 
@@ -177,7 +173,7 @@ impl<P: Probe> MeshEdit for CornerTable<P> {
         keep: VertexId,
         to: Point,
         log: &mut impl EditLog<Self>,
-    ) -> Result<VertexId, Refused> {
+    ) -> Result<VertexId, Refusal> {
         self.collapse(e, keep, to, log)
     }
 
@@ -189,7 +185,7 @@ impl<P: Probe> MeshEdit for CornerTable<P> {
         right: Option<VertexId>,
         at: Point,
         log: &mut impl EditLog<Self>,
-    ) -> Result<VertexId, Refused> {
+    ) -> Result<VertexId, Refusal> {
         self.split_fan(v, [left, right], at, log)
     }
 
@@ -199,7 +195,7 @@ impl<P: Probe> MeshEdit for CornerTable<P> {
 }
 
 #[cold]
-fn makes_polygons(edit: Edit) -> Refused {
+fn makes_polygons(edit: Edit) -> Refusal {
     EditError::Unsupported {
         structure: CornerTable::NAME,
         edit,
@@ -210,7 +206,7 @@ fn makes_polygons(edit: Edit) -> Refused {
 impl<P: Probe> CornerTable<P> {
     /// The corner at `v`, if it is there and not isolated.
     #[inline]
-    fn check_vertex(&self, v: VertexId) -> Result<Slot<CornerId>, Refused> {
+    fn check_vertex(&self, v: VertexId) -> Result<Slot<CornerId>, Refusal> {
         if v.index() < self.corner.len() {
             let corner = *self.corner.read(v.index());
             if corner != Slot::NONE || !self.vertex_holes.has(v.index()) {
@@ -222,7 +218,7 @@ impl<P: Probe> CornerTable<P> {
 
     /// The corner across `e`, if that is the name of an edge.
     #[inline]
-    fn check_edge(&self, e: EdgeCorner) -> Result<Slot<CornerId>, Refused> {
+    fn check_edge(&self, e: EdgeCorner) -> Result<Slot<CornerId>, Refusal> {
         if e.index() < self.opposite.len() {
             let across = *self.opposite.read(e.index());
             if names_edge(e.corner(), across) {
@@ -234,7 +230,7 @@ impl<P: Probe> CornerTable<P> {
 
     /// The vertices of `f`, if it is there.
     #[inline]
-    fn check_face(&self, f: FaceId) -> Result<[VertexId; 3], Refused> {
+    fn check_face(&self, f: FaceId) -> Result<[VertexId; 3], Refusal> {
         let first = 3 * f.index();
         if first < self.vertex.len()
             && let &[a, b, c] = self.vertex.read_range(first..first + 3)
@@ -247,7 +243,7 @@ impl<P: Probe> CornerTable<P> {
 
     /// Whether handles can name so many vertices and triangles more.
     #[inline]
-    fn check_room(&self, vertices: usize, triangles: usize) -> Result<(), Refused> {
+    fn check_room(&self, vertices: usize, triangles: usize) -> Result<(), Refusal> {
         let (elements, limit) = if self.positions.len() + vertices > MAX_ROWS {
             ("vertices", MAX_ROWS)
         } else if self.vertex.len() + 3 * triangles > MAX_CORNERS {

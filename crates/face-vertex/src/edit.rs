@@ -24,14 +24,7 @@ use crate::mesh::{BLANK_CORNER, FaceVertexMesh, Fan};
 type Edge = Pair<VertexId>;
 
 impl<P: Probe> MeshEdit for FaceVertexMesh<P> {
-    const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
-        let mut costs = [Some(QueryCost::Local); Edit::ALL.len()];
-        costs[Edit::SetPosition as usize] = Some(QueryCost::Constant);
-        costs[Edit::AddVertex as usize] = Some(QueryCost::Constant);
-        costs[Edit::RemoveIsolatedVertices as usize] = Some(QueryCost::Scan);
-        costs[Edit::Compact as usize] = Some(QueryCost::Scan);
-        costs
-    };
+    const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 
     #[inline]
     fn set_position(

@@ -18,7 +18,7 @@ use mesh_core::{
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh, NO_HALF};
 
 /// Why an edit is refused; the same whatever the probe.
-type Refusal = EditError<VertexId, EdgeId, FaceId>;
+type Refusal = mesh_core::Refusal<HalfEdgeMesh>;
 
 /// Surgery on twin pairs: halves are relinked, and each edit is a handful of rows (the operators of
 /// Mäntylä 1988, made for meshes without stored `prev`).
@@ -29,14 +29,7 @@ type Refusal = EditError<VertexId, EdgeId, FaceId>;
 /// Every edit that touches a vertex sees to `leaving` (I5): where the boundary half goes, that which
 /// takes its place on the boundary loop takes it here.
 impl<P: Probe> MeshEdit for HalfEdgeMesh<P> {
-    const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
-        let mut costs = [Some(QueryCost::Local); Edit::ALL.len()];
-        costs[Edit::SetPosition as usize] = Some(QueryCost::Constant);
-        costs[Edit::AddVertex as usize] = Some(QueryCost::Constant);
-        costs[Edit::RemoveIsolatedVertices as usize] = Some(QueryCost::Scan);
-        costs[Edit::Compact as usize] = Some(QueryCost::Scan);
-        costs
-    };
+    const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 
     fn set_position(
         &mut self,

@@ -1,14 +1,14 @@
 //! Editing: the faces by [`ScannedFaces`](mesh_core::ScannedFaces), and the table of vertices beside.
 
 use mesh_core::{
-    EditError, EditLog, FaceId, MAX_ROWS, MeshEdit, MeshQuery, Pair, Point, Probe, QueryCost,
+    Edit, EditError, EditLog, FaceId, MAX_ROWS, MeshEdit, MeshQuery, Pair, Point, Probe, QueryCost,
     Refusal, VertexId, row,
 };
 
 use crate::mesh::IndexedFaceSet;
 
 impl<P: Probe> MeshEdit for IndexedFaceSet<P> {
-    const EDITS: [Option<QueryCost>; 15] = {
+    const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
         let constant = Some(QueryCost::Constant);
         let local = Some(QueryCost::Local);
         let scan = Some(QueryCost::Scan);

@@ -109,11 +109,8 @@ impl Capabilities {
 }
 
 fn check_triangles(polygons: &PolygonMesh) -> Result<(), BuildError> {
-    match polygons.faces().iter().find(|(_, face)| face.len() != 3) {
-        Some((face, corners)) => Err(BuildError::NotATriangle {
-            face,
-            degree: corners.len(),
-        }),
+    match polygons.first_polygon() {
+        Some((face, degree)) => Err(BuildError::NotATriangle { face, degree }),
         None => Ok(()),
     }
 }

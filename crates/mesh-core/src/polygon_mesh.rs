@@ -129,6 +129,15 @@ impl PolygonMesh {
         &self.faces
     }
 
+    /// The first face that is no triangle, and its degree; O(faces), O(1) where all have one degree.
+    pub fn first_polygon(&self) -> Option<(FaceId, usize)> {
+        if self.faces.uniform_degree() == Some(3) {
+            return None;
+        }
+        let mut degrees = self.faces.iter().map(|(f, corners)| (f, corners.len()));
+        degrees.find(|&(_, degree)| degree != 3)
+    }
+
     /// The vertices whose faces form more than one fan, in their order; O(corners) expected.
     ///
     /// Faces are of one fan where a chain of faces leads from one to the other, each along an edge

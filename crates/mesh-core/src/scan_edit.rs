@@ -12,8 +12,8 @@ mod edges;
 mod faces;
 mod split_vertex;
 
-use crate::edit::EditLog;
 use crate::edit_error::EditError;
+use crate::edit_log::EditLog;
 use crate::few::Few;
 use crate::handle::Pair;
 use crate::probe::Probe;

@@ -9,7 +9,7 @@ use crate::mesh::PolygonSoup;
 use crate::vertex::SoupVertex;
 
 impl<P: Probe> MeshEdit for PolygonSoup<P> {
-    const EDITS: [Option<QueryCost>; 15] = {
+    const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
         let constant = Some(QueryCost::Constant);
         let local = Some(QueryCost::Local);
         let scan = Some(QueryCost::Scan);

@@ -28,6 +28,23 @@ pub enum Target {
     Ratio(f64),
 }
 
+impl Target {
+    /// How many faces that is of so many.
+    ///
+    /// # Errors
+    ///
+    /// [`RemeshError::BadRatio`] for a ratio that is none.
+    pub fn of(self, faces: usize) -> Result<usize, RemeshError> {
+        match self {
+            Self::Faces(target) => Ok(target),
+            Self::Ratio(ratio) if (0.0..=1.0).contains(&ratio) => {
+                Ok((faces as f64 * ratio) as usize)
+            }
+            Self::Ratio(ratio) => Err(RemeshError::BadRatio { ratio }),
+        }
+    }
+}
+
 /// What becomes of vertices on boundary edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Boundary {
@@ -108,13 +125,7 @@ pub fn decimate_watched<M: MeshEdit + Representation>(
     decimation: &Decimation,
     watch: &mut dyn FnMut(usize) -> ControlFlow<()>,
 ) -> Result<Decimated, RemeshError> {
-    let target = match decimation.target {
-        Target::Faces(faces) => faces,
-        Target::Ratio(ratio) if (0.0..=1.0).contains(&ratio) => {
-            (mesh.face_count() as f64 * ratio) as usize
-        }
-        Target::Ratio(ratio) => return Err(RemeshError::BadRatio { ratio }),
-    };
+    let target = decimation.target.of(mesh.face_count())?;
     let mut work = Work::of(mesh, decimation.boundary)?;
     let mut report = Decimated {
         faces: mesh.face_count(),

@@ -11,7 +11,7 @@
 //! get in the order in which the faces name them, and sums run in that order: so **every structure
 //! makes the same mesh, to the bit**, from the same manifold.
 //!
-//! Triangles only. Boundaries are kept. What is removed leaves holes: see [`MeshEdit::compact`].
+//! Triangles only. Boundaries keep their shape. What is removed leaves holes: see [`MeshEdit::compact`].
 //!
 //! ```
 //! use half_edge::HalfEdgeMesh;

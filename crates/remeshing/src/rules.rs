@@ -67,7 +67,6 @@ pub(crate) fn keeps_link<M: MeshEdit + Representation>(mesh: &M, e: M::Edge) -> 
 
 /// Whether an edge with one face ends at `v`.
 pub(crate) fn is_boundary<M: MeshEdit>(mesh: &M, v: M::Vertex) -> bool {
-    // An open fan has one edge more than faces; nothing else in a manifold has.
     mesh.vertex_edges(v)
         .any(|e| mesh.edge_faces(e).count() == 1)
 }

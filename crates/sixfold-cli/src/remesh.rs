@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use sixfold::mesh_io::write_obj;
 use sixfold::remeshing::{
-    Boundary, Decimation, RemeshError, Remeshing, Stop, Target, decimate_watched, remesh_watched,
+    Boundary, Decimation, RemeshError, Remeshing, Stop, decimate_watched, remesh_watched,
 };
 use sixfold::{
     Edit, EditVisitor, MeshEdit, PolygonMesh, QueryCost, Representation, roster, visit_editable,
@@ -77,12 +77,8 @@ fn edited([from, to]: [&Path; 2], backend: &str, work: &impl Work) -> Result<Exi
 
 /// Refuses the first face that is no triangle.
 fn check_triangles(polygons: &PolygonMesh) -> Result<(), Failure> {
-    let mut faces = polygons.faces().iter();
-    match faces.find(|(_, corners)| corners.len() != 3) {
-        Some((face, corners)) => Err(refused(RemeshError::NotATriangle {
-            face,
-            degree: corners.len(),
-        })),
+    match polygons.first_polygon() {
+        Some((face, degree)) => Err(refused(RemeshError::NotATriangle { face, degree })),
         None => Ok(()),
     }
 }
@@ -149,10 +145,7 @@ struct Told {
 impl Work for Decimation {
     fn done<M: MeshEdit + Representation>(&self, mesh: &mut M) -> Result<Told, RemeshError> {
         let before = mesh.face_count();
-        let target = match self.target {
-            Target::Faces(faces) => faces,
-            Target::Ratio(ratio) => (before as f64 * ratio) as usize,
-        };
+        let target = self.target.of(before)?;
         let bar = Steps::of(before.saturating_sub(target), "faces taken away");
         let report = decimate_watched(mesh, self, &mut |faces| {
             bar.reached(before.saturating_sub(faces));

@@ -59,9 +59,7 @@ impl Editing {
 
             fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output {
                 let &mut Self(job, polygons) = self;
-                let mut faces = polygons.faces().iter();
-                if let Some((f, face)) = faces.find(|(_, face)| face.len() != 3) {
-                    let degree = face.len();
+                if let Some((f, degree)) = polygons.first_polygon() {
                     return Err(format!(
                         "face {f} has {degree} corners, and {job} needs triangles: triangulate the mesh"
                     ));
@@ -69,7 +67,10 @@ impl Editing {
                 let mesh = M::from_polygons(polygons).map_err(|refusal| refusal.to_string())?;
                 Ok(Box::new(Edited {
                     job,
-                    edges: first_named(&mesh),
+                    edges: match job {
+                        Editing::FlipAll => first_named(&mesh),
+                        _ => Vec::new(),
+                    },
                     mesh,
                     copies: Vec::new(),
                     done: Vec::new(),
@@ -116,6 +117,7 @@ pub struct Edits {
 struct Edited<M: MeshEdit> {
     job: Editing,
     mesh: M,
+    /// Those to be flipped, in their order.
     edges: Vec<M::Edge>,
     copies: Vec<Fresh<M>>,
     /// The meshes that were worked on: kept, for to let one go takes time.

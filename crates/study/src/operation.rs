@@ -167,8 +167,8 @@ impl Operation {
         self.subdivides() || matches!(self, Self::Editing(_))
     }
 
-    /// Whether each run needs a copy of its own, made before the clock starts.
-    pub(crate) const fn works_on_copies(self) -> bool {
+    /// Whether each run of a series leaves a mesh of its own behind, or works on one made beforehand.
+    pub(crate) const fn holds_a_mesh_a_run(self) -> bool {
         matches!(self, Self::Build | Self::VvSmooth | Self::Editing(_))
     }
 

@@ -136,7 +136,7 @@ impl Bench<'_, '_> {
 
     /// More runs than this in a row would hold too many structures at once.
     fn most_runs(&self, entry: &Entry) -> f64 {
-        if entry.job.operation.works_on_copies() {
+        if entry.job.operation.holds_a_mesh_a_run() {
             let bytes = self.subjects[entry.subject].bytes().max(64);
             return (MOST_BYTES / bytes).clamp(1, 100_000) as f64;
         }

@@ -1,8 +1,8 @@
 //! One edit by itself, at places that do not touch each other.
 
 use sixfold::{
-    Edit, EditVisitor, FaceId, FaceVertexMesh, MeshEdit, MeshQuery, Point, PolygonMesh, QueryCost,
-    Refusal, Representation, visit_editable,
+    Edit, EditVisitor, FaceId, FaceVertexMesh, MeshEdit, MeshQuery, Point, PolygonMesh, Refusal,
+    Representation, visit_editable,
 };
 
 use crate::editing::{Editor, Edits};
@@ -37,8 +37,8 @@ impl SingleEdit {
 
             fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output {
                 let &mut Self(job, polygons) = self;
-                let cost = M::EDITS[job.edit as usize]?;
-                Some(AtPlaces::<M>::of(job, cost, polygons).map(|edits| Box::new(edits) as _))
+                let edits = || AtPlaces::<M>::of(job, polygons).map(|edits| Box::new(edits) as _);
+                M::offers(job.edit).then(edits)
             }
         }
 
@@ -110,20 +110,24 @@ struct AtPlaces<M: MeshEdit> {
 }
 
 impl<M: Representation + MeshEdit + 'static> AtPlaces<M> {
-    fn of(job: SingleEdit, cost: QueryCost, polygons: &PolygonMesh) -> Result<Self, String> {
+    fn of(job: SingleEdit, polygons: &PolygonMesh) -> Result<Self, String> {
         let mut mesh = M::from_polygons(polygons).map_err(|refusal| refusal.to_string())?;
-        let mut faces = polygons.faces().iter();
-        if let Some((f, _)) = faces.find(|(_, face)| face.len() != 3) {
+        if let Some((f, _)) = polygons.first_polygon() {
             return Err(format!("face {f} is no triangle"));
         }
         // One more, to be done before the clock starts.
         let places = places(polygons, job.places.saturating_add(1))?;
         let mut ready = Vec::with_capacity(places.len());
-        // What scans for one handle is not asked for thousands.
-        let looks_up = !matches!(
+        // Some structures search for these handles: only what the edit takes is looked up.
+        let takes_edge = matches!(
             job.edit,
-            Edit::SetPosition | Edit::AddVertex | Edit::PokeFace
-        ) || cost == QueryCost::Scan;
+            Edit::SplitEdge
+                | Edit::BisectEdge
+                | Edit::SplitFace
+                | Edit::DissolveEdge
+                | Edit::FlipEdge
+                | Edit::CollapseEdge
+        );
         for f in places {
             let ids = polygons.faces().face(f);
             let corners = [0, 1, 2].map(|i| M::vertex_name(polygons, ids[i]));
@@ -135,8 +139,10 @@ impl<M: Representation + MeshEdit + 'static> AtPlaces<M> {
                 far: None,
                 at: (a + b + c) / 3.0 + Point::splat(1e-3),
             };
-            if looks_up {
+            if takes_edge {
                 place.edge = mesh.edge_between(corners[0], corners[1]);
+            }
+            if job.edit == Edit::SplitVertex {
                 let mut around = mesh.vertex_vertices(corners[0]);
                 place.far = around.find(|v| !corners.contains(v));
             }

@@ -94,12 +94,11 @@ fn check_degrees(job: Refining, polygons: &PolygonMesh) -> Result<(), Subdivisio
     if scheme.kind().takes != "triangles" {
         return Ok(());
     }
-    let mut faces = polygons.faces().iter();
-    match faces.find(|(_, corners)| corners.len() != 3) {
-        Some((face, corners)) => Err(SubdivisionError::NotATriangle {
+    match polygons.first_polygon() {
+        Some((face, degree)) => Err(SubdivisionError::NotATriangle {
             scheme,
             face,
-            degree: corners.len(),
+            degree,
         }),
         None => Ok(()),
     }

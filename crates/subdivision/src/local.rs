@@ -112,8 +112,7 @@ impl LocalMesh {
     /// The first face that is no triangle.
     pub fn new(polygons: PolygonMesh) -> Result<Self, LocalError> {
         let faces = polygons.faces();
-        if let Some((face, corners)) = faces.iter().find(|(_, corners)| corners.len() != 3) {
-            let degree = corners.len();
+        if let Some((face, degree)) = polygons.first_polygon() {
             return Err(LocalError::NotATriangle { face, degree });
         }
         let kind = |(origin, _)| Kind {

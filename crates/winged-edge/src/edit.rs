@@ -26,14 +26,7 @@ mod surgery;
 mod tests;
 
 impl<P: Probe> MeshEdit for WingedEdgeMesh<P> {
-    const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
-        let mut costs = [Some(QueryCost::Local); Edit::ALL.len()];
-        costs[Edit::SetPosition as usize] = Some(QueryCost::Constant);
-        costs[Edit::AddVertex as usize] = Some(QueryCost::Constant);
-        costs[Edit::RemoveIsolatedVertices as usize] = Some(QueryCost::Scan);
-        costs[Edit::Compact as usize] = Some(QueryCost::Scan);
-        costs
-    };
+    const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 
     /// O(1).
     #[inline]

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
 
 use mesh_core::{
-    Changes, Edit, EditRecord, FaceId, Handle, MeshEdit, PolygonMesh, Refusal, Representation,
-    VertexId,
+    Changes, Edit, EditRecord, FaceId, Handle, MeshEdit, Point, PolygonMesh, Refusal,
+    Representation, VertexId,
 };
 
 use super::action::Action;
@@ -127,6 +127,7 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
     /// If a relation is wrong, or a removed element still answers.
     pub fn inspect(&mut self) {
         relations_hold(&self.mesh, M::NAME);
+        self.move_all();
         // A name made of coordinates may come to name another vertex.
         let reused = |v: &M::Vertex| {
             !M::CAPABILITIES.coincident_vertices && self.vertices.values().any(|known| known == v)
@@ -169,6 +170,36 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
                 "{}: a removed element can be removed again",
                 M::NAME
             );
+        }
+    }
+
+    /// All vertices moved at once come to their places, holes or not, and what was removed stays so.
+    fn move_all(&self) {
+        let mut mesh = self.mesh.clone();
+        // Twice as far out: no two come to one place that were not at one.
+        let mut places = mesh.vertex_map(Point::ZERO);
+        for v in mesh.vertices() {
+            places[v] = 2.0 * mesh.position(v);
+        }
+        if let Err(refusal) = mesh.set_positions(&places) {
+            panic!("{}: its own vertices cannot be moved: {refusal}", M::NAME);
+        }
+        if let Err(broken) = mesh.validate() {
+            panic!("{}: after all vertices moved {broken}", M::NAME);
+        }
+        let moved = self.mesh.to_polygons();
+        let moved = moved.positions().iter().map(|&p| 2.0 * p);
+        assert!(
+            mesh.to_polygons().positions().iter().copied().eq(moved),
+            "{}: places after all vertices moved",
+            M::NAME
+        );
+        for removed in &self.removed {
+            if let Removed::Vertex(v) = *removed {
+                let answers = caught(|| mesh.position(v)).is_ok();
+                let rows = M::CAPABILITIES.coincident_vertices;
+                assert!(!(answers && rows), "{}: {v:?} is back", M::NAME);
+            }
         }
     }
 

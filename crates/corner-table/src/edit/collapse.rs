@@ -2,7 +2,7 @@
 
 use mesh_core::{EditError, EditLog, Few, Lookup, Point, Probe, Slot, VertexId};
 
-use super::{Refused, faced_by, tell_renamed};
+use super::{Refusal, faced_by, tell_renamed};
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, NOWHERE, edge_between};
 
 /// The fan of an end of an edge, without the triangles along the edge.
@@ -46,7 +46,7 @@ impl<P: Probe> CornerTable<P> {
         keep: VertexId,
         to: Point,
         log: &mut impl EditLog<Self>,
-    ) -> Result<VertexId, Refused> {
+    ) -> Result<VertexId, Refusal> {
         let across = self.check_edge(e)?.get();
         let c = e.corner();
         let [n, p] = [c.next(), c.prev()];

@@ -2,7 +2,7 @@
 
 use mesh_core::{EditError, EditLog, FaceId, Few, Probe, Slot, VertexId};
 
-use super::{Refused, faced_by, tell_renamed};
+use super::{Refusal, faced_by, tell_renamed};
 use crate::mesh::{CornerId, CornerTable, edge_between};
 
 impl<P: Probe> CornerTable<P> {
@@ -17,7 +17,7 @@ impl<P: Probe> CornerTable<P> {
         &mut self,
         corners: &[VertexId],
         log: &mut impl EditLog<Self>,
-    ) -> Result<FaceId, Refused> {
+    ) -> Result<FaceId, Refusal> {
         let &[a, b, c] = corners else {
             let corners = corners.len();
             return Err(if corners < 3 {
@@ -56,7 +56,7 @@ impl<P: Probe> CornerTable<P> {
     }
 
     /// Where a triangle with the sides w–v and v–u comes into the fan of `v`.
-    fn gap(&self, v: VertexId, u: VertexId, w: VertexId) -> Result<Gap, Refused> {
+    fn gap(&self, v: VertexId, u: VertexId, w: VertexId) -> Result<Gap, Refusal> {
         let Some(first) = self.corner.read(v.index()).get() else {
             return Ok(Gap {
                 across: Slot::NONE,
@@ -106,7 +106,7 @@ impl<P: Probe> CornerTable<P> {
         })
     }
 
-    fn runs(&self, from: VertexId, to: VertexId, corner: CornerId) -> Refused {
+    fn runs(&self, from: VertexId, to: VertexId, corner: CornerId) -> Refusal {
         EditError::RepeatedSide {
             from,
             to,
@@ -115,7 +115,7 @@ impl<P: Probe> CornerTable<P> {
     }
 
     /// The edge between the vertex that is followed by `after`, and that of `after`, has two faces.
-    fn full(&self, after: CornerId) -> Refused {
+    fn full(&self, after: CornerId) -> Refusal {
         EditError::FullEdge {
             edge: self.edge(after.next()),
         }
@@ -126,7 +126,7 @@ impl<P: Probe> CornerTable<P> {
         &mut self,
         f: FaceId,
         log: &mut impl EditLog<Self>,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), Refusal> {
         let [a, b, c] = self.check_face(f)?;
         let [(x, ox), (y, oy), (z, oz)] = self.opposites_of(f);
         let blocks = [(a, oz, oy), (b, ox, oz), (c, oy, ox)];
@@ -150,7 +150,7 @@ impl<P: Probe> CornerTable<P> {
         &mut self,
         v: VertexId,
         log: &mut impl EditLog<Self>,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), Refusal> {
         if self.check_vertex(v)?.get().is_some() {
             let (star, closed) = self.star(v);
             let star = star.as_slice();
@@ -249,7 +249,7 @@ impl<P: Probe> CornerTable<P> {
         v: VertexId,
         before: Slot<CornerId>,
         after: Slot<CornerId>,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), Refusal> {
         if before != Slot::NONE && after != Slot::NONE && self.is_on_boundary(v) {
             return Err(EditError::SeveralFans { vertex: v });
         }

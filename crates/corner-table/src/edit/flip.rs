@@ -2,7 +2,7 @@
 
 use mesh_core::{EditError, EditLog, Probe, Slot, VertexId};
 
-use super::{Refused, tell_renamed};
+use super::{Refusal, tell_renamed};
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
 
 impl<P: Probe> CornerTable<P> {
@@ -22,7 +22,7 @@ impl<P: Probe> CornerTable<P> {
         &mut self,
         e: EdgeCorner,
         log: &mut impl EditLog<Self>,
-    ) -> Result<EdgeCorner, Refused> {
+    ) -> Result<EdgeCorner, Refusal> {
         let Some(o) = self.check_edge(e)?.get() else {
             return Err(EditError::NotTwoFaces { edge: e, faces: 1 });
         };

@@ -2,7 +2,7 @@
 
 use mesh_core::{EditError, EditLog, FaceId, Point, Probe, Slot, VertexId};
 
-use super::{Refused, faced_by, tell_renamed};
+use super::{Refusal, faced_by, tell_renamed};
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
 
 impl<P: Probe> CornerTable<P> {
@@ -25,7 +25,7 @@ impl<P: Probe> CornerTable<P> {
         e: EdgeCorner,
         at: Point,
         log: &mut impl EditLog<Self>,
-    ) -> Result<VertexId, Refused> {
+    ) -> Result<VertexId, Refusal> {
         let across = self.check_edge(e)?.get();
         let c = e.corner();
         let [n, p] = [c.next(), c.prev()];
@@ -86,7 +86,7 @@ impl<P: Probe> CornerTable<P> {
         f: FaceId,
         at: Point,
         log: &mut impl EditLog<Self>,
-    ) -> Result<VertexId, Refused> {
+    ) -> Result<VertexId, Refusal> {
         let [a, b, c] = self.check_face(f)?;
         self.check_room(1, 2)?;
         let [(i, bc), (j, ca), (k, _)] = self.opposites_of(f);
@@ -132,7 +132,7 @@ impl<P: Probe> CornerTable<P> {
         [left, right]: [Option<VertexId>; 2],
         at: Point,
         log: &mut impl EditLog<Self>,
-    ) -> Result<VertexId, Refused> {
+    ) -> Result<VertexId, Refusal> {
         let Some(_) = self.check_vertex(v)?.get() else {
             return Err(EditError::NoFan { vertex: v });
         };

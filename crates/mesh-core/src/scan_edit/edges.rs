@@ -2,8 +2,8 @@
 
 use super::{Refusal, ScannedMesh, listens, repeated};
 use crate::distinct::IteratorExt;
-use crate::edit::EditLog;
 use crate::edit_error::EditError;
+use crate::edit_log::EditLog;
 use crate::few::Few;
 use crate::handle::Pair;
 use crate::probe::Probe;

@@ -1,8 +1,8 @@
 //! Edits of whole faces.
 
 use super::{Refusal, ScannedMesh, listens, repeated, sorted_once};
-use crate::edit::EditLog;
 use crate::edit_error::EditError;
+use crate::edit_log::EditLog;
 use crate::few::Few;
 use crate::handle::Pair;
 use crate::probe::Probe;

@@ -1,8 +1,8 @@
 //! Splitting a vertex.
 
 use super::{Refusal, ScannedMesh};
-use crate::edit::EditLog;
 use crate::edit_error::EditError;
+use crate::edit_log::EditLog;
 use crate::handle::Pair;
 use crate::probe::Probe;
 use crate::query::ring;

@@ -1,0 +1,116 @@
+//! Decimation, remeshing and Delaunay flips make the same mesh on every structure, to the bit.
+
+use mesh_core::{MeshEdit, Point, PolygonMesh, Representation};
+use sixfold::remeshing::{
+    Boundary, Decimation, Remeshing, Target, decimate, flip_to_delaunay, remesh,
+};
+use sixfold::{for_each_editable, shapes};
+
+/// Closed and open surfaces, and a rough one with corners on which collapses beside the boundary are
+/// among the cheapest.
+fn surfaces() -> [PolygonMesh; 4] {
+    let sized = "a small shape";
+    let flat = shapes::triangle_grid(12, 12).expect(sized);
+    let rough = flat.positions().iter().map(|p| {
+        let height = (p.x * p.y) as u32 % 3;
+        Point::new(p.x, p.y, height as f32)
+    });
+    let rough = PolygonMesh::from_faces(rough.collect(), flat.faces().clone());
+    [
+        shapes::geodesic(4).expect(sized),
+        shapes::triangle_torus(11, 7).expect(sized),
+        flat,
+        rough.expect("the same faces"),
+    ]
+}
+
+/// The faces as the bits of their corners, each from its least on, in order.
+fn faces(polygons: &PolygonMesh) -> Vec<Vec<[u32; 3]>> {
+    let faces = polygons.faces().iter().map(|(_, face)| {
+        // −0 is 0 where a vertex is its coordinates.
+        let at = |v| {
+            (polygons.position(v) + Point::ZERO)
+                .to_array()
+                .map(f32::to_bits)
+        };
+        let mut corners: Vec<[u32; 3]> = face.iter().map(|&v| at(v)).collect();
+        let least = (0..corners.len()).min_by_key(|&i| corners[i]).unwrap_or(0);
+        corners.rotate_left(least);
+        corners
+    });
+    let mut faces: Vec<_> = faces.collect();
+    faces.sort_unstable();
+    faces
+}
+
+/// An operator that can be run on any structure.
+trait Work {
+    fn run<M: MeshEdit + Representation>(&self, mesh: &mut M);
+}
+
+impl Work for Decimation {
+    fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) {
+        let report = decimate(mesh, self).expect("triangles");
+        assert!(report.collapses > 10, "{report:?}");
+    }
+}
+
+impl Work for Remeshing {
+    fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) {
+        let report = remesh(mesh, self).expect("triangles");
+        assert!(report.splits + report.collapses > 10, "{report:?}");
+    }
+}
+
+struct Delaunay;
+
+impl Work for Delaunay {
+    fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) {
+        flip_to_delaunay(mesh).expect("triangles");
+    }
+}
+
+fn same_on_all(work: &impl Work, polygons: &PolygonMesh, what: &str) {
+    let mut first: Option<Vec<Vec<[u32; 3]>>> = None;
+    for_each_editable!(M => {
+        let mut mesh = M::from_polygons(polygons).expect("all hold a manifold of triangles");
+        work.run(&mut mesh);
+        assert_eq!(mesh.validate(), Ok(()));
+        let made = faces(&mesh.to_polygons());
+        let same = first.get_or_insert_with(|| made.clone()) == &made;
+        assert!(same, "{what} on {} makes another mesh", M::NAME);
+    });
+}
+
+#[test]
+fn decimation_is_the_same_on_all() {
+    for (i, polygons) in surfaces().iter().enumerate() {
+        for boundary in [Boundary::Follow, Boundary::Fixed] {
+            for ratio in [0.6, 0.3, 0.1] {
+                let target = Target::Ratio(ratio);
+                let work = Decimation { target, boundary };
+                same_on_all(&work, polygons, &format!("{work:?} of surface {i}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn remeshing_is_the_same_on_all() {
+    let lengths = [0.2, 0.25, 1.6, 0.9];
+    for (polygons, length) in surfaces().iter().zip(lengths) {
+        let iterations = 3;
+        let work = Remeshing {
+            iterations,
+            ..Remeshing::to(length)
+        };
+        same_on_all(&work, polygons, &format!("{work:?}"));
+    }
+}
+
+#[test]
+fn delaunay_flips_are_the_same_on_all() {
+    for (i, polygons) in surfaces().iter().enumerate() {
+        same_on_all(&Delaunay, polygons, &format!("flips of surface {i}"));
+    }
+}
