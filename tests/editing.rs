@@ -9,7 +9,8 @@ use mesh_core::{Edit, MeshEdit, PolygonMesh, Representation};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestCaseError, TestRunner};
 use sixfold::{
-    CornerTable, FaceVertexMesh, HalfEdgeMesh, IndexedFaceSet, PolygonSoup, WingedEdgeMesh,
+    EditableCornerTable, EditableFaceVertexMesh, EditableHalfEdgeMesh, EditableIndexedFaceSet,
+    EditablePolygonSoup, EditableWingedEdgeMesh,
 };
 
 /// How many scripts for each kind of start, and how many steps each.
@@ -62,12 +63,12 @@ fn players(start: &PolygonMesh) -> Vec<Box<dyn Player>> {
         Some(Box::new(Named(Trial::<M>::of(start)?)) as Box<dyn Player>)
     }
     let all = [
-        player::<PolygonSoup>(start),
-        player::<IndexedFaceSet>(start),
-        player::<FaceVertexMesh>(start),
-        player::<WingedEdgeMesh>(start),
-        player::<HalfEdgeMesh>(start),
-        player::<CornerTable>(start),
+        player::<EditablePolygonSoup>(start),
+        player::<EditableIndexedFaceSet>(start),
+        player::<EditableFaceVertexMesh>(start),
+        player::<EditableWingedEdgeMesh>(start),
+        player::<EditableHalfEdgeMesh>(start),
+        player::<EditableCornerTable>(start),
     ];
     all.into_iter().flatten().collect()
 }

@@ -57,7 +57,7 @@ macro_rules! refine_suite {
     };
 }
 
-/// The laws of structures that can be edited: `conformance::edit_suite!(half_edge::HalfEdgeMesh);`
+/// The laws of structures that can be edited: `conformance::edit_suite!(half_edge::EditableHalfEdgeMesh);`
 #[macro_export]
 macro_rules! edit_suite {
     ($mesh:ty) => {

@@ -8,15 +8,15 @@
 //!    b ───── v
 //! ```
 
-use mesh_core::{Probe, Slot, VertexId};
+use mesh_core::{Editing, Probe, Slot, VertexId};
 
-use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
+use crate::mesh::{AnyCornerTable, CornerId, EdgeCorner, edge_between};
 
 /// The corners at a vertex, counter-clockwise: each step is `c → swing(c)`.
 #[derive(Clone, Debug)]
-pub struct CornersAt<'a, P: Probe>(Fan<'a, P>);
+pub struct CornersAt<'a, P: Probe, E: Editing>(Fan<'a, P, E>);
 
-impl<P: Probe> Iterator for CornersAt<'_, P> {
+impl<P: Probe, E: Editing> Iterator for CornersAt<'_, P, E> {
     type Item = CornerId;
 
     #[inline]
@@ -31,19 +31,19 @@ impl<P: Probe> Iterator for CornersAt<'_, P> {
     }
 }
 
-impl<P: Probe> CornerTable<P> {
+impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
     /// The corners at `v`, counter-clockwise; from one boundary edge to the other, if `v` is on one.
     ///
     /// # Panics
     ///
     /// If there is no such vertex.
     #[inline]
-    pub fn corners_at(&self, v: VertexId) -> CornersAt<'_, P> {
+    pub fn corners_at(&self, v: VertexId) -> CornersAt<'_, P, E> {
         CornersAt(self.fan(v))
     }
 
     #[inline]
-    pub(crate) fn fan(&self, v: VertexId) -> Fan<'_, P> {
+    pub(crate) fn fan(&self, v: VertexId) -> Fan<'_, P, E> {
         let at = self.corner_at(v).map(CornerId::next);
         Fan {
             mesh: self,
@@ -55,13 +55,13 @@ impl<P: Probe> CornerTable<P> {
 
 /// For each corner at a vertex, counter-clockwise: the corner after it, and the one opposite to that.
 #[derive(Clone, Debug)]
-pub(crate) struct Fan<'a, P: Probe> {
-    mesh: &'a CornerTable<P>,
+pub(crate) struct Fan<'a, P: Probe, E: Editing> {
+    mesh: &'a AnyCornerTable<P, E>,
     at: Option<CornerId>,
     first: Option<CornerId>,
 }
 
-impl<P: Probe> Iterator for Fan<'_, P> {
+impl<P: Probe, E: Editing> Iterator for Fan<'_, P, E> {
     type Item = (CornerId, Slot<CornerId>);
 
     #[inline]
@@ -92,15 +92,15 @@ impl<P: Probe> Iterator for Fan<'_, P> {
 
 /// The neighbours of a vertex: one for each corner, and at the end of an open fan one more.
 #[derive(Clone, Debug)]
-pub(crate) struct Neighbours<'a, P: Probe> {
-    fan: Fan<'a, P>,
+pub(crate) struct Neighbours<'a, P: Probe, E: Editing> {
+    fan: Fan<'a, P, E>,
     /// The last corner of an open fan, once the fan has ended there.
     last: Option<CornerId>,
 }
 
-impl<'a, P: Probe> Neighbours<'a, P> {
+impl<'a, P: Probe, E: Editing> Neighbours<'a, P, E> {
     #[inline]
-    pub(crate) fn new(mesh: &'a CornerTable<P>, v: VertexId) -> Self {
+    pub(crate) fn new(mesh: &'a AnyCornerTable<P, E>, v: VertexId) -> Self {
         Self {
             fan: mesh.fan(v),
             last: None,
@@ -108,7 +108,7 @@ impl<'a, P: Probe> Neighbours<'a, P> {
     }
 }
 
-impl<P: Probe> Iterator for Neighbours<'_, P> {
+impl<P: Probe, E: Editing> Iterator for Neighbours<'_, P, E> {
     type Item = VertexId;
 
     #[inline]
@@ -149,14 +149,14 @@ impl<P: Probe> Iterator for Neighbours<'_, P> {
 
 /// The edges at a vertex: one for each corner, and at the end of an open fan the one it began with.
 #[derive(Clone, Debug)]
-pub(crate) struct Spokes<'a, P: Probe> {
-    fan: Fan<'a, P>,
+pub(crate) struct Spokes<'a, P: Probe, E: Editing> {
+    fan: Fan<'a, P, E>,
     open: bool,
 }
 
-impl<'a, P: Probe> Spokes<'a, P> {
+impl<'a, P: Probe, E: Editing> Spokes<'a, P, E> {
     #[inline]
-    pub(crate) fn new(mesh: &'a CornerTable<P>, v: VertexId) -> Self {
+    pub(crate) fn new(mesh: &'a AnyCornerTable<P, E>, v: VertexId) -> Self {
         Self {
             fan: mesh.fan(v),
             open: false,
@@ -170,7 +170,7 @@ impl<'a, P: Probe> Spokes<'a, P> {
     }
 }
 
-impl<P: Probe> Iterator for Spokes<'_, P> {
+impl<P: Probe, E: Editing> Iterator for Spokes<'_, P, E> {
     type Item = EdgeCorner;
 
     #[inline]
@@ -214,8 +214,8 @@ impl<P: Probe> Iterator for Spokes<'_, P> {
 ///        d
 /// ```
 #[derive(Clone, Debug)]
-pub(crate) struct EdgeEdges<'a, P: Probe> {
-    mesh: &'a CornerTable<P>,
+pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
+    mesh: &'a AnyCornerTable<P, E>,
     /// The corner that faces the next edge.
     at: Option<CornerId>,
     turn: Turn,
@@ -234,9 +234,9 @@ enum Turn {
     Clockwise,
 }
 
-impl<'a, P: Probe> EdgeEdges<'a, P> {
+impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
     #[inline]
-    pub(crate) fn new(mesh: &'a CornerTable<P>, e: EdgeCorner) -> Self {
+    pub(crate) fn new(mesh: &'a AnyCornerTable<P, E>, e: EdgeCorner) -> Self {
         let c = e.corner();
         Self {
             mesh,
@@ -249,7 +249,7 @@ impl<'a, P: Probe> EdgeEdges<'a, P> {
     }
 }
 
-impl<P: Probe> EdgeEdges<'_, P> {
+impl<P: Probe, E: Editing> EdgeEdges<'_, P, E> {
     /// The edge that the walk has come to, if it has not ended, and the corner across it.
     #[inline]
     fn here(&self) -> Option<(EdgeCorner, Option<CornerId>)> {
@@ -277,7 +277,7 @@ impl<P: Probe> EdgeEdges<'_, P> {
     }
 }
 
-impl<P: Probe> Iterator for EdgeEdges<'_, P> {
+impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
     type Item = EdgeCorner;
 
     #[inline]
@@ -330,6 +330,7 @@ mod tests {
     use mesh_core::{MeshQuery, Representation};
 
     use super::*;
+    use crate::mesh::CornerTable;
 
     /// `fold` is written apart from `next` where speed asks for it: they must agree, from the start
     /// and from any place that `next` has come to.

@@ -1,14 +1,14 @@
 //! In from polygons, and out again.
 
 use mesh_core::{
-    BuildError, Capabilities, Counts, FaceId, FaceList, Holes, InvariantError, MemoryFootprint,
-    MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, RowId, RowMap,
-    Slot, Table, TwinPairs, VertexId,
+    BuildError, Capabilities, Counts, Editing, FACE_HOLES, FaceId, FaceList, HoleSet,
+    InvariantError, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost,
+    Representation, RowId, RowMap, Slot, Table, TwinPairs, Untraced, VERTEX_HOLES, VertexId,
 };
 
-use crate::mesh::{CornerId, CornerTable, FACE_HOLES, VERTEX_HOLES};
+use crate::mesh::{AnyCornerTable, CornerId};
 
-impl Representation for CornerTable {
+impl<E: Editing> Representation for AnyCornerTable<Untraced, E> {
     const NAME: &'static str = "corner-table";
 
     const CAPABILITIES: Capabilities = Capabilities {
@@ -18,7 +18,7 @@ impl Representation for CornerTable {
 
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
 
-    type Probed<P: Probe> = CornerTable<P>;
+    type Probed<P: Probe> = AnyCornerTable<P, E>;
 
     /// Pairs the sides, lets the corners that face a pair know each other, then enters every fan;
     /// O(corners + vertices), without hashing.
@@ -39,8 +39,8 @@ impl Representation for CornerTable {
             corner: Table::new("corner", "vertex", corner),
             vertex: Table::new("vertex", "corner", faces.corners().to_vec()),
             opposite: Table::new("opposite", "corner", links.opposite),
-            vertex_holes: Holes::none(VERTEX_HOLES),
-            face_holes: Holes::none(FACE_HOLES),
+            vertex_holes: E::no_holes(VERTEX_HOLES, Untraced),
+            face_holes: E::no_holes(FACE_HOLES, Untraced),
         })
     }
 
@@ -100,14 +100,14 @@ impl Representation for CornerTable {
         crate::validate::validate(self)
     }
 
-    fn probed<P: Probe>(self, probe: P) -> CornerTable<P> {
-        CornerTable {
+    fn probed<P: Probe>(self, probe: P) -> AnyCornerTable<P, E> {
+        AnyCornerTable {
             positions: self.positions.probed(probe.clone()),
             corner: self.corner.probed(probe.clone()),
             vertex: self.vertex.probed(probe.clone()),
             opposite: self.opposite.probed(probe.clone()),
-            vertex_holes: self.vertex_holes.probed(probe.clone()),
-            face_holes: self.face_holes.probed(probe),
+            vertex_holes: E::probed_holes(self.vertex_holes, probe.clone()),
+            face_holes: E::probed_holes(self.face_holes, probe),
         }
     }
 }

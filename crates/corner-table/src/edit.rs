@@ -29,19 +29,21 @@ mod flip;
 mod split;
 
 use mesh_core::{
-    Edit, EditError, EditLog, FaceId, MAX_ROWS, MeshEdit, Point, Probe, QueryCost, Representation,
-    RowId, Slot, VertexId, row,
+    Edit, EditError, EditLog, FaceId, HoleSet, MAX_ROWS, MeshEdit, NoHoles, Point, Probe,
+    QueryCost, Representation, RowId, Slot, VertexId, row,
 };
 
-use crate::mesh::{CornerId, CornerTable, EdgeCorner, NOWHERE, names_edge};
+use crate::mesh::{
+    AnyCornerTable, CornerId, CornerTable, EdgeCorner, EditableCornerTable, NOWHERE, names_edge,
+};
 
 /// Why an edit is refused; the same whatever the probe.
-type Refusal = mesh_core::Refusal<CornerTable>;
+type Refusal = mesh_core::Refusal<EditableCornerTable>;
 
 /// The most corners that a mesh may have to be built again from its polygons.
 const MAX_CORNERS: usize = MAX_ROWS / 2;
 
-impl<P: Probe> MeshEdit for CornerTable<P> {
+impl<P: Probe> MeshEdit for EditableCornerTable<P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
         let mut costs = Edit::LOCAL_COSTS;
         // They make polygons.
@@ -50,6 +52,20 @@ impl<P: Probe> MeshEdit for CornerTable<P> {
         costs[Edit::DissolveEdge as usize] = None;
         costs
     };
+
+    type Whole = CornerTable<P>;
+
+    fn into_whole(mut self) -> CornerTable<P> {
+        self.compact(&mut ());
+        AnyCornerTable {
+            positions: self.positions,
+            corner: self.corner,
+            vertex: self.vertex,
+            opposite: self.opposite,
+            vertex_holes: NoHoles,
+            face_holes: NoHoles,
+        }
+    }
 
     /// O(1); writes one row of `positions`.
     #[inline]
@@ -197,13 +213,13 @@ impl<P: Probe> MeshEdit for CornerTable<P> {
 #[cold]
 fn makes_polygons(edit: Edit) -> Refusal {
     EditError::Unsupported {
-        structure: CornerTable::NAME,
+        structure: EditableCornerTable::NAME,
         edit,
     }
 }
 
 /// What every edit asks before it writes.
-impl<P: Probe> CornerTable<P> {
+impl<P: Probe> EditableCornerTable<P> {
     /// The corner at `v`, if it is there and not isolated.
     #[inline]
     fn check_vertex(&self, v: VertexId) -> Result<Slot<CornerId>, Refusal> {
@@ -263,7 +279,7 @@ impl<P: Probe> CornerTable<P> {
 }
 
 /// The steps that edits are made of.
-impl<P: Probe> CornerTable<P> {
+impl<P: Probe> EditableCornerTable<P> {
     #[inline]
     fn push_vertex(&mut self, at: Point, corner: Slot<CornerId>) -> VertexId {
         let v = VertexId::new(row(self.positions.len()));
@@ -329,7 +345,7 @@ fn faced_by(c: CornerId) -> EdgeCorner {
 /// Tells a new name, if it is one.
 #[inline]
 fn tell_renamed<P: Probe>(
-    log: &mut impl EditLog<CornerTable<P>>,
+    log: &mut impl EditLog<EditableCornerTable<P>>,
     old: EdgeCorner,
     new: EdgeCorner,
 ) {
@@ -344,14 +360,14 @@ mod tests {
 
     use super::*;
 
-    pub(super) fn table(vertices: u16, triangles: &[[u32; 3]]) -> CornerTable {
+    pub(super) fn table(vertices: u16, triangles: &[[u32; 3]]) -> EditableCornerTable {
         let positions: Vec<_> = (0..vertices).map(|i| Point::splat(i.into())).collect();
         let polygons = PolygonMesh::new(positions, triangles.iter().copied()).expect("valid");
-        CornerTable::from_polygons(&polygons).expect("manifold")
+        EditableCornerTable::from_polygons(&polygons).expect("manifold")
     }
 
     /// Two triangles and a third apart; the third, v4 and all that is theirs are deleted.
-    fn with_holes() -> CornerTable {
+    fn with_holes() -> EditableCornerTable {
         let mut mesh = table(8, &[[0, 1, 2], [0, 2, 3], [4, 5, 6]]);
         mesh.remove_face(FaceId::new(2), &mut ())
             .expect("it is there");

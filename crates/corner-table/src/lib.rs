@@ -95,5 +95,5 @@ mod refine;
 mod validate;
 
 pub use circulate::CornersAt;
-pub use mesh::{CornerId, CornerTable, EdgeCorner};
+pub use mesh::{AnyCornerTable, CornerId, CornerTable, EdgeCorner, EditableCornerTable};
 pub use refine::EdgeNumbers;

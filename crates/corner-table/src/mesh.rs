@@ -1,6 +1,9 @@
 //! The tables, their invariants, and the classic operators.
 
-use mesh_core::{FaceId, Holes, Point, Probe, Slot, Table, Untraced, VertexId, row_id};
+use mesh_core::{
+    Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe, Slot, Table, Untraced,
+    VERTEX_HOLES, VertexId, Whole, row_id,
+};
 
 row_id! {
     /// The name of one corner, `c7`; the corners of triangle `t` are `3t`, `3t + 1` and `3t + 2`.
@@ -85,25 +88,41 @@ impl EdgeCorner {
 /// 12 bytes a vertex for its position and 4 for `corner`, 24 a triangle: 64 bytes, or 16 words, per
 /// vertex of a large closed mesh. Once something was deleted, a bit a row besides.
 #[derive(Clone, Debug)]
-pub struct CornerTable<P: Probe = Untraced> {
+pub struct AnyCornerTable<P: Probe, E: Editing> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) corner: Table<Slot<CornerId>, P>,
     pub(crate) vertex: Table<VertexId, P>,
     pub(crate) opposite: Table<Slot<CornerId>, P>,
-    pub(crate) vertex_holes: Holes<P>,
-    pub(crate) face_holes: Holes<P>,
+    pub(crate) vertex_holes: E::Holes<P>,
+    pub(crate) face_holes: E::Holes<P>,
+}
+
+/// A corner table of which nothing can be deleted: [`AnyCornerTable`] whose rows are all elements.
+pub type CornerTable<P = Untraced> = AnyCornerTable<P, Whole>;
+
+/// A corner table that can be edited ([`MeshEdit`](mesh_core::MeshEdit)): [`AnyCornerTable`] with holes.
+pub type EditableCornerTable<P = Untraced> = AnyCornerTable<P, Editable>;
+
+impl<P: Probe> From<CornerTable<P>> for EditableCornerTable<P> {
+    fn from(mesh: CornerTable<P>) -> Self {
+        let probe = mesh.positions.probe();
+        Self {
+            positions: mesh.positions,
+            corner: mesh.corner,
+            vertex: mesh.vertex,
+            opposite: mesh.opposite,
+            vertex_holes: Editable::no_holes(VERTEX_HOLES, probe.clone()),
+            face_holes: Editable::no_holes(FACE_HOLES, probe),
+        }
+    }
 }
 
 /// The vertex that the corners of a deleted triangle are at: a row that no table has.
 pub(crate) const NOWHERE: VertexId = VertexId::new(u32::MAX);
 
-/// What the tables of holes are called.
-pub(crate) const VERTEX_HOLES: &str = "vertex holes";
-pub(crate) const FACE_HOLES: &str = "face holes";
-
 /// The classic operators, each O(1). One that reads a table panics, and names the row, if there is none.
 /// They do not look whether a triangle was deleted: what they say of its corners is I8.
-impl<P: Probe> CornerTable<P> {
+impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
     /// The vertex that `c` is at.
     #[inline]
     pub fn vertex(&self, c: CornerId) -> VertexId {
@@ -160,12 +179,12 @@ impl<P: Probe> CornerTable<P> {
 }
 
 /// From vertices, triangles and edges to corners, and back. Panics as the operators do.
-impl<P: Probe> CornerTable<P> {
+impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
     /// A corner at `v`, the first of the fan if `v` is on a boundary; none if `v` is isolated; O(1).
     #[inline]
     pub fn corner_at(&self, v: VertexId) -> Option<CornerId> {
         let corner = self.corner.read(v.index()).get();
-        if corner.is_none() {
+        if E::DELETES && corner.is_none() {
             self.expect_vertex(v);
         }
         corner
@@ -200,12 +219,12 @@ impl<P: Probe> CornerTable<P> {
 }
 
 /// The rows of a triangle or an edge that must be there.
-impl<P: Probe> CornerTable<P> {
+impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
     /// The vertices of `t`.
     #[inline]
     pub(crate) fn vertices_of(&self, t: FaceId) -> [VertexId; 3] {
         let [a, b, c] = self.rows_of(&self.vertex, t);
-        if a == NOWHERE {
+        if E::DELETES && a == NOWHERE {
             self.no_such_triangle(t);
         }
         [a, b, c]
@@ -215,8 +234,7 @@ impl<P: Probe> CornerTable<P> {
     #[inline]
     pub(crate) fn opposites_of(&self, t: FaceId) -> [(CornerId, Slot<CornerId>); 3] {
         let [i, j, k] = corners_of(t);
-        // Not by the marks of I8: to compare what was read costs a sweep over sides a cycle each.
-        if !self.face_holes.is_empty() {
+        if E::DELETES {
             self.expect_triangle(t);
         }
         let [a, b, c] = self.rows_of(&self.opposite, t);
@@ -230,7 +248,7 @@ impl<P: Probe> CornerTable<P> {
             self.no_such_edge(e);
         }
         let [a, b] = [e.corner().next(), e.corner().prev()].map(|c| self.vertex(c));
-        if a == NOWHERE {
+        if E::DELETES && a == NOWHERE {
             self.no_such_edge(e);
         }
         [a, b]
@@ -240,7 +258,7 @@ impl<P: Probe> CornerTable<P> {
     #[inline]
     pub(crate) fn across(&self, e: EdgeCorner) -> Slot<CornerId> {
         let across = *self.opposite.read(e.index());
-        if across == Slot::some(e.corner()) {
+        if E::DELETES && across == Slot::some(e.corner()) {
             self.no_such_edge(e);
         }
         across
@@ -327,7 +345,7 @@ pub(crate) fn names_edge(c: CornerId, across: Slot<CornerId>) -> bool {
 
 /// The tables as they lie in memory, for export and for loops of one's own; with their holes (I8),
 /// if something was deleted and [`compact`](mesh_core::MeshEdit::compact) has not been called since.
-impl<P: Probe> CornerTable<P> {
+impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
     /// Positions by vertex.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
@@ -365,7 +383,7 @@ mod tests {
         .map(|polygons| CornerTable::from_polygons(&polygons).expect("manifold"))
     }
 
-    fn corners(mesh: &CornerTable) -> impl Iterator<Item = CornerId> {
+    fn corners<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> impl Iterator<Item = CornerId> {
         (0..mesh.vertex.len() as u32).map(CornerId::new)
     }
 

@@ -1,11 +1,11 @@
 //! The nine relations.
 
-use mesh_core::{FaceId, MeshQuery, Point, Probe, RowId, VertexId, row};
+use mesh_core::{Editing, FaceId, HoleSet, MeshQuery, Point, Probe, RowId, VertexId, row};
 
 use crate::circulate::{EdgeEdges, Neighbours, Spokes};
-use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between, names_edge};
+use crate::mesh::{AnyCornerTable, CornerId, EdgeCorner, edge_between, names_edge};
 
-impl<P: Probe> MeshQuery for CornerTable<P> {
+impl<P: Probe, E: Editing> MeshQuery for AnyCornerTable<P, E> {
     type Vertex = VertexId;
     type Edge = EdgeCorner;
     type Face = FaceId;
@@ -51,11 +51,11 @@ impl<P: Probe> MeshQuery for CornerTable<P> {
 
     #[inline]
     fn position(&self, v: VertexId) -> Point {
-        let at = *self.positions.read(v.index());
+        let at = self.positions.read(v.index());
         if self.vertex_holes.has(v.index()) {
             self.no_such_vertex(v);
         }
-        at
+        *at
     }
 
     #[inline]

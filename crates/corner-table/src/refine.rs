@@ -39,13 +39,11 @@
 //! A vertex keeps 3 prev(corner(v)); the point of `t` has 9t + 2.
 
 use mesh_core::{
-    Counts, FaceId, Holes, MeshQuery, PART, Point, Ranks, Refine, RefineError, RowId, Slot, Split,
-    Table, VertexId, all_rows, check_split, in_given_parts, in_parts, row,
+    Counts, FaceId, MeshQuery, NoHoles, PART, Point, Ranks, Refine, RefineError, RowId, Slot,
+    Split, Table, VertexId, all_rows, check_split, in_given_parts, in_parts, row,
 };
 
-use crate::mesh::{
-    CornerId, CornerTable, EdgeCorner, FACE_HOLES, VERTEX_HOLES, edge_between, names_edge,
-};
+use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
 
 /// How many corners a part of the edges has: whole triangles.
 const CORNERS: usize = 3 * PART;
@@ -86,8 +84,8 @@ impl Refine for CornerTable {
             corner: Table::new("corner", "vertex", Vec::new()),
             vertex: Table::new("vertex", "corner", Vec::new()),
             opposite: Table::new("opposite", "corner", Vec::new()),
-            vertex_holes: Holes::none(VERTEX_HOLES),
-            face_holes: Holes::none(FACE_HOLES),
+            vertex_holes: NoHoles,
+            face_holes: NoHoles,
         }
     }
 
@@ -112,8 +110,8 @@ impl Refine for CornerTable {
         let end = self.corner_count().min((part + 1) * CORNERS);
         let corners = (row(part * CORNERS)..row(end)).map(CornerId::new);
         corners.filter_map(|c| {
-            let across = *self.opposite.read(c.index());
-            names_edge(c, across).then(|| EdgeCorner::new(c.row()))
+            let edge = self.edge(c);
+            (edge.corner() == c).then_some(edge)
         })
     }
 
@@ -130,10 +128,6 @@ impl Refine for CornerTable {
         numbers: &EdgeNumbers,
         child: &mut Self,
     ) -> Result<(), RefineError> {
-        let holes = self.vertex_holes.len() + self.face_holes.len();
-        if holes > 0 {
-            return Err(RefineError::Holes { holes });
-        }
         let corners = self.corner_count();
         assert_eq!(
             numbers.names.items(),
@@ -256,6 +250,13 @@ impl CornerTable {
             }
         });
     }
+}
+
+/// Whether `c`, with `across` opposite to it, is the corner that names the edge.
+#[inline(always)]
+fn names_edge(c: CornerId, across: Slot<CornerId>) -> bool {
+    // An empty slot comes after every corner.
+    Slot::some(c) < across
 }
 
 /// The three rows of each triangle, from the one on that has the corner `first`.

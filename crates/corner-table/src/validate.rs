@@ -2,13 +2,15 @@
 
 use std::collections::HashSet;
 
-use mesh_core::{InvariantError, MeshQuery, Slot, VertexId, row};
+use mesh_core::{Editing, HoleSet, InvariantError, MeshQuery, Slot, Untraced, VertexId, row};
 
-use crate::mesh::{CornerId, CornerTable, NOWHERE};
+use crate::mesh::{AnyCornerTable, CornerId, NOWHERE};
 
 /// Checks that the columns fit each other, what was deleted, and I1 to I7 in turn; the later ones rely
 /// on the earlier ones.
-pub(crate) fn validate(mesh: &CornerTable) -> Result<(), InvariantError> {
+pub(crate) fn validate<E: Editing>(
+    mesh: &AnyCornerTable<Untraced, E>,
+) -> Result<(), InvariantError> {
     columns(mesh)?;
     holes(mesh)?;
     triangles(mesh)?;
@@ -24,11 +26,11 @@ fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> 
     Err(InvariantError::new(invariant, detail))
 }
 
-fn corners(mesh: &CornerTable) -> impl Iterator<Item = CornerId> {
+fn corners<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> impl Iterator<Item = CornerId> {
     mesh.faces().flat_map(|t| mesh.corners_of(t))
 }
 
-fn columns(mesh: &CornerTable) -> Result<(), InvariantError> {
+fn columns<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     let (corners, opposites) = (mesh.vertex_rows().len(), mesh.opposite_rows().len());
     if !corners.is_multiple_of(3) || opposites != corners {
         let detail = format!("{corners} corners, {opposites} with an opposite, are no triangles");
@@ -40,7 +42,7 @@ fn columns(mesh: &CornerTable) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn holes(mesh: &CornerTable) -> Result<(), InvariantError> {
+fn holes<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     let rows = [
         (&mesh.vertex_holes, mesh.positions().len()),
         (&mesh.face_holes, mesh.vertex_rows().len() / 3),
@@ -68,7 +70,7 @@ fn holes(mesh: &CornerTable) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn triangles(mesh: &CornerTable) -> Result<(), InvariantError> {
+fn triangles<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     for t in mesh.faces() {
         let [a, b, c] = mesh.vertices_of(t);
         if a == b || b == c || c == a {
@@ -83,7 +85,7 @@ fn triangles(mesh: &CornerTable) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn opposites(mesh: &CornerTable) -> Result<(), InvariantError> {
+fn opposites<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     for c in corners(mesh) {
         if let Some(across) = mesh.opposite(c) {
             if across.index() >= mesh.vertex_rows().len() {
@@ -97,7 +99,7 @@ fn opposites(mesh: &CornerTable) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn sides_agree(mesh: &CornerTable) -> Result<(), InvariantError> {
+fn sides_agree<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     for c in corners(mesh) {
         if let Some(across) = mesh.opposite(c) {
             let here = [c.next(), c.prev()].map(|c| mesh.vertex(c));
@@ -111,7 +113,7 @@ fn sides_agree(mesh: &CornerTable) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn a_corner_each(mesh: &CornerTable) -> Result<(), InvariantError> {
+fn a_corner_each<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     let mut used = vec![false; mesh.positions().len()];
     for c in corners(mesh) {
         used[mesh.vertex(c).index()] = true;
@@ -130,7 +132,7 @@ fn a_corner_each(mesh: &CornerTable) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn fans_start(mesh: &CornerTable) -> Result<(), InvariantError> {
+fn fans_start<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     for c in corners(mesh).filter(|&c| mesh.unswing(c).is_none()) {
         let v = mesh.vertex(c);
         let entered = mesh.corner_at(v).and_then(|first| mesh.unswing(first));
@@ -142,7 +144,7 @@ fn fans_start(mesh: &CornerTable) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn one_fan_each(mesh: &CornerTable) -> Result<(), InvariantError> {
+fn one_fan_each<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     let mut all = vec![0_usize; mesh.positions().len()];
     for c in corners(mesh) {
         all[mesh.vertex(c).index()] += 1;
@@ -159,7 +161,7 @@ fn one_fan_each(mesh: &CornerTable) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn edges_differ(mesh: &CornerTable) -> Result<(), InvariantError> {
+fn edges_differ<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     let mut ends = HashSet::new();
     for e in mesh.edges() {
         let [a, b] = mesh.edge_vertices(e);
@@ -178,18 +180,19 @@ mod tests {
     use mesh_core::{Point, PolygonMesh, Representation, Table};
 
     use super::*;
+    use crate::mesh::EditableCornerTable;
 
-    fn table<const N: usize>(vertices: u16, triangles: [[u32; 3]; N]) -> CornerTable {
+    fn table<const N: usize>(vertices: u16, triangles: [[u32; 3]; N]) -> EditableCornerTable {
         let positions: Vec<_> = (0..vertices).map(|i| Point::splat(i.into())).collect();
         let polygons = PolygonMesh::new(positions, triangles).expect("valid");
-        let mesh = CornerTable::from_polygons(&polygons).expect("manifold");
+        let mesh = EditableCornerTable::from_polygons(&polygons).expect("manifold");
         assert_eq!(mesh.validate(), Ok(()));
         mesh
     }
 
     /// The invariant that fails once `break_it` has had its way with a fan of two triangles around
     /// v0 (corners 0 and 3; 1 and 5 are opposite), and an isolated v4.
-    fn broken(break_it: impl Fn(&mut CornerTable)) -> &'static str {
+    fn broken(break_it: impl Fn(&mut EditableCornerTable)) -> &'static str {
         let mut mesh = table(5, [[0, 1, 2], [0, 2, 3]]);
         break_it(&mut mesh);
         mesh.validate().expect_err("the mesh is broken").invariant
@@ -203,7 +206,7 @@ mod tests {
     fn each_broken_invariant_is_named() {
         let v = VertexId::new;
         // I1: a column too short, a vertex that is not there, one that is there twice.
-        let short = |m: &CornerTable| m.vertex_rows()[..4].to_vec();
+        let short = |m: &EditableCornerTable| m.vertex_rows()[..4].to_vec();
         assert_eq!(
             broken(|m| m.vertex = Table::new("vertex", "corner", short(m))),
             "I1"
@@ -235,7 +238,7 @@ mod tests {
         assert_eq!(broken(|m| m.vertex.rows_mut()[2] = NOWHERE), "I8");
         assert_eq!(broken(|m| m.opposite.rows_mut()[2] = c(2)), "I8");
         assert_eq!(broken(|m| m.vertex_holes.dig(1)), "I8");
-        let orphan = |m: &mut CornerTable| {
+        let orphan = |m: &mut EditableCornerTable| {
             m.vertex_holes.dig(1);
             m.corner.rows_mut()[1] = Slot::NONE;
         };

@@ -2,4 +2,4 @@
 
 conformance::suite!(corner_table::CornerTable);
 conformance::refine_suite!(corner_table::CornerTable);
-conformance::edit_suite!(corner_table::CornerTable);
+conformance::edit_suite!(corner_table::EditableCornerTable);

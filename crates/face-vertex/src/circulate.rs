@@ -1,9 +1,9 @@
 //! Walks that several queries share.
 
-use mesh_core::{FaceId, IteratorExt, Pair, Probe, VertexId};
+use mesh_core::{Editing, FaceId, IteratorExt, Pair, Probe, VertexId};
 use rustc_hash::FxHashSet;
 
-use crate::mesh::FaceVertexMesh;
+use crate::mesh::AnyFaceVertexMesh;
 
 /// How many handles an answer holds in place.
 const FEW: usize = 32;
@@ -101,7 +101,7 @@ impl Ring {
     }
 }
 
-impl<P: Probe> FaceVertexMesh<P> {
+impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
     /// The vertices beside `v` in its faces, each once.
     ///
     /// A small fan is answered in place; a large one through a hash set, so that a vertex of

@@ -1,14 +1,14 @@
 //! In and out.
 
 use mesh_core::{
-    BuildError, Capabilities, Counts, FaceId, FaceList, FaceSpans, Holes, InvariantError,
-    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
-    Table, VertexId, VertexMap, row,
+    BuildError, Capabilities, Counts, Editing, FACE_HOLES, FaceId, FaceList, FaceSpans, HoleSet,
+    InvariantError, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost,
+    Representation, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap, row,
 };
 
-use crate::mesh::{FaceVertexMesh, Fan};
+use crate::mesh::{AnyFaceVertexMesh, Fan};
 
-impl Representation for FaceVertexMesh {
+impl<E: Editing> Representation for AnyFaceVertexMesh<Untraced, E> {
     const NAME: &'static str = "face-vertex";
 
     const CAPABILITIES: Capabilities = Capabilities::ALL;
@@ -20,7 +20,7 @@ impl Representation for FaceVertexMesh {
         ]
     };
 
-    type Probed<P: Probe> = FaceVertexMesh<P>;
+    type Probed<P: Probe> = AnyFaceVertexMesh<P, E>;
 
     /// Copies the face list, then sorts the faces by the vertices they name; O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
@@ -29,11 +29,11 @@ impl Representation for FaceVertexMesh {
         Ok(Self {
             positions: Table::new("positions", "vertex", polygons.positions().to_vec()),
             corners: Table::new("corners", "corner", faces.corners().to_vec()),
-            spans: faces.spans(),
+            spans: E::spans(faces.spans()),
             fans: Table::new("fans", "vertex", fans),
             pool: Table::new("pool", "place", pool),
-            vertex_holes: Holes::none("vertex holes"),
-            face_holes: Holes::none("face holes"),
+            vertex_holes: E::no_holes(VERTEX_HOLES, Untraced),
+            face_holes: E::no_holes(FACE_HOLES, Untraced),
         })
     }
 
@@ -59,11 +59,10 @@ impl Representation for FaceVertexMesh {
             }
         };
         let positions = self.positions.rows();
-        let vertices = self.vertex_holes.rows(positions.len());
         let positions = if self.vertex_holes.is_empty() {
             positions.to_vec()
         } else {
-            vertices.map(|v| positions[v as usize]).collect()
+            self.vertices().map(|v| positions[v.index()]).collect()
         };
         let faces = faces.expect("I1 holds");
         PolygonMesh::from_faces(positions, faces).expect("I1 holds")
@@ -104,15 +103,15 @@ impl Representation for FaceVertexMesh {
         self.check_invariants()
     }
 
-    fn probed<P: Probe>(self, probe: P) -> FaceVertexMesh<P> {
-        FaceVertexMesh {
+    fn probed<P: Probe>(self, probe: P) -> AnyFaceVertexMesh<P, E> {
+        AnyFaceVertexMesh {
             positions: self.positions.probed(probe.clone()),
             corners: self.corners.probed(probe.clone()),
             spans: self.spans.probed(probe.clone()),
             fans: self.fans.probed(probe.clone()),
             pool: self.pool.probed(probe.clone()),
-            vertex_holes: self.vertex_holes.probed(probe.clone()),
-            face_holes: self.face_holes.probed(probe),
+            vertex_holes: E::probed_holes(self.vertex_holes, probe.clone()),
+            face_holes: E::probed_holes(self.face_holes, probe),
         }
     }
 }
@@ -163,6 +162,7 @@ fn file_uniform<const DEGREE: usize>(corners: &[VertexId], mut file: impl FnMut(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::FaceVertexMesh;
 
     fn build(faces: &[&[u32]]) -> FaceVertexMesh {
         let square = [Point::ZERO, Point::X, Point::ONE, Point::Y, Point::Z];

@@ -3,7 +3,7 @@
 use std::hint::select_unpredictable;
 use std::ops::Range;
 
-use mesh_core::{FaceId, FaceSpans, MeshQuery, PART, Pair, VertexId, row};
+use mesh_core::{FaceId, FaceSpans, PART, Pair, VertexId, row};
 
 use crate::mesh::FaceVertexMesh;
 
@@ -26,8 +26,6 @@ pub struct EdgeNumbers {
     /// By vertex: one more than the last number of an edge of which it is the higher end. Of use
     /// while edges are numbered.
     met: Vec<u32>,
-    /// Where each face would start if all lay in a row; empty where they do.
-    pub(crate) starts: Vec<u32>,
 }
 
 /// Where some thousand edges begin: all those of some vertices in a row, which are their lower ends.
@@ -64,15 +62,7 @@ impl EdgeNumbers {
         let (mut edges, mut sides, mut last) = (0_u32, 0, 0);
         let mut upward = [[0; 2]; 2 * FEW];
         let mut in_order = Vec::new();
-        self.starts.clear();
-        if let FaceSpans::Scattered { .. } = mesh.spans {
-            let mut start = 0;
-            for f in mesh.faces() {
-                self.starts.push(start);
-                start += row(mesh.spans.range(f).len());
-            }
-        }
-        for v in mesh.vertices() {
+        for v in (0..row(mesh.fans.len())).map(VertexId::new) {
             if edges as usize - last >= PART {
                 last = edges as usize;
                 self.parts.push(EdgePart {
@@ -111,16 +101,6 @@ impl EdgeNumbers {
             edge: edges as usize,
             side: sides,
         });
-    }
-
-    /// These numbers for `mesh` with its faces in a row, though they lie anywhere.
-    pub(crate) fn in_a_row(&self, mesh: &FaceVertexMesh) -> Self {
-        let by_corner = |f| &self.by_corner[mesh.spans.range(f)];
-        Self {
-            by_corner: mesh.faces().flat_map(by_corner).copied().collect(),
-            parts: self.parts.clone(),
-            ..Self::default()
-        }
     }
 
     /// How many edges there are.
@@ -205,9 +185,7 @@ impl FaceVertexMesh {
         let blank = Pair::new(VertexId::new(0), VertexId::new(0));
         let mut edges = vec![blank; to.edge - from.edge];
         let mut sides = [[0; 2]; 2 * FEW];
-        let vertices = row(from.vertex)..row(to.vertex);
-        let vertices = vertices.filter(|&v| !self.vertex_holes.has(v as usize));
-        for v in vertices.map(VertexId::new) {
+        for v in (row(from.vertex)..row(to.vertex)).map(VertexId::new) {
             for faces in self.fan(v).chunks(FEW) {
                 let found = self.sides_upward::<DEGREE>(v, faces, &mut sides);
                 for &[corner, high] in &sides[..found] {

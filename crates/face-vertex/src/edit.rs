@@ -2,7 +2,7 @@
 //!
 //! It holds every polygon mesh, so an edit is legal wherever its own rule holds: no edge is full, no
 //! fan has to stay whole, and a collapse may leave edges with many faces and faces with the same
-//! corners. The costs, and what each edit writes, are with [`FaceVertexMesh`].
+//! corners. The costs, and what each edit writes, are with [`EditableFaceVertexMesh`].
 
 mod collapse;
 mod compact;
@@ -14,17 +14,32 @@ mod split_vertex;
 mod tests;
 
 use mesh_core::{
-    Edit, EditError, EditLog, FaceId, Few, MeshEdit, Pair, Point, Probe, QueryCost, Refusal,
-    VertexId, row,
+    Edit, EditError, EditLog, FaceId, Few, HoleSet, MeshEdit, NoHoles, Pair, Point, Probe,
+    QueryCost, Refusal, VertexId, row,
 };
 
 use self::corners::{from_corner, repeated, sides, third};
-use crate::mesh::{BLANK_CORNER, FaceVertexMesh, Fan};
+use crate::mesh::{AnyFaceVertexMesh, BLANK_CORNER, EditableFaceVertexMesh, FaceVertexMesh, Fan};
 
 type Edge = Pair<VertexId>;
 
-impl<P: Probe> MeshEdit for FaceVertexMesh<P> {
+impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
+
+    type Whole = FaceVertexMesh<P>;
+
+    fn into_whole(mut self) -> FaceVertexMesh<P> {
+        self.compact(&mut ());
+        AnyFaceVertexMesh {
+            positions: self.positions,
+            corners: self.corners,
+            spans: self.spans.into_whole().expect("compacted"),
+            fans: self.fans,
+            pool: self.pool,
+            vertex_holes: NoHoles,
+            face_holes: NoHoles,
+        }
+    }
 
     #[inline]
     fn set_position(
@@ -354,7 +369,7 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<P> {
     }
 }
 
-impl<P: Probe> FaceVertexMesh<P> {
+impl<P: Probe> EditableFaceVertexMesh<P> {
     /// Makes a hole of `f`, which is in no fan any more.
     fn delete_face(&mut self, f: FaceId) {
         self.spans.blank(&mut self.corners, f, BLANK_CORNER);
@@ -392,12 +407,12 @@ impl<P: Probe> FaceVertexMesh<P> {
 }
 
 /// Whether `log` wants to be told.
-fn listens<P: Probe, L: EditLog<FaceVertexMesh<P>>>(_: &L) -> bool {
+fn listens<P: Probe, L: EditLog<EditableFaceVertexMesh<P>>>(_: &L) -> bool {
     L::LISTENS
 }
 
 /// Tells that `m` cuts `e`, which is its lower half from now on.
-fn tell_split<P: Probe>(e: Edge, m: VertexId, log: &mut impl EditLog<FaceVertexMesh<P>>) {
+fn tell_split<P: Probe>(e: Edge, m: VertexId, log: &mut impl EditLog<EditableFaceVertexMesh<P>>) {
     let [low, high] = e.ends();
     log.created_vertex(m);
     log.renamed_edge(e, Pair::new(low, m));

@@ -18,4 +18,4 @@ mod splitting;
 mod validate;
 
 pub use edge_numbers::EdgeNumbers;
-pub use mesh::{FaceVertexMesh, Fan};
+pub use mesh::{AnyFaceVertexMesh, EditableFaceVertexMesh, FaceVertexMesh, Fan};

@@ -2,7 +2,10 @@
 
 use std::ops::Range;
 
-use mesh_core::{FaceId, FaceSpans, Holes, Point, Probe, Table, Untraced, VertexId};
+use mesh_core::{
+    Editable, Editing, FACE_HOLES, FaceId, FaceSpans, Point, Probe, Table, Untraced, VERTEX_HOLES,
+    VertexId, Whole,
+};
 
 /// Vertices and faces that know each other; edges are seen, not stored.
 ///
@@ -98,14 +101,35 @@ use mesh_core::{FaceId, FaceSpans, Holes, Point, Probe, Table, Untraced, VertexI
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct FaceVertexMesh<P: Probe = Untraced> {
+pub struct AnyFaceVertexMesh<P: Probe, E: Editing> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) corners: Table<VertexId, P>,
-    pub(crate) spans: FaceSpans<P>,
+    pub(crate) spans: FaceSpans<P, E>,
     pub(crate) fans: Table<Fan, P>,
     pub(crate) pool: Table<FaceId, P>,
-    pub(crate) vertex_holes: Holes<P>,
-    pub(crate) face_holes: Holes<P>,
+    pub(crate) vertex_holes: E::Holes<P>,
+    pub(crate) face_holes: E::Holes<P>,
+}
+
+/// A face-vertex mesh of which nothing can be deleted: [`AnyFaceVertexMesh`] whose rows are all elements.
+pub type FaceVertexMesh<P = Untraced> = AnyFaceVertexMesh<P, Whole>;
+
+/// A face-vertex mesh that can be edited ([`MeshEdit`](mesh_core::MeshEdit)): [`AnyFaceVertexMesh`] with holes.
+pub type EditableFaceVertexMesh<P = Untraced> = AnyFaceVertexMesh<P, Editable>;
+
+impl<P: Probe> From<FaceVertexMesh<P>> for EditableFaceVertexMesh<P> {
+    fn from(mesh: FaceVertexMesh<P>) -> Self {
+        let probe = mesh.positions.probe();
+        Self {
+            positions: mesh.positions,
+            corners: mesh.corners,
+            spans: mesh.spans.into(),
+            fans: mesh.fans,
+            pool: mesh.pool,
+            vertex_holes: Editable::no_holes(VERTEX_HOLES, probe.clone()),
+            face_holes: Editable::no_holes(FACE_HOLES, probe),
+        }
+    }
 }
 
 /// What a blank corner names: no vertex has so high a row.
@@ -139,7 +163,7 @@ impl Fan {
     }
 }
 
-impl<P: Probe> FaceVertexMesh<P> {
+impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
     /// Where each vertex is, as it lies in memory.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
@@ -151,7 +175,7 @@ impl<P: Probe> FaceVertexMesh<P> {
     }
 
     /// How the corners fall into faces.
-    pub fn spans(&self) -> &FaceSpans<P> {
+    pub fn spans(&self) -> &FaceSpans<P, E> {
         &self.spans
     }
 
@@ -173,7 +197,7 @@ impl<P: Probe> FaceVertexMesh<P> {
     #[inline(always)]
     pub fn face(&self, f: FaceId) -> &[VertexId] {
         let face = self.known_face(f);
-        if !self.face_holes.is_empty() && face.first() == Some(&BLANK_CORNER) {
+        if E::DELETES && face.first() == Some(&BLANK_CORNER) {
             deleted_face(f);
         }
         face
@@ -199,7 +223,7 @@ impl<P: Probe> FaceVertexMesh<P> {
     #[inline]
     pub(crate) fn places(&self, v: VertexId, fan: Fan) -> &[FaceId] {
         let range = fan.range();
-        if range.end > self.pool.len() {
+        if E::DELETES && range.end > self.pool.len() {
             deleted_vertex(v);
         }
         self.pool.read_range(range)

@@ -1,10 +1,10 @@
 //! The nine relations.
 
-use mesh_core::{FaceId, MeshQuery, Pair, Point, Probe, VertexId};
+use mesh_core::{Editing, FaceId, HoleSet, MeshQuery, Pair, Point, Probe, VertexId};
 
-use crate::mesh::{FaceVertexMesh, deleted_vertex};
+use crate::mesh::{AnyFaceVertexMesh, deleted_vertex};
 
-impl<P: Probe> MeshQuery for FaceVertexMesh<P> {
+impl<P: Probe, E: Editing> MeshQuery for AnyFaceVertexMesh<P, E> {
     type Vertex = VertexId;
     type Edge = Pair<VertexId>;
     type Face = FaceId;
@@ -38,12 +38,11 @@ impl<P: Probe> MeshQuery for FaceVertexMesh<P> {
 
     #[inline]
     fn position(&self, v: VertexId) -> Point {
-        // After the read, which need not wait for it then.
-        let at = *self.positions.read(v.index());
+        let at = self.positions.read(v.index());
         if self.vertex_holes.has(v.index()) {
             deleted_vertex(v);
         }
-        at
+        *at
     }
 
     #[inline]
@@ -120,6 +119,7 @@ mod tests {
     use mesh_core::{PolygonMesh, Representation, Traced};
 
     use super::*;
+    use crate::mesh::FaceVertexMesh;
 
     fn build(faces: impl IntoIterator<Item: AsRef<[u32]>>, vertices: usize) -> FaceVertexMesh {
         let polygons = PolygonMesh::new(vec![Point::ZERO; vertices], faces).expect("valid");

@@ -19,7 +19,7 @@
 //! edges of one lower end have their numbers in a row; so some vertices in a row write rows in a row.
 
 use mesh_core::{
-    Counts, FaceId, FaceSpans, Holes, MeshQuery, Pair, Point, Refine, RefineError, Split, Table,
+    Counts, FaceId, FaceSpans, MeshQuery, NoHoles, Pair, Point, Refine, RefineError, Split, Table,
     VertexId, check_split, row,
 };
 
@@ -41,8 +41,8 @@ impl Refine for FaceVertexMesh {
             },
             fans: Table::new("fans", "vertex", Vec::new()),
             pool: Table::new("pool", "place", Vec::new()),
-            vertex_holes: Holes::none("vertex holes"),
-            face_holes: Holes::none("face holes"),
+            vertex_holes: NoHoles,
+            face_holes: NoHoles,
         }
     }
 
@@ -82,23 +82,13 @@ impl Refine for FaceVertexMesh {
         numbers.by_corner[side as usize] as usize
     }
 
-    /// O(corners · degree + vertices), for the vertex of a fan is looked for in its face. Faces that
-    /// lie anywhere since their degrees were edited are put into a row first, in a copy of the mesh.
+    /// O(corners · degree + vertices), for the vertex of a fan is looked for in its face.
     fn split_into(
         &self,
         split: Split,
         numbers: &EdgeNumbers,
         child: &mut Self,
     ) -> Result<(), RefineError> {
-        let holes = self.vertex_holes.len() + self.face_holes.len();
-        if holes > 0 {
-            return Err(RefineError::Holes { holes });
-        }
-        if let FaceSpans::Scattered { .. } = self.spans {
-            let mut closed = self.clone();
-            closed.spans.compact(&mut closed.corners, &self.face_holes);
-            return closed.split_into(split, &numbers.in_a_row(self), child);
-        }
         let counts = Counts {
             vertices: self.fans.len(),
             edges: numbers.edges(),
@@ -120,8 +110,6 @@ impl Refine for FaceVertexMesh {
             degree: row(degree.unwrap_or(3)),
             faces: row(grown.faces),
         };
-        child.vertex_holes.fill();
-        child.face_holes.fill();
         match (split, &self.spans) {
             (Split::Quads, FaceSpans::Uniform { degree: 3, .. }) => {
                 self.splitting::<3, true>(numbers).fill(child);
@@ -136,14 +124,8 @@ impl Refine for FaceVertexMesh {
     }
 
     /// O(1), or O(log faces) where degrees are mixed.
-    fn parent(&self, numbers: &EdgeNumbers, split: Split, child: FaceId) -> FaceId {
+    fn parent(&self, _: &EdgeNumbers, split: Split, child: FaceId) -> FaceId {
         match split {
-            Split::Quads if !numbers.starts.is_empty() => {
-                let later = numbers
-                    .starts
-                    .partition_point(|&start| start <= row(child.index()));
-                FaceId::new(row(later - 1))
-            }
             Split::Quads => self.spans.face_of(child.index()),
             _ => FaceId::new(row(child.index() / 4)),
         }

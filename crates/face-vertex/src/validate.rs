@@ -1,10 +1,12 @@
 //! One check for each invariant.
 
-use mesh_core::{FaceId, InvariantError, IteratorExt, MeshQuery, Probe, VertexId, row};
+use mesh_core::{
+    Editing, FaceId, HoleSet, InvariantError, IteratorExt, MeshQuery, Probe, VertexId, row,
+};
 
-use crate::mesh::{BLANK_CORNER, BLANK_PLACE, FaceVertexMesh, Fan};
+use crate::mesh::{AnyFaceVertexMesh, BLANK_CORNER, BLANK_PLACE, Fan};
 
-impl<P: Probe> FaceVertexMesh<P> {
+impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
     pub(crate) fn check_invariants(&self) -> Result<(), InvariantError> {
         self.check_spans()?;
         self.check_faces()?;
@@ -137,22 +139,23 @@ mod tests {
     use mesh_core::{FaceSpans, Point, PolygonMesh, Representation, Table};
 
     use super::*;
+    use crate::mesh::EditableFaceVertexMesh;
 
     const SQUARE: [Point; 4] = [Point::ZERO, Point::X, Point::ONE, Point::Y];
 
-    fn mesh(faces: &[&[u32]]) -> FaceVertexMesh {
+    fn mesh(faces: &[&[u32]]) -> EditableFaceVertexMesh {
         let polygons = PolygonMesh::new(SQUARE, faces).expect("valid");
-        let mesh = FaceVertexMesh::from_polygons(&polygons).expect("holds everything");
+        let mesh = EditableFaceVertexMesh::from_polygons(&polygons).expect("holds everything");
         assert_eq!(mesh.validate(), Ok(()));
         mesh
     }
 
     /// Faces 0 1 2 and 0 2 3; fans of v0 at 0, v1 at 2, v2 at 3, v3 at 5.
-    fn triangles() -> FaceVertexMesh {
+    fn triangles() -> EditableFaceVertexMesh {
         mesh(&[&[0, 1, 2], &[0, 2, 3]])
     }
 
-    fn fault(mesh: &FaceVertexMesh) -> String {
+    fn fault(mesh: &EditableFaceVertexMesh) -> String {
         mesh.validate().expect_err("broken on purpose").to_string()
     }
 

@@ -2,4 +2,4 @@
 
 conformance::suite!(face_vertex::FaceVertexMesh);
 conformance::refine_suite!(face_vertex::FaceVertexMesh);
-conformance::edit_suite!(face_vertex::FaceVertexMesh);
+conformance::edit_suite!(face_vertex::EditableFaceVertexMesh);

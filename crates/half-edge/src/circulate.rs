@@ -1,14 +1,14 @@
 //! Walks around a vertex and along a face: ordinary iterators that end after one turn.
 
-use mesh_core::{EdgeId, FaceId, Probe, Slot, VertexId};
+use mesh_core::{EdgeId, Editing, FaceId, Probe, Slot, VertexId};
 
-use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh, deleted};
+use crate::mesh::{AnyHalfEdgeMesh, Half, HalfEdgeId, deleted};
 
 /// The half-edges that leave a vertex, clockwise: each step is `h → next(twin(h))`.
 #[derive(Clone, Debug)]
-pub struct Leaving<'a, P: Probe>(Spokes<'a, P>);
+pub struct Leaving<'a, P: Probe, E: Editing>(Spokes<'a, P, E>);
 
-impl<P: Probe> Iterator for Leaving<'_, P> {
+impl<P: Probe, E: Editing> Iterator for Leaving<'_, P, E> {
     type Item = HalfEdgeId;
 
     #[inline]
@@ -19,9 +19,9 @@ impl<P: Probe> Iterator for Leaving<'_, P> {
 
 /// The half-edges along a face, counter-clockwise: each step is `h → next(h)`.
 #[derive(Clone, Debug)]
-pub struct AroundFace<'a, P: Probe>(Sides<'a, P>);
+pub struct AroundFace<'a, P: Probe, E: Editing>(Sides<'a, P, E>);
 
-impl<P: Probe> Iterator for AroundFace<'_, P> {
+impl<P: Probe, E: Editing> Iterator for AroundFace<'_, P, E> {
     type Item = HalfEdgeId;
 
     #[inline]
@@ -30,14 +30,14 @@ impl<P: Probe> Iterator for AroundFace<'_, P> {
     }
 }
 
-impl<P: Probe> HalfEdgeMesh<P> {
+impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
     /// The half-edges that leave `v`, clockwise; from the boundary loop, if `v` is on one.
     ///
     /// # Panics
     ///
     /// If there is no such vertex.
     #[inline]
-    pub fn leaving(&self, v: VertexId) -> Leaving<'_, P> {
+    pub fn leaving(&self, v: VertexId) -> Leaving<'_, P, E> {
         Leaving(self.spokes(v))
     }
 
@@ -47,12 +47,12 @@ impl<P: Probe> HalfEdgeMesh<P> {
     ///
     /// If there is no such face.
     #[inline]
-    pub fn around_face(&self, f: FaceId) -> AroundFace<'_, P> {
+    pub fn around_face(&self, f: FaceId) -> AroundFace<'_, P, E> {
         AroundFace(self.sides(f))
     }
 
     #[inline]
-    pub(crate) fn spokes(&self, v: VertexId) -> Spokes<'_, P> {
+    pub(crate) fn spokes(&self, v: VertexId) -> Spokes<'_, P, E> {
         let at = self.half_leaving(v);
         Spokes {
             mesh: self,
@@ -62,7 +62,7 @@ impl<P: Probe> HalfEdgeMesh<P> {
     }
 
     #[inline]
-    pub(crate) fn sides(&self, f: FaceId) -> Sides<'_, P> {
+    pub(crate) fn sides(&self, f: FaceId) -> Sides<'_, P, E> {
         let first = self.half_along(f);
         Sides {
             mesh: self,
@@ -72,7 +72,7 @@ impl<P: Probe> HalfEdgeMesh<P> {
     }
 
     #[inline]
-    pub(crate) fn across(&self, f: FaceId) -> Across<'_, P> {
+    pub(crate) fn across(&self, f: FaceId) -> Across<'_, P, E> {
         Across(self.sides(f))
     }
 }
@@ -81,13 +81,13 @@ impl<P: Probe> HalfEdgeMesh<P> {
 ///
 /// The twin starts at the neighbour, has the next face on its left, and leads on to the next spoke.
 #[derive(Clone, Debug)]
-pub(crate) struct Spokes<'a, P: Probe> {
-    mesh: &'a HalfEdgeMesh<P>,
+pub(crate) struct Spokes<'a, P: Probe, E: Editing> {
+    mesh: &'a AnyHalfEdgeMesh<P, E>,
     at: Option<HalfEdgeId>,
     first: Option<HalfEdgeId>,
 }
 
-impl<'a, P: Probe> Iterator for Spokes<'a, P> {
+impl<'a, P: Probe, E: Editing> Iterator for Spokes<'a, P, E> {
     type Item = (HalfEdgeId, &'a Half);
 
     #[inline]
@@ -118,13 +118,13 @@ impl<'a, P: Probe> Iterator for Spokes<'a, P> {
 
 /// Each half along a face, with its record.
 #[derive(Clone, Debug)]
-pub(crate) struct Sides<'a, P: Probe> {
-    mesh: &'a HalfEdgeMesh<P>,
+pub(crate) struct Sides<'a, P: Probe, E: Editing> {
+    mesh: &'a AnyHalfEdgeMesh<P, E>,
     at: Option<HalfEdgeId>,
     first: HalfEdgeId,
 }
 
-impl<'a, P: Probe> Iterator for Sides<'a, P> {
+impl<'a, P: Probe, E: Editing> Iterator for Sides<'a, P, E> {
     type Item = (HalfEdgeId, &'a Half);
 
     #[inline]
@@ -154,9 +154,9 @@ impl<'a, P: Probe> Iterator for Sides<'a, P> {
 
 /// The face across each side of a face; a step reads the two halves of an edge, which lie together.
 #[derive(Clone, Debug)]
-pub(crate) struct Across<'a, P: Probe>(Sides<'a, P>);
+pub(crate) struct Across<'a, P: Probe, E: Editing>(Sides<'a, P, E>);
 
-impl<P: Probe> Iterator for Across<'_, P> {
+impl<P: Probe, E: Editing> Iterator for Across<'_, P, E> {
     type Item = Slot<FaceId>;
 
     #[inline]
@@ -172,19 +172,19 @@ impl<P: Probe> Iterator for Across<'_, P> {
 
 /// The edges at both ends of an edge, but for itself: two walks that start and end at its halves.
 #[derive(Clone, Debug)]
-pub(crate) struct EdgeEdges<'a, P: Probe> {
-    mesh: &'a HalfEdgeMesh<P>,
+pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
+    mesh: &'a AnyHalfEdgeMesh<P, E>,
     at: HalfEdgeId,
     stop: HalfEdgeId,
     then: Option<HalfEdgeId>,
 }
 
-impl<'a, P: Probe> EdgeEdges<'a, P> {
+impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
     #[inline]
-    pub(crate) fn new(mesh: &'a HalfEdgeMesh<P>, e: EdgeId) -> Self {
+    pub(crate) fn new(mesh: &'a AnyHalfEdgeMesh<P, E>, e: EdgeId) -> Self {
         let [one, other] = mesh.halves_of(e);
         let half = mesh.halves.read(other.index());
-        if half.is_deleted() {
+        if E::DELETES && half.is_deleted() {
             deleted(e);
         }
         let at = half.next;
@@ -197,7 +197,7 @@ impl<'a, P: Probe> EdgeEdges<'a, P> {
     }
 }
 
-impl<P: Probe> Iterator for EdgeEdges<'_, P> {
+impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
     type Item = EdgeId;
 
     #[inline]

@@ -1,21 +1,21 @@
 //! In from polygons, and out again.
 
 use mesh_core::{
-    BuildError, Capabilities, Counts, FaceId, FaceList, InvariantError, MemoryFootprint, MeshQuery,
-    MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, RowMap, Slot, TwinPairs,
-    VertexId, row,
+    BuildError, Capabilities, Counts, Editing, FaceId, FaceList, HoleSet, InvariantError,
+    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
+    RowMap, Slot, TwinPairs, Untraced, VertexId, row,
 };
 
-use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+use crate::mesh::{AnyHalfEdgeMesh, Half, HalfEdgeId};
 
-impl Representation for HalfEdgeMesh {
+impl<E: Editing> Representation for AnyHalfEdgeMesh<Untraced, E> {
     const NAME: &'static str = "half-edge";
 
     const CAPABILITIES: Capabilities = Capabilities::ORIENTED_MANIFOLDS;
 
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
 
-    type Probed<P: Probe> = HalfEdgeMesh<P>;
+    type Probed<P: Probe> = AnyHalfEdgeMesh<P, E>;
 
     /// Pairs the sides, links the faces in turn, then closes each hole with a boundary loop;
     /// O(corners + vertices), without hashing.
@@ -100,15 +100,15 @@ impl Representation for HalfEdgeMesh {
         crate::validate::validate(self)
     }
 
-    fn probed<P: Probe>(self, probe: P) -> HalfEdgeMesh<P> {
-        HalfEdgeMesh {
+    fn probed<P: Probe>(self, probe: P) -> AnyHalfEdgeMesh<P, E> {
+        AnyHalfEdgeMesh {
             positions: self.positions.probed(probe.clone()),
             leaving: self.leaving.probed(probe.clone()),
             halves: self.halves.probed(probe.clone()),
             first: self.first.probed(probe.clone()),
-            vertex_holes: self.vertex_holes.probed(probe.clone()),
-            edge_holes: self.edge_holes.probed(probe.clone()),
-            face_holes: self.face_holes.probed(probe),
+            vertex_holes: E::probed_holes(self.vertex_holes, probe.clone()),
+            edge_holes: E::probed_holes(self.edge_holes, probe.clone()),
+            face_holes: E::probed_holes(self.face_holes, probe),
         }
     }
 }

@@ -11,14 +11,14 @@ mod split_vertex;
 mod tests;
 
 use mesh_core::{
-    EdgeId, Edit, EditError, EditLog, FaceId, MAX_ROWS, MeshEdit, MeshQuery, Point, Probe,
-    QueryCost, Slot, VertexId, row,
+    EdgeId, Edit, EditError, EditLog, FaceId, HoleSet, MAX_ROWS, MeshEdit, MeshQuery, NoHoles,
+    Point, Probe, QueryCost, Slot, VertexId, row,
 };
 
-use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh, NO_HALF};
+use crate::mesh::{AnyHalfEdgeMesh, EditableHalfEdgeMesh, Half, HalfEdgeId, HalfEdgeMesh, NO_HALF};
 
 /// Why an edit is refused; the same whatever the probe.
-type Refusal = mesh_core::Refusal<HalfEdgeMesh>;
+type Refusal = mesh_core::Refusal<EditableHalfEdgeMesh>;
 
 /// Surgery on twin pairs: halves are relinked, and each edit is a handful of rows (the operators of
 /// Mäntylä 1988, made for meshes without stored `prev`).
@@ -28,8 +28,23 @@ type Refusal = mesh_core::Refusal<HalfEdgeMesh>;
 ///
 /// Every edit that touches a vertex sees to `leaving` (I5): where the boundary half goes, that which
 /// takes its place on the boundary loop takes it here.
-impl<P: Probe> MeshEdit for HalfEdgeMesh<P> {
+impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
+
+    type Whole = HalfEdgeMesh<P>;
+
+    fn into_whole(mut self) -> HalfEdgeMesh<P> {
+        self.compact(&mut ());
+        AnyHalfEdgeMesh {
+            positions: self.positions,
+            leaving: self.leaving,
+            halves: self.halves,
+            first: self.first,
+            vertex_holes: NoHoles,
+            edge_holes: NoHoles,
+            face_holes: NoHoles,
+        }
+    }
 
     fn set_position(
         &mut self,
@@ -162,7 +177,7 @@ impl<P: Probe> MeshEdit for HalfEdgeMesh<P> {
 }
 
 /// What is there, and whether there is room for more.
-impl<P: Probe> HalfEdgeMesh<P> {
+impl<P: Probe> EditableHalfEdgeMesh<P> {
     #[inline]
     fn check_vertex(&self, v: VertexId) -> Result<(), Refusal> {
         if v.index() < self.vertex_rows() && !self.vertex_holes.has(v.index()) {
@@ -214,7 +229,7 @@ impl<P: Probe> HalfEdgeMesh<P> {
 }
 
 /// The steps that edits share.
-impl<P: Probe> HalfEdgeMesh<P> {
+impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// The record of `h`.
     #[inline]
     fn row_of(&self, h: HalfEdgeId) -> Half {

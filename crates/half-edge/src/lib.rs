@@ -82,4 +82,4 @@ mod refine;
 mod validate;
 
 pub use circulate::{AroundFace, Leaving};
-pub use mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+pub use mesh::{AnyHalfEdgeMesh, EditableHalfEdgeMesh, Half, HalfEdgeId, HalfEdgeMesh};

@@ -2,7 +2,10 @@
 
 use std::fmt::Debug;
 
-use mesh_core::{EdgeId, FaceId, Holes, Point, Probe, Slot, Table, Untraced, VertexId, row_id};
+use mesh_core::{
+    EDGE_HOLES, EdgeId, Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe, Slot, Table,
+    Untraced, VERTEX_HOLES, VertexId, Whole, row_id,
+};
 
 row_id! {
     /// The name of one half-edge, `h7`; the halves of edge `e` are `2e` and `2e + 1`.
@@ -89,17 +92,38 @@ pub(crate) const NO_HALF: HalfEdgeId = HalfEdgeId::new(u32::MAX);
 /// words, per vertex of a large closed triangle mesh. Once something is deleted, a bit for each
 /// vertex, edge or face up to it.
 #[derive(Clone, Debug)]
-pub struct HalfEdgeMesh<P: Probe = Untraced> {
+pub struct AnyHalfEdgeMesh<P: Probe, E: Editing> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) leaving: Table<Slot<HalfEdgeId>, P>,
     pub(crate) halves: Table<Half, P>,
     pub(crate) first: Table<HalfEdgeId, P>,
-    pub(crate) vertex_holes: Holes<P>,
-    pub(crate) edge_holes: Holes<P>,
-    pub(crate) face_holes: Holes<P>,
+    pub(crate) vertex_holes: E::Holes<P>,
+    pub(crate) edge_holes: E::Holes<P>,
+    pub(crate) face_holes: E::Holes<P>,
 }
 
-impl HalfEdgeMesh {
+/// A half-edge mesh of which nothing can be deleted: [`AnyHalfEdgeMesh`] whose rows are all elements.
+pub type HalfEdgeMesh<P = Untraced> = AnyHalfEdgeMesh<P, Whole>;
+
+/// A half-edge mesh that can be edited ([`MeshEdit`](mesh_core::MeshEdit)): [`AnyHalfEdgeMesh`] with holes.
+pub type EditableHalfEdgeMesh<P = Untraced> = AnyHalfEdgeMesh<P, Editable>;
+
+impl<P: Probe> From<HalfEdgeMesh<P>> for EditableHalfEdgeMesh<P> {
+    fn from(mesh: HalfEdgeMesh<P>) -> Self {
+        let probe = mesh.positions.probe();
+        Self {
+            positions: mesh.positions,
+            leaving: mesh.leaving,
+            halves: mesh.halves,
+            first: mesh.first,
+            vertex_holes: Editable::no_holes(VERTEX_HOLES, probe.clone()),
+            edge_holes: Editable::no_holes(EDGE_HOLES, probe.clone()),
+            face_holes: Editable::no_holes(FACE_HOLES, probe),
+        }
+    }
+}
+
+impl<E: Editing> AnyHalfEdgeMesh<Untraced, E> {
     /// A mesh of these tables, without holes.
     pub(crate) fn of_tables(
         positions: Vec<Point>,
@@ -112,15 +136,15 @@ impl HalfEdgeMesh {
             leaving: Table::new("leaving", "vertex", leaving),
             halves: Table::new("halves", "half-edge", halves),
             first: Table::new("first", "face", first),
-            vertex_holes: Holes::none("vertex holes"),
-            edge_holes: Holes::none("edge holes"),
-            face_holes: Holes::none("face holes"),
+            vertex_holes: E::no_holes(VERTEX_HOLES, Untraced),
+            edge_holes: E::no_holes(EDGE_HOLES, Untraced),
+            face_holes: E::no_holes(FACE_HOLES, Untraced),
         }
     }
 }
 
 /// The classic operators. Each panics, and names the half-edge, if the mesh does not have it.
-impl<P: Probe> HalfEdgeMesh<P> {
+impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
     /// The next half along the face or the boundary loop; O(1).
     #[inline]
     pub fn next(&self, h: HalfEdgeId) -> HalfEdgeId {
@@ -210,7 +234,7 @@ impl<P: Probe> HalfEdgeMesh<P> {
     #[inline]
     pub fn half_along(&self, f: FaceId) -> HalfEdgeId {
         let first = *self.first.read(f.index());
-        if first == NO_HALF {
+        if E::DELETES && first == NO_HALF {
             deleted(f);
         }
         first
@@ -236,7 +260,7 @@ impl<P: Probe> HalfEdgeMesh<P> {
     #[inline]
     fn half(&self, h: HalfEdgeId) -> &Half {
         let half = self.halves.read(h.index());
-        if half.is_deleted() {
+        if E::DELETES && half.is_deleted() {
             deleted(h);
         }
         half
@@ -258,7 +282,7 @@ pub(crate) fn deleted(handle: impl Debug) -> ! {
 
 /// The tables as they lie in memory, for export and for loops of one's own; what the rows of
 /// deleted elements hold says I9.
-impl<P: Probe> HalfEdgeMesh<P> {
+impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
     /// Positions by vertex.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()

@@ -1,11 +1,13 @@
 //! The nine relations.
 
-use mesh_core::{DistinctWalk, EdgeId, FaceId, MeshQuery, Point, Probe, VertexId};
+use mesh_core::{
+    DistinctWalk, EdgeId, Editing, FaceId, HoleSet, MeshQuery, Point, Probe, VertexId,
+};
 
 use crate::circulate::EdgeEdges;
-use crate::mesh::{Half, HalfEdgeMesh, deleted};
+use crate::mesh::{AnyHalfEdgeMesh, Half, deleted};
 
-impl<P: Probe> MeshQuery for HalfEdgeMesh<P> {
+impl<P: Probe, E: Editing> MeshQuery for AnyHalfEdgeMesh<P, E> {
     type Vertex = VertexId;
     type Edge = EdgeId;
     type Face = FaceId;
@@ -39,12 +41,11 @@ impl<P: Probe> MeshQuery for HalfEdgeMesh<P> {
 
     #[inline]
     fn position(&self, v: VertexId) -> Point {
-        // The read comes first: asked before it, the question made sweeps of the corner table slower.
-        let at = *self.positions.read(v.index());
+        let at = self.positions.read(v.index());
         if self.vertex_holes.has(v.index()) {
             deleted(v);
         }
-        at
+        *at
     }
 
     #[inline]
@@ -117,12 +118,12 @@ impl<P: Probe> MeshQuery for HalfEdgeMesh<P> {
     }
 }
 
-impl<P: Probe> HalfEdgeMesh<P> {
+impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
     /// The two halves of an edge that is there.
     #[inline]
     fn pair(&self, e: EdgeId) -> &[Half; 2] {
         let pair = self.halves.read_pair(e.index());
-        if pair[0].is_deleted() {
+        if E::DELETES && pair[0].is_deleted() {
             deleted(e);
         }
         pair

@@ -60,10 +60,6 @@ impl Refine for HalfEdgeMesh {
         numbers: &Ranks,
         child: &mut Self,
     ) -> Result<(), RefineError> {
-        let holes = self.hole_count();
-        if holes > 0 {
-            return Err(RefineError::Holes { holes });
-        }
         let halves = self.half_edge_count();
         assert_eq!(numbers.items(), halves, "the numbers are of another mesh");
         let (corners, boundary) = (numbers.members(), numbers.missing());
@@ -85,9 +81,6 @@ impl Refine for HalfEdgeMesh {
         child.leaving.resize(grown.vertices, Slot::NONE);
         child.halves.resize(2 * grown.edges, BLANK);
         child.first.resize(grown.faces, HalfEdgeId::new(0));
-        child.vertex_holes.fill();
-        child.edge_holes.fill();
-        child.face_holes.fill();
         // Compiled once for closed meshes, where nothing has to be looked up.
         if boundary == 0 {
             self.split_checked(split, &Corners::<true>(numbers), child);

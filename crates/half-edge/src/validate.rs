@@ -2,12 +2,14 @@
 
 use std::collections::HashSet;
 
-use mesh_core::{FaceId, InvariantError, MeshQuery, RowId, VertexId};
+use mesh_core::{Editing, FaceId, HoleSet, InvariantError, MeshQuery, RowId, Untraced, VertexId};
 
-use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh, NO_HALF};
+use crate::mesh::{AnyHalfEdgeMesh, Half, HalfEdgeId, NO_HALF};
 
 /// Checks I9, and then I1 to I8 in turn; the later ones rely on the earlier ones.
-pub(crate) fn validate(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+pub(crate) fn validate<E: Editing>(
+    mesh: &AnyHalfEdgeMesh<Untraced, E>,
+) -> Result<(), InvariantError> {
     pairs(mesh)?;
     holes(mesh)?;
     names_exist(mesh)?;
@@ -26,11 +28,11 @@ fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> 
 }
 
 /// All halves that are there.
-fn halves(mesh: &HalfEdgeMesh) -> impl Iterator<Item = HalfEdgeId> {
+fn halves<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> impl Iterator<Item = HalfEdgeId> {
     mesh.edges().flat_map(|e| mesh.halves_of(e))
 }
 
-fn pairs(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+fn pairs<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     match mesh.half_rows().len() {
         rows if rows.is_multiple_of(2) => Ok(()),
         rows => fails("I1", format!("{rows} half-edges are no pairs")),
@@ -38,7 +40,7 @@ fn pairs(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
 }
 
 /// The rows of what is deleted, and no others, are marked so.
-fn holes(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+fn holes<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let kinds = [
         (&mesh.vertex_holes, mesh.vertex_rows()),
         (&mesh.edge_holes, mesh.edge_rows()),
@@ -69,7 +71,7 @@ fn holes(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
 }
 
 /// Every name in the tables is that of a row that is no hole: without it no other check could walk.
-fn names_exist(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+fn names_exist<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let is_vertex =
         |v: VertexId| v.index() < mesh.vertex_rows() && !mesh.vertex_holes.has(v.index());
     let is_half = |h: HalfEdgeId| {
@@ -91,14 +93,16 @@ fn names_exist(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
     }
 }
 
-fn one_face_at_least(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+fn one_face_at_least<E: Editing>(
+    mesh: &AnyHalfEdgeMesh<Untraced, E>,
+) -> Result<(), InvariantError> {
     match halves(mesh).find(|&h| mesh.is_boundary(h) && mesh.is_boundary(h.twin())) {
         Some(h) => fails("I1", format!("{} has no face on either side", h.edge())),
         None => Ok(()),
     }
 }
 
-fn permutation(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+fn permutation<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let mut reached = vec![false; mesh.half_rows().len()];
     for h in halves(mesh) {
         let next = mesh.next(h);
@@ -109,7 +113,7 @@ fn permutation(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn faces_agree(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+fn faces_agree<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     match halves(mesh).find(|&h| mesh.face(mesh.next(h)) != mesh.face(h)) {
         Some(h) => fails(
             "I3",
@@ -119,14 +123,14 @@ fn faces_agree(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
     }
 }
 
-fn ends_meet(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+fn ends_meet<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     match halves(mesh).find(|&h| mesh.origin(mesh.next(h)) != mesh.target(h)) {
         Some(h) => fails("I4", format!("{h} does not end where its next starts")),
         None => Ok(()),
     }
 }
 
-fn leaving_halves(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+fn leaving_halves<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     for h in halves(mesh) {
         let v = mesh.origin(h);
         let Some(leaving) = mesh.half_leaving(v) else {
@@ -153,7 +157,7 @@ fn leaving_halves(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn one_fan_each(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+fn one_fan_each<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let mut leaving = vec![0_usize; mesh.vertex_rows()];
     for h in halves(mesh) {
         leaving[mesh.origin(h).index()] += 1;
@@ -171,7 +175,7 @@ fn one_fan_each(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn faces(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+fn faces<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let mut along = 0;
     for f in mesh.faces() {
         let h = mesh.half_along(f);
@@ -195,7 +199,7 @@ fn faces(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn edges_differ(mesh: &HalfEdgeMesh) -> Result<(), InvariantError> {
+fn edges_differ<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let mut ends = HashSet::new();
     for e in mesh.edges() {
         let [a, b] = mesh.edge_vertices(e);
@@ -214,16 +218,17 @@ mod tests {
     use mesh_core::{Point, PolygonMesh, Representation, Slot};
 
     use super::*;
+    use crate::mesh::EditableHalfEdgeMesh;
 
     /// A square of two triangles and an isolated vertex.
-    fn sound() -> HalfEdgeMesh {
+    fn sound() -> EditableHalfEdgeMesh {
         let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y, Point::Z];
         let polygons = PolygonMesh::new(corners, [[0, 1, 2], [0, 2, 3]]).expect("valid");
-        HalfEdgeMesh::from_polygons(&polygons).expect("manifold")
+        EditableHalfEdgeMesh::from_polygons(&polygons).expect("manifold")
     }
 
     /// The invariant that fails once `break_it` has had its way.
-    fn broken(break_it: impl Fn(&mut HalfEdgeMesh)) -> &'static str {
+    fn broken(break_it: impl Fn(&mut EditableHalfEdgeMesh)) -> &'static str {
         let mut mesh = sound();
         assert_eq!(mesh.validate(), Ok(()));
         break_it(&mut mesh);
@@ -272,7 +277,7 @@ mod tests {
             broken(|m| m.leaving.rows_mut()[4] = m.leaving.rows()[2]),
             "I5"
         );
-        let along = |m: &HalfEdgeMesh, f| m.half_along(FaceId::new(f));
+        let along = |m: &EditableHalfEdgeMesh, f| m.half_along(FaceId::new(f));
         assert_eq!(broken(|m| m.first.rows_mut()[0] = along(m, 1)), "I7");
         assert_eq!(broken(|m| m.vertex_holes.dig(0)), "I9");
         assert_eq!(broken(|m| m.vertex_holes.dig(5)), "I9");
@@ -315,7 +320,7 @@ mod tests {
         // Two triangles that share no vertex; then one vertex of each is made the same.
         let corners = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0].map(Point::splat);
         let polygons = PolygonMesh::new(corners, [[0, 1, 2], [3, 4, 5]]).expect("valid");
-        let mut mesh = HalfEdgeMesh::from_polygons(&polygons).expect("manifold");
+        let mut mesh = EditableHalfEdgeMesh::from_polygons(&polygons).expect("manifold");
         for half in mesh.halves.rows_mut() {
             if half.origin == VertexId::new(5) {
                 half.origin = VertexId::new(0);
@@ -332,7 +337,7 @@ mod tests {
         let corners = [0.0, 1.0, 2.0, 3.0].map(Point::splat);
         let faces = [[0, 1, 2], [1, 0, 3]];
         let polygons = PolygonMesh::new(corners, faces).expect("valid");
-        let mut mesh = HalfEdgeMesh::from_polygons(&polygons).expect("manifold");
+        let mut mesh = EditableHalfEdgeMesh::from_polygons(&polygons).expect("manifold");
         for half in mesh.halves.rows_mut() {
             if half.origin == VertexId::new(3) {
                 half.origin = VertexId::new(2);

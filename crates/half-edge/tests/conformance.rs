@@ -2,4 +2,4 @@
 
 conformance::suite!(half_edge::HalfEdgeMesh);
 conformance::refine_suite!(half_edge::HalfEdgeMesh);
-conformance::edit_suite!(half_edge::HalfEdgeMesh);
+conformance::edit_suite!(half_edge::EditableHalfEdgeMesh);

@@ -1,14 +1,14 @@
 //! In and out.
 
 use mesh_core::{
-    BuildError, Capabilities, Counts, FaceId, FaceList, FaceSpans, Holes, InvariantError,
-    MemoryFootprint, MeshQuery, MoveError, Point, PolygonError, PolygonMesh, Probe, QueryCost,
-    Representation, ScannedFaces, Table, VertexId, VertexMap,
+    BuildError, Capabilities, Counts, Editing, FaceId, FaceList, FaceSpans, HoleSet,
+    InvariantError, MemoryFootprint, MeshQuery, MoveError, Point, PolygonError, PolygonMesh, Probe,
+    QueryCost, Representation, ScannedFaces, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap,
 };
 
-use crate::mesh::IndexedFaceSet;
+use crate::mesh::AnyIndexedFaceSet;
 
-impl Representation for IndexedFaceSet {
+impl<E: Editing> Representation for AnyIndexedFaceSet<Untraced, E> {
     const NAME: &'static str = "indexed-face-set";
 
     const CAPABILITIES: Capabilities = Capabilities::ALL;
@@ -20,14 +20,14 @@ impl Representation for IndexedFaceSet {
         ]
     };
 
-    type Probed<P: Probe> = IndexedFaceSet<P>;
+    type Probed<P: Probe> = AnyIndexedFaceSet<P, E>;
 
     /// Copies positions and corners; O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let faces = polygons.faces();
         Ok(Self {
             positions: Table::new("positions", "vertex", polygons.positions().to_vec()),
-            vertex_holes: Holes::none("vertex holes"),
+            vertex_holes: E::no_holes(VERTEX_HOLES, Untraced),
             faces: ScannedFaces::new(faces.corners().to_vec(), faces.spans()),
         })
     }
@@ -72,16 +72,16 @@ impl Representation for IndexedFaceSet {
         self.check_invariants()
     }
 
-    fn probed<P: Probe>(self, probe: P) -> IndexedFaceSet<P> {
-        IndexedFaceSet {
+    fn probed<P: Probe>(self, probe: P) -> AnyIndexedFaceSet<P, E> {
+        AnyIndexedFaceSet {
             positions: self.positions.probed(probe.clone()),
-            vertex_holes: self.vertex_holes.probed(probe.clone()),
+            vertex_holes: E::probed_holes(self.vertex_holes, probe.clone()),
             faces: self.faces.probed(probe),
         }
     }
 }
 
-impl<P: Probe> IndexedFaceSet<P> {
+impl<P: Probe, E: Editing> AnyIndexedFaceSet<P, E> {
     /// The faces, by vertices numbered without a gap.
     fn faces_without_holes(&self) -> Result<FaceList, PolygonError> {
         let mut faces = FaceList::with_capacity(self.corners().len());

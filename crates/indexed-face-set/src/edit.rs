@@ -1,13 +1,13 @@
 //! Editing: the faces by [`ScannedFaces`](mesh_core::ScannedFaces), and the table of vertices beside.
 
 use mesh_core::{
-    Edit, EditError, EditLog, FaceId, MAX_ROWS, MeshEdit, MeshQuery, Pair, Point, Probe, QueryCost,
-    Refusal, VertexId, row,
+    Edit, EditError, EditLog, FaceId, HoleSet, MAX_ROWS, MeshEdit, MeshQuery, NoHoles, Pair, Point,
+    Probe, QueryCost, Refusal, VertexId, row,
 };
 
-use crate::mesh::IndexedFaceSet;
+use crate::mesh::{AnyIndexedFaceSet, EditableIndexedFaceSet, IndexedFaceSet};
 
-impl<P: Probe> MeshEdit for IndexedFaceSet<P> {
+impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
         let constant = Some(QueryCost::Constant);
         let local = Some(QueryCost::Local);
@@ -30,6 +30,17 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<P> {
             scan,     // compact
         ]
     };
+
+    type Whole = IndexedFaceSet<P>;
+
+    fn into_whole(mut self) -> IndexedFaceSet<P> {
+        self.compact(&mut ());
+        AnyIndexedFaceSet {
+            positions: self.positions,
+            faces: self.faces.into_whole().expect("compacted"),
+            vertex_holes: NoHoles,
+        }
+    }
 
     /// O(1).
     fn set_position(
@@ -237,7 +248,7 @@ fn listens<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
     L::LISTENS
 }
 
-impl<P: Probe> IndexedFaceSet<P> {
+impl<P: Probe> EditableIndexedFaceSet<P> {
     fn check(&self, v: VertexId) -> Result<(), Refusal<Self>> {
         match self.has(v) {
             true => Ok(()),
@@ -265,9 +276,9 @@ mod tests {
 
     const SQUARE: [Point; 4] = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
 
-    fn square() -> IndexedFaceSet {
+    fn square() -> EditableIndexedFaceSet {
         let polygons = PolygonMesh::new(SQUARE, [[0, 1, 2], [0, 2, 3]]).expect("valid");
-        IndexedFaceSet::from_polygons(&polygons).expect("anything is held")
+        EditableIndexedFaceSet::from_polygons(&polygons).expect("anything is held")
     }
 
     fn v<const N: usize>(names: [u32; N]) -> [VertexId; N] {

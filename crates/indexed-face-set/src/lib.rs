@@ -47,4 +47,4 @@ mod mesh;
 mod query;
 mod validate;
 
-pub use mesh::IndexedFaceSet;
+pub use mesh::{AnyIndexedFaceSet, EditableIndexedFaceSet, IndexedFaceSet};

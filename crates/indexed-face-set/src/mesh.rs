@@ -1,6 +1,9 @@
 //! The structure itself.
 
-use mesh_core::{FaceId, FaceSpans, Holes, Point, Probe, ScannedFaces, Table, Untraced, VertexId};
+use mesh_core::{
+    Editable, Editing, FaceId, FaceSpans, HoleSet, Point, Probe, ScannedFaces, Table, Untraced,
+    VERTEX_HOLES, VertexId, Whole,
+};
 
 /// Vertices with positions, and faces as lists of vertices.
 ///
@@ -63,13 +66,30 @@ use mesh_core::{FaceId, FaceSpans, Holes, Point, Probe, ScannedFaces, Table, Unt
 /// `remove_vertex` and `split_face` scan once more. Nothing but a handle that names nothing, or the
 /// rule of the edit itself, makes one illegal: any polygon mesh is held.
 #[derive(Clone, Debug)]
-pub struct IndexedFaceSet<P: Probe = Untraced> {
+pub struct AnyIndexedFaceSet<P: Probe, E: Editing> {
     pub(crate) positions: Table<Point, P>,
-    pub(crate) vertex_holes: Holes<P>,
-    pub(crate) faces: ScannedFaces<VertexId, P>,
+    pub(crate) vertex_holes: E::Holes<P>,
+    pub(crate) faces: ScannedFaces<VertexId, P, E>,
 }
 
-impl<P: Probe> IndexedFaceSet<P> {
+/// An indexed face set of which nothing can be deleted: [`AnyIndexedFaceSet`] whose rows are all elements.
+pub type IndexedFaceSet<P = Untraced> = AnyIndexedFaceSet<P, Whole>;
+
+/// An indexed face set that can be edited ([`MeshEdit`](mesh_core::MeshEdit)): [`AnyIndexedFaceSet`] with holes.
+pub type EditableIndexedFaceSet<P = Untraced> = AnyIndexedFaceSet<P, Editable>;
+
+impl<P: Probe> From<IndexedFaceSet<P>> for EditableIndexedFaceSet<P> {
+    fn from(mesh: IndexedFaceSet<P>) -> Self {
+        let probe = mesh.positions.probe();
+        Self {
+            positions: mesh.positions,
+            faces: mesh.faces.into(),
+            vertex_holes: Editable::no_holes(VERTEX_HOLES, probe),
+        }
+    }
+}
+
+impl<P: Probe, E: Editing> AnyIndexedFaceSet<P, E> {
     /// Where each vertex is, as it lies in memory, deleted ones included.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
@@ -81,7 +101,7 @@ impl<P: Probe> IndexedFaceSet<P> {
     }
 
     /// How the corners fall into faces, deleted ones included.
-    pub fn spans(&self) -> &FaceSpans<P> {
+    pub fn spans(&self) -> &FaceSpans<P, E> {
         &self.faces.spans
     }
 

@@ -1,10 +1,10 @@
 //! The nine relations.
 
-use mesh_core::{FaceId, MeshQuery, Pair, Point, Probe, VertexId};
+use mesh_core::{Editing, FaceId, HoleSet, MeshQuery, Pair, Point, Probe, VertexId};
 
-use crate::mesh::IndexedFaceSet;
+use crate::mesh::AnyIndexedFaceSet;
 
-impl<P: Probe> MeshQuery for IndexedFaceSet<P> {
+impl<P: Probe, E: Editing> MeshQuery for AnyIndexedFaceSet<P, E> {
     type Vertex = VertexId;
     type Edge = Pair<VertexId>;
     type Face = FaceId;
@@ -110,6 +110,7 @@ mod tests {
     use mesh_core::{PolygonMesh, Representation};
 
     use super::*;
+    use crate::mesh::IndexedFaceSet;
 
     #[test]
     fn a_vertex_of_very_many_faces_has_each_edge_once() {

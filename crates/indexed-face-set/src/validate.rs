@@ -1,10 +1,10 @@
 //! One check for each invariant.
 
-use mesh_core::{InvariantError, IteratorExt, MeshQuery, Probe};
+use mesh_core::{Editing, HoleSet, InvariantError, IteratorExt, MeshQuery, Probe};
 
-use crate::mesh::IndexedFaceSet;
+use crate::mesh::AnyIndexedFaceSet;
 
-impl<P: Probe> IndexedFaceSet<P> {
+impl<P: Probe, E: Editing> AnyIndexedFaceSet<P, E> {
     /// Checks I1, then I3 and I2, which rely on it.
     pub(crate) fn check_invariants(&self) -> Result<(), InvariantError> {
         self.check_spans()?;
@@ -49,14 +49,14 @@ mod tests {
         VertexId,
     };
 
-    use super::*;
+    use crate::mesh::EditableIndexedFaceSet;
 
     const CORNERS: [Point; 5] = [Point::ZERO, Point::X, Point::ONE, Point::Y, Point::Z];
 
     /// The invariant that fails once `break_it` has had its way with a mesh of these faces.
-    fn broken(faces: &[&[u32]], break_it: impl Fn(&mut IndexedFaceSet)) -> &'static str {
+    fn broken(faces: &[&[u32]], break_it: impl Fn(&mut EditableIndexedFaceSet)) -> &'static str {
         let polygons = PolygonMesh::new(CORNERS, faces).expect("valid");
-        let mut mesh = IndexedFaceSet::from_polygons(&polygons).expect("anything is held");
+        let mut mesh = EditableIndexedFaceSet::from_polygons(&polygons).expect("anything is held");
         assert_eq!(mesh.validate(), Ok(()));
         break_it(&mut mesh);
         mesh.validate().expect_err("the mesh is broken").invariant
@@ -68,7 +68,7 @@ mod tests {
     #[test]
     fn spans_that_do_not_divide_the_corners_break_i1() {
         let uniform = |degree, faces| {
-            move |mesh: &mut IndexedFaceSet| {
+            move |mesh: &mut EditableIndexedFaceSet| {
                 mesh.faces.spans = FaceSpans::Uniform { degree, faces };
             }
         };
@@ -84,7 +84,7 @@ mod tests {
             &[0, 3, 7],
             &[0, 3, 7, 11],
         ] {
-            let mixed = |mesh: &mut IndexedFaceSet| {
+            let mixed = |mesh: &mut EditableIndexedFaceSet| {
                 mesh.faces.spans =
                     FaceSpans::Mixed(Table::new("offsets", "face", offsets.to_vec()));
             };
@@ -96,7 +96,7 @@ mod tests {
     fn corners_that_name_no_vertex_or_one_twice_break_i2() {
         for faces in [TRIANGLES, MIXED] {
             let name = |corner: usize, v| {
-                move |mesh: &mut IndexedFaceSet| {
+                move |mesh: &mut EditableIndexedFaceSet| {
                     mesh.faces.corners.rows_mut()[corner] = VertexId::new(v);
                 }
             };
@@ -108,15 +108,15 @@ mod tests {
     #[test]
     fn holes_that_are_used_and_blanks_that_are_no_holes_break_i3() {
         for faces in [TRIANGLES, MIXED] {
-            let blank = |mesh: &mut IndexedFaceSet| {
+            let blank = |mesh: &mut EditableIndexedFaceSet| {
                 mesh.faces.corners.rows_mut()[4] = VertexId::BLANK;
             };
             assert_eq!(broken(faces, blank), "I3");
-            let used = |mesh: &mut IndexedFaceSet| mesh.faces.holes.dig(1);
+            let used = |mesh: &mut EditableIndexedFaceSet| mesh.faces.holes.dig(1);
             assert_eq!(broken(faces, used), "I3");
-            let beyond = |mesh: &mut IndexedFaceSet| mesh.vertex_holes.dig(5);
+            let beyond = |mesh: &mut EditableIndexedFaceSet| mesh.vertex_holes.dig(5);
             assert_eq!(broken(faces, beyond), "I3");
-            let revived = |mesh: &mut IndexedFaceSet| {
+            let revived = |mesh: &mut EditableIndexedFaceSet| {
                 let f = FaceId::new(1);
                 mesh.remove_face(f, &mut ()).expect("it is there");
                 assert_eq!(mesh.validate(), Ok(()));
@@ -124,7 +124,7 @@ mod tests {
             };
             assert_eq!(broken(faces, revived), "I3");
             // A vertex that is no longer there is named: that is for I2.
-            let named = |mesh: &mut IndexedFaceSet| mesh.vertex_holes.dig(2);
+            let named = |mesh: &mut EditableIndexedFaceSet| mesh.vertex_holes.dig(2);
             assert_eq!(broken(faces, named), "I2");
         }
     }

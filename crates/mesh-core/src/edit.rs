@@ -122,6 +122,13 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// structure refuses it whatever the mesh.
     const EDITS: [Option<QueryCost>; Edit::ALL.len()];
 
+    /// The same structure without holes, whose queries need not ask for them: [`Whole`](crate::Whole).
+    type Whole: MeshQuery<Vertex = Self::Vertex, Edge = Self::Edge, Face = Self::Face> + Into<Self>;
+
+    /// Closes all holes, and no more are made; O(mesh) if there are any. Back goes
+    /// [`Into`](MeshEdit::Whole), in O(1).
+    fn into_whole(self) -> Self::Whole;
+
     /// Moves `v` to `to`; the vertex by the name it has then.
     ///
     /// # Errors

@@ -115,11 +115,6 @@ pub enum RefineError {
         "face {face} has {degree} corners, and only triangles can be split so: triangulate the mesh"
     )]
     NotATriangle { face: FaceId, degree: usize },
-    /// A mesh with holes, which deleting left in its tables.
-    #[error(
-        "the tables have {holes} holes, and closed forms need rows without a gap: compact the mesh first"
-    )]
-    Holes { holes: usize },
     /// Two triangles with two edges in common, whose midpoints or face points the split would join twice.
     #[error(
         "faces {first} and {second} share two edges, so the refined mesh would have two edges with the same ends: cut one of the two faces first, or choose a structure that holds edges with more than two faces"

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::editing::{Editable, Editing, HoleSet, Whole};
 use crate::holes::Holes;
 use crate::memory::TableBytes;
 use crate::probe::{Probe, Untraced};
@@ -13,7 +14,7 @@ use crate::table::Table;
 /// Structures keep the corners themselves: vertices, or points. A face that is deleted keeps its row
 /// and its corners until the mesh is compacted; the corners are blank then, so that no scan finds them.
 #[derive(Clone, Debug)]
-pub enum FaceSpans<P: Probe = Untraced> {
+pub enum FaceSpans<P: Probe = Untraced, E: Editing = Whole> {
     /// Every face has `degree` corners.
     Uniform {
         /// The corners of each face.
@@ -24,40 +25,98 @@ pub enum FaceSpans<P: Probe = Untraced> {
     /// Face `f` has the corners `offsets[f]..offsets[f + 1]`.
     Mixed(Table<u32, P>),
     /// Faces whose degrees have been edited lie anywhere, with blank corners between them.
-    Scattered {
-        /// By face.
-        spans: Table<Span, P>,
-        /// By corner: the face that has it.
-        owners: Table<Slot<FaceId>, P>,
-    },
+    Scattered(E::Scattered<P>),
+}
+
+/// Faces that lie anywhere among the corners.
+#[derive(Clone, Debug)]
+pub struct ScatteredFaces<P: Probe = Untraced> {
+    /// By face.
+    spans: Table<Span, P>,
+    /// By corner: the face that has it.
+    owners: Table<Slot<FaceId>, P>,
+}
+
+impl<P: Probe> AsRef<Self> for ScatteredFaces<P> {
+    fn as_ref(&self) -> &Self {
+        self
+    }
+}
+
+impl<P: Probe> ScatteredFaces<P> {
+    /// The same faces watched by `probe`.
+    pub fn probed<Q: Probe>(self, probe: Q) -> ScatteredFaces<Q> {
+        ScatteredFaces {
+            spans: self.spans.probed(probe.clone()),
+            owners: self.owners.probed(probe),
+        }
+    }
+
+    #[inline]
+    fn range(&self, face: FaceId) -> Range<usize> {
+        if face.index() >= self.spans.len() {
+            no_such_face(face, self.spans.len());
+        }
+        self.spans.read(face.index()).range()
+    }
+
+    fn owner(&self, corner: usize) -> FaceId {
+        let owner = self.owners.read(corner).get();
+        owner.expect("a corner between faces is blank, and nobody finds it")
+    }
+
+    /// Whether each face owns its corners, three or more, and no corner is owned beside.
+    fn check(&self, corners: usize) -> Result<(), String> {
+        let owners = self.owners.rows();
+        if owners.len() != corners {
+            return Err(format!("{} owners of {corners} corners", owners.len()));
+        }
+        let mut owned = 0;
+        for face in (0..row(self.spans.len())).map(FaceId::new) {
+            let range = self.range(face);
+            let its_own = owners.get(range.clone());
+            let its_own = its_own.is_some_and(|o| o.iter().all(|o| o.get() == Some(face)));
+            if range.len() < 3 || !its_own {
+                return Err(format!("{face} has the corners {range:?} of {corners}"));
+            }
+            owned += range.len();
+        }
+        let with_owner = owners.iter().filter(|owner| owner.get().is_some()).count();
+        if with_owner != owned {
+            return Err(format!(
+                "{with_owner} corners have an owner, {owned} are a face's"
+            ));
+        }
+        Ok(())
+    }
 }
 
 /// Where the corners of one face are, in a table where faces lie anywhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Span {
+struct Span {
     /// The first.
-    pub start: u32,
+    start: u32,
     /// How many there are.
-    pub len: u32,
+    len: u32,
 }
 
 impl Span {
     /// The rows of all.
     #[inline]
-    pub fn range(self) -> Range<usize> {
+    fn range(self) -> Range<usize> {
         let start = self.start as usize;
         start..start + self.len as usize
     }
 }
 
-impl<P: Probe> FaceSpans<P> {
+impl<P: Probe, E: Editing> FaceSpans<P, E> {
     /// How many rows of faces there are, deleted ones included.
     #[inline]
     pub fn len(&self) -> usize {
         match self {
             Self::Uniform { faces, .. } => *faces as usize,
             Self::Mixed(offsets) => offsets.len() - 1,
-            Self::Scattered { spans, .. } => spans.len(),
+            Self::Scattered(faces) => faces.as_ref().spans.len(),
         }
     }
 
@@ -88,12 +147,7 @@ impl<P: Probe> FaceSpans<P> {
                 }
                 *offsets.read(f) as usize..*offsets.read(f + 1) as usize
             }
-            Self::Scattered { spans, .. } => {
-                if f >= spans.len() {
-                    no_such_face(face, spans.len());
-                }
-                spans.read(f).range()
-            }
+            Self::Scattered(faces) => faces.as_ref().range(face),
         }
     }
 
@@ -120,10 +174,7 @@ impl<P: Probe> FaceSpans<P> {
                 }
                 low
             }
-            Self::Scattered { owners, .. } => {
-                let owner = owners.read(corner).get();
-                return owner.expect("a corner between faces is blank, and nobody finds it");
-            }
+            Self::Scattered(faces) => return faces.as_ref().owner(corner),
         };
         FaceId::new(row(face))
     }
@@ -154,8 +205,8 @@ impl<P: Probe> FaceSpans<P> {
         {
             return Err("the offsets lack even a first".to_owned());
         }
-        if let Self::Scattered { owners, .. } = self {
-            return self.check_scattered(owners, corners);
+        if let Self::Scattered(faces) = self {
+            return faces.as_ref().check(corners);
         }
         let mut end = 0;
         for face in (0..row(self.len())).map(FaceId::new) {
@@ -171,43 +222,12 @@ impl<P: Probe> FaceSpans<P> {
         Ok(())
     }
 
-    fn check_scattered(
-        &self,
-        owners: &Table<Slot<FaceId>, P>,
-        corners: usize,
-    ) -> Result<(), String> {
-        if owners.len() != corners {
-            return Err(format!("{} owners of {corners} corners", owners.len()));
-        }
-        let mut owned = 0;
-        for face in (0..row(self.len())).map(FaceId::new) {
-            let range = self.range(face);
-            let are_its_own = owners.rows().get(range.clone());
-            let are_its_own = are_its_own.is_some_and(|o| o.iter().all(|o| o.get() == Some(face)));
-            if range.len() < 3 || !are_its_own {
-                return Err(format!("{face} has the corners {range:?} of {corners}"));
-            }
-            owned += range.len();
-        }
-        let with_owner = owners.rows().iter().filter(|owner| owner.get().is_some());
-        let with_owner = with_owner.count();
-        if with_owner != owned {
-            return Err(format!(
-                "{with_owner} corners have an owner, {owned} are a face's"
-            ));
-        }
-        Ok(())
-    }
-
     /// The same spans watched by `probe`.
-    pub fn probed<Q: Probe>(self, probe: Q) -> FaceSpans<Q> {
+    pub fn probed<Q: Probe>(self, probe: Q) -> FaceSpans<Q, E> {
         match self {
             Self::Uniform { degree, faces } => FaceSpans::Uniform { degree, faces },
             Self::Mixed(offsets) => FaceSpans::Mixed(offsets.probed(probe)),
-            Self::Scattered { spans, owners } => FaceSpans::Scattered {
-                spans: spans.probed(probe.clone()),
-                owners: owners.probed(probe),
-            },
+            Self::Scattered(faces) => FaceSpans::Scattered(E::probed_faces(faces, probe)),
         }
     }
 
@@ -216,15 +236,36 @@ impl<P: Probe> FaceSpans<P> {
         let [one, two] = match self {
             Self::Uniform { .. } => [None, None],
             Self::Mixed(offsets) => [Some(offsets.bytes()), None],
-            Self::Scattered { spans, owners } => [Some(spans.bytes()), Some(owners.bytes())],
+            Self::Scattered(faces) => {
+                let ScatteredFaces { spans, owners } = faces.as_ref();
+                [Some(spans.bytes()), Some(owners.bytes())]
+            }
         };
         one.into_iter().chain(two)
     }
 }
 
+impl<P: Probe> From<FaceSpans<P>> for FaceSpans<P, Editable> {
+    fn from(spans: FaceSpans<P>) -> Self {
+        match spans {
+            FaceSpans::Uniform { degree, faces } => Self::Uniform { degree, faces },
+            FaceSpans::Mixed(offsets) => Self::Mixed(offsets),
+        }
+    }
+}
+
 /// Edits. `corners` is the table that these spans divide; whether a handle can name one more face or
 /// corner, the caller has asked.
-impl<P: Probe> FaceSpans<P> {
+impl<P: Probe> FaceSpans<P, Editable> {
+    /// The same spans of a mesh that has no holes, unless faces are scattered.
+    pub fn into_whole(self) -> Option<FaceSpans<P>> {
+        match self {
+            Self::Uniform { degree, faces } => Some(FaceSpans::Uniform { degree, faces }),
+            Self::Mixed(offsets) => Some(FaceSpans::Mixed(offsets)),
+            Self::Scattered(_) => None,
+        }
+    }
+
     /// Adds a face at the end of the table; O(degree) amortised. The first face of another degree
     /// brings a table of spans; O(corners), once.
     pub fn push<T: Copy>(&mut self, corners: &mut Table<T, P>, face: &[T]) -> FaceId {
@@ -245,7 +286,7 @@ impl<P: Probe> FaceSpans<P> {
         match self {
             Self::Uniform { .. } => unreachable!("scattered above"),
             Self::Mixed(offsets) => offsets.push(row(corners.len())),
-            Self::Scattered { spans, owners } => {
+            Self::Scattered(ScatteredFaces { spans, owners }) => {
                 spans.push(Span {
                     start: row(start),
                     len: row(face.len()),
@@ -269,7 +310,7 @@ impl<P: Probe> FaceSpans<P> {
         } else {
             corners.len()..corners.len() + face.len()
         };
-        if let Self::Scattered { spans, owners } = self
+        if let Self::Scattered(ScatteredFaces { spans, owners }) = self
             && range != old
         {
             *spans.write(f.index()) = Span {
@@ -316,7 +357,7 @@ impl<P: Probe> FaceSpans<P> {
                 corners.give_back();
             }
             Self::Mixed(_) if holes.is_empty() => {}
-            Self::Mixed(_) | Self::Scattered { .. } => {
+            Self::Mixed(_) | Self::Scattered(_) => {
                 let mut list = Vec::with_capacity(corners.len());
                 let mut offsets = vec![0];
                 let mut degrees = [usize::MAX, 0];
@@ -341,7 +382,7 @@ impl<P: Probe> FaceSpans<P> {
 
     /// Lets faces lie anywhere from now on; O(corners), unless they do already.
     fn scatter<T>(&mut self, corners: &Table<T, P>) {
-        if let Self::Scattered { .. } = self {
+        if let Self::Scattered(_) = self {
             return;
         }
         let mut spans = Vec::with_capacity(self.len());
@@ -354,10 +395,10 @@ impl<P: Probe> FaceSpans<P> {
             });
             owners.extend(range.map(|_| Slot::some(f)));
         }
-        *self = Self::Scattered {
+        *self = Self::Scattered(ScatteredFaces {
             spans: corners.beside("spans", "face", spans),
             owners: corners.beside("owners", "corner", owners),
-        };
+        });
     }
 }
 
@@ -423,7 +464,11 @@ mod tests {
     const BLANK: u32 = 99;
 
     /// The faces that are no holes, and whether spans and corners agree.
-    fn faces(spans: &FaceSpans, corners: &Table<u32>, holes: &Holes) -> Vec<Vec<u32>> {
+    fn faces(
+        spans: &FaceSpans<Untraced, Editable>,
+        corners: &Table<u32>,
+        holes: &Holes,
+    ) -> Vec<Vec<u32>> {
         assert_eq!(spans.check(corners.len()), Ok(()));
         let live = holes.handles(spans.len());
         let live = live.map(|f| corners.rows()[spans.range(f)].to_vec());
@@ -433,7 +478,7 @@ mod tests {
     #[test]
     fn faces_are_added_rewritten_deleted_and_closed_up() {
         for degrees in [&[][..], &[3, 3, 3], &[4, 3, 5], &[4, 4]] {
-            let mut spans = list(degrees).spans();
+            let mut spans = FaceSpans::from(list(degrees).spans());
             let all: Vec<Vec<u32>> = degrees.iter().map(|&d| (10..10 + d).collect()).collect();
             let mut corners = Table::new("corners", "corner", all.concat());
             let mut holes = Holes::none("face holes");
@@ -469,7 +514,7 @@ mod tests {
             holes.fill();
             assert_eq!(faces(&spans, &corners, &holes), expected);
             assert!(corners.rows().iter().all(|&c| c != BLANK));
-            assert!(!matches!(spans, FaceSpans::Scattered { .. }));
+            assert!(!matches!(spans, FaceSpans::Scattered(_)));
             let one_degree = expected.iter().all(|f| f.len() == expected[0].len());
             assert_eq!(matches!(spans, FaceSpans::Uniform { .. }), one_degree);
         }
@@ -477,7 +522,7 @@ mod tests {
 
     #[test]
     fn one_degree_stays_one_degree() {
-        let mut spans = list(&[3, 3, 3]).spans();
+        let mut spans = FaceSpans::from(list(&[3, 3, 3]).spans());
         let mut corners = Table::new("corners", "corner", (0..9).collect());
         let mut holes = Holes::none("face holes");
         spans.rewrite(&mut corners, FaceId::new(1), &[7, 7, 7], BLANK);

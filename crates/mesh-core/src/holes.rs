@@ -1,5 +1,6 @@
 //! Rows that are there no longer: what deleting leaves behind until a mesh is compacted.
 
+use crate::editing::HoleSet;
 use crate::memory::TableBytes;
 use crate::probe::{Probe, Untraced};
 use crate::row_id::{RowId, row};
@@ -15,7 +16,7 @@ const WORD: usize = u64::BITS as usize;
 /// hole        •     • •        rows() = 0 1 3 4 7     new_rows()[4] = 3
 /// ```
 ///
-/// Nothing at all is kept until the first row is deleted: a mesh that is only queried pays nothing.
+/// Nothing at all is kept until the first row is deleted.
 #[derive(Clone, Debug)]
 pub struct Holes<P: Probe = Untraced> {
     /// A word for 64 rows; rows beyond the last word are no holes.
@@ -40,26 +41,6 @@ impl<P: Probe> Holes<P> {
             words: self.words.probed(probe),
             count: self.count,
         }
-    }
-
-    /// How many holes there are; O(1).
-    #[inline]
-    pub fn len(&self) -> usize {
-        self.count
-    }
-
-    /// Whether there is no hole; O(1).
-    #[inline]
-    pub fn is_empty(&self) -> bool {
-        self.count == 0
-    }
-
-    /// Whether `row` is a hole; O(1). A row that was never there is none.
-    #[inline]
-    pub fn has(&self, row: usize) -> bool {
-        self.count > 0
-            && row / WORD < self.words.len()
-            && self.words.read(row / WORD) >> (row % WORD) & 1 == 1
     }
 
     /// Makes a hole of `row`; O(1) amortised: the first hole beyond all words brings words up to it.
@@ -96,43 +77,34 @@ impl<P: Probe> Holes<P> {
             },
         }
     }
+}
 
-    /// The same rows as handles.
+impl<P: Probe> HoleSet<P> for Holes<P> {
     #[inline]
-    pub fn handles<H: RowId>(&self, end: usize) -> impl Iterator<Item = H> + Clone + use<'_, H, P> {
+    fn len(&self) -> usize {
+        self.count
+    }
+
+    #[inline]
+    fn has(&self, row: usize) -> bool {
+        self.count > 0
+            && row / WORD < self.words.len()
+            && self.words.read(row / WORD) >> (row % WORD) & 1 == 1
+    }
+
+    #[inline]
+    fn handles<H: RowId>(&self, end: usize) -> impl Iterator<Item = H> + Clone {
         self.rows(end).map(H::from_row)
     }
 
-    /// For each row below `end` the row it has once all holes are closed up: as many as there are
-    /// rows before it that are no holes. O(end).
-    pub fn new_rows(&self, end: usize) -> Vec<u32> {
-        let mut new = 0;
-        let mut rows = Vec::with_capacity(end);
-        for row in 0..end {
-            rows.push(new);
-            new += u32::from(!self.has(row));
-        }
-        rows
-    }
-
-    /// The name and the bytes of the bits, if there are any.
-    pub fn bytes(&self) -> Option<TableBytes> {
+    fn bytes(&self) -> Option<TableBytes> {
         let bytes = self.words.bytes();
         (bytes.bytes > 0).then_some(bytes)
     }
 
-    /// Whether `count` bits are set, all of them of rows below `end`: what is wrong if not.
-    ///
-    /// # Errors
-    ///
-    /// A sentence.
-    pub fn check(&self, end: usize) -> Result<(), String> {
-        let bits: usize = self
-            .words
-            .rows()
-            .iter()
-            .map(|w| w.count_ones() as usize)
-            .sum();
+    fn check(&self, end: usize) -> Result<(), String> {
+        let words = self.words.rows().iter();
+        let bits: usize = words.map(|word| word.count_ones() as usize).sum();
         let below = end - self.rows(end).count();
         if bits != self.count || below != self.count {
             let name = self.words.bytes().table;

@@ -9,6 +9,7 @@
 //! - [`Refine`] and [`Split`]: structures that split every face in their own tables.
 //! - [`MeshEdit`], [`EditRecord`] and [`EditError`]: changing a mesh in place, what became of its
 //!   names, and why not; [`Holes`]: the rows that deleting leaves.
+//! - [`Whole`] and [`Editable`]: meshes of which nothing can be deleted, and the others, as types.
 //! - [`ScannedFaces`]: queries and edits of structures that find the faces at a vertex by a scan.
 //! - [`Creases`]: how sharp edges and vertices stay under subdivision.
 //! - [`Facts`]: the topology of a face list, exact and independent of any structure.
@@ -21,6 +22,7 @@ mod distinct;
 mod edit;
 mod edit_error;
 mod edit_log;
+mod editing;
 mod error;
 mod face_list;
 mod face_spans;
@@ -51,9 +53,12 @@ pub use distinct::{Distinct, DistinctWalk, IteratorExt};
 pub use edit::{Edit, MeshEdit, Refusal};
 pub use edit_error::EditError;
 pub use edit_log::{Changes, EditLog, EditRecord, OldToNew};
+pub use editing::{
+    EDGE_HOLES, Editable, Editing, FACE_HOLES, HoleSet, NoFaces, NoHoles, VERTEX_HOLES, Whole,
+};
 pub use error::{BuildError, CreaseError, InvariantError, MoveError, PolygonError, RefineError};
 pub use face_list::FaceList;
-pub use face_spans::{FaceSpans, Span};
+pub use face_spans::{FaceSpans, ScatteredFaces};
 pub use facts::{Facts, Spread};
 pub use few::{Few, Lookup};
 pub use glam::Vec3 as Point;

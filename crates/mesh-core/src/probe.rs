@@ -1,9 +1,10 @@
 //! Watching what a query reads.
 
+use std::fmt::Debug;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What watches the reads and writes of a [`Table`](crate::Table).
-pub trait Probe: Clone + Send + Sync {
+pub trait Probe: Clone + Debug + Send + Sync {
     /// `bytes` bytes of row `row` of `table` are read.
     fn read(&self, table: &'static str, row: usize, bytes: usize);
 

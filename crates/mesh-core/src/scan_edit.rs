@@ -14,6 +14,7 @@ mod split_vertex;
 
 use crate::edit_error::EditError;
 use crate::edit_log::EditLog;
+use crate::editing::Editable;
 use crate::few::Few;
 use crate::handle::Pair;
 use crate::probe::Probe;
@@ -34,7 +35,7 @@ const fn listens<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
 }
 
 /// The shared steps.
-impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P> {
+impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     /// `f`, if it is there.
     fn existing(&self, f: FaceId) -> Result<FaceId, Refusal<V>> {
         if self.has(f) {

@@ -1,9 +1,9 @@
 //! Faces as lists of corners, and nothing that leads from a vertex to them.
 
 use crate::distinct::IteratorExt;
+use crate::editing::{Editable, Editing, FACE_HOLES, HoleSet, NoHoles, Whole};
 use crate::face_spans::FaceSpans;
 use crate::handle::{Handle, Pair};
-use crate::holes::Holes;
 use crate::memory::TableBytes;
 use crate::probe::{Probe, Untraced};
 use crate::row_id::{FaceId, VertexId};
@@ -162,33 +162,55 @@ impl<V: Handle> Hit<V> {
 /// and every edit again. Corners that belong to no face, because theirs was deleted or has moved to
 /// another place in the table, are blank: no scan finds them.
 #[derive(Clone, Debug)]
-pub struct ScannedFaces<V: ScannedVertex, P: Probe = Untraced> {
+pub struct ScannedFaces<V: ScannedVertex, P: Probe = Untraced, E: Editing = Whole> {
     /// The corners, face by face.
     pub corners: Table<V::Corner, P>,
     /// How the corners fall into faces, deleted ones included.
-    pub spans: FaceSpans<P>,
+    pub spans: FaceSpans<P, E>,
     /// Which faces are deleted.
-    pub holes: Holes<P>,
+    pub holes: E::Holes<P>,
 }
 
-impl<V: ScannedVertex> ScannedFaces<V> {
+impl<V: ScannedVertex, E: Editing> ScannedFaces<V, Untraced, E> {
     /// The faces that `spans` make of `corners`.
     pub fn new(corners: Vec<V::Corner>, spans: FaceSpans) -> Self {
         Self {
             corners: Table::new("corners", "corner", corners),
-            spans,
-            holes: Holes::none("face holes"),
+            spans: E::spans(spans),
+            holes: E::no_holes(FACE_HOLES, Untraced),
         }
     }
 }
 
-impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P> {
+impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
+    /// The same faces, of which none is deleted any more: `None` unless they have been compacted.
+    pub fn into_whole(self) -> Option<ScannedFaces<V, P>> {
+        let spans = self.spans.into_whole().filter(|_| self.holes.is_empty())?;
+        Some(ScannedFaces {
+            corners: self.corners,
+            spans,
+            holes: NoHoles,
+        })
+    }
+}
+
+impl<V: ScannedVertex, P: Probe> From<ScannedFaces<V, P>> for ScannedFaces<V, P, Editable> {
+    fn from(faces: ScannedFaces<V, P>) -> Self {
+        Self {
+            holes: Editable::no_holes(FACE_HOLES, faces.corners.probe()),
+            corners: faces.corners,
+            spans: faces.spans.into(),
+        }
+    }
+}
+
+impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
     /// The same faces watched by `probe`.
-    pub fn probed<Q: Probe>(self, probe: Q) -> ScannedFaces<V, Q> {
+    pub fn probed<Q: Probe>(self, probe: Q) -> ScannedFaces<V, Q, E> {
         ScannedFaces {
             corners: self.corners.probed(probe.clone()),
             spans: self.spans.probed(probe.clone()),
-            holes: self.holes.probed(probe),
+            holes: E::probed_holes(self.holes, probe),
         }
     }
 
@@ -238,20 +260,26 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P> {
 
     /// The sides of `f`, in order.
     #[inline]
-    pub fn face_edges(&self, f: FaceId) -> impl Iterator<Item = Pair<V>> + use<'_, V, P> {
+    pub fn face_edges(&self, f: FaceId) -> impl Iterator<Item = Pair<V>> + use<'_, V, P, E> {
         let corners = self.face(f);
         Pair::sides(corners.len(), |i| V::of(corners[i]))
     }
 
     /// Scans all corners for those at a vertex sought, in order.
     #[inline]
-    pub fn scan(&self, sought: Sought<V, V::Set>) -> impl Iterator<Item = usize> + use<'_, V, P> {
+    pub fn scan(
+        &self,
+        sought: Sought<V, V::Set>,
+    ) -> impl Iterator<Item = usize> + use<'_, V, P, E> {
         self.corners.scan(move |block| sought.hits(block))
     }
 
     /// The same corners with their faces and what is beside them there.
     #[inline]
-    pub fn hits(&self, sought: Sought<V, V::Set>) -> impl Iterator<Item = Hit<V>> + use<'_, V, P> {
+    pub fn hits(
+        &self,
+        sought: Sought<V, V::Set>,
+    ) -> impl Iterator<Item = Hit<V>> + use<'_, V, P, E> {
         self.scan(sought).map(|corner| {
             let (face, corners) = self.spans.around(corner);
             let [before, at, after] = corners.map(|corner| V::of(*self.corners.read(corner)));
@@ -279,7 +307,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P> {
     }
 
     /// EE; one scan, and whether there is such an edge at all, only its end can tell.
-    pub fn edge_edges(&self, e: Pair<V>) -> impl Iterator<Item = Pair<V>> + use<V, P> {
+    pub fn edge_edges(&self, e: Pair<V>) -> impl Iterator<Item = Pair<V>> + use<V, P, E> {
         let mut edges = Vec::new();
         if !e.has(V::BLANK) {
             let hits = self.hits(Sought::Two(e.ends()));
@@ -406,7 +434,7 @@ mod tests {
 
     #[test]
     fn nobody_finds_a_blank_corner() {
-        let mut mesh = faces(&[&[0, 1, 2, 3], &[2, 1, 4], &[0, 3, 5]]);
+        let mut mesh = ScannedFaces::from(faces(&[&[0, 1, 2, 3], &[2, 1, 4], &[0, 3, 5]]));
         let f = FaceId::new;
         mesh.spans.rewrite(
             &mut mesh.corners,
@@ -435,7 +463,7 @@ mod tests {
     #[test]
     #[should_panic(expected = "no face f1: it was deleted")]
     fn a_deleted_face_panics_by_name() {
-        let mut mesh = faces(&[&[0, 1, 2, 3], &[2, 1, 4]]);
+        let mut mesh = ScannedFaces::from(faces(&[&[0, 1, 2, 3], &[2, 1, 4]]));
         mesh.spans
             .blank(&mut mesh.corners, FaceId::new(1), VertexId::BLANK);
         mesh.holes.dig(1);

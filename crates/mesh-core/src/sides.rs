@@ -1,9 +1,10 @@
 //! The sides of all faces, in buckets by their lower end: how edges are found without hashing.
 
+use crate::editing::{Editing, HoleSet};
 use crate::face_list::FaceList;
 use crate::face_spans::FaceSpans;
 use crate::handle::Pair;
-use crate::holes::Holes;
+
 use crate::probe::Probe;
 use crate::row_id::{VertexId, row};
 use crate::table::Table;
@@ -28,7 +29,14 @@ impl Sides for FaceList {
     }
 }
 
-impl<P: Probe> Sides for (&FaceSpans<P>, &Table<VertexId, P>, &Holes<P>) {
+/// Spans, the corners that they divide, and which of the faces are holes.
+type Parts<'a, P, E> = (
+    &'a FaceSpans<P, E>,
+    &'a Table<VertexId, P>,
+    &'a <E as Editing>::Holes<P>,
+);
+
+impl<P: Probe, E: Editing> Sides for Parts<'_, P, E> {
     #[inline(always)]
     fn for_each_side(&self, visit: impl FnMut(VertexId, VertexId, u32)) {
         let (spans, corners, holes) = *self;
@@ -111,7 +119,7 @@ impl<T: Copy + Default> Buckets<T> {
     }
 }
 
-impl<P: Probe> FaceSpans<P> {
+impl<P: Probe, E: Editing> FaceSpans<P, E> {
     /// Every edge of the faces that have these corners and are no holes, once, by the lower end.
     ///
     /// The higher ends are put into one bucket for each lower end (a counting sort over all sides);
@@ -124,9 +132,9 @@ impl<P: Probe> FaceSpans<P> {
     pub fn edges(
         &self,
         corners: &Table<VertexId, P>,
-        holes: &Holes<P>,
+        holes: &E::Holes<P>,
         vertices: usize,
-    ) -> impl Iterator<Item = Pair<VertexId>> + use<P> {
+    ) -> impl Iterator<Item = Pair<VertexId>> + use<P, E> {
         let higher_end = |a: VertexId, b: VertexId, _| a.max(b).index() as u32;
         let Buckets { entries, ends } = Buckets::of(vertices, &(self, corners, holes), higher_end);
         // By higher end: the lower end that met it last. No vertex is lower than itself.
@@ -150,6 +158,7 @@ impl<P: Probe> FaceSpans<P> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::editing::NoHoles;
     use crate::probe::Traced;
 
     /// The edges of these faces, and how often their corners were read.
@@ -165,8 +174,7 @@ mod tests {
             list.spans().probed(probe.clone()),
             corners.probed(probe.clone()),
         );
-        let holes = Holes::none("face holes").probed(probe.clone());
-        let edges = spans.edges(&corners, &holes, vertices);
+        let edges = spans.edges(&corners, &NoHoles, vertices);
         let ends = edges.map(|edge| edge.ends().map(VertexId::index)).collect();
         let log = probe.take();
         (

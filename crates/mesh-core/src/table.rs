@@ -155,6 +155,11 @@ impl<T, P: Probe> Table<T, P> {
         }
     }
 
+    /// Who watches.
+    pub fn probe(&self) -> P {
+        self.probe.clone()
+    }
+
     /// Other rows in the place of these. Unwatched.
     pub fn replace(&mut self, rows: Vec<T>) {
         self.rows = rows;

@@ -1,16 +1,16 @@
 //! In and out.
 
 use mesh_core::{
-    BuildError, Capabilities, Counts, FaceId, FaceList, InvariantError, IteratorExt,
+    BuildError, Capabilities, Counts, Editing, FaceId, FaceList, InvariantError, IteratorExt,
     MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
-    ScannedFaces, ScannedVertex, VertexId, VertexMap, row,
+    ScannedFaces, ScannedVertex, Untraced, VertexId, VertexMap, row,
 };
 use rustc_hash::FxHashMap;
 
-use crate::mesh::PolygonSoup;
+use crate::mesh::AnyPolygonSoup;
 use crate::vertex::SoupVertex;
 
-impl Representation for PolygonSoup {
+impl<E: Editing> Representation for AnyPolygonSoup<Untraced, E> {
     const NAME: &'static str = "polygon-soup";
 
     const CAPABILITIES: Capabilities = Capabilities {
@@ -26,7 +26,7 @@ impl Representation for PolygonSoup {
         ]
     };
 
-    type Probed<P: Probe> = PolygonSoup<P>;
+    type Probed<P: Probe> = AnyPolygonSoup<P, E>;
 
     /// Copies the position of every corner; O(corners).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
@@ -101,8 +101,8 @@ impl Representation for PolygonSoup {
         self.check_invariants()
     }
 
-    fn probed<P: Probe>(self, probe: P) -> PolygonSoup<P> {
-        PolygonSoup {
+    fn probed<P: Probe>(self, probe: P) -> AnyPolygonSoup<P, E> {
+        AnyPolygonSoup {
             faces: self.faces.probed(probe),
         }
     }
@@ -135,6 +135,7 @@ fn coincident(face: &[Point]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::PolygonSoup;
 
     fn build(positions: &[Point], faces: &[&[u32]]) -> Result<PolygonSoup, BuildError> {
         PolygonSoup::from_polygons(&PolygonMesh::new(positions, faces).expect("valid"))

@@ -5,10 +5,10 @@ use mesh_core::{
     Representation,
 };
 
-use crate::mesh::PolygonSoup;
+use crate::mesh::{AnyPolygonSoup, EditablePolygonSoup, PolygonSoup};
 use crate::vertex::SoupVertex;
 
-impl<P: Probe> MeshEdit for PolygonSoup<P> {
+impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
         let constant = Some(QueryCost::Constant);
         let local = Some(QueryCost::Local);
@@ -32,6 +32,15 @@ impl<P: Probe> MeshEdit for PolygonSoup<P> {
         ]
     };
 
+    type Whole = PolygonSoup<P>;
+
+    fn into_whole(mut self) -> PolygonSoup<P> {
+        self.compact(&mut ());
+        AnyPolygonSoup {
+            faces: self.faces.into_whole().expect("compacted"),
+        }
+    }
+
     /// One sweep: every corner there moves, and the vertex with its edges has another name.
     fn set_position(
         &mut self,
@@ -51,7 +60,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<P> {
         _: &mut impl EditLog<Self>,
     ) -> Result<SoupVertex, Refusal<Self>> {
         Err(EditError::Unsupported {
-            structure: <PolygonSoup as Representation>::NAME,
+            structure: <EditablePolygonSoup as Representation>::NAME,
             edit: Edit::AddVertex,
         })
     }
@@ -194,9 +203,9 @@ mod tests {
 
     const SQUARE: [Point; 4] = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
 
-    fn square() -> (PolygonSoup, [SoupVertex; 4]) {
+    fn square() -> (EditablePolygonSoup, [SoupVertex; 4]) {
         let polygons = PolygonMesh::new(SQUARE, [[0, 1, 2], [0, 2, 3]]).expect("valid");
-        let soup = PolygonSoup::from_polygons(&polygons).expect("nothing coincides");
+        let soup = EditablePolygonSoup::from_polygons(&polygons).expect("nothing coincides");
         (soup, SQUARE.map(SoupVertex::at))
     }
 

@@ -21,5 +21,5 @@ mod query;
 mod validate;
 mod vertex;
 
-pub use mesh::PolygonSoup;
+pub use mesh::{AnyPolygonSoup, EditablePolygonSoup, PolygonSoup};
 pub use vertex::SoupVertex;

@@ -1,6 +1,8 @@
 //! The structure itself.
 
-use mesh_core::{FaceId, FaceSpans, Point, Probe, ScannedFaces, Untraced};
+use mesh_core::{
+    Editable, Editing, FaceId, FaceSpans, Point, Probe, ScannedFaces, Untraced, Whole,
+};
 
 use crate::vertex::SoupVertex;
 
@@ -81,18 +83,32 @@ use crate::vertex::SoupVertex;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct PolygonSoup<P: Probe = Untraced> {
-    pub(crate) faces: ScannedFaces<SoupVertex, P>,
+pub struct AnyPolygonSoup<P: Probe, E: Editing> {
+    pub(crate) faces: ScannedFaces<SoupVertex, P, E>,
 }
 
-impl<P: Probe> PolygonSoup<P> {
+/// A polygon soup of which nothing can be deleted: [`AnyPolygonSoup`] whose rows are all elements.
+pub type PolygonSoup<P = Untraced> = AnyPolygonSoup<P, Whole>;
+
+/// A polygon soup that can be edited ([`MeshEdit`](mesh_core::MeshEdit)): [`AnyPolygonSoup`] with holes.
+pub type EditablePolygonSoup<P = Untraced> = AnyPolygonSoup<P, Editable>;
+
+impl<P: Probe> From<PolygonSoup<P>> for EditablePolygonSoup<P> {
+    fn from(mesh: PolygonSoup<P>) -> Self {
+        Self {
+            faces: mesh.faces.into(),
+        }
+    }
+}
+
+impl<P: Probe, E: Editing> AnyPolygonSoup<P, E> {
     /// Where each corner is, face by face, as it lies in memory, blank ones included.
     pub fn corners(&self) -> &[Point] {
         self.faces.corners.rows()
     }
 
     /// How the corners fall into faces, deleted ones included.
-    pub fn spans(&self) -> &FaceSpans<P> {
+    pub fn spans(&self) -> &FaceSpans<P, E> {
         &self.faces.spans
     }
 

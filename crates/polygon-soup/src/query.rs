@@ -1,11 +1,11 @@
 //! The nine relations.
 
-use mesh_core::{FaceId, IteratorExt, MeshQuery, Pair, Point, Probe};
+use mesh_core::{Editing, FaceId, IteratorExt, MeshQuery, Pair, Point, Probe};
 
-use crate::mesh::PolygonSoup;
+use crate::mesh::AnyPolygonSoup;
 use crate::vertex::SoupVertex;
 
-impl<P: Probe> MeshQuery for PolygonSoup<P> {
+impl<P: Probe, E: Editing> MeshQuery for AnyPolygonSoup<P, E> {
     type Vertex = SoupVertex;
     type Edge = Pair<SoupVertex>;
     type Face = FaceId;
@@ -99,6 +99,7 @@ mod tests {
     use mesh_core::{PolygonMesh, Representation, Sought, Traced, VertexId};
 
     use super::*;
+    use crate::mesh::PolygonSoup;
 
     /// A pentagon and its mirror image share all sides; a triangle and a quad share one each.
     fn pillow() -> (PolygonMesh, PolygonSoup) {

@@ -1,11 +1,11 @@
 //! One check for each invariant.
 
-use mesh_core::{InvariantError, IteratorExt, MeshQuery, Probe, ScannedVertex};
+use mesh_core::{Editing, InvariantError, IteratorExt, MeshQuery, Probe, ScannedVertex};
 
-use crate::mesh::PolygonSoup;
+use crate::mesh::AnyPolygonSoup;
 use crate::vertex::SoupVertex;
 
-impl<P: Probe> PolygonSoup<P> {
+impl<P: Probe, E: Editing> AnyPolygonSoup<P, E> {
     /// Checks I1, then I4, which relies on it, and the faces that are there.
     pub(crate) fn check_invariants(&self) -> Result<(), InvariantError> {
         self.check_spans()?;
@@ -54,24 +54,26 @@ impl<P: Probe> PolygonSoup<P> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{FaceId, FaceSpans, MeshEdit, Point, PolygonMesh, Representation, Table};
+    use mesh_core::{
+        Editable, FaceId, FaceSpans, MeshEdit, Point, PolygonMesh, Representation, Table, Untraced,
+    };
 
-    use super::*;
+    use crate::mesh::EditablePolygonSoup;
 
     const SQUARE: [Point; 4] = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
 
-    fn soup(faces: &[&[u32]]) -> PolygonSoup {
+    fn soup(faces: &[&[u32]]) -> EditablePolygonSoup {
         let polygons = PolygonMesh::new(SQUARE, faces).expect("valid");
-        let soup = PolygonSoup::from_polygons(&polygons).expect("within the capabilities");
+        let soup = EditablePolygonSoup::from_polygons(&polygons).expect("within the capabilities");
         assert_eq!(soup.validate(), Ok(()));
         soup
     }
 
-    fn fault(soup: &PolygonSoup) -> String {
+    fn fault(soup: &EditablePolygonSoup) -> String {
         soup.validate().expect_err("broken on purpose").to_string()
     }
 
-    fn mixed(offsets: &[u32]) -> FaceSpans {
+    fn mixed(offsets: &[u32]) -> FaceSpans<Untraced, Editable> {
         FaceSpans::Mixed(Table::new("offsets", "face", offsets.to_vec()))
     }
 

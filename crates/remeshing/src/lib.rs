@@ -14,12 +14,12 @@
 //! Triangles only. Boundaries keep their shape. What is removed leaves holes: see [`MeshEdit::compact`].
 //!
 //! ```
-//! use half_edge::HalfEdgeMesh;
+//! use half_edge::EditableHalfEdgeMesh;
 //! use mesh_core::{MeshQuery, Representation};
 //! use remeshing::{Decimation, Target, decimate};
 //!
 //! let sphere = shapes::geodesic(8)?;
-//! let mut mesh = HalfEdgeMesh::from_polygons(&sphere)?;
+//! let mut mesh = EditableHalfEdgeMesh::from_polygons(&sphere)?;
 //! let tenth = Decimation { target: Target::Ratio(0.1), ..Decimation::default() };
 //! let report = decimate(&mut mesh, &tenth)?;
 //! assert_eq!(report.faces, sphere.face_count() / 10);
@@ -36,6 +36,7 @@ mod error;
 mod isotropic;
 mod numbering;
 mod quadric;
+mod queue;
 mod rules;
 
 pub use decimation::{Boundary, Decimated, Decimation, Target, decimate, decimate_watched};

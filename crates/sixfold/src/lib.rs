@@ -3,18 +3,18 @@
 //! This crate re-exports the vocabulary and the structures, and holds the roster: the one list of
 //! all representations that every command, test and benchmark goes by.
 
-pub use corner_table::{self, CornerTable};
-pub use face_vertex::{self, FaceVertexMesh};
-pub use half_edge::{self, HalfEdgeMesh};
-pub use indexed_face_set::{self, IndexedFaceSet};
+pub use corner_table::{self, CornerTable, EditableCornerTable};
+pub use face_vertex::{self, EditableFaceVertexMesh, FaceVertexMesh};
+pub use half_edge::{self, EditableHalfEdgeMesh, HalfEdgeMesh};
+pub use indexed_face_set::{self, EditableIndexedFaceSet, IndexedFaceSet};
 pub use mesh_core::{self, *};
 pub use mesh_io;
 pub use operators;
-pub use polygon_soup::{self, PolygonSoup};
+pub use polygon_soup::{self, EditablePolygonSoup, PolygonSoup};
 pub use remeshing;
 pub use shapes;
 pub use subdivision;
-pub use winged_edge::{self, WingedEdgeMesh};
+pub use winged_edge::{self, EditableWingedEdgeMesh, WingedEdgeMesh};
 
 mod roster;
 mod support;

@@ -69,11 +69,19 @@ pub trait EditVisitor {
     fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output;
 }
 
-/// As [`for_each_representation!`](crate::for_each_representation), for those that can be edited: all six.
+/// As [`for_each_representation!`](crate::for_each_representation), for those that can be edited: all six,
+/// as [`Editable`](mesh_core::Editable) meshes.
 #[macro_export]
 macro_rules! for_each_editable {
     ($mesh:ident => $body:block) => {
-        $crate::for_each_representation!($mesh => $body)
+        $crate::for_each_representation!(@each $mesh $body
+            $crate::EditablePolygonSoup,
+            $crate::EditableIndexedFaceSet,
+            $crate::EditableFaceVertexMesh,
+            $crate::EditableWingedEdgeMesh,
+            $crate::EditableHalfEdgeMesh,
+            $crate::EditableCornerTable,
+        );
     };
 }
 

@@ -6,8 +6,8 @@ use conformance::edit::{Action, Model, Rules};
 use sixfold::remeshing::{Decimation, Target, decimate};
 use sixfold::subdivision::Scheme;
 use sixfold::{
-    BackendInfo, HalfEdgeMesh, Point, PolygonMesh, Relation, Representation, roster, shapes,
-    support,
+    BackendInfo, EditableHalfEdgeMesh, Point, PolygonMesh, Relation, Representation, roster,
+    shapes, support,
 };
 use study::{Editing, MachineClock, Operation, Solo};
 
@@ -209,7 +209,7 @@ impl<'a> Oracle<'a> {
     /// The edge lengths after every edge has been flipped, twice, by the model of conformance.
     fn flipped(&self) -> f64 {
         let mut model = Model::of(self.mesh);
-        let rules = Rules::of::<HalfEdgeMesh>();
+        let rules = Rules::of::<EditableHalfEdgeMesh>();
         let mut edges: Vec<[usize; 2]> = Vec::new();
         for face in &self.faces {
             for (i, &a) in face.iter().enumerate() {
@@ -236,7 +236,7 @@ impl<'a> Oracle<'a> {
 
     /// The edge lengths of the decimated mesh: the operator itself has its own tests.
     fn decimated(&self, ratio: f64) -> f64 {
-        let mut mesh = HalfEdgeMesh::from_polygons(self.mesh).expect("a manifold");
+        let mut mesh = EditableHalfEdgeMesh::from_polygons(self.mesh).expect("a manifold");
         let to = Decimation {
             target: Target::Ratio(ratio),
             ..Decimation::default()

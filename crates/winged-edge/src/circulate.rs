@@ -1,14 +1,14 @@
 //! Walks around a vertex and along a face: ordinary iterators that end after one turn.
 
-use mesh_core::{EdgeId, FaceId, Probe, VertexId};
+use mesh_core::{EdgeId, Editing, FaceId, Probe, VertexId};
 
 use crate::edge::Run;
-use crate::mesh::WingedEdgeMesh;
+use crate::mesh::AnyWingedEdgeMesh;
 
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
     /// Every edge at `v` run away from it, counter-clockwise; from the boundary, if `v` is on one.
     #[inline]
-    pub(crate) fn runs_from(&self, v: VertexId) -> RunsFrom<'_, P> {
+    pub(crate) fn runs_from(&self, v: VertexId) -> RunsFrom<'_, P, E> {
         let at = self.spoke(v);
         RunsFrom {
             mesh: self,
@@ -20,7 +20,7 @@ impl<P: Probe> WingedEdgeMesh<P> {
 
     /// Every edge of `f` run with `f` on its left, counter-clockwise.
     #[inline]
-    pub(crate) fn runs_along(&self, f: FaceId) -> RunsAlong<'_, P> {
+    pub(crate) fn runs_along(&self, f: FaceId) -> RunsAlong<'_, P, E> {
         let first = self.side(f);
         RunsAlong {
             mesh: self,
@@ -33,14 +33,14 @@ impl<P: Probe> WingedEdgeMesh<P> {
 
 /// The edges at a vertex, each run away from it; each record is all that its step reads.
 #[derive(Clone, Debug)]
-pub(crate) struct RunsFrom<'a, P: Probe> {
-    mesh: &'a WingedEdgeMesh<P>,
+pub(crate) struct RunsFrom<'a, P: Probe, E: Editing> {
+    mesh: &'a AnyWingedEdgeMesh<P, E>,
     v: VertexId,
     at: Option<EdgeId>,
     first: Option<EdgeId>,
 }
 
-impl<'a, P: Probe> Iterator for RunsFrom<'a, P> {
+impl<'a, P: Probe, E: Editing> Iterator for RunsFrom<'a, P, E> {
     type Item = (EdgeId, Run<'a>);
 
     #[inline]
@@ -71,14 +71,14 @@ impl<'a, P: Probe> Iterator for RunsFrom<'a, P> {
 
 /// The edges of a face, each run with the face on its left.
 #[derive(Clone, Debug)]
-pub(crate) struct RunsAlong<'a, P: Probe> {
-    mesh: &'a WingedEdgeMesh<P>,
+pub(crate) struct RunsAlong<'a, P: Probe, E: Editing> {
+    mesh: &'a AnyWingedEdgeMesh<P, E>,
     f: FaceId,
     at: Option<EdgeId>,
     first: EdgeId,
 }
 
-impl<'a, P: Probe> Iterator for RunsAlong<'a, P> {
+impl<'a, P: Probe, E: Editing> Iterator for RunsAlong<'a, P, E> {
     type Item = (EdgeId, Run<'a>);
 
     #[inline]
@@ -108,8 +108,8 @@ impl<'a, P: Probe> Iterator for RunsAlong<'a, P> {
 
 /// The edges at both ends of an edge, but for itself: two walks that begin and end at it.
 #[derive(Clone, Debug)]
-pub(crate) struct EdgeEdges<'a, P: Probe> {
-    mesh: &'a WingedEdgeMesh<P>,
+pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
+    mesh: &'a AnyWingedEdgeMesh<P, E>,
     e: EdgeId,
     v: VertexId,
     at: EdgeId,
@@ -117,9 +117,9 @@ pub(crate) struct EdgeEdges<'a, P: Probe> {
     then: Option<(VertexId, EdgeId)>,
 }
 
-impl<'a, P: Probe> EdgeEdges<'a, P> {
+impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
     #[inline]
-    pub(crate) fn new(mesh: &'a WingedEdgeMesh<P>, e: EdgeId) -> Self {
+    pub(crate) fn new(mesh: &'a AnyWingedEdgeMesh<P, E>, e: EdgeId) -> Self {
         // The sides of e itself are known: it leaves its start on the left, its end on the right.
         let edge = mesh.edge(e);
         let ([v, other], [at, there]) = (edge.ends(), edge.prev());
@@ -133,7 +133,7 @@ impl<'a, P: Probe> EdgeEdges<'a, P> {
     }
 }
 
-impl<P: Probe> Iterator for EdgeEdges<'_, P> {
+impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
     type Item = EdgeId;
 
     #[inline]
@@ -174,6 +174,7 @@ mod tests {
     use mesh_core::{MeshQuery, Point, PolygonMesh, Representation};
 
     use super::*;
+    use crate::mesh::WingedEdgeMesh;
 
     /// A polygon of `3 * petals` sides, and petals that share three sides with it each.
     fn flower(petals: u32) -> WingedEdgeMesh {

@@ -1,23 +1,24 @@
 //! In from polygons, and out again.
 
 use mesh_core::{
-    BuildError, Capabilities, Counts, EdgeId, FaceId, FaceList, Holes, InvariantError,
-    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
-    RowMap, Slot, Table, TwinPairs, VertexId, row,
+    BuildError, Capabilities, Counts, EDGE_HOLES, EdgeId, Editing, FACE_HOLES, FaceId, FaceList,
+    HoleSet, InvariantError, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe,
+    QueryCost, Representation, RowMap, Slot, Table, TwinPairs, Untraced, VERTEX_HOLES, VertexId,
+    row,
 };
 
 use crate::edge::{Edge, Run};
-use crate::mesh::WingedEdgeMesh;
+use crate::mesh::AnyWingedEdgeMesh;
 use crate::wings::Side;
 
-impl Representation for WingedEdgeMesh {
+impl<E: Editing> Representation for AnyWingedEdgeMesh<Untraced, E> {
     const NAME: &'static str = "winged-edge";
 
     const CAPABILITIES: Capabilities = Capabilities::ORIENTED_MANIFOLDS;
 
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
 
-    type Probed<P: Probe> = WingedEdgeMesh<P>;
+    type Probed<P: Probe> = AnyWingedEdgeMesh<P, E>;
 
     /// Pairs the sides, writes each side into its edge, then closes each hole with a boundary loop;
     /// O(corners + vertices), without hashing.
@@ -88,7 +89,7 @@ impl Representation for WingedEdgeMesh {
             sides.bytes(),
         ]
         .into_iter()
-        .chain(holes.into_iter().filter_map(Holes::bytes))
+        .chain(holes.into_iter().filter_map(|holes| holes.bytes()))
         .collect()
     }
 
@@ -100,20 +101,20 @@ impl Representation for WingedEdgeMesh {
         crate::validate::validate(self)
     }
 
-    fn probed<P: Probe>(self, probe: P) -> WingedEdgeMesh<P> {
-        WingedEdgeMesh {
+    fn probed<P: Probe>(self, probe: P) -> AnyWingedEdgeMesh<P, E> {
+        AnyWingedEdgeMesh {
             positions: self.positions.probed(probe.clone()),
             spokes: self.spokes.probed(probe.clone()),
             edges: self.edges.probed(probe.clone()),
             sides: self.sides.probed(probe.clone()),
-            vertex_holes: self.vertex_holes.probed(probe.clone()),
-            edge_holes: self.edge_holes.probed(probe.clone()),
-            face_holes: self.face_holes.probed(probe),
+            vertex_holes: E::probed_holes(self.vertex_holes, probe.clone()),
+            edge_holes: E::probed_holes(self.edge_holes, probe.clone()),
+            face_holes: E::probed_holes(self.face_holes, probe),
         }
     }
 }
 
-impl WingedEdgeMesh {
+impl<E: Editing> AnyWingedEdgeMesh<Untraced, E> {
     /// A mesh of these rows, without holes.
     pub(crate) fn of(
         positions: Vec<Point>,
@@ -126,9 +127,9 @@ impl WingedEdgeMesh {
             spokes: Table::new("spokes", "vertex", spokes),
             edges: Table::new("edges", "edge", edges),
             sides: Table::new("sides", "face", sides),
-            vertex_holes: Holes::none("vertex holes"),
-            edge_holes: Holes::none("edge holes"),
-            face_holes: Holes::none("face holes"),
+            vertex_holes: E::no_holes(VERTEX_HOLES, Untraced),
+            edge_holes: E::no_holes(EDGE_HOLES, Untraced),
+            face_holes: E::no_holes(FACE_HOLES, Untraced),
         }
     }
 }

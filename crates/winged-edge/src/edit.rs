@@ -8,10 +8,10 @@
 //! along the side where it runs that way.
 
 use mesh_core::{
-    EdgeId, Edit, EditLog, FaceId, MeshEdit, Point, Probe, QueryCost, Refusal, VertexId,
+    EdgeId, Edit, EditLog, FaceId, MeshEdit, NoHoles, Point, Probe, QueryCost, Refusal, VertexId,
 };
 
-use crate::mesh::WingedEdgeMesh;
+use crate::mesh::{AnyWingedEdgeMesh, EditableWingedEdgeMesh, WingedEdgeMesh};
 
 mod add;
 mod collapse;
@@ -25,8 +25,23 @@ mod surgery;
 #[cfg(test)]
 mod tests;
 
-impl<P: Probe> MeshEdit for WingedEdgeMesh<P> {
+impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
+
+    type Whole = WingedEdgeMesh<P>;
+
+    fn into_whole(mut self) -> WingedEdgeMesh<P> {
+        self.compact(&mut ());
+        AnyWingedEdgeMesh {
+            positions: self.positions,
+            spokes: self.spokes,
+            edges: self.edges,
+            sides: self.sides,
+            vertex_holes: NoHoles,
+            edge_holes: NoHoles,
+            face_holes: NoHoles,
+        }
+    }
 
     /// O(1).
     #[inline]

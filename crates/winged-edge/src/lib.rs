@@ -91,4 +91,4 @@ mod validate;
 mod wings;
 
 pub use edge::Edge;
-pub use mesh::WingedEdgeMesh;
+pub use mesh::{AnyWingedEdgeMesh, EditableWingedEdgeMesh, WingedEdgeMesh};

@@ -1,6 +1,9 @@
 //! The tables, their invariants, and the classic operators.
 
-use mesh_core::{EdgeId, FaceId, Holes, Point, Probe, Slot, Table, Untraced, VertexId};
+use mesh_core::{
+    EDGE_HOLES, EdgeId, Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe, Slot, Table,
+    Untraced, VERTEX_HOLES, VertexId, Whole,
+};
 
 use crate::edge::{Edge, NO_EDGE, Run};
 
@@ -47,25 +50,45 @@ use crate::edge::{Edge, NO_EDGE, Run};
 /// words, per vertex of a large closed triangle mesh. Once something was deleted, also a bit for each
 /// row up to the last hole.
 #[derive(Clone, Debug)]
-pub struct WingedEdgeMesh<P: Probe = Untraced> {
+pub struct AnyWingedEdgeMesh<P: Probe, E: Editing> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) spokes: Table<Slot<EdgeId>, P>,
     pub(crate) edges: Table<Edge, P>,
     pub(crate) sides: Table<EdgeId, P>,
-    pub(crate) vertex_holes: Holes<P>,
-    pub(crate) edge_holes: Holes<P>,
-    pub(crate) face_holes: Holes<P>,
+    pub(crate) vertex_holes: E::Holes<P>,
+    pub(crate) edge_holes: E::Holes<P>,
+    pub(crate) face_holes: E::Holes<P>,
+}
+
+/// A winged-edge mesh of which nothing can be deleted: [`AnyWingedEdgeMesh`] whose rows are all elements.
+pub type WingedEdgeMesh<P = Untraced> = AnyWingedEdgeMesh<P, Whole>;
+
+/// A winged-edge mesh that can be edited ([`MeshEdit`](mesh_core::MeshEdit)): [`AnyWingedEdgeMesh`] with holes.
+pub type EditableWingedEdgeMesh<P = Untraced> = AnyWingedEdgeMesh<P, Editable>;
+
+impl<P: Probe> From<WingedEdgeMesh<P>> for EditableWingedEdgeMesh<P> {
+    fn from(mesh: WingedEdgeMesh<P>) -> Self {
+        let probe = mesh.positions.probe();
+        Self {
+            positions: mesh.positions,
+            spokes: mesh.spokes,
+            edges: mesh.edges,
+            sides: mesh.sides,
+            vertex_holes: Editable::no_holes(VERTEX_HOLES, probe.clone()),
+            edge_holes: Editable::no_holes(EDGE_HOLES, probe.clone()),
+            face_holes: Editable::no_holes(FACE_HOLES, probe),
+        }
+    }
 }
 
 /// What an edge knows. Each panics, and names the edge, if the mesh does not have it; all O(1), one
 /// record read.
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
     /// The record of `e`.
     #[inline]
     pub fn edge(&self, e: EdgeId) -> &Edge {
         let edge = self.record(e);
-        // The first half does not change within a sweep, and leaves the loop.
-        if !self.edge_holes.is_empty() && edge.is_hole() {
+        if E::DELETES && edge.is_hole() {
             no_such_edge(e);
         }
         edge
@@ -153,7 +176,7 @@ impl<P: Probe> WingedEdgeMesh<P> {
     #[inline]
     pub fn side(&self, f: FaceId) -> EdgeId {
         let side = *self.sides.read(f.index());
-        if !self.face_holes.is_empty() && side == NO_EDGE {
+        if E::DELETES && side == NO_EDGE {
             no_such_face(f);
         }
         side
@@ -180,7 +203,7 @@ fn no_such_face(f: FaceId) -> ! {
 
 /// Moves from an edge that know where they stand: Baumgart's ECCW, ECW and OTHER. Each panics if the
 /// edge does not end at the vertex, or does not lie along the face; all O(1), one record read.
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
     /// The end of `e` that is not `v`.
     #[inline]
     pub fn other_end(&self, e: EdgeId, v: VertexId) -> VertexId {
@@ -232,7 +255,7 @@ impl<P: Probe> WingedEdgeMesh<P> {
 }
 
 /// The tables as they lie in memory, for export and for loops of one's own.
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
     /// Positions by vertex.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
@@ -266,7 +289,7 @@ mod tests {
         WingedEdgeMesh::from_polygons(&polygons).expect("manifold")
     }
 
-    fn between(mesh: &WingedEdgeMesh, [a, b]: [u32; 2]) -> EdgeId {
+    fn between<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>, [a, b]: [u32; 2]) -> EdgeId {
         let has = |e, v| mesh.edge(e).ends().contains(&VertexId::new(v));
         let mut edges = mesh.edges();
         edges.find(|&e| has(e, a) && has(e, b)).expect("an edge")

@@ -1,11 +1,13 @@
 //! The nine relations.
 
-use mesh_core::{DistinctWalk, EdgeId, FaceId, MeshQuery, Point, Probe, Slot, VertexId};
+use mesh_core::{
+    DistinctWalk, EdgeId, Editing, FaceId, HoleSet, MeshQuery, Point, Probe, Slot, VertexId,
+};
 
 use crate::circulate::EdgeEdges;
-use crate::mesh::{WingedEdgeMesh, no_such_vertex};
+use crate::mesh::{AnyWingedEdgeMesh, no_such_vertex};
 
-impl<P: Probe> MeshQuery for WingedEdgeMesh<P> {
+impl<P: Probe, E: Editing> MeshQuery for AnyWingedEdgeMesh<P, E> {
     type Vertex = VertexId;
     type Edge = EdgeId;
     type Face = FaceId;
@@ -39,12 +41,11 @@ impl<P: Probe> MeshQuery for WingedEdgeMesh<P> {
 
     #[inline]
     fn position(&self, v: VertexId) -> Point {
-        let position = *self.positions.read(v.index());
-        // After the read, which then does not wait; without holes one comparison, the same for all.
+        let position = self.positions.read(v.index());
         if self.vertex_holes.has(v.index()) {
             no_such_vertex(v);
         }
-        position
+        *position
     }
 
     /// Counter-clockwise; from the boundary, if `v` is on one.

@@ -37,8 +37,8 @@
 use std::ops::Range;
 
 use mesh_core::{
-    Counts, EdgeId, FaceId, Holes, MeshQuery, PART, Point, Ranks, Refine, RefineError, RowId, Slot,
-    Split, VertexId, all_rows, check_split, in_parts, row, row_parts, rows_of_part,
+    Counts, EdgeId, FaceId, MeshQuery, NoHoles, PART, Point, Ranks, Refine, RefineError, RowId,
+    Slot, Split, Table, VertexId, all_rows, check_split, in_parts, row, row_parts, rows_of_part,
 };
 
 use crate::edge::Edge;
@@ -52,7 +52,15 @@ impl Refine for WingedEdgeMesh {
     type EdgeNumbers = Ranks;
 
     fn empty() -> Self {
-        Self::of(Vec::new(), Vec::new(), Vec::new(), Vec::new())
+        Self {
+            positions: Table::new("positions", "vertex", Vec::new()),
+            spokes: Table::new("spokes", "vertex", Vec::new()),
+            edges: Table::new("edges", "edge", Vec::new()),
+            sides: Table::new("sides", "face", Vec::new()),
+            vertex_holes: NoHoles,
+            edge_holes: NoHoles,
+            face_holes: NoHoles,
+        }
     }
 
     /// O(edges).
@@ -84,11 +92,6 @@ impl Refine for WingedEdgeMesh {
         numbers: &Ranks,
         child: &mut Self,
     ) -> Result<(), RefineError> {
-        let holes = [&self.vertex_holes, &self.edge_holes, &self.face_holes];
-        let holes = holes.map(Holes::len).into_iter().sum();
-        if holes > 0 {
-            return Err(RefineError::Holes { holes });
-        }
         let runs = 2 * self.edges.len();
         assert_eq!(numbers.items(), runs, "the numbers are of another mesh");
         let counts = Counts {
@@ -105,11 +108,14 @@ impl Refine for WingedEdgeMesh {
         }
         child.positions.resize(grown.vertices, Point::ZERO);
         child.spokes.resize(grown.vertices, Slot::NONE);
-        child.edges.resize(grown.edges, Edge::BLANK);
+        let blank = Edge {
+            ends: [VertexId::new(0); 2],
+            faces: [Slot::NONE; 2],
+            next: Wings::BLANK,
+            prev: Wings::BLANK,
+        };
+        child.edges.resize(grown.edges, blank);
         child.sides.resize(grown.faces, EdgeId::new(0));
-        child.vertex_holes.fill();
-        child.edge_holes.fill();
-        child.face_holes.fill();
         // Compiled once for closed meshes, where the rank of a run is its number.
         match (split, numbers.missing() == 0) {
             (Split::Quads, true) => self.splitting::<true, true>(numbers).fill(child),

@@ -2,13 +2,15 @@
 
 use std::collections::HashSet;
 
-use mesh_core::{EdgeId, InvariantError, MeshQuery, Slot};
+use mesh_core::{EdgeId, Editing, HoleSet, InvariantError, MeshQuery, Slot, Untraced};
 
 use crate::edge::{Edge, NO_EDGE, Run};
-use crate::mesh::WingedEdgeMesh;
+use crate::mesh::AnyWingedEdgeMesh;
 
 /// Checks I9 and I1 to I8 in turn; the later ones rely on the earlier ones.
-pub(crate) fn validate(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+pub(crate) fn validate<E: Editing>(
+    mesh: &AnyWingedEdgeMesh<Untraced, E>,
+) -> Result<(), InvariantError> {
     holes_are_marked(mesh)?;
     names_exist(mesh)?;
     sides_differ(mesh)?;
@@ -26,7 +28,9 @@ fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> 
 }
 
 /// Both runs of every edge, each from the end where it starts.
-fn runs(mesh: &WingedEdgeMesh) -> impl Iterator<Item = (EdgeId, Run<'_>)> {
+fn runs<E: Editing>(
+    mesh: &AnyWingedEdgeMesh<Untraced, E>,
+) -> impl Iterator<Item = (EdgeId, Run<'_>)> {
     mesh.edges().flat_map(|e| {
         let edge = mesh.edge(e);
         edge.ends().map(|v| (e, Run::from(edge, v)))
@@ -34,12 +38,16 @@ fn runs(mesh: &WingedEdgeMesh) -> impl Iterator<Item = (EdgeId, Run<'_>)> {
 }
 
 /// Each edge with its record.
-fn records(mesh: &WingedEdgeMesh) -> impl Iterator<Item = (EdgeId, &Edge)> {
+fn records<E: Editing>(
+    mesh: &AnyWingedEdgeMesh<Untraced, E>,
+) -> impl Iterator<Item = (EdgeId, &Edge)> {
     mesh.edges().map(|e| (e, mesh.edge(e)))
 }
 
 /// I9, its first half: the rows that are marked as deleted are the holes.
-fn holes_are_marked(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+fn holes_are_marked<E: Editing>(
+    mesh: &AnyWingedEdgeMesh<Untraced, E>,
+) -> Result<(), InvariantError> {
     let [vertices, edges, faces] = [mesh.spokes.len(), mesh.edges.len(), mesh.sides.len()];
     for (holes, rows) in [
         (&mesh.vertex_holes, vertices),
@@ -72,7 +80,7 @@ fn holes_are_marked(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
 }
 
 /// I1, its second half, and that of I9: without it no other check could walk.
-fn names_exist(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+fn names_exist<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let [vertices, edges, faces] = [mesh.positions.len(), mesh.edges.len(), mesh.sides.len()];
     if vertices != mesh.spokes.len() {
         let spokes = mesh.spokes.len();
@@ -104,7 +112,7 @@ fn names_exist(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
 }
 
 /// I1, its first half.
-fn sides_differ(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+fn sides_differ<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     for (e, edge) in records(mesh) {
         let ([start, end], [left, right]) = (edge.ends(), edge.faces());
         if start == end {
@@ -117,7 +125,7 @@ fn sides_differ(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn ends_meet(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+fn ends_meet<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     for (e, run) in runs(mesh) {
         for (wing, v) in [(run.next(), run.target()), (run.prev(), run.origin())] {
             if !mesh.edge(wing).ends().contains(&v) {
@@ -131,7 +139,7 @@ fn ends_meet(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn faces_agree(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+fn faces_agree<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     for (e, run) in runs(mesh) {
         let next = Run::from(mesh.edge(run.next()), run.target());
         if next.face() != run.face() {
@@ -145,7 +153,9 @@ fn faces_agree(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn wings_undo_each_other(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+fn wings_undo_each_other<E: Editing>(
+    mesh: &AnyWingedEdgeMesh<Untraced, E>,
+) -> Result<(), InvariantError> {
     for (e, run) in runs(mesh) {
         // The wing before arrives at the origin: run away from it, `e` is its next clockwise.
         let next = Run::from(mesh.edge(run.next()), run.target());
@@ -161,7 +171,7 @@ fn wings_undo_each_other(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn spokes(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+fn spokes<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     for v in mesh.vertices() {
         if let Some(e) = mesh.spoke(v).filter(|&e| !mesh.edge(e).ends().contains(&v)) {
             return fails("I5", format!("{e}, the spoke of {v}, does not end there"));
@@ -181,7 +191,7 @@ fn spokes(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn one_fan_each(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+fn one_fan_each<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let mut edges = vec![0_usize; mesh.vertex_rows()];
     for (_, run) in runs(mesh) {
         edges[run.origin().index()] += 1;
@@ -198,7 +208,7 @@ fn one_fan_each(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn faces(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+fn faces<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let mut along = 0;
     for f in mesh.faces() {
         let e = mesh.side(f);
@@ -222,7 +232,7 @@ fn faces(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
     Ok(())
 }
 
-fn edges_differ(mesh: &WingedEdgeMesh) -> Result<(), InvariantError> {
+fn edges_differ<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let mut ends = HashSet::new();
     for e in mesh.edges() {
         let [a, b] = mesh.edge_vertices(e);
@@ -241,42 +251,43 @@ mod tests {
     use mesh_core::{FaceId, MeshEdit, Point, PolygonMesh, Representation, RowId, Table, VertexId};
 
     use super::*;
+    use crate::mesh::EditableWingedEdgeMesh;
     use crate::wings::{Side, Wings};
 
-    fn mesh(vertices: u16, faces: &[&[u32]]) -> WingedEdgeMesh {
+    fn mesh(vertices: u16, faces: &[&[u32]]) -> EditableWingedEdgeMesh {
         let corners: Vec<_> = (0..vertices).map(|i| Point::splat(i.into())).collect();
         let polygons = PolygonMesh::new(corners, faces).expect("valid");
-        let mesh = WingedEdgeMesh::from_polygons(&polygons).expect("manifold");
+        let mesh = EditableWingedEdgeMesh::from_polygons(&polygons).expect("manifold");
         assert_eq!(mesh.validate(), Ok(()));
         mesh
     }
 
     /// A square of two triangles and an isolated vertex; the diagonal runs from v0 to v2.
-    fn sound() -> WingedEdgeMesh {
+    fn sound() -> EditableWingedEdgeMesh {
         mesh(5, &[&[0, 1, 2], &[0, 2, 3]])
     }
 
     /// The invariant that fails once `break_it` has had its way.
-    fn broken(break_it: impl Fn(&mut WingedEdgeMesh)) -> &'static str {
+    fn broken(break_it: impl Fn(&mut EditableWingedEdgeMesh)) -> &'static str {
         let mut mesh = sound();
         break_it(&mut mesh);
         mesh.validate().expect_err("the mesh is broken").invariant
     }
 
-    fn between(mesh: &WingedEdgeMesh, a: u32, b: u32) -> EdgeId {
+    fn between(mesh: &EditableWingedEdgeMesh, a: u32, b: u32) -> EdgeId {
         let has = |e, v| mesh.edge(e).ends().contains(&VertexId::new(v));
         let mut edges = mesh.edges();
         edges.find(|&e| has(e, a) && has(e, b)).expect("an edge")
     }
 
     /// The record of the edge between `a` and `b`, to be broken.
-    fn record(mesh: &mut WingedEdgeMesh, a: u32, b: u32) -> &mut Edge {
+    fn record(mesh: &mut EditableWingedEdgeMesh, a: u32, b: u32) -> &mut Edge {
         let e = between(mesh, a, b);
         &mut mesh.edges.rows_mut()[e.index()]
     }
 
     /// The record of the diagonal.
-    fn inner(mesh: &mut WingedEdgeMesh) -> &mut Edge {
+    fn inner(mesh: &mut EditableWingedEdgeMesh) -> &mut Edge {
         record(mesh, 0, 2)
     }
 
@@ -286,7 +297,7 @@ mod tests {
     }
 
     /// Makes one vertex of two in all records, and leaves the second without a spoke.
-    fn merge(mesh: &mut WingedEdgeMesh, kept: u32, merged: u32) {
+    fn merge(mesh: &mut EditableWingedEdgeMesh, kept: u32, merged: u32) {
         for edge in mesh.edges.rows_mut() {
             let merge = |v: VertexId| VertexId::new(if v.row() == merged { kept } else { v.row() });
             edge.ends = edge.ends.map(merge);
@@ -303,7 +314,7 @@ mod tests {
         assert_eq!(broken(|m| inner(m).faces[1] = f), "I1");
         assert_eq!(broken(|m| m.spokes.rows_mut()[0] = Slot::some(e)), "I1");
         assert_eq!(broken(|m| m.sides.rows_mut()[0] = e), "I1");
-        let shorter = |m: &mut WingedEdgeMesh| {
+        let shorter = |m: &mut EditableWingedEdgeMesh| {
             m.spokes = Table::new("spokes", "vertex", m.spokes.rows()[..4].to_vec());
         };
         assert_eq!(broken(shorter), "I1");
@@ -311,22 +322,22 @@ mod tests {
 
     #[test]
     fn sides_that_do_not_differ_break_i1() {
-        let loops = |m: &mut WingedEdgeMesh| inner(m).ends[1] = VertexId::new(0);
+        let loops = |m: &mut EditableWingedEdgeMesh| inner(m).ends[1] = VertexId::new(0);
         assert_eq!(broken(loops), "I1");
-        let folded = |m: &mut WingedEdgeMesh| inner(m).faces[1] = inner(m).faces[0];
+        let folded = |m: &mut EditableWingedEdgeMesh| inner(m).faces[1] = inner(m).faces[0];
         assert_eq!(broken(folded), "I1");
         assert_eq!(broken(|m| record(m, 0, 1).faces = [Slot::NONE; 2]), "I1");
     }
 
     #[test]
     fn wings_that_lie_elsewhere_break_i2() {
-        let far = |m: &mut WingedEdgeMesh, side, a, b| {
+        let far = |m: &mut EditableWingedEdgeMesh, side, a, b| {
             let wing = between(m, a, b);
             put(&mut inner(m).next, side, wing);
         };
         assert_eq!(broken(|m| far(m, 0, 0, 1)), "I2");
         assert_eq!(broken(|m| far(m, 1, 2, 3)), "I2");
-        let behind = |m: &mut WingedEdgeMesh| {
+        let behind = |m: &mut EditableWingedEdgeMesh| {
             let wing = between(m, 2, 3);
             put(&mut inner(m).prev, 0, wing);
         };
@@ -365,7 +376,7 @@ mod tests {
 
     #[test]
     fn spokes_that_are_not_first_break_i5() {
-        let spoke = |m: &mut WingedEdgeMesh, v: usize, to: Option<EdgeId>| {
+        let spoke = |m: &mut EditableWingedEdgeMesh, v: usize, to: Option<EdgeId>| {
             m.spokes.rows_mut()[v] = Slot::from(to);
         };
         assert_eq!(broken(|m| spoke(m, 1, None)), "I5");
@@ -389,7 +400,7 @@ mod tests {
 
     #[test]
     fn a_face_that_is_not_along_its_side_breaks_i7() {
-        let elsewhere = |m: &mut WingedEdgeMesh| {
+        let elsewhere = |m: &mut EditableWingedEdgeMesh| {
             let side = between(m, 0, 3);
             m.sides.rows_mut()[0] = side;
         };
@@ -429,7 +440,7 @@ mod tests {
             .remove_vertex(VertexId::new(3), &mut ())
             .expect("it is isolated");
         assert_eq!(edited.validate(), Ok(()));
-        let broken = |break_it: &dyn Fn(&mut WingedEdgeMesh)| {
+        let broken = |break_it: &dyn Fn(&mut EditableWingedEdgeMesh)| {
             let mut mesh = edited.clone();
             break_it(&mut mesh);
             mesh.validate().expect_err("the mesh is broken").invariant

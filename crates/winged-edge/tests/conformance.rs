@@ -2,4 +2,4 @@
 
 conformance::suite!(winged_edge::WingedEdgeMesh);
 conformance::refine_suite!(winged_edge::WingedEdgeMesh);
-conformance::edit_suite!(winged_edge::WingedEdgeMesh);
+conformance::edit_suite!(winged_edge::EditableWingedEdgeMesh);

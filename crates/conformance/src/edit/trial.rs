@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
 
 use mesh_core::{
-    Changes, Edit, EditRecord, FaceId, Handle, MeshEdit, Point, PolygonMesh, Refusal,
+    Changes, Edit, EditRecord, FaceId, Handle, MeshEdit, MeshQuery, Point, PolygonMesh, Refusal,
     Representation, VertexId,
 };
 
@@ -128,6 +128,7 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
     pub fn inspect(&mut self) {
         relations_hold(&self.mesh, M::NAME);
         self.move_all();
+        self.make_whole();
         // A name made of coordinates may come to name another vertex.
         let reused = |v: &M::Vertex| {
             !M::CAPABILITIES.coincident_vertices && self.vertices.values().any(|known| known == v)
@@ -171,6 +172,20 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
                 M::NAME
             );
         }
+    }
+
+    /// Without its holes it is the same mesh, and can be edited again.
+    fn make_whole(&self) {
+        let whole = self.mesh.clone().into_whole();
+        assert_eq!(whole.face_rows(), whole.face_count(), "{}: holes", M::NAME);
+        let mesh: M = whole.into();
+        if let Err(broken) = mesh.validate() {
+            panic!("{}: made whole and editable again {broken}", M::NAME);
+        }
+        let (made, known) = (mesh.to_polygons(), self.mesh.to_polygons());
+        let same =
+            made.positions() == known.positions() && made.faces().iter().eq(known.faces().iter());
+        assert!(same, "{}: made whole it is another mesh", M::NAME);
     }
 
     /// All vertices moved at once come to their places, holes or not, and what was removed stays so.

@@ -3,7 +3,7 @@
 use mesh_core::{EditError, EditLog, Few, Lookup, Point, Probe, Slot, VertexId};
 
 use super::{Refusal, faced_by, tell_renamed};
-use crate::mesh::{CornerId, CornerTable, EdgeCorner, NOWHERE, edge_between};
+use crate::mesh::{CornerId, EdgeCorner, EditableCornerTable, NOWHERE, edge_between};
 
 /// The fan of an end of an edge, without the triangles along the edge.
 #[derive(Clone, Copy)]
@@ -25,7 +25,7 @@ impl Rest {
     }
 }
 
-impl<P: Probe> CornerTable<P> {
+impl<P: Probe> EditableCornerTable<P> {
     /// Makes one vertex of the ends of `e`, where the link condition holds (Dey, Edelsbrunner, Guha &
     /// Nekhayev 1999): the only neighbours of both are C and D, no triangle of one end comes to lie on
     /// a triangle of the other, and two boundaries do not meet.
@@ -216,7 +216,7 @@ mod tests {
 
     /// A wheel of `n` triangles around v0, and beyond each rim edge the apex v(n + 1), so that both
     /// have valence `n`.
-    fn double_wheel(n: u32) -> CornerTable {
+    fn double_wheel(n: u32) -> EditableCornerTable {
         let rim = |i: u32| 1 + i % n;
         let triangles = (0..n).flat_map(|i| [[0, rim(i), rim(i + 1)], [n + 1, rim(i + 1), rim(i)]]);
         table(n as u16 + 2, &triangles.collect::<Vec<_>>())

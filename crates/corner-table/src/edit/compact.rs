@@ -1,11 +1,11 @@
 //! Holes closed.
 
-use mesh_core::{EditLog, FaceId, MeshQuery, Probe, RowId, Slot, VertexId};
+use mesh_core::{EditLog, FaceId, HoleSet, MeshQuery, Probe, RowId, Slot, VertexId};
 
 use super::faced_by;
-use crate::mesh::{CornerId, CornerTable};
+use crate::mesh::{CornerId, EditableCornerTable};
 
-impl<P: Probe> CornerTable<P> {
+impl<P: Probe> EditableCornerTable<P> {
     /// Moves all rows down over the holes, once through each table. Triangles keep their order, so of
     /// two corners that face an edge the lower stays the lower.
     pub(super) fn close_holes(&mut self, log: &mut impl EditLog<Self>) {

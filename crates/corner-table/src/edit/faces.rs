@@ -3,9 +3,9 @@
 use mesh_core::{EditError, EditLog, FaceId, Few, Probe, Slot, VertexId};
 
 use super::{Refusal, faced_by, tell_renamed};
-use crate::mesh::{CornerId, CornerTable, edge_between};
+use crate::mesh::{CornerId, EditableCornerTable, edge_between};
 
-impl<P: Probe> CornerTable<P> {
+impl<P: Probe> EditableCornerTable<P> {
     /// Adds the triangle over three vertices, beside the triangles that run its sides the other way.
     ///
     /// ```text
@@ -243,7 +243,7 @@ struct Gap {
 
 /// Triangles beside each other are taken out of the fan of a vertex: `before` lies across the first
 /// of them, `after` across the last, counter-clockwise.
-impl<P: Probe> CornerTable<P> {
+impl<P: Probe> EditableCornerTable<P> {
     fn check_block(
         &self,
         v: VertexId,

@@ -3,9 +3,9 @@
 use mesh_core::{EditError, EditLog, Probe, Slot, VertexId};
 
 use super::{Refusal, tell_renamed};
-use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
+use crate::mesh::{CornerId, EdgeCorner, EditableCornerTable, edge_between};
 
-impl<P: Probe> CornerTable<P> {
+impl<P: Probe> EditableCornerTable<P> {
     /// Turns `e` from A–B to D–C.
     ///
     /// ```text

@@ -3,9 +3,9 @@
 use mesh_core::{EditError, EditLog, FaceId, Point, Probe, Slot, VertexId};
 
 use super::{Refusal, faced_by, tell_renamed};
-use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
+use crate::mesh::{CornerId, EdgeCorner, EditableCornerTable, edge_between};
 
-impl<P: Probe> CornerTable<P> {
+impl<P: Probe> EditableCornerTable<P> {
     /// Puts m into `e`: T keeps A and R does, two new triangles have B.
     ///
     /// ```text
@@ -249,7 +249,7 @@ impl<P: Probe> CornerTable<P> {
 /// Tells that `old` faces a new edge: the one that it faced with `across` is faced by `new` instead.
 #[inline]
 fn tell_cut<P: Probe>(
-    log: &mut impl EditLog<CornerTable<P>>,
+    log: &mut impl EditLog<EditableCornerTable<P>>,
     old: CornerId,
     across: Slot<CornerId>,
     new: CornerId,

@@ -5,9 +5,9 @@ use mesh_core::{EditError, EditLog, FaceId, Few, Lookup, Pair, Point, Probe, Ver
 use super::corners::third;
 use super::find::Refused;
 use super::{Edge, listens};
-use crate::mesh::{BLANK_CORNER, FaceVertexMesh};
+use crate::mesh::{BLANK_CORNER, EditableFaceVertexMesh};
 
-impl<P: Probe> FaceVertexMesh<P> {
+impl<P: Probe> EditableFaceVertexMesh<P> {
     /// [`collapse_edge`](mesh_core::MeshEdit::collapse_edge).
     pub(super) fn collapse(
         &mut self,

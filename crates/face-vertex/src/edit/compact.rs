@@ -1,9 +1,9 @@
 //! All holes and blanks closed up.
 
-use mesh_core::{EditLog, FaceId, Holes, MeshQuery, Pair, Probe, RowId, row};
+use mesh_core::{EditLog, FaceId, HoleSet, Holes, MeshQuery, Pair, Probe, RowId, row};
 
 use super::listens;
-use crate::mesh::{FaceVertexMesh, Fan};
+use crate::mesh::{EditableFaceVertexMesh, Fan};
 
 /// What the rows of one kind are called once their holes are closed.
 struct NewNames(Option<Vec<u32>>);
@@ -20,7 +20,7 @@ impl NewNames {
     }
 }
 
-impl<P: Probe> FaceVertexMesh<P> {
+impl<P: Probe> EditableFaceVertexMesh<P> {
     /// [`compact`](mesh_core::MeshEdit::compact).
     pub(super) fn close_up(&mut self, log: &mut impl EditLog<Self>) {
         let vertices = NewNames::of(&self.vertex_holes, self.fans.len());

@@ -16,9 +16,9 @@ use std::ops::Range;
 use mesh_core::{FaceId, Few, Lookup, MAX_ROWS, Point, Probe, VertexId, row};
 
 use super::find::mask;
-use crate::mesh::{BLANK_PLACE, FaceVertexMesh, Fan};
+use crate::mesh::{BLANK_PLACE, EditableFaceVertexMesh, Fan};
 
-impl<P: Probe> FaceVertexMesh<P> {
+impl<P: Probe> EditableFaceVertexMesh<P> {
     /// How many blanks follow a fan of `len` faces, one of them new, that has moved to the end of the
     /// pool: none where places run short, so that what [`check_room`](Self::check_room) finds is enough.
     fn spare(&self, len: u32) -> impl Iterator<Item = FaceId> + use<P> {

@@ -3,7 +3,7 @@
 use mesh_core::{EditError, FaceId, Few, IteratorExt, MAX_ROWS, Pair, Probe, VertexId};
 
 use crate::circulate::{beside, runs_between};
-use crate::mesh::{BLANK_CORNER, BLANK_PLACE, FaceVertexMesh, Fan};
+use crate::mesh::{BLANK_CORNER, BLANK_PLACE, EditableFaceVertexMesh, Fan};
 
 /// Why an edit is refused here, whatever watches the tables.
 pub(super) type Refused = EditError<VertexId, Pair<VertexId>, FaceId>;
@@ -18,7 +18,7 @@ pub(super) fn mask<const N: usize>(hits: [u32; N]) -> u32 {
     (0..N).fold(0, |mask, i| mask | hits[i] << i)
 }
 
-impl<P: Probe> FaceVertexMesh<P> {
+impl<P: Probe> EditableFaceVertexMesh<P> {
     /// The fan of `v`.
     #[inline]
     pub(super) fn fan_of(&self, v: VertexId) -> Result<Fan, Refused> {

@@ -5,7 +5,7 @@ use mesh_core::{EditError, EditLog, FaceId, Few, Pair, Point, Probe, VertexId, r
 use super::find::Refused;
 use super::listens;
 use crate::circulate::beside;
-use crate::mesh::FaceVertexMesh;
+use crate::mesh::EditableFaceVertexMesh;
 
 /// A face around a vertex, between the neighbours that it names after and before the vertex.
 #[derive(Clone, Copy)]
@@ -50,7 +50,7 @@ impl Umbrella {
     }
 }
 
-impl<P: Probe> FaceVertexMesh<P> {
+impl<P: Probe> EditableFaceVertexMesh<P> {
     /// [`split_vertex`](mesh_core::MeshEdit::split_vertex); `sides` are left and right.
     pub(super) fn split_fan(
         &mut self,

@@ -1,17 +1,14 @@
 //! What the laws do not see: the tables after an edit, what they cost, and who panics.
 
-use crate::mesh::BLANK_PLACE;
-use mesh_core::{
-    EditRecord, FaceSpans, MeshQuery, PolygonMesh, Refine, RefineError, Representation, Split,
-};
+use crate::mesh::{BLANK_PLACE, EditableFaceVertexMesh};
+use mesh_core::{EditRecord, FaceSpans, MeshQuery, PolygonMesh, Representation};
 
 use super::*;
-use crate::edge_numbers::EdgeNumbers;
 
-fn build(faces: &[&[u32]], vertices: u16) -> FaceVertexMesh {
+fn build(faces: &[&[u32]], vertices: u16) -> EditableFaceVertexMesh {
     let positions = (0..vertices).map(|i| Point::splat(f32::from(i)));
     let polygons = PolygonMesh::new(positions.collect::<Vec<_>>(), faces).expect("valid");
-    FaceVertexMesh::from_polygons(&polygons).expect("holds everything")
+    EditableFaceVertexMesh::from_polygons(&polygons).expect("holds everything")
 }
 
 fn v(row: u32) -> VertexId {
@@ -27,7 +24,7 @@ fn edge(a: u32, b: u32) -> Edge {
 }
 
 /// The fan of each vertex, as it lies in the pool.
-fn fans(mesh: &FaceVertexMesh) -> Vec<(u32, Vec<usize>)> {
+fn fans(mesh: &EditableFaceVertexMesh) -> Vec<(u32, Vec<usize>)> {
     let fan = |v: VertexId| {
         let faces = mesh.fan(v).iter().map(|f| f.index());
         (mesh.fans()[v.index()].start, faces.collect())
@@ -95,7 +92,8 @@ fn a_fan_that_grows_face_by_face_leaves_few_blanks() {
 
 #[test]
 fn compacting_is_building_anew() {
-    let mut mesh = FaceVertexMesh::from_polygons(&shapes::icosahedron()).expect("triangles");
+    let mut mesh =
+        EditableFaceVertexMesh::from_polygons(&shapes::icosahedron()).expect("triangles");
     let faces: Vec<FaceId> = mesh.faces().collect();
     for &f in &faces {
         let at = Point::splat(f.index() as f32);
@@ -107,10 +105,10 @@ fn compacting_is_building_anew() {
     let e = mesh.edges().find(|e| e.has(v(5))).expect("it has faces");
     mesh.collapse_edge(e, v(5), Point::ZERO, &mut ())
         .expect("many faces are left");
-    assert!(matches!(mesh.spans(), FaceSpans::Scattered { .. }));
+    assert!(matches!(mesh.spans(), FaceSpans::Scattered(_)));
     let polygons = mesh.to_polygons();
     let names = mesh.compact_with_names();
-    let anew = FaceVertexMesh::from_polygons(&polygons).expect("holds everything");
+    let anew = EditableFaceVertexMesh::from_polygons(&polygons).expect("holds everything");
     assert_eq!(format!("{mesh:?}"), format!("{anew:?}"));
     assert!(
         mesh.memory().total() <= 2 * anew.memory().total(),
@@ -157,7 +155,7 @@ fn handles_that_name_nothing_are_refused() {
 }
 
 /// The square without its corner v3 and the face there.
-fn without_a_corner() -> FaceVertexMesh {
+fn without_a_corner() -> EditableFaceVertexMesh {
     let mut mesh = build(&[&[0, 1, 2], &[0, 2, 3]], 4);
     mesh.remove_vertex(v(3), &mut ()).expect("it is there");
     mesh
@@ -179,37 +177,4 @@ fn the_position_of_a_deleted_vertex_panics_by_name() {
 #[should_panic(expected = "no face f1: it was deleted")]
 fn the_corners_of_a_deleted_face_panic_by_name() {
     let _ = without_a_corner().face_vertices(f(1));
-}
-
-#[test]
-fn holes_are_not_split_but_faces_anywhere_are() {
-    let mut numbers = EdgeNumbers::default();
-    let mut child = FaceVertexMesh::empty();
-    let holes = without_a_corner();
-    holes.number_edges(&mut numbers);
-    assert_eq!(
-        holes.split_into(Split::Quads, &numbers, &mut child),
-        Err(RefineError::Holes { holes: 2 })
-    );
-
-    let mut mesh = build(&[&[0, 1, 2], &[0, 2, 3], &[0, 3, 4]], 5);
-    mesh.split_edge(edge(0, 1), Point::ONE, &mut ())
-        .expect("it is an edge");
-    assert!(matches!(mesh.spans(), FaceSpans::Scattered { .. }));
-    let split = |mesh: &FaceVertexMesh| {
-        let mut numbers = EdgeNumbers::default();
-        mesh.number_edges(&mut numbers);
-        let mut child = FaceVertexMesh::empty();
-        let done = mesh.split_into(Split::Quads, &numbers, &mut child);
-        assert_eq!(done, Ok(()));
-        assert_eq!(child.validate(), Ok(()));
-        let parent = |f| mesh.parent(&numbers, Split::Quads, f);
-        let parents: Vec<FaceId> = child.faces().map(parent).collect();
-        let edges = mesh.edges().map(|e| mesh.edge_number(&numbers, e));
-        assert!(edges.eq(0..mesh.edge_count()));
-        (format!("{child:?}"), parents)
-    };
-    let anywhere = split(&mesh);
-    mesh.compact(&mut ());
-    assert_eq!(split(&mesh), anywhere);
 }

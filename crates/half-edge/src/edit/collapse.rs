@@ -4,7 +4,7 @@ use mesh_core::{EdgeId, EditError, EditLog, FaceId, Point, Probe, Slot, VertexId
 
 use super::Refusal;
 use super::names::Names;
-use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
 /// An edge to be collapsed, from the end that goes: what was read to decide whether it may.
 struct Collapse {
@@ -30,7 +30,7 @@ struct Turn {
     last_but_one: HalfEdgeId,
 }
 
-impl<P: Probe> HalfEdgeMesh<P> {
+impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// O(valence) of both ends, beyond 16 O(valence log valence); of a vertex in the middle of a
     /// triangle, or of an edge, only what is around itself is read.
     ///

@@ -1,10 +1,10 @@
 //! Closing the holes.
 
-use mesh_core::{EditLog, FaceId, Holes, MeshQuery, Probe, RowId, VertexId};
+use mesh_core::{EditLog, FaceId, HoleSet, Holes, MeshQuery, Probe, RowId, VertexId};
 
-use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
-impl<P: Probe> HalfEdgeMesh<P> {
+impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// O(mesh): all rows move down in order, under names that are counted once.
     pub(super) fn close_holes<L: EditLog<Self>>(&mut self, log: &mut L) {
         if self.hole_count() > 0 {

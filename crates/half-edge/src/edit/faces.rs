@@ -4,9 +4,9 @@ use mesh_core::{EditError, EditLog, FaceId, IteratorExt, Probe, Slot, VertexId};
 
 use super::Refusal;
 use super::names::Names;
-use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
-impl<P: Probe> HalfEdgeMesh<P> {
+impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// O(valence) of the corners.
     ///
     /// A side of the new face fills a boundary half, or is new. All faces at a vertex being one fan,

@@ -3,9 +3,9 @@
 use mesh_core::{EdgeId, EditError, FaceId, Probe};
 
 use super::Refusal;
-use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
-impl<P: Probe> HalfEdgeMesh<P> {
+impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// O(valence) of `c` or of `d`, whichever is less: reads eight halves, and for each further edge
     /// there one around either.
     ///

@@ -4,9 +4,9 @@ use mesh_core::{EdgeId, EditError, EditLog, FaceId, Point, Probe, Slot, VertexId
 
 use super::Refusal;
 use super::names::Names;
-use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
-impl<P: Probe> HalfEdgeMesh<P> {
+impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// O(degree) of one face of `e`.
     pub(super) fn split(
         &mut self,

@@ -3,7 +3,7 @@
 use mesh_core::{EditError, EditLog, Point, Probe, Slot, VertexId};
 
 use super::Refusal;
-use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
 /// A spoke of the vertex that is split, and the half before it.
 #[derive(Clone, Copy)]
@@ -12,7 +12,7 @@ struct Spoke {
     before: HalfEdgeId,
 }
 
-impl<P: Probe> HalfEdgeMesh<P> {
+impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// O(valence).
     ///
     /// The edge to `left` goes with the new vertex and that to `right` stays, so that each new edge

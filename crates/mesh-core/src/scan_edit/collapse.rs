@@ -4,6 +4,7 @@ use super::{Refusal, ScannedMesh, listens, sorted_once};
 use crate::distinct::IteratorExt;
 use crate::edit_error::EditError;
 use crate::edit_log::EditLog;
+use crate::editing::Editable;
 use crate::few::Few;
 use crate::handle::Pair;
 use crate::probe::Probe;
@@ -77,7 +78,7 @@ impl<V: ScannedVertex> Star<V> {
     }
 }
 
-impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P> {
+impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     /// Makes one vertex of the two ends of `e`: `keep`, called `to` from now on. One scan, and one more
     /// for a third corner that may have no other face.
     ///

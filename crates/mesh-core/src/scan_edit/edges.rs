@@ -4,6 +4,7 @@ use super::{Refusal, ScannedMesh, listens, repeated};
 use crate::distinct::IteratorExt;
 use crate::edit_error::EditError;
 use crate::edit_log::EditLog;
+use crate::editing::Editable;
 use crate::few::Few;
 use crate::handle::Pair;
 use crate::probe::Probe;
@@ -22,7 +23,7 @@ struct Run<V> {
     apex: V,
 }
 
-impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P> {
+impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     /// How the face of `hit` runs from its corner to `b` or from `b`, if one of the two is so.
     fn run(&self, hit: &Hit<V>, b: V) -> Option<Run<V>> {
         let leaves = hit.after == b;

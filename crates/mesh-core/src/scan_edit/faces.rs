@@ -3,13 +3,14 @@
 use super::{Refusal, ScannedMesh, listens, repeated, sorted_once};
 use crate::edit_error::EditError;
 use crate::edit_log::EditLog;
+use crate::editing::Editable;
 use crate::few::Few;
 use crate::handle::Pair;
 use crate::probe::Probe;
 use crate::row_id::FaceId;
 use crate::scanned::{ScannedFaces, ScannedVertex, Sought};
 
-impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P> {
+impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     /// Adds a face over `corners`, which are vertices already, or places of new ones: O(degree), and a
     /// scan for the sides that are there already if somebody listens.
     ///

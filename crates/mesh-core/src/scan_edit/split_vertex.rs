@@ -3,12 +3,13 @@
 use super::{Refusal, ScannedMesh};
 use crate::edit_error::EditError;
 use crate::edit_log::EditLog;
+use crate::editing::Editable;
 use crate::handle::Pair;
 use crate::probe::Probe;
 use crate::query::ring;
 use crate::scanned::{ScannedFaces, ScannedVertex};
 
-impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P> {
+impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     /// Splits `v`: `n`, a new vertex, gets the faces counter-clockwise from `right` to `left`, or from
     /// and to the boundary. One scan.
     ///

@@ -1,7 +1,7 @@
 use std::collections::BTreeSet;
 
-use half_edge::HalfEdgeMesh;
-use indexed_face_set::IndexedFaceSet;
+use half_edge::EditableHalfEdgeMesh;
+use indexed_face_set::EditableIndexedFaceSet;
 use mesh_core::{MeshQuery, Point, PolygonMesh};
 
 use super::*;
@@ -10,8 +10,8 @@ fn to(target: Target, boundary: Boundary) -> Decimation {
     Decimation { target, boundary }
 }
 
-fn decimated(polygons: &PolygonMesh, how: &Decimation) -> (HalfEdgeMesh, Decimated) {
-    let mut mesh = HalfEdgeMesh::from_polygons(polygons).expect("a manifold");
+fn decimated(polygons: &PolygonMesh, how: &Decimation) -> (EditableHalfEdgeMesh, Decimated) {
+    let mut mesh = EditableHalfEdgeMesh::from_polygons(polygons).expect("a manifold");
     let report = decimate(&mut mesh, how).expect("triangles");
     assert_eq!(mesh.validate(), Ok(()));
     assert_eq!(mesh.face_count(), report.faces);
@@ -27,7 +27,7 @@ fn area(polygons: &PolygonMesh) -> f64 {
     areas.sum()
 }
 
-fn euler(mesh: &HalfEdgeMesh) -> isize {
+fn euler(mesh: &EditableHalfEdgeMesh) -> isize {
     mesh.vertex_count() as isize - mesh.edge_count() as isize + mesh.face_count() as isize
 }
 
@@ -63,8 +63,8 @@ fn a_flat_square_comes_down_to_two_triangles() {
 #[test]
 fn a_fixed_boundary_stays_to_the_bit() {
     let grid = shapes::triangle_grid(8, 8).expect("small");
-    let fresh = HalfEdgeMesh::from_polygons(&grid).expect("a manifold");
-    let outline = |mesh: &HalfEdgeMesh| -> BTreeSet<[u32; 3]> {
+    let fresh = EditableHalfEdgeMesh::from_polygons(&grid).expect("a manifold");
+    let outline = |mesh: &EditableHalfEdgeMesh| -> BTreeSet<[u32; 3]> {
         let edges = mesh.edges().filter(|&e| mesh.edge_faces(e).count() == 1);
         let ends = edges.flat_map(|e| mesh.edge_vertices(e));
         ends.map(|v| mesh.position(v).to_array().map(f32::to_bits))
@@ -104,13 +104,13 @@ fn what_cannot_be_reached_is_said() {
 
 #[test]
 fn bad_input_is_refused_by_name() {
-    let mut cube = HalfEdgeMesh::from_polygons(&shapes::cube()).expect("closed");
+    let mut cube = EditableHalfEdgeMesh::from_polygons(&shapes::cube()).expect("closed");
     let refused = decimate(&mut cube, &Decimation::default()).expect_err("quads");
     assert!(
         matches!(refused, RemeshError::NotATriangle { degree: 4, .. }),
         "{refused}"
     );
-    let mut mesh = HalfEdgeMesh::from_polygons(&shapes::icosahedron()).expect("closed");
+    let mut mesh = EditableHalfEdgeMesh::from_polygons(&shapes::icosahedron()).expect("closed");
     for ratio in [f64::NAN, -0.1, 1.1, f64::INFINITY] {
         let how = to(Target::Ratio(ratio), Boundary::Follow);
         let refused = decimate(&mut mesh, &how).expect_err("no ratio");
@@ -118,7 +118,7 @@ fn bad_input_is_refused_by_name() {
     }
     let nowhere = Point::new(0.0, f32::NAN, 0.0);
     let broken = PolygonMesh::new([Point::X, Point::Y, nowhere], [[0, 1, 2]]).expect("valid");
-    let mut broken = HalfEdgeMesh::from_polygons(&broken).expect("a triangle");
+    let mut broken = EditableHalfEdgeMesh::from_polygons(&broken).expect("a triangle");
     let refused = decimate(&mut broken, &Decimation::default()).expect_err("NaN");
     assert!(
         matches!(refused, RemeshError::NotFinite { .. }),
@@ -135,7 +135,7 @@ fn a_structure_that_scans_makes_the_same_mesh() {
     ] {
         let how = to(Target::Ratio(0.3), Boundary::Follow);
         let (walked, report) = decimated(&polygons, &how);
-        let mut scanned = IndexedFaceSet::from_polygons(&polygons).expect("holds all");
+        let mut scanned = EditableIndexedFaceSet::from_polygons(&polygons).expect("holds all");
         assert_eq!(decimate(&mut scanned, &how), Ok(report));
         assert_eq!(
             walked.to_polygons().positions(),
@@ -147,7 +147,7 @@ fn a_structure_that_scans_makes_the_same_mesh() {
 #[test]
 fn who_watches_may_end_it() {
     let sphere = shapes::geodesic(32).expect("small");
-    let mut mesh = HalfEdgeMesh::from_polygons(&sphere).expect("closed");
+    let mut mesh = EditableHalfEdgeMesh::from_polygons(&sphere).expect("closed");
     let report = decimate_watched(
         &mut mesh,
         &to(Target::Faces(4), Boundary::Follow),

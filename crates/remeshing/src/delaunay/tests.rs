@@ -1,4 +1,4 @@
-use half_edge::HalfEdgeMesh;
+use half_edge::EditableHalfEdgeMesh;
 use mesh_core::{MeshQuery, Point, PolygonMesh};
 use proptest::prelude::*;
 
@@ -30,7 +30,7 @@ proptest! {
     #[test]
     fn a_plane_becomes_delaunay(by in prop::collection::vec([-1.0_f32..1.0, -1.0_f32..1.0], 36)) {
         let polygons = shaken(5, &by);
-        let mut mesh = HalfEdgeMesh::from_polygons(&polygons).expect("a manifold");
+        let mut mesh = EditableHalfEdgeMesh::from_polygons(&polygons).expect("a manifold");
         let report = flip_to_delaunay(&mut mesh).expect("triangles");
         prop_assert_eq!(mesh.validate(), Ok(()));
         prop_assert_eq!(report.stop, Stop::Done);
@@ -52,7 +52,7 @@ proptest! {
 
 #[test]
 fn what_is_delaunay_stays() {
-    let mut mesh = HalfEdgeMesh::from_polygons(&shapes::icosahedron()).expect("closed");
+    let mut mesh = EditableHalfEdgeMesh::from_polygons(&shapes::icosahedron()).expect("closed");
     let report = flip_to_delaunay(&mut mesh).expect("triangles");
     assert_eq!(
         (report.flips, report.refused, report.stop),
@@ -69,7 +69,7 @@ fn one_bad_edge_is_flipped() {
         Point::new(2.0, -0.5, 0.0),
     ];
     let polygons = PolygonMesh::new(kite, [[0, 1, 2], [1, 0, 3]]).expect("valid");
-    let mut mesh = HalfEdgeMesh::from_polygons(&polygons).expect("a manifold");
+    let mut mesh = EditableHalfEdgeMesh::from_polygons(&polygons).expect("a manifold");
     assert_eq!(flip_to_delaunay(&mut mesh).expect("triangles").flips, 1);
     let v = mesh_core::VertexId::new;
     assert!(mesh.edge_between(v(2), v(3)).is_some() && mesh.edge_between(v(0), v(1)).is_none());

@@ -1,18 +1,18 @@
-use half_edge::HalfEdgeMesh;
-use indexed_face_set::IndexedFaceSet;
+use half_edge::EditableHalfEdgeMesh;
+use indexed_face_set::EditableIndexedFaceSet;
 use mesh_core::{MeshQuery, PolygonMesh};
 
 use super::*;
 
-fn remeshed(polygons: &PolygonMesh, how: &Remeshing) -> (HalfEdgeMesh, Remeshed) {
-    let mut mesh = HalfEdgeMesh::from_polygons(polygons).expect("a manifold");
+fn remeshed(polygons: &PolygonMesh, how: &Remeshing) -> (EditableHalfEdgeMesh, Remeshed) {
+    let mut mesh = EditableHalfEdgeMesh::from_polygons(polygons).expect("a manifold");
     let report = remesh(&mut mesh, how).expect("triangles");
     assert_eq!(mesh.validate(), Ok(()));
     assert_eq!(mesh.face_count(), report.faces);
     (mesh, report)
 }
 
-fn lengths(mesh: &HalfEdgeMesh) -> Vec<f64> {
+fn lengths(mesh: &EditableHalfEdgeMesh) -> Vec<f64> {
     let ends = mesh
         .edges()
         .map(|e| mesh.edge_vertices(e).map(|v| at(mesh, v)));
@@ -46,11 +46,12 @@ fn edges_come_to_the_length_asked_for() {
 fn a_flat_square_keeps_its_outline() {
     let grid = shapes::triangle_grid(6, 6).expect("small");
     let length = {
-        let mesh = HalfEdgeMesh::from_polygons(&grid).expect("a manifold");
+        let mesh = EditableHalfEdgeMesh::from_polygons(&grid).expect("a manifold");
         lengths(&mesh).into_iter().fold(f64::INFINITY, f64::min)
     };
-    let area = |mesh: &HalfEdgeMesh| -> f64 { mesh.faces().map(|f| cross(mesh, f).z / 2.0).sum() };
-    let before = area(&HalfEdgeMesh::from_polygons(&grid).expect("a manifold"));
+    let area =
+        |mesh: &EditableHalfEdgeMesh| -> f64 { mesh.faces().map(|f| cross(mesh, f).z / 2.0).sum() };
+    let before = area(&EditableHalfEdgeMesh::from_polygons(&grid).expect("a manifold"));
     for factor in [0.4, 2.5] {
         let (mesh, report) = remeshed(&grid, &Remeshing::to(factor * length));
         assert!((area(&mesh) - before).abs() < 1e-4 * before.abs());
@@ -66,7 +67,7 @@ fn a_flat_square_keeps_its_outline() {
 #[test]
 fn any_length_is_refused_or_comes_to_an_end() {
     let sphere = shapes::geodesic(4).expect("small");
-    let mut mesh = HalfEdgeMesh::from_polygons(&sphere).expect("closed");
+    let mut mesh = EditableHalfEdgeMesh::from_polygons(&sphere).expect("closed");
     for length in [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let refused = remesh(&mut mesh, &Remeshing::to(length)).expect_err("no length");
         assert!(
@@ -81,14 +82,14 @@ fn any_length_is_refused_or_comes_to_an_end() {
     // Faces without an area have edges to be cut all the same.
     let line = [0.0, 1.0, 2.0].map(|x| mesh_core::Point::new(x, 0.0, 0.0));
     let flat = PolygonMesh::new(line, [[0, 1, 2]]).expect("valid");
-    let mut flat = HalfEdgeMesh::from_polygons(&flat).expect("a triangle");
+    let mut flat = EditableHalfEdgeMesh::from_polygons(&flat).expect("a triangle");
     let refused = remesh(&mut flat, &Remeshing::to(1e-8)).expect_err("too fine");
     assert!(matches!(refused, RemeshError::TooFine { .. }), "{refused}");
     let few = Remeshing {
         most_faces: 400,
         ..Remeshing::to(0.2)
     };
-    let mut mesh = HalfEdgeMesh::from_polygons(&sphere).expect("closed");
+    let mut mesh = EditableHalfEdgeMesh::from_polygons(&sphere).expect("closed");
     let outcome = remesh(&mut mesh, &few);
     assert!(
         matches!(outcome, Err(RemeshError::TooFine { .. })),
@@ -107,7 +108,7 @@ fn a_structure_that_scans_makes_the_same_mesh() {
             ..Remeshing::to(0.25)
         };
         let (walked, report) = remeshed(&polygons, &how);
-        let mut scanned = IndexedFaceSet::from_polygons(&polygons).expect("holds all");
+        let mut scanned = EditableIndexedFaceSet::from_polygons(&polygons).expect("holds all");
         assert_eq!(remesh(&mut scanned, &how), Ok(report));
         assert_eq!(
             walked.to_polygons().positions(),

@@ -6,9 +6,9 @@ use mesh_core::{
 
 use super::surgery::both_sides;
 use crate::edge::{Edge, RunId};
-use crate::mesh::WingedEdgeMesh;
+use crate::mesh::EditableWingedEdgeMesh;
 
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// Links a new face corner by corner.
     ///
     /// ```text

@@ -6,7 +6,7 @@ use mesh_core::{
 };
 
 use crate::edge::{Run, RunId};
-use crate::mesh::WingedEdgeMesh;
+use crate::mesh::EditableWingedEdgeMesh;
 
 /// A triangle along the edge that goes, and what becomes of its other sides.
 ///
@@ -31,7 +31,7 @@ struct Spokes {
     on_boundary: bool,
 }
 
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe> EditableWingedEdgeMesh<P> {
     #[inline]
     pub(super) fn collapse(
         &mut self,

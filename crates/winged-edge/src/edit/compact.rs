@@ -1,11 +1,11 @@
 //! Holes closed up.
 
-use mesh_core::{EdgeId, EditLog, FaceId, Holes, Probe, RowId, Slot, VertexId};
+use mesh_core::{EdgeId, EditLog, FaceId, HoleSet, Holes, Probe, RowId, Slot, VertexId};
 
-use crate::mesh::WingedEdgeMesh;
+use crate::mesh::EditableWingedEdgeMesh;
 use crate::wings::Wings;
 
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// Moves all rows up over the holes, and renames what they hold.
     pub(super) fn close_holes<L: EditLog<Self>>(&mut self, log: &mut L) {
         let vertices = NewNames::of(&self.vertex_holes, self.positions.len());

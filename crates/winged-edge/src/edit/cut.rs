@@ -6,9 +6,9 @@ use mesh_core::{
 
 use super::surgery::{both_sides, edge_of};
 use crate::edge::{Run, RunId};
-use crate::mesh::WingedEdgeMesh;
+use crate::mesh::EditableWingedEdgeMesh;
 
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// Puts a vertex into `e`, which is there: the vertex, and the edge on from it.
     ///
     /// ```text

@@ -4,9 +4,9 @@ use mesh_core::{EdgeId, EditError, Probe, Refusal, Slot, VertexId};
 
 use super::surgery::{both_sides, edge_of};
 use crate::edge::{Run, RunId};
-use crate::mesh::WingedEdgeMesh;
+use crate::mesh::EditableWingedEdgeMesh;
 
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// Turns `e` counter-clockwise: six records change, and what the ends and the faces start from.
     ///
     /// ```text

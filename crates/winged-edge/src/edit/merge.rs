@@ -4,9 +4,9 @@ use mesh_core::{EdgeId, EditError, EditLog, FaceId, Few, Lookup, Probe, Refusal,
 
 use super::surgery::both_sides;
 use crate::edge::RunId;
-use crate::mesh::WingedEdgeMesh;
+use crate::mesh::EditableWingedEdgeMesh;
 
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// Takes `e` out; the face with fewer sides is the one that goes.
     pub(super) fn dissolve(
         &mut self,

@@ -1,9 +1,11 @@
 //! Faces taken out: one, all at a vertex; and vertices that have none.
 
-use mesh_core::{EditError, EditLog, FaceId, Few, Lookup, Probe, Refusal, Slot, VertexId, row};
+use mesh_core::{
+    EditError, EditLog, FaceId, Few, HoleSet, Lookup, Probe, Refusal, Slot, VertexId, row,
+};
 
 use crate::edge::{Run, RunId};
-use crate::mesh::WingedEdgeMesh;
+use crate::mesh::EditableWingedEdgeMesh;
 use crate::wings::Side;
 
 /// A run along the outline of the faces that go; the outline of a face is all its sides, that of all
@@ -35,7 +37,7 @@ struct Corner {
     out: Option<RunId>,
 }
 
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe> EditableWingedEdgeMesh<P> {
     pub(super) fn remove(
         &mut self,
         f: FaceId,

@@ -6,7 +6,7 @@ use mesh_core::{
 
 use super::surgery::both_sides;
 use crate::edge::{Edge, Run, RunId};
-use crate::mesh::WingedEdgeMesh;
+use crate::mesh::EditableWingedEdgeMesh;
 
 /// The part of the fan at a vertex that goes to a new one.
 struct Part {
@@ -28,7 +28,7 @@ struct Doubled {
     after: RunId,
 }
 
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// Puts a new edge from `v` to a new vertex n between the two parts of the fan.
     ///
     /// ```text

@@ -1,18 +1,19 @@
 //! The steps that edits are made of: checks of names, runs by name, linking, new rows and holes.
 
 use mesh_core::{
-    EdgeId, EditError, EditLog, FaceId, MAX_ROWS, Point, Probe, Refusal, Slot, VertexId, row,
+    EdgeId, EditError, EditLog, FaceId, HoleSet, MAX_ROWS, Point, Probe, Refusal, Slot, VertexId,
+    row,
 };
 
 use crate::edge::{Edge, NO_EDGE, Run, RunId};
-use crate::mesh::WingedEdgeMesh;
+use crate::mesh::EditableWingedEdgeMesh;
 use crate::wings::Side;
 
 /// As many edges as can be built from polygons: so their corners can be numbered, too.
 const MAX_EDGES: usize = MAX_ROWS / 4;
 
 /// What names something, and whether there is room for more.
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe> EditableWingedEdgeMesh<P> {
     #[inline(always)]
     pub(super) fn check_vertex(&self, vertex: VertexId) -> Result<(), Refusal<Self>> {
         let v = vertex.index();
@@ -64,7 +65,7 @@ impl<P: Probe> WingedEdgeMesh<P> {
 }
 
 /// Runs by name; all O(1), one record read.
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe> EditableWingedEdgeMesh<P> {
     #[inline(always)]
     pub(super) fn run(&self, run: RunId) -> Run<'_> {
         Run::on(self.record(run.edge), run.side)
@@ -120,7 +121,7 @@ impl<P: Probe> WingedEdgeMesh<P> {
 }
 
 /// Writes of a field.
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// Makes `after` follow `before`.
     #[inline(always)]
     pub(super) fn link(&mut self, before: RunId, after: RunId) {
@@ -171,7 +172,7 @@ impl<P: Probe> WingedEdgeMesh<P> {
 }
 
 /// New rows, and holes. Whoever adds rows has asked for room.
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// A vertex without an edge.
     #[inline(always)]
     pub(super) fn push_vertex(&mut self, at: Point, log: &mut impl EditLog<Self>) -> VertexId {
@@ -227,7 +228,7 @@ impl<P: Probe> WingedEdgeMesh<P> {
 }
 
 /// Around vertices.
-impl<P: Probe> WingedEdgeMesh<P> {
+impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// The run without a face that arrives at `v`, if `v` is on a boundary.
     #[inline(always)]
     pub(super) fn boundary_into(&self, v: VertexId) -> Option<RunId> {

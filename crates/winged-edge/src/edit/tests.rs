@@ -1,30 +1,30 @@
 //! What the laws do not see: the records themselves, panics, and memory.
 
 use mesh_core::{
-    EdgeId, EditError, FaceId, MeshEdit, MeshQuery, Point, PolygonMesh, Refine, RefineError,
-    Representation, RowId, Split, VertexId,
+    EdgeId, EditError, FaceId, MeshEdit, MeshQuery, Point, PolygonMesh, Representation, RowId,
+    VertexId,
 };
 
 use crate::edge::Edge;
-use crate::mesh::WingedEdgeMesh;
+use crate::mesh::EditableWingedEdgeMesh;
 
 fn v(row: u32) -> VertexId {
     VertexId::new(row)
 }
 
-fn mesh(vertices: u16, faces: &[&[u32]]) -> WingedEdgeMesh {
+fn mesh(vertices: u16, faces: &[&[u32]]) -> EditableWingedEdgeMesh {
     let corners: Vec<_> = (0..vertices).map(|i| Point::splat(i.into())).collect();
     let polygons = PolygonMesh::new(corners, faces).expect("valid");
-    WingedEdgeMesh::from_polygons(&polygons).expect("manifold")
+    EditableWingedEdgeMesh::from_polygons(&polygons).expect("manifold")
 }
 
 /// A square of two triangles; the diagonal e1 runs from v0 to v2.
-fn square() -> WingedEdgeMesh {
+fn square() -> EditableWingedEdgeMesh {
     mesh(4, &[&[0, 1, 2], &[0, 2, 3]])
 }
 
 /// Both triangles of the square gone but for one, and the vertex that nothing needs any more.
-fn half() -> WingedEdgeMesh {
+fn half() -> EditableWingedEdgeMesh {
     let mut mesh = square();
     mesh.remove_face(FaceId::new(1), &mut ())
         .expect("at the boundary");
@@ -32,7 +32,7 @@ fn half() -> WingedEdgeMesh {
     mesh
 }
 
-fn between(mesh: &WingedEdgeMesh, a: u32, b: u32) -> EdgeId {
+fn between(mesh: &EditableWingedEdgeMesh, a: u32, b: u32) -> EdgeId {
     mesh.edge_between(v(a), v(b)).expect("an edge")
 }
 
@@ -146,26 +146,6 @@ fn compaction_gives_memory_back() {
     assert_eq!(mesh.validate(), Ok(()));
     assert_eq!(mesh.memory().tables.len(), 4);
     assert!(mesh.memory().total() <= 2 * bytes + 64);
-}
-
-#[test]
-fn a_mesh_with_holes_is_not_split_until_compacted() {
-    let mut mesh = half();
-    let mut numbers = Default::default();
-    mesh.number_edges(&mut numbers);
-    let mut child = WingedEdgeMesh::empty();
-    // A vertex, a face and two edges.
-    assert_eq!(
-        mesh.split_into(Split::Quads, &numbers, &mut child),
-        Err(RefineError::Holes { holes: 4 })
-    );
-    mesh.compact(&mut ());
-    mesh.number_edges(&mut numbers);
-    let mut child = half();
-    mesh.split_into(Split::Quads, &numbers, &mut child)
-        .expect("one triangle");
-    assert_eq!(child.face_count(), 3);
-    assert_eq!(child.validate(), Ok(()));
 }
 
 #[test]
