@@ -1,17 +1,16 @@
 //! Edge collapse by quadric error (Garland & Heckbert 1997).
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use mesh_core::{MeshEdit, Representation};
+use mesh_core::{MeshEdit, Point, Representation, row};
 
 use crate::Stop;
 use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners};
-use crate::quadric::Quadric;
-use crate::rules::{at, keeps_link, turns_nothing_over};
+use crate::quadric::{Packed, Quadric};
+use crate::queue::{Entry, Queue};
+use crate::rules::{keeps_link, turns_nothing_over};
 
 /// How much more a plane through a boundary edge weighs than a face beside it.
 const BOUNDARY_WEIGHT: f64 = 100.0;
@@ -98,7 +97,9 @@ pub struct Decimated {
 /// planes across the surface, so that outlines stay. A collapse that would turn a face over, or
 /// break the link condition, is left out, and comes again when something around it has changed.
 ///
-/// The queue is updated lazily: an entry whose ends have changed since is dropped when it comes.
+/// Errors that differ by less than an eighth count as the same, and edges of the same error go in
+/// rounds, in the order of the mesh. The queue is updated lazily: an entry whose ends have changed
+/// since is dropped when it comes.
 ///
 /// # Errors
 ///
@@ -138,7 +139,7 @@ pub fn decimate_watched<M: MeshEdit + Representation>(
         work.fill_queue(mesh);
     }
     while report.faces > target {
-        let Some(Reverse(entry)) = work.queue.pop() else {
+        let Some(entry) = work.queue.pop() else {
             report.stop = Stop::NothingLeft;
             break;
         };
@@ -157,31 +158,29 @@ pub fn decimate_watched<M: MeshEdit + Representation>(
             break;
         }
     }
-    // Weights were taken in a box of unit size.
+    // Weights and distances were taken in a box of unit size.
     report.worst *= work.size.powi(4);
     Ok(report)
 }
 
-/// An edge by the numbers of its ends, and what its collapse would cost when the entry was made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Entry {
-    /// The bits of a float that is not negative: they order as it does.
-    cost: u32,
-    ends: [u32; 2],
-    /// The sum of both ends' versions then: either has changed since if it is another now.
+/// What there is to know of a vertex: one cache line, for a collapse looks at vertices all around.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(64))]
+struct Corner {
+    /// From the vertex itself, in the unit box.
+    quadric: Packed,
+    at: Point,
+    /// Changes when the vertex does.
     version: u32,
+    /// Whether it stays where it is.
+    fixed: bool,
 }
 
 struct Work<M: MeshEdit> {
     numbering: Numbering<M>,
-    quadrics: Vec<Quadric>,
-    versions: Vec<u32>,
-    /// Which vertices stay where they are.
-    fixed: Vec<bool>,
-    queue: BinaryHeap<Reverse<Entry>>,
-    /// The mesh fits a unit box around here, in which quadrics are kept: far from the origin squares
-    /// would lose what distances are made of.
-    centre: DVec3,
+    corners: Vec<Corner>,
+    queue: Queue,
+    /// The mesh fits a unit box once it is divided by this.
     size: f64,
 }
 
@@ -189,25 +188,29 @@ impl<M: MeshEdit + Representation> Work<M> {
     fn of(mesh: &M, boundary: Boundary) -> Result<Self, RemeshError> {
         let numbering = Numbering::of(mesh)?;
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for v in mesh.vertices() {
-            low = low.min(at(mesh, v));
-            high = high.max(at(mesh, v));
+        let mut corners = Vec::with_capacity(numbering.len());
+        for number in 0..row(numbering.len()) {
+            let at = mesh.position(numbering.name(number));
+            low = low.min(at.as_dvec3());
+            high = high.max(at.as_dvec3());
+            corners.push(Corner {
+                at,
+                ..Corner::default()
+            });
         }
         let size = (high - low).max_element();
         let mut work = Self {
-            quadrics: vec![Quadric::default(); numbering.len()],
-            versions: vec![0; numbering.len()],
-            fixed: vec![false; numbering.len()],
-            queue: BinaryHeap::new(),
-            centre: (low + high) / 2.0,
-            size: if size > 0.0 { size } else { 1.0 },
             numbering,
+            corners,
+            queue: Queue::new(),
+            size: if size > 0.0 { size } else { 1.0 },
         };
         work.add_planes(mesh, boundary);
         Ok(work)
     }
 
-    /// Gives each vertex the planes of its faces and, where there is a boundary, those across it.
+    /// Gives each vertex the planes of its faces and, where there is a boundary, those across it. All
+    /// go through the vertex, from which its quadric is told.
     fn add_planes(&mut self, mesh: &M, boundary: Boundary) {
         // How many faces each edge has, by a pass over the faces: what no structure searches for.
         let mut uses = mesh.edge_map(0_u8);
@@ -216,33 +219,33 @@ impl<M: MeshEdit + Representation> Work<M> {
                 uses[e] = uses[e].saturating_add(1);
             }
         }
+        let mut quadrics = vec![Quadric::default(); self.corners.len()];
         let mut across: Vec<([u32; 2], Quadric)> = Vec::new();
         for f in mesh.faces() {
             let mut numbers = corners(mesh, f).map(|v| self.numbering.number(v));
             // From the least number on, so that rounding is the same on every structure.
             let least = (0..3).min_by_key(|&i| numbers[i]).unwrap_or(0);
             numbers.rotate_left(least);
-            let [a, b, c] = numbers.map(|n| self.place(mesh, n));
-            let cross = (b - a).cross(c - a);
+            let [a, b, c] = numbers;
+            let cross = self.from(a, b).cross(self.from(a, c));
             let Some(normal) = cross.try_normalize() else {
                 continue;
             };
-            let plane = Quadric::plane(normal, a, cross.length() / 2.0);
+            let plane = Quadric::plane(normal, cross.length() / 2.0);
             for n in numbers {
-                self.quadrics[n as usize] += plane;
+                quadrics[n as usize] += plane;
             }
             for e in mesh.face_edges(f) {
                 let (i, j) = self.ends(mesh, e);
                 if uses[e] == 1 {
-                    let [p, q] = [i, j].map(|n| self.place(mesh, n));
-                    let along = q - p;
+                    let along = self.from(i, j);
                     if let Some(normal) = along.cross(normal).try_normalize() {
                         let weight = BOUNDARY_WEIGHT * along.length_squared();
-                        across.push(([i, j], Quadric::plane(normal, p, weight)));
+                        across.push(([i, j], Quadric::plane(normal, weight)));
                     }
                     if boundary == Boundary::Fixed {
-                        self.fixed[i as usize] = true;
-                        self.fixed[j as usize] = true;
+                        self.corners[i as usize].fixed = true;
+                        self.corners[j as usize].fixed = true;
                     }
                 }
             }
@@ -251,9 +254,19 @@ impl<M: MeshEdit + Representation> Work<M> {
         across.sort_by_key(|&(ends, _)| ends);
         for (ends, plane) in across {
             for n in ends {
-                self.quadrics[n as usize] += plane;
+                quadrics[n as usize] += plane;
             }
         }
+        for (corner, quadric) in self.corners.iter_mut().zip(quadrics) {
+            corner.quadric = quadric.into();
+        }
+    }
+
+    /// The way from one vertex to another, in the unit box.
+    #[inline]
+    fn from(&self, a: u32, b: u32) -> DVec3 {
+        let [p, q] = [a, b].map(|n| self.corners[n as usize].at.as_dvec3());
+        (q - p) / self.size
     }
 
     fn ends(&self, mesh: &M, e: M::Edge) -> (u32, u32) {
@@ -261,90 +274,106 @@ impl<M: MeshEdit + Representation> Work<M> {
         (a.min(b), a.max(b))
     }
 
-    /// Where a vertex is in the unit box.
-    #[inline]
-    fn place(&self, mesh: &M, number: u32) -> DVec3 {
-        (at(mesh, self.numbering.name(number)) - self.centre) / self.size
-    }
-
     fn fill_queue(&mut self, mesh: &M) {
-        let ends: Vec<(u32, u32)> = mesh.edges().map(|e| self.ends(mesh, e)).collect();
-        let entries = ends
-            .into_iter()
-            .filter_map(|(a, b)| self.entry(mesh, [a, b]));
-        self.queue = entries.map(Reverse).collect();
+        for e in mesh.edges() {
+            let (a, b) = self.ends(mesh, e);
+            self.put(a, b);
+        }
     }
 
-    /// What the collapse of an edge would cost; none where both ends are fixed.
+    /// Puts an edge into the queue, unless both ends are fixed.
     #[inline]
-    fn entry(&self, mesh: &M, ends: [u32; 2]) -> Option<Entry> {
-        let (_, error) = self.best(mesh, ends)?;
-        let [a, b] = ends.map(|n| self.versions[n as usize]);
-        Some(Entry {
-            cost: (error as f32).to_bits(),
-            ends,
-            version: a.wrapping_add(b),
-        })
+    fn put(&mut self, a: u32, b: u32) {
+        let ends = [a.min(b), a.max(b)];
+        if let Some(Best { error, .. }) = self.best(ends) {
+            let version = self.version(ends);
+            self.queue.push(error as f32, Entry { ends, version });
+        }
+    }
+
+    /// The sum of both versions.
+    #[inline]
+    fn version(&self, ends: [u32; 2]) -> u32 {
+        let [a, b] = ends.map(|n| self.corners[n as usize].version);
+        a.wrapping_add(b)
     }
 
     fn is_fresh(&self, entry: &Entry) -> bool {
-        let [a, b] = entry.ends.map(|n| self.versions[n as usize]);
-        a.wrapping_add(b) == entry.version
+        self.version(entry.ends) == entry.version
     }
 
-    /// Where the two ends should meet, in the unit box, and at what error.
+    /// Where the two ends should meet.
     #[inline]
-    fn best(&self, mesh: &M, [a, b]: [u32; 2]) -> Option<(DVec3, f64)> {
-        let sum = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
-        let [p, q] = [a, b].map(|n| self.place(mesh, n));
-        match [a, b].map(|n| self.fixed[n as usize]) {
+    fn best(&self, [a, b]: [u32; 2]) -> Option<Best> {
+        let [p, q] = [a, b].map(|n| &self.corners[n as usize]);
+        let way = self.from(a, b);
+        let sum = Quadric::from(p.quadric).plus(&Quadric::from(q.quadric).from_origin(-way));
+        let at = |way: DVec3| Best {
+            way,
+            error: sum.at(way),
+            sum,
+        };
+        match [p.fixed, q.fixed] {
             [true, true] => return None,
-            [true, false] => return Some((p, sum.at(p))),
-            [false, true] => return Some((q, sum.at(q))),
+            [true, false] => return Some(at(DVec3::ZERO)),
+            [false, true] => return Some(at(way)),
             [false, false] => {}
         }
-        let middle = (p + q) / 2.0;
+        let middle = way / 2.0;
         // A place far from the edge is a matter of rounding, not of shape.
-        let reach = 4.0 * p.distance_squared(q);
+        let reach = 4.0 * way.length_squared();
         if let Some(x) = sum.least().filter(|x| x.distance_squared(middle) <= reach) {
-            return Some((x, sum.at(x)));
+            return Some(at(x));
         }
-        let places = [middle, p, q].map(|x| (x, sum.at(x)));
-        places.into_iter().min_by(|x, y| x.1.total_cmp(&y.1))
+        let places = [middle, DVec3::ZERO, way].map(at);
+        places
+            .into_iter()
+            .min_by(|x, y| x.error.total_cmp(&y.error))
     }
 
     /// Collapses the edge of `entry`, if it is there and may go; the error that this makes.
     fn collapse(&mut self, mesh: &mut M, entry: &Entry) -> Option<f64> {
         let [a, b] = entry.ends;
         let e = self.numbering.edge(mesh, entry.ends)?;
-        let (to, error) = self.best(mesh, entry.ends)?;
-        let ends = [a, b].map(|n| self.numbering.name(n));
-        // As the structure will hold it; what is fixed stays to the bit.
-        let fixed = [a, b].map(|n| self.fixed[n as usize]);
-        let to = match fixed.iter().position(|&fixed| fixed) {
-            Some(i) => mesh.position(ends[i]),
-            None => (to * self.size + self.centre).as_vec3(),
+        let best = self.best(entry.ends)?;
+        let [p, q] = [a, b].map(|n| self.corners[n as usize]);
+        // What is fixed stays to the bit.
+        let to = match [p.fixed, q.fixed] {
+            [true, _] => p.at,
+            [_, true] => q.at,
+            _ => (p.at.as_dvec3() + best.way * self.size).as_vec3(),
         };
+        let ends = [a, b].map(|n| self.numbering.name(n));
         if !turns_nothing_over(mesh, ends, to.as_dvec3()) || !keeps_link(mesh, e) {
             return None;
         }
         let kept = mesh.collapse_edge(e, ends[0], to, &mut ()).ok()?;
         self.numbering.renamed(a, kept);
         self.numbering.remove(b);
-        let other = self.quadrics[b as usize];
-        self.quadrics[a as usize] += other;
-        self.fixed[a as usize] |= self.fixed[b as usize];
-        self.versions[a as usize] = self.versions[a as usize].wrapping_add(1);
+        // As the structure holds it: rounded to singles.
+        let way = (to.as_dvec3() - p.at.as_dvec3()) / self.size;
+        self.corners[a as usize] = Corner {
+            quadric: best.sum.from_origin(way).into(),
+            at: to,
+            version: p.version.wrapping_add(1),
+            fixed: p.fixed || q.fixed,
+        };
         // No number is used twice, so no entry of the end that is gone is fresh again.
-        self.versions[b as usize] = self.versions[b as usize].wrapping_add(1);
+        self.corners[b as usize].version = q.version.wrapping_add(1);
         for v in mesh.vertex_vertices(kept) {
-            let n = self.numbering.number(v);
-            if let Some(entry) = self.entry(mesh, [a.min(n), a.max(n)]) {
-                self.queue.push(Reverse(entry));
-            }
+            self.put(a, self.numbering.number(v));
         }
-        Some(error)
+        Some(best.error)
     }
+}
+
+/// Where the two ends of an edge should meet, from the first of them in the unit box.
+#[derive(Clone, Copy, Debug)]
+struct Best {
+    way: DVec3,
+    error: f64,
+    /// Of both, from the first end.
+    sum: Quadric,
 }
 
 #[cfg(test)]

@@ -4,7 +4,8 @@ use std::ops::AddAssign;
 
 use glam::{DMat3, DVec3};
 
-/// A sum of squared distances to planes, each with a weight: xᵀ A x − 2 b·x + c.
+/// A sum of squared distances to planes, each with a weight: xᵀ A x − 2 b·x + c, of a place x given
+/// from some origin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Quadric {
     /// A: xx, xy, xz, yy, yz, zz.
@@ -13,23 +14,76 @@ pub(crate) struct Quadric {
     c: f64,
 }
 
-impl Quadric {
-    /// `weight` times the squared distance to the plane through `at` with the unit normal `n`.
-    pub(crate) fn plane(n: DVec3, at: DVec3, weight: f64) -> Self {
-        let d = n.dot(at);
+/// A quadric in half the bytes.
+///
+/// With the origin at the vertex whose quadric it is, the numbers are of the size of what they tell,
+/// and singles are enough: from an origin far away the error would be the difference of large ones.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Packed {
+    a: [f32; 6],
+    b: [f32; 3],
+    c: f32,
+}
+
+impl From<Quadric> for Packed {
+    #[inline]
+    fn from(quadric: Quadric) -> Self {
         Self {
-            a: [
-                n.x * n.x,
-                n.x * n.y,
-                n.x * n.z,
-                n.y * n.y,
-                n.y * n.z,
-                n.z * n.z,
-            ]
-            .map(|a| a * weight),
-            b: n * (d * weight),
-            c: d * d * weight,
+            a: quadric.a.map(|a| a as f32),
+            b: quadric.b.to_array().map(|b| b as f32),
+            c: quadric.c as f32,
         }
+    }
+}
+
+impl From<Packed> for Quadric {
+    #[inline]
+    fn from(packed: Packed) -> Self {
+        Self {
+            a: packed.a.map(f64::from),
+            b: DVec3::from(packed.b.map(f64::from)),
+            c: f64::from(packed.c),
+        }
+    }
+}
+
+impl Quadric {
+    /// `weight` times the squared distance to the plane through the origin with the unit normal `n`.
+    pub(crate) fn plane(n: DVec3, weight: f64) -> Self {
+        let a = [
+            n.x * n.x,
+            n.x * n.y,
+            n.x * n.z,
+            n.y * n.y,
+            n.y * n.z,
+            n.z * n.z,
+        ];
+        Self {
+            a: a.map(|a| a * weight),
+            ..Self::default()
+        }
+    }
+
+    /// The same with places given from an origin that is `d` away from this one.
+    #[inline]
+    pub(crate) fn from_origin(&self, d: DVec3) -> Self {
+        let ad = self.times(d);
+        Self {
+            a: self.a,
+            b: self.b - ad,
+            c: (self.c - 2.0 * self.b.dot(d) + d.dot(ad)).max(0.0),
+        }
+    }
+
+    /// A x.
+    #[inline]
+    fn times(&self, x: DVec3) -> DVec3 {
+        let [xx, xy, xz, yy, yz, zz] = self.a;
+        DVec3::new(
+            xx * x.x + xy * x.y + xz * x.z,
+            xy * x.x + yy * x.y + yz * x.z,
+            xz * x.x + yz * x.y + zz * x.z,
+        )
     }
 
     /// The sum of both.
@@ -42,12 +96,7 @@ impl Quadric {
     /// What it comes to at `x`; rounding may leave a hair below zero, which is zero.
     #[inline]
     pub(crate) fn at(&self, x: DVec3) -> f64 {
-        let [xx, xy, xz, yy, yz, zz] = self.a;
-        let ax = DVec3::new(
-            xx * x.x + xy * x.y + xz * x.z,
-            xy * x.x + yy * x.y + yz * x.z,
-            xz * x.x + yz * x.y + zz * x.z,
-        );
+        let ax = self.times(x);
         (x.dot(ax) - 2.0 * self.b.dot(x) + self.c).max(0.0)
     }
 
@@ -97,24 +146,38 @@ mod tests {
         let corner = DVec3::new(1.0, -2.0, 3.0);
         let mut sum = Quadric::default();
         for (n, weight) in [(DVec3::X, 1.0), (DVec3::Y, 2.0), (DVec3::Z, 0.5)] {
-            sum += Quadric::plane(n, corner, weight);
+            // From the corner, through which all three go, to an origin elsewhere.
+            sum += Quadric::plane(n, weight).from_origin(-corner);
         }
         let least = sum.least().expect("three planes");
         assert!(least.distance(corner) < 1e-12);
         assert!(sum.at(corner) < 1e-12);
         let off = corner + DVec3::new(1.0, 1.0, 2.0);
         assert!((sum.at(off) - (1.0 + 2.0 + 0.5 * 4.0)).abs() < 1e-12);
+        let moved = sum.from_origin(DVec3::ONE);
+        assert!((moved.at(off - DVec3::ONE) - sum.at(off)).abs() < 1e-12);
     }
 
     #[test]
     fn a_plane_and_a_ridge_have_no_single_least_point() {
-        let flat = Quadric::plane(DVec3::Z, DVec3::ZERO, 1.0);
+        let flat = Quadric::plane(DVec3::Z, 1.0);
         assert_eq!(flat.least(), None);
-        assert_eq!(
-            flat.plus(&Quadric::plane(DVec3::X, DVec3::ZERO, 1.0))
-                .least(),
-            None
-        );
+        let ridge = flat.plus(&Quadric::plane(DVec3::X, 1.0));
+        assert_eq!(ridge.least(), None);
         assert_eq!(Quadric::default().least(), None);
+    }
+
+    #[test]
+    fn singles_are_enough_where_the_origin_is_near() {
+        let mut sum = Quadric::default();
+        for (i, n) in [DVec3::X, DVec3::Y, DVec3::ONE.normalize()]
+            .into_iter()
+            .enumerate()
+        {
+            sum += Quadric::plane(n, 1.0 + i as f64).from_origin(DVec3::new(1e-4, 0.0, -2e-4));
+        }
+        let packed = Quadric::from(Packed::from(sum));
+        let x = DVec3::new(3e-4, 1e-4, -1e-4);
+        assert!((packed.at(x) - sum.at(x)).abs() < 1e-6 * sum.at(x));
     }
 }

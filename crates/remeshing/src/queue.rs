@@ -1,0 +1,109 @@
+//! Edges to be collapsed, the cheapest first, by costs that are rounded.
+
+/// An edge by the numbers of its ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Entry {
+    pub(crate) ends: [u32; 2],
+    /// The sum of both ends' versions when the entry was made: either has changed since if it is
+    /// another now.
+    pub(crate) version: u32,
+}
+
+/// How many bits of a cost, a float that is not negative, tell no two of them apart: of the fraction
+/// three bits are left, and costs in one bucket differ by an eighth at most.
+const ROUNDED: u32 = 20;
+
+/// A bucket for each rounded cost, of all floats up to infinity.
+const BUCKETS: usize = 1 << (31 - ROUNDED);
+
+/// A queue of edges in rounds: all of the cheapest bucket, in the order of their ends, then what is
+/// the cheapest then.
+///
+/// ```text
+/// costs     1 ── 1⅛ ── 1¼ ── …      a round: one bucket, sorted by the ends
+/// buckets  [ab cf] [ ] [bc] …       what is put in meanwhile waits for the next round
+/// ```
+///
+/// A heap of exact costs jumps from place to place all over the mesh, and each jump waits for memory.
+/// In a round the edges come as their vertices lie in memory. And since a collapse outdates the other
+/// edges at its end, a round collapses edges that are apart: none grows into a hub of its neighbours.
+#[derive(Debug)]
+pub(crate) struct Queue {
+    buckets: Vec<Vec<Entry>>,
+    /// All buckets below are empty.
+    lowest: usize,
+    /// What is left of this round, the next one last.
+    round: Vec<Entry>,
+}
+
+impl Queue {
+    pub(crate) fn new() -> Self {
+        Self {
+            buckets: vec![Vec::new(); BUCKETS],
+            lowest: BUCKETS,
+            round: Vec::new(),
+        }
+    }
+
+    /// Puts an edge in; O(1) amortised. A cost that is no number counts as the highest.
+    #[inline]
+    pub(crate) fn push(&mut self, cost: f32, entry: Entry) {
+        let bucket = (cost.abs().to_bits() >> ROUNDED) as usize;
+        self.buckets[bucket].push(entry);
+        self.lowest = self.lowest.min(bucket);
+    }
+
+    /// Takes the next edge out; O(log entries) amortised.
+    #[inline]
+    pub(crate) fn pop(&mut self) -> Option<Entry> {
+        if self.round.is_empty() {
+            self.next_round();
+        }
+        self.round.pop()
+    }
+
+    fn next_round(&mut self) {
+        let buckets = self.buckets.iter().skip(self.lowest);
+        self.lowest += buckets.take_while(|bucket| bucket.is_empty()).count();
+        if let Some(bucket) = self.buckets.get_mut(self.lowest) {
+            std::mem::swap(&mut self.round, bucket);
+            self.round.sort_unstable_by(|a, b| b.cmp(a));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entry(a: u32, b: u32) -> Entry {
+        Entry {
+            ends: [a, b],
+            version: 0,
+        }
+    }
+
+    #[test]
+    fn rounds_go_up_and_begin_again() {
+        let mut queue = Queue::new();
+        for (cost, a) in [(1.1, 7), (4.0, 1), (1.0, 9), (0.0, 8), (f32::INFINITY, 0)] {
+            queue.push(cost, entry(a, a + 1));
+        }
+        let next = |queue: &mut Queue| queue.pop().map(|entry| entry.ends[0]);
+        assert_eq!(next(&mut queue), Some(8), "the cheapest");
+        assert_eq!(next(&mut queue), Some(7), "1 and 1.1 are the same, rounded");
+        queue.push(0.5, entry(5, 6));
+        queue.push(1.0, entry(4, 6));
+        assert_eq!(next(&mut queue), Some(9), "this round first");
+        assert_eq!(next(&mut queue), Some(5));
+        assert_eq!(next(&mut queue), Some(4));
+        assert_eq!(next(&mut queue), Some(1));
+        queue.push(f32::NAN, entry(3, 6));
+        assert_eq!(next(&mut queue), Some(0));
+        assert_eq!(next(&mut queue), Some(3), "no cost at all comes last");
+        assert_eq!(next(&mut queue), None);
+        queue.push(-0.0, entry(2, 6));
+        assert_eq!(next(&mut queue), Some(2));
+        assert_eq!(next(&mut queue), None);
+    }
+}
