@@ -1,9 +1,9 @@
 //! The nine relations.
 
-use mesh_core::{Editing, FaceId, HoleSet, MeshQuery, Point, Probe, RowId, VertexId, row};
+use mesh_core::{Editing, FaceId, HoleSet, MeshQuery, Point, Probe, Slot, VertexId, row};
 
 use crate::circulate::{EdgeEdges, Neighbours, Spokes};
-use crate::mesh::{AnyCornerTable, CornerId, EdgeCorner, edge_between, names_edge};
+use crate::mesh::{AnyCornerTable, CornerId, EdgeCorner, edge_between};
 
 impl<P: Probe, E: Editing> MeshQuery for AnyCornerTable<P, E> {
     type Vertex = VertexId;
@@ -23,7 +23,10 @@ impl<P: Probe, E: Editing> MeshQuery for AnyCornerTable<P, E> {
         let corners = (0..row(self.opposite.len())).map(CornerId::new);
         corners.filter_map(|c| {
             let across = *self.opposite.read(c.index());
-            names_edge(c, across).then(|| EdgeCorner::new(c.row()))
+            let edge = edge_between(c, across);
+            // The corners of a deleted triangle are across from themselves.
+            let is_there = !E::DELETES || across != Slot::some(c);
+            (edge.corner() == c && is_there).then_some(edge)
         })
     }
 

@@ -63,7 +63,7 @@ fn a_closed_surface_gets_the_faces_asked_for_and_stays_closed() {
     assert_eq!(run.stderr, "", "progress is for terminals");
     assert_eq!(
         run.stdout,
-        "out.obj: 252 vertices, 500 faces; 390 edges collapsed on half-edge\n"
+        "out.obj: 252 vertices, 500 faces; 390 edges collapsed on corner-table\n"
     );
 }
 
@@ -262,7 +262,7 @@ fn what_cannot_be_edited_is_refused_before_anything_is_written() {
             (
                 &["book.obj"],
                 3,
-                "half-edge cannot hold the mesh: edge v0–v1 has 3 faces",
+                "corner-table cannot hold the mesh: edge v0–v1 has 3 faces",
             ),
             (
                 &["book.obj"],

@@ -41,7 +41,7 @@ pub(crate) struct Decimate {
     #[arg(long, value_name = "RULE", default_value = "follow", value_parser = boundary)]
     pub(crate) boundary: Boundary,
     /// The structure to do it with
-    #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
+    #[arg(long, value_name = "NAME", default_value = "corner-table", value_parser = backend)]
     pub(crate) backend: String,
 }
 
@@ -105,7 +105,7 @@ pub(crate) struct Remesh {
     #[arg(long, value_name = "N", default_value_t = 10_000_000, value_parser = faces, allow_hyphen_values = true)]
     pub(crate) max_faces: usize,
     /// The structure to do it with
-    #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
+    #[arg(long, value_name = "NAME", default_value = "corner-table", value_parser = backend)]
     pub(crate) backend: String,
 }
 
