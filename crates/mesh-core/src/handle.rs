@@ -12,7 +12,7 @@ use crate::row_id::RowId;
 /// How a structure names an element: a row, a pair of vertices, or the very coordinates.
 ///
 /// The type of the handle also decides how data is kept for it ([`Handle::Map`]).
-pub trait Handle: Copy + Eq + Ord + Hash + Debug + Send + Sync {
+pub trait Handle: Copy + Eq + Ord + Hash + Debug + Send + Sync + 'static {
     /// Data by handle: a vector for rows, a hash map for the rest.
     type Map<T: Clone>: HandleMap<Self, T>;
 

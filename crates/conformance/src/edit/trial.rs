@@ -1,11 +1,12 @@
 //! A structure and the model, edited side by side.
 
+use std::any::TypeId;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
 
 use mesh_core::{
-    Changes, Edit, EditRecord, FaceId, Handle, MeshEdit, MeshQuery, Point, PolygonMesh, Refusal,
-    Representation, VertexId,
+    Changes, EdgeId, Edit, EditRecord, FaceId, Handle, MeshEdit, MeshQuery, Point, PolygonMesh,
+    Refusal, Representation, VertexId,
 };
 
 use super::action::Action;
@@ -26,12 +27,13 @@ pub struct Trial<M: MeshEdit> {
     vertices: BTreeMap<usize, M::Vertex>,
     faces: BTreeMap<usize, M::Face>,
     /// Rows of removed elements, which must never name anything again.
-    removed: Vec<Removed<M::Vertex, M::Face>>,
+    removed: Vec<Removed<M::Vertex, M::Edge, M::Face>>,
 }
 
 #[derive(Clone, Copy)]
-enum Removed<V, F> {
+enum Removed<V, E, F> {
     Vertex(V),
+    Edge(E),
     Face(F),
 }
 
@@ -129,49 +131,71 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
         relations_hold(&self.mesh, M::NAME);
         self.move_all();
         self.make_whole();
-        // A name made of coordinates may come to name another vertex.
-        let reused = |v: &M::Vertex| {
-            !M::CAPABILITIES.coincident_vertices && self.vertices.values().any(|known| known == v)
-        };
-        for removed in &self.removed {
-            if matches!(removed, Removed::Vertex(v) if reused(v)) {
-                continue;
-            }
-            let (asked, edited) = match *removed {
+        for &removed in &self.removed {
+            let (shown, asked, edited) = match removed {
                 Removed::Vertex(v) => (
+                    format!("{v:?}"),
                     caught(|| self.mesh.vertex_faces(v).count()),
-                    self.mesh.clone().remove_vertex(v, &mut ()).is_err(),
+                    self.mesh.clone().remove_vertex(v, &mut ()).is_ok(),
+                ),
+                Removed::Edge(e) => (
+                    format!("{e:?}"),
+                    caught(|| self.mesh.edge_faces(e).count()),
+                    self.mesh.clone().flip_edge(e, &mut ()).is_ok(),
                 ),
                 Removed::Face(f) => (
+                    format!("{f:?}"),
                     caught(|| self.mesh.face_vertices(f).count()),
-                    self.mesh.clone().remove_face(f, &mut ()).is_err(),
+                    self.mesh.clone().remove_face(f, &mut ()).is_ok(),
                 ),
             };
-            let told = match (asked, *removed) {
-                // Where a vertex is its coordinates, one that is not there has empty relations.
-                (Ok(0), Removed::Vertex(_)) => {
-                    M::CAPABILITIES.coincident_vertices.then(String::new)
-                }
-                (Ok(_), _) => Some(String::new()),
-                (Err(caught), Removed::Vertex(v)) => {
-                    (!caught.message.contains(&format!("{v:?}"))).then_some(caught.message)
-                }
-                (Err(caught), Removed::Face(f)) => {
-                    (!caught.message.contains(&format!("{f:?}"))).then_some(caught.message)
-                }
-            };
-            if let Some(told) = told {
-                panic!(
-                    "{}: a removed element answers, or panics without its name: {told}",
-                    M::NAME
-                );
+            if self.is_used_again(removed) {
+                continue;
             }
-            assert!(
-                edited,
-                "{}: a removed element can be removed again",
-                M::NAME
-            );
+            let name = M::NAME;
+            match asked {
+                // What is not there has no neighbours, where its name is made of other things.
+                Ok(0) if Self::is_made_of_others(removed) => {}
+                Ok(found) => panic!("{name}: {shown} was removed, and has {found} neighbours"),
+                Err(caught) => assert!(
+                    caught.message.contains(&shown) || self.names_an_end(&caught.message, removed),
+                    "{name}: {shown} was removed, and is not named: {}",
+                    caught.message
+                ),
+            }
+            assert!(!edited, "{name}: {shown} was removed, and is edited");
         }
+    }
+
+    /// Whether the name of a removed element is no row of its own: a pair, coordinates, a corner.
+    fn is_made_of_others(removed: Removed<M::Vertex, M::Edge, M::Face>) -> bool {
+        match removed {
+            Removed::Vertex(_) => !M::CAPABILITIES.coincident_vertices,
+            Removed::Edge(_) => TypeId::of::<M::Edge>() != TypeId::of::<EdgeId>(),
+            Removed::Face(_) => false,
+        }
+    }
+
+    /// Whether a message names an end of a removed edge that was the pair of its ends.
+    fn names_an_end(&self, message: &str, removed: Removed<M::Vertex, M::Edge, M::Face>) -> bool {
+        let Removed::Edge(e) = removed else {
+            return false;
+        };
+        let ends = caught(|| self.mesh.edge_vertices(e));
+        ends.is_ok_and(|ends| ends.iter().any(|end| message.contains(&format!("{end:?}"))))
+    }
+
+    /// Whether such a name has come to name another element.
+    fn is_used_again(&self, removed: Removed<M::Vertex, M::Edge, M::Face>) -> bool {
+        Self::is_made_of_others(removed)
+            && match removed {
+                Removed::Vertex(v) => self.mesh.vertices().any(|known| known == v),
+                // A corner names the edge that it faces, if not by the name in use.
+                Removed::Edge(e) => caught(|| self.mesh.edge_vertices(e)).is_ok_and(|[a, b]| {
+                    caught(|| self.mesh.edge_between(a, b)).is_ok_and(|known| known.is_some())
+                }),
+                Removed::Face(_) => false,
+            }
     }
 
     /// Without its holes it is the same mesh, and can be edited again.
@@ -327,6 +351,8 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
         for (_, name) in gone {
             self.removed.push(Removed::Vertex(name));
         }
+        let edges = record.edges.removed.iter();
+        self.removed.extend(edges.map(|&e| Removed::Edge(e)));
         self.vertices = stay
             .into_iter()
             .map(|(v, name)| (v, moved.get(&name).copied().unwrap_or(name)))
