@@ -356,6 +356,7 @@ mod tests {
                 refusal("catmull_clark_native", "it cannot split its own tables"),
                 refusal("loop_native", "it cannot split its own tables"),
             ],
+            control: None,
             words: Vec::new(),
             interrupted: false,
             environment: Environment::here(1, 1.0),

@@ -115,6 +115,7 @@ fn refusals(specimen: &Specimen, settings: &Settings) -> Result<Report, Failure>
         backends,
         results: Vec::new(),
         refusals: Vec::new(),
+        control: None,
         words: Vec::new(),
         interrupted: false,
         environment: Environment::here(settings.seed, settings.budget.as_secs_f64()),

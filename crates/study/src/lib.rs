@@ -11,6 +11,7 @@ mod agreement;
 mod backend;
 mod candidate;
 mod clock;
+mod control;
 mod editing;
 mod environment;
 mod inspect;
@@ -39,7 +40,8 @@ pub use measure::Progress;
 pub use operation::{Kind, Operation, UnknownOperation};
 pub use refining::{Refiner, Refining, Way};
 pub use report::{
-    Agreement, BackendReport, Inspection, MeshReport, Refusal, Report, ResultRow, SCHEMA, Standing,
+    Agreement, BackendReport, Control, ControlRow, Inspection, MeshReport, Refusal, Report,
+    ResultRow, SCHEMA, Standing,
 };
 pub use single_edit::SingleEdit;
 pub use solo::{Solo, SoloRun};

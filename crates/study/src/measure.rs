@@ -94,6 +94,8 @@ pub struct Progress<'a> {
 /// The bench: subjects, clock and budget.
 pub(crate) struct Bench<'b, 's> {
     pub(crate) subjects: &'b mut [Box<dyn Subject + 's>],
+    /// Which of the subjects is another a second time, and makes no meshes: for the control.
+    pub(crate) control: Option<usize>,
     /// By kind: how many elements the mesh has.
     pub(crate) population: [usize; 3],
     /// Some valence or degree is so large that walking around it is as bad as a scan.
@@ -113,11 +115,12 @@ impl Bench<'_, '_> {
     pub(crate) fn measure(&mut self, operations: &[Operation]) -> Vec<Entry> {
         let start = self.clock.now().wall_ns;
         let deadline = start + self.budget.as_nanos() as f64;
-        let subjects = 0..self.subjects.len();
-        let mut entries: Vec<Entry> = operations
-            .iter()
-            .flat_map(|&operation| subjects.clone().map(move |s| Entry::new(s, operation)))
-            .collect();
+        let mut entries = Vec::new();
+        for &operation in operations {
+            let takes_part = |s: &usize| self.control != Some(*s) || !operation.makes_a_mesh();
+            let subjects = (0..self.subjects.len()).filter(takes_part);
+            entries.extend(subjects.map(|s| Entry::new(s, operation)));
+        }
         self.warm_up(&mut entries, deadline);
         self.rounds(&mut entries, start, deadline);
         entries

@@ -37,6 +37,8 @@ pub struct Report {
     pub results: Vec<ResultRow>,
     /// What was asked for and cannot be done, in the same order.
     pub refusals: Vec<Refusal>,
+    /// What differs where nothing does; `None` where nothing was measured twice.
+    pub control: Option<Control>,
     /// What the table shows, in words.
     pub words: Vec<String>,
     /// Told to stop before the end: some rows are missing, or rest on fewer samples.
@@ -135,6 +137,40 @@ pub struct ResultRow {
     pub warm_up_only: bool,
     /// It was left to an estimate because nobody asked for it by name: the budget has room for a run.
     pub by_name_only: bool,
+}
+
+/// One backend, entered twice (an A/A control): by how much its two columns differ, the machine and
+/// the clock alone are to blame.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Control {
+    /// The backend.
+    pub backend: String,
+    /// Operation by operation, where both columns have samples.
+    pub operations: Vec<ControlRow>,
+    /// The median difference, as a ratio of 1 or more.
+    pub typical: f64,
+    /// The greatest.
+    pub worst: f64,
+}
+
+/// What the second column of a control says of one operation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ControlRow {
+    /// The operation.
+    pub operation: Operation,
+    /// The median, over rounds, of the time of the second by that of the first.
+    pub ratio: f64,
+    /// The lower end of the 95 % interval of that ratio; `None` below three rounds.
+    pub ci_low: Option<f64>,
+    /// Its upper end.
+    pub ci_high: Option<f64>,
+}
+
+impl ControlRow {
+    /// How far the two are apart, whichever is slower: 1 or more.
+    pub fn difference(&self) -> f64 {
+        self.ratio.max(self.ratio.recip())
+    }
 }
 
 /// An operation that a backend cannot do on this mesh: it has no row among the results.

@@ -5,7 +5,7 @@ use crate::report::Standing;
 use crate::statistics::Median;
 
 /// Medians this close are a tie, whatever their intervals say.
-const NO_DIFFERENCE: f64 = 1.02;
+pub(crate) const NO_DIFFERENCE: f64 = 1.02;
 
 /// Too few samples for an interval still tell apart what differs by this much.
 const BEYOND_DOUBT: f64 = 2.0;
@@ -23,9 +23,9 @@ pub(crate) struct Place {
 /// without any.
 ///
 /// The fastest is the one with the smallest median. Another ties with it if the interval of its
-/// ratio reaches down to 1, or if the ratio is within 2 %; where samples are too few for an interval,
-/// if the ratio is below 2.
-pub(crate) fn places(backends: &[Vec<(u32, Time)>]) -> Vec<Option<Place>> {
+/// ratio reaches down to 1, or if the ratio is no more than `noise`; where samples are too few for an
+/// interval, if the ratio is below 2.
+pub(crate) fn places(backends: &[Vec<(u32, Time)>], noise: f64) -> Vec<Option<Place>> {
     let medians = backends
         .iter()
         .map(|samples| Median::of(samples.iter().map(|(_, t)| t.ns())));
@@ -45,7 +45,7 @@ pub(crate) fn places(backends: &[Vec<(u32, Time)>]) -> Vec<Option<Place>> {
         .map(|samples| {
             let ratio = ratio(samples, &backends[best])?;
             let tied = match ratio.interval {
-                _ if ratio.value <= NO_DIFFERENCE => true,
+                _ if ratio.value <= noise => true,
                 Some([low, _]) => low <= 1.0,
                 None => ratio.value < BEYOND_DOUBT,
             };
@@ -73,7 +73,7 @@ pub(crate) fn places(backends: &[Vec<(u32, Time)>]) -> Vec<Option<Place>> {
 }
 
 /// The ratio within the rounds that both have; of the medians where they share none.
-fn ratio(samples: &[(u32, Time)], best: &[(u32, Time)]) -> Option<Median> {
+pub(crate) fn ratio(samples: &[(u32, Time)], best: &[(u32, Time)]) -> Option<Median> {
     let of_round = |round: u32| best.iter().find(|(r, _)| *r == round);
     let pairs = samples
         .iter()
@@ -102,7 +102,7 @@ mod tests {
     }
 
     fn standings(backends: &[Vec<(u32, Time)>]) -> Vec<Option<Standing>> {
-        let places = places(backends).into_iter();
+        let places = places(backends, NO_DIFFERENCE).into_iter();
         places.map(|place| place.map(|p| p.standing)).collect()
     }
 
@@ -113,7 +113,8 @@ mod tests {
         let slow = samples(&drift.map(|t| t * 1.1));
         let expected = [Some(Standing::Slower), Some(Standing::Best), None];
         assert_eq!(standings(&[slow.clone(), fast.clone(), vec![]]), expected);
-        let ratio = places(&[fast, slow])[1].expect("measured").ratio;
+        let ratio = places(&[fast, slow], NO_DIFFERENCE)[1];
+        let ratio = ratio.expect("measured").ratio;
         let [low, high] = ratio.interval.expect("seven rounds");
         assert!((ratio.value - 1.1).abs() < 1e-9 && low > 1.09 && high < 1.11);
     }
@@ -124,6 +125,15 @@ mod tests {
         let b = samples(&[1.1, 1.0, 1.1, 0.9, 1.4, 1.2, 0.9]);
         let c = samples(&[1.01, 1.212, 0.909, 1.111, 1.313, 0.808, 1.01]);
         assert_eq!(standings(&[a, b, c]), [Some(Standing::Tied); 3]);
+    }
+
+    #[test]
+    fn what_is_within_the_noise_is_a_tie() {
+        let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
+        let both = [samples(&drift), samples(&drift.map(|t| t * 1.1))];
+        let tied = |noise| places(&both, noise)[1].map(|place| place.standing);
+        assert_eq!(tied(1.05), Some(Standing::Slower));
+        assert_eq!(tied(1.11), Some(Standing::Tied));
     }
 
     #[test]

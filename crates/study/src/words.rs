@@ -4,7 +4,7 @@ use sixfold::{PolygonMesh, Relation};
 
 use crate::methods::methods;
 use crate::operation::Operation;
-use crate::report::{Agreement, BackendReport, ResultRow, Standing};
+use crate::report::{Agreement, BackendReport, Control, ControlRow, ResultRow, Standing};
 use crate::statistics::Median;
 
 /// Sentences on speed, scans, memory and merging; no winner is named where it ties.
@@ -12,10 +12,12 @@ pub(crate) fn words(
     backends: &[BackendReport],
     results: &[ResultRow],
     polygons: &PolygonMesh,
+    control: Option<&Control>,
     scanning: &dyn Fn(&str, Relation) -> bool,
 ) -> Vec<String> {
     let mut words = Vec::new();
     words.extend(speed(backends, results));
+    words.extend(control.and_then(noise));
     for backend in backends.iter().filter(|backend| backend.holds) {
         words.extend(scans(&backend.name, results, polygons, scanning));
     }
@@ -80,6 +82,21 @@ fn speed(backends: &[BackendReport], results: &[ResultRow]) -> Option<String> {
         "operations"
     };
     Some(format!("Of {count} {operations} {}.", parts.join(", ")))
+}
+
+/// By how much the same structure differs from itself.
+fn noise(control: &Control) -> Option<String> {
+    let difference = |row: &&ControlRow| row.difference();
+    let worst =
+        { control.operations.iter() }.max_by(|a, b| difference(a).total_cmp(&difference(b)))?;
+    let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
+    Some(format!(
+        "Noise: {} was entered twice, and its two columns differ by {}, at most {} ({}); what differs by no more is a tie.",
+        control.backend,
+        percent(control.typical),
+        percent(control.worst),
+        worst.operation,
+    ))
 }
 
 /// By how much `backend` is ahead of the next in this row, if it is best beyond doubt.
@@ -239,15 +256,15 @@ mod tests {
             row(a, Operation::Boundary, 1.0, Standing::Tied),
             row(b, Operation::Boundary, 1.01, Standing::Tied),
         ];
-        let said = words(&backends, &results, &mesh, &|_, _| false);
+        let said = words(&backends, &results, &mesh, None, &|_, _| false);
         let expected = format!(
             "Of 2 operations {a} is fastest in 1 (typically 1.5 × faster than the next), 1 is a tie at the top."
         );
         assert_eq!(said, [expected]);
-        let said = words(&backends, &results[2..], &mesh, &|_, _| false);
+        let said = words(&backends, &results[2..], &mesh, None, &|_, _| false);
         assert_eq!(said, ["Of 1 operation 1 is a tie at the top."]);
         results[2].agreement = Agreement::Mismatch;
-        let said = words(&backends, &results, &mesh, &|_, _| false).join(" ");
+        let said = words(&backends, &results, &mesh, None, &|_, _| false).join(" ");
         assert!(
             said.contains(&format!("{a} finds something else")),
             "{said}"
@@ -278,7 +295,7 @@ mod tests {
             timed("half-edge", Scatter, 3.0, 1.01),
             timed("half-edge", Native, 0.5, 1.01),
         ];
-        let said = words(&backends, &results, &mesh, &|_, _| false);
+        let said = words(&backends, &results, &mesh, None, &|_, _| false);
         let expected = "Loop: scatter is faster than gather on polygon-soup 30 ×; slower on half-edge 1.5 ×; native is faster than both on half-edge 4.0 ×.";
         assert!(said.iter().any(|words| words == expected), "{said:?}");
     }

@@ -213,3 +213,21 @@ fn what_a_scheme_does_not_take_is_said_once_and_by_the_face() {
         assert_eq!(row.agreement, Agreement::Same, "{row:?}");
     }
 }
+
+#[test]
+fn one_backend_is_entered_twice_and_shows_the_noise() {
+    let mesh = shapes::triangle_grid(20, 20).expect("a grid");
+    let settings = Settings {
+        operations: vec![Operation::Circulate, Operation::EdgeLength],
+        budget: Duration::from_millis(300),
+        ..Settings::default()
+    };
+    let report = quick(&Specimen::new("grid", mesh), &settings).expect("everybody holds it");
+    assert_eq!(report.results.len(), 2 * report.backends.len());
+    let control = report.control.expect("there was time for rounds");
+    assert_eq!(control.backend, "face-vertex", "the first that never scans");
+    assert_eq!(control.operations.len(), 2);
+    assert!(control.typical >= 1.0 && control.worst >= control.typical);
+    let shown = |words: &String| words.starts_with("Noise: face-vertex was entered twice");
+    assert!(report.words.iter().any(shown), "{:?}", report.words);
+}

@@ -10,6 +10,7 @@ use sixfold::subdivision::Method;
 use sixfold::{QueryCost, Relation};
 
 use super::*;
+use crate::control::{control, noise};
 use crate::plan::FEWEST_ELEMENTS;
 use crate::statistics::Median;
 
@@ -117,6 +118,7 @@ fn bench(
     let stop = AtomicBool::new(stop);
     let mut bench = Bench {
         subjects: &mut subjects,
+        control: None,
         population: [10_000; 3],
         skewed,
         clock: &machine,
@@ -133,6 +135,23 @@ fn bench(
 fn ratio(entries: &[Entry], a: usize, b: usize) -> Median {
     let pairs = entries[a].samples.iter().zip(&entries[b].samples);
     Median::of(pairs.map(|((_, a), (_, b))| a.ns() / b.ns())).expect("samples")
+}
+
+#[test]
+fn a_control_tells_the_noise_of_a_drifting_machine() {
+    let entries = measured(&[7.0, 10.0, 7.0], false, Duration::from_secs(2), false);
+    let control = control(&entries, 0, 2, "synthetic").expect("samples");
+    assert_eq!(control.operations.len(), 3);
+    assert!(control.typical < 1.02, "{control:?}");
+    assert!(
+        (control.typical..1.3).contains(&control.worst),
+        "{control:?}"
+    );
+    for row in &control.operations {
+        let noise = noise(Some(&control), row.operation);
+        assert!(noise >= row.difference() && noise >= 1.02);
+    }
+    assert_eq!(noise(None, VV), 1.02);
 }
 
 #[test]
@@ -240,6 +259,7 @@ fn a_subdivision_is_estimated_first_and_left_out_if_it_is_long_and_nobody_asked(
         })];
         let mut bench = Bench {
             subjects: &mut subjects,
+            control: None,
             population: [10_000; 3],
             skewed: false,
             clock: &machine,
