@@ -112,7 +112,8 @@ pub type Refusal<M> =
 ///   elements; what it created, removed and renamed it tells the [`EditLog`], and tells all of it.
 /// - **Holes.** What is removed is in no count, iteration, relation, conversion or file from then on,
 ///   and its name panics when queried. Its row stays a hole, which only [`compact`](Self::compact)
-///   closes: until then no row is used again. A name made of other things may come to name another.
+///   closes: until then no row is used again. A name made of other things (a pair, coordinates) may
+///   read as an element without faces instead, and may come to name another.
 /// - **In place.** No conversion, no rebuilding behind the scenes. [`EDITS`](Self::EDITS) says how
 ///   much of the mesh an edit looks at.
 ///
@@ -125,8 +126,10 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// The same structure without holes, whose queries need not ask for them: [`Whole`](crate::Whole).
     type Whole: MeshQuery<Vertex = Self::Vertex, Edge = Self::Edge, Face = Self::Face> + Into<Self>;
 
-    /// Closes all holes, and no more are made; O(mesh) if there are any. Back goes
-    /// [`Into`](MeshEdit::Whole), in O(1).
+    /// Closes all holes, and no more are made; O(mesh) if there are any. Names change as by
+    /// [`compact`](Self::compact), and nobody is told: if you keep any, call
+    /// [`compact_with_names`](Self::compact_with_names) first. [`Whole`](Self::Whole) turns back into
+    /// this by `into()`, in O(1).
     fn into_whole(self) -> Self::Whole;
 
     /// Moves `v` to `to`; the vertex by the name it has then.

@@ -153,8 +153,8 @@ impl<H: Handle> Changes<H> {
         self.created.is_empty() && self.removed.is_empty() && self.renamed.is_empty()
     }
 
-    /// Brings `map` up to date after one edit: what was removed is forgotten, what was renamed keeps
-    /// its data under the new name, and what is new reads `fresh`. O(changes).
+    /// Brings `map` up to date after one edit: what was removed is forgotten (by row, its data stays
+    /// until the row is another's), what was renamed keeps its data under the new name, and what is new reads `fresh`. O(changes).
     ///
     /// The record must be that of one edit; those of several in a row are followed one by one.
     pub fn follow<T: Clone>(&self, map: &mut H::Map<T>, fresh: &T) {

@@ -307,7 +307,7 @@ impl<M: MeshEdit + Representation> Work<M> {
     fn best(&self, [a, b]: [u32; 2]) -> Option<Best> {
         let [p, q] = [a, b].map(|n| &self.corners[n as usize]);
         let way = self.from(a, b);
-        let sum = Quadric::from(p.quadric).plus(&Quadric::from(q.quadric).from_origin(-way));
+        let sum = Quadric::from(p.quadric).plus(&Quadric::from(q.quadric).seen_from(-way));
         let at = |way: DVec3| Best {
             way,
             error: sum.at(way),
@@ -353,7 +353,7 @@ impl<M: MeshEdit + Representation> Work<M> {
         // As the structure holds it: rounded to singles.
         let way = (to.as_dvec3() - p.at.as_dvec3()) / self.size;
         self.corners[a as usize] = Corner {
-            quadric: best.sum.from_origin(way).into(),
+            quadric: best.sum.seen_from(way).into(),
             at: to,
             version: p.version.wrapping_add(1),
             fixed: p.fixed || q.fixed,

@@ -18,14 +18,20 @@ const SHORT: f64 = 4.0 / 5.0;
 /// A boundary that turns by less than this at a vertex is straight there: the cosine.
 const STRAIGHT: f64 = 0.9962; // 5 degrees
 
+/// Positions are singles: a length of fewer steps between them than this is beyond what they can tell.
+const FEWEST_STEPS: f64 = 4.0;
+
+/// Where no vertex moves by more than this part of the length, and no edge is changed, it has settled.
+const SETTLED: f64 = 1e-3;
+
 /// How to remesh. Set the length; the default iterates ten times, up to ten million faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remeshing {
     /// How long edges should be.
     pub edge_length: f64,
-    /// How often to split, collapse, flip and smooth.
+    /// How often to split, collapse, flip and smooth, at most.
     pub iterations: usize,
-    /// No more faces than these; a length that would take more is refused.
+    /// No edge is split beyond so many faces; a length that would take more is refused.
     pub most_faces: usize,
 }
 
@@ -66,12 +72,16 @@ pub struct Remeshed {
 /// middle of their neighbours (Botsch & Kobbelt 2004, without the projection back to the original).
 ///
 /// Boundary vertices stay; one goes only where the boundary is straight. Nothing is done that turns a
-/// face over or breaks the link condition.
+/// face over or breaks the link condition. Inner edges are not kept however sharp they are: they are
+/// rounded, and the mesh shrinks there by something like the length.
+///
+/// It ends early once an iteration changes next to nothing.
 ///
 /// # Errors
 ///
-/// [`RemeshError`]: a polygon, a vertex that is nowhere, a length that is none, or one that would take
-/// more faces than allowed, by the area or by the edges there are. Nothing has changed then.
+/// [`RemeshError`]: a polygon, a vertex that is nowhere, a length that is none, one that positions so
+/// far from the origin cannot tell, or one that would take more faces than allowed, by the area or by
+/// the edges to be split. Nothing has changed then.
 ///
 /// # Complexity
 ///
@@ -106,13 +116,11 @@ pub fn remesh_watched<M: MeshEdit + Representation>(
     };
     // Equilateral triangles over the area; where faces have next to none, along the edges.
     let area: f64 = mesh.faces().map(|f| cross(mesh, f).length() / 2.0).sum();
-    let along: f64 = mesh
-        .edges()
-        .map(|e| {
-            let [a, b] = mesh.edge_vertices(e).map(|v| at(mesh, v));
-            a.distance(b)
-        })
-        .sum();
+    let lengths = mesh.edges().map(|e| {
+        let [a, b] = mesh.edge_vertices(e).map(|v| at(mesh, v));
+        a.distance(b)
+    });
+    let along: f64 = lengths.filter(|&along| along > LONG * length).sum();
     let over_area = area / (length * length * 3_f64.sqrt() / 4.0);
     let faces = over_area.max(along / length * 2.0 / 3.0);
     let limit = remeshing.most_faces;
@@ -123,6 +131,7 @@ pub fn remesh_watched<M: MeshEdit + Representation>(
             limit,
         });
     }
+    check_steps(mesh, length)?;
     let mut report = Remeshed {
         faces: mesh.face_count(),
         splits: 0,
@@ -137,18 +146,36 @@ pub fn remesh_watched<M: MeshEdit + Representation>(
             break;
         }
         let (splits, whole) = work.split_long(mesh, limit);
+        let collapses = work.collapse_short(mesh);
+        let flips = work.even_valences(mesh);
+        let moved = work.smooth(mesh);
         report.splits += splits;
-        report.collapses += work.collapse_short(mesh);
-        report.flips += work.even_valences(mesh);
-        work.smooth(mesh);
+        report.collapses += collapses;
+        report.flips += flips;
         report.iterations += 1;
         report.faces = mesh.face_count();
-        if !whole {
-            report.stop = Stop::WorkBound;
+        report.stop = if whole { Stop::Done } else { Stop::WorkBound };
+        // What was collapsed makes room to split.
+        let settled = splits + collapses + flips == 0 && moved <= SETTLED * length;
+        if settled || (!whole && collapses == 0) {
             break;
         }
     }
     Ok(report)
+}
+
+/// Whether positions can tell edges of `length` from one another.
+fn check_steps<M: MeshEdit>(mesh: &M, length: f64) -> Result<(), RemeshError> {
+    let far = mesh
+        .vertices()
+        .map(|v| mesh.position(v).abs().max_element());
+    let far = far.fold(0.0, f32::max);
+    let step = f64::from(far.next_up()) - f64::from(far);
+    if length < FEWEST_STEPS * step {
+        let far = f64::from(far);
+        return Err(RemeshError::TooFar { length, far, step });
+    }
+    Ok(())
 }
 
 struct Work<M: MeshEdit> {
@@ -185,8 +212,10 @@ impl<M: MeshEdit + Representation> Work<M> {
             }
             let [a, b] = self.ends(mesh, ends);
             let middle = ((a + b) / 2.0).as_vec3();
-            // No step that rounding swallows: the middle must lie apart from both ends.
-            if [a, b].contains(&middle.as_dvec3()) {
+            // Rounding must not leave a half that is as long as the whole.
+            let whole = a.distance_squared(b);
+            let halves = [a, b].map(|end| end.distance_squared(middle.as_dvec3()));
+            if !halves.iter().all(|&half| half < whole && half > 0.0) {
                 continue;
             }
             let Ok(m) = mesh.bisect_edge(e, middle, &mut ()) else {
@@ -228,6 +257,9 @@ impl<M: MeshEdit + Representation> Work<M> {
                 continue;
             }
             let place = to.as_vec3();
+            if !place.is_finite() {
+                continue;
+            }
             if let Ok(kept) = mesh.collapse_edge(e, self.numbering.name(keep), place, &mut ()) {
                 self.numbering.renamed(keep, kept);
                 let [a, b] = ends;
@@ -309,8 +341,8 @@ impl<M: MeshEdit + Representation> Work<M> {
         flips
     }
 
-    /// Moves inner vertices within their tangent planes, all by what was there before.
-    fn smooth(&mut self, mesh: &mut M) {
+    /// Moves inner vertices within their tangent planes, all by what was there before; the longest way.
+    fn smooth(&mut self, mesh: &mut M) -> f64 {
         let mut moves: Vec<(u32, DVec3)> = Vec::new();
         let mut vertices: Vec<u32> = mesh.vertices().map(|v| self.numbering.number(v)).collect();
         vertices.sort_unstable();
@@ -339,12 +371,16 @@ impl<M: MeshEdit + Representation> Work<M> {
             let way = middle - from;
             moves.push((number, from + way - normal * normal.dot(way)));
         }
+        let mut longest: f64 = 0.0;
         for (number, to) in moves {
             let v = self.numbering.name(number);
-            if turns_nothing_over(mesh, [v, v], to) {
-                self.numbering.set_position(mesh, number, to.as_vec3());
+            let place = to.as_vec3();
+            if place.is_finite() && turns_nothing_over(mesh, [v, v], to) {
+                longest = longest.max(at(mesh, v).distance(to));
+                self.numbering.set_position(mesh, number, place);
             }
         }
+        longest
     }
 }
 

@@ -44,7 +44,9 @@ impl<M: MeshEdit + Representation> Numbering<M> {
         };
         for f in mesh.faces() {
             let [a, b, c] = corners(mesh, f);
-            let bits = |v| mesh.position(v).to_array().map(f32::to_bits);
+            // −0 is 0, as it is where a vertex is its coordinates.
+            let place = |v| mesh.position(v) + Point::ZERO;
+            let bits = |v| place(v).to_array().map(f32::to_bits);
             let least = bits(a).min(bits(b)).min(bits(c));
             let turned = if least == bits(a) {
                 [a, b, c]

@@ -66,7 +66,7 @@ impl Quadric {
 
     /// The same with places given from an origin that is `d` away from this one.
     #[inline]
-    pub(crate) fn from_origin(&self, d: DVec3) -> Self {
+    pub(crate) fn seen_from(&self, d: DVec3) -> Self {
         let ad = self.times(d);
         Self {
             a: self.a,
@@ -147,14 +147,14 @@ mod tests {
         let mut sum = Quadric::default();
         for (n, weight) in [(DVec3::X, 1.0), (DVec3::Y, 2.0), (DVec3::Z, 0.5)] {
             // From the corner, through which all three go, to an origin elsewhere.
-            sum += Quadric::plane(n, weight).from_origin(-corner);
+            sum += Quadric::plane(n, weight).seen_from(-corner);
         }
         let least = sum.least().expect("three planes");
         assert!(least.distance(corner) < 1e-12);
         assert!(sum.at(corner) < 1e-12);
         let off = corner + DVec3::new(1.0, 1.0, 2.0);
         assert!((sum.at(off) - (1.0 + 2.0 + 0.5 * 4.0)).abs() < 1e-12);
-        let moved = sum.from_origin(DVec3::ONE);
+        let moved = sum.seen_from(DVec3::ONE);
         assert!((moved.at(off - DVec3::ONE) - sum.at(off)).abs() < 1e-12);
     }
 
@@ -174,7 +174,7 @@ mod tests {
             .into_iter()
             .enumerate()
         {
-            sum += Quadric::plane(n, 1.0 + i as f64).from_origin(DVec3::new(1e-4, 0.0, -2e-4));
+            sum += Quadric::plane(n, 1.0 + i as f64).seen_from(DVec3::new(1e-4, 0.0, -2e-4));
         }
         let packed = Quadric::from(Packed::from(sum));
         let x = DVec3::new(3e-4, 1e-4, -1e-4);

@@ -27,9 +27,7 @@ pub(crate) fn turns_nothing_over<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], 
             let before = (p - from).cross(q - from);
             let after = (p - to).cross(q - to);
             // A face without an area has no side to keep.
-            before == DVec3::ZERO
-                || before.dot(after)
-                    > TURN * (before.length_squared() * after.length_squared()).sqrt()
+            before == DVec3::ZERO || before.dot(after) > TURN * before.length() * after.length()
         })
     })
 }

@@ -21,7 +21,7 @@ use crate::progress::{Steps, end_on_interrupt};
 use crate::text::{Text, complain, tame};
 
 /// From so many faces on it is said why a structure that scans takes long.
-const LONG_SCAN: usize = 5000;
+const LONG_SCAN: usize = 1000;
 
 /// Decimates the mesh and writes it.
 pub(crate) fn decimate(arguments: &Decimate) -> Result<ExitCode, Failure> {

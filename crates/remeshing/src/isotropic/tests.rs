@@ -1,6 +1,6 @@
 use half_edge::EditableHalfEdgeMesh;
 use indexed_face_set::EditableIndexedFaceSet;
-use mesh_core::{MeshQuery, PolygonMesh};
+use mesh_core::{MeshQuery, Point, PolygonMesh};
 
 use super::*;
 
@@ -115,4 +115,53 @@ fn a_structure_that_scans_makes_the_same_mesh() {
             scanned.to_polygons().positions()
         );
     }
+}
+
+#[test]
+fn what_positions_cannot_tell_is_refused_and_what_they_can_comes_to_an_end() {
+    let grid = shapes::triangle_grid(20, 20).expect("small");
+    // As survey coordinates are: half a unit is the step of singles there.
+    let far = |p: &Point| Point::new(0.7 * p.x + 500_000.0, 0.7 * p.y + 4_650_000.0, 0.0);
+    let far: Vec<Point> = grid.positions().iter().map(far).collect();
+    let far = PolygonMesh::from_faces(far, grid.faces().clone()).expect("the same faces");
+    let mut mesh = EditableHalfEdgeMesh::from_polygons(&far).expect("a manifold");
+    let refused = remesh(&mut mesh, &Remeshing::to(0.3)).expect_err("half a step");
+    assert!(
+        matches!(refused, RemeshError::TooFar { step: 0.5, .. }),
+        "{refused}"
+    );
+    for length in [2.0, 3.0] {
+        let mut mesh = mesh.clone();
+        let report = remesh(&mut mesh, &Remeshing::to(length)).expect("triangles");
+        assert!(report.faces < 2 * grid.face_count(), "{report:?}");
+        assert_eq!(mesh.validate(), Ok(()));
+    }
+    // Sums that overflow singles are no places.
+    let huge = |p: &Point| (*p - Point::splat(10.0)) * 3.4e37;
+    let huge: Vec<Point> = grid.positions().iter().map(huge).collect();
+    let huge = PolygonMesh::from_faces(huge, grid.faces().clone()).expect("the same faces");
+    let mut mesh = EditableHalfEdgeMesh::from_polygons(&huge).expect("a manifold");
+    let to = Remeshing {
+        most_faces: 5000,
+        ..Remeshing::to(2.5e37)
+    };
+    let report = remesh(&mut mesh, &to).expect("triangles");
+    assert!(report.faces <= 5000, "{report:?}");
+    assert!(mesh.vertices().all(|v| mesh.position(v).is_finite()));
+}
+
+#[test]
+fn it_ends_once_it_has_settled_and_makes_room_where_it_can() {
+    let ball = shapes::geodesic(10).expect("small");
+    let mut mesh = EditableHalfEdgeMesh::from_polygons(&ball).expect("closed");
+    let to = Remeshing {
+        iterations: usize::MAX,
+        // Fewer than the mesh has, and more than the length takes.
+        most_faces: 1000,
+        ..Remeshing::to(0.3)
+    };
+    let report = remesh(&mut mesh, &to).expect("triangles");
+    assert_eq!(report.stop, Stop::Done);
+    assert!((200..500).contains(&report.faces), "{report:?}");
+    assert!(report.iterations < 1000, "{report:?}");
 }

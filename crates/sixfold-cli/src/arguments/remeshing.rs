@@ -25,7 +25,8 @@ the backend does not hold it; 4 interrupted, nothing written.";
 
 /// Make a mesh coarser: collapse edges, the least harmful first.
 ///
-/// The result is the same on every backend that holds the mesh, if it is a manifold.
+/// The result is the same on every backend that holds the mesh, if it is a manifold, up to the order of
+/// vertices and faces; on polygon-soup only where no two vertices come to one place.
 #[derive(Debug, Args)]
 #[command(after_help = DECIMATE_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Decimate {
@@ -74,10 +75,12 @@ const REMESH_EXAMPLES: &str = "Examples:
   sixfold remesh --edge-length 0.01 --iterations 5 --max-faces 2000000 scan.obj -o fine.obj
 
 Each iteration splits edges longer than 4/3 of the length, collapses those shorter than 4/5 of it,
-flips edges where that brings valences nearer to six, and moves vertices along the surface to the
-middle of their neighbours (Botsch & Kobbelt 2004; there is no projection back to the original). The
-boundary keeps its shape. Where splitting reaches --max-faces, the mesh is written as it is then,
-and a note says so; a length that would take more by the area is refused at once.
+flips edges where that brings valences nearer to six, and moves vertices in their tangent planes to
+the middle of their neighbours (Botsch & Kobbelt 2004), until next to nothing changes. There is no
+projection back to the original: the boundary keeps its shape, but sharp edges are rounded and the
+mesh shrinks there, so choose a length well below what is to stay. Where splitting reaches
+--max-faces for good, the mesh is written as it is then, and a note says so; a length that would
+take more by the area, or by the edges to be split, is refused at once.
 Triangles only: `sixfold triangulate` cuts polygons.
 
 Exit codes: 0 done, as far as it goes; 2 wrong usage or unusable input; 3 the mesh has polygons, the
@@ -85,7 +88,8 @@ backend does not hold it, or the length takes too many faces; 4 interrupted, not
 
 /// Make all edges about as long as asked, and all triangles about regular.
 ///
-/// The result is the same on every backend that holds the mesh, if it is a manifold.
+/// The result is the same on every backend that holds the mesh, if it is a manifold, up to the order of
+/// vertices and faces; on polygon-soup only where no two vertices come to one place.
 #[derive(Debug, Args)]
 #[command(after_help = REMESH_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Remesh {
@@ -98,7 +102,7 @@ pub(crate) struct Remesh {
     /// How long edges should be, in the units of the file
     #[arg(long, value_name = "LENGTH", value_parser = edge_length, allow_hyphen_values = true)]
     pub(crate) edge_length: f64,
-    /// How often to split, collapse, flip and smooth
+    /// How often to split, collapse, flip and smooth, at most
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = iterations, allow_hyphen_values = true)]
     pub(crate) iterations: usize,
     /// Split no further than to so many faces
