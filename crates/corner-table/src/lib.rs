@@ -3,7 +3,7 @@
 //! Choose it for large triangle meshes that must know their neighbours: it is the smallest of the
 //! structures that answer everything in place, and its column of vertices is the index list that a
 //! renderer takes as it is. Not for polygons, nor for input with three faces on an edge; both are
-//! refused. Start at [`CornerTable`], whose numbered invariants explain the rest. After Rossignac,
+//! refused. Start at [`AnyCornerTable`], whose numbered invariants explain the rest. After Rossignac,
 //! Safonova & Szymczak, *3D compression made simple* (2001).
 //!
 //! | holds | |

@@ -5,7 +5,7 @@
 //! polygon mesh. Edges are not stored; an edge is the [pair](mesh_core::Pair) of its ends. FV, FE,
 //! EV and VF take O(1) an item; the other five look through the faces around the element. All edits
 //! of [`MeshEdit`](mesh_core::MeshEdit) are legal here wherever their own rule holds, and local.
-//! Start at [`FaceVertexMesh`], whose four invariants explain the rest.
+//! Start at [`AnyFaceVertexMesh`], whose four invariants explain the rest.
 
 mod circulate;
 mod construct;

@@ -1,7 +1,7 @@
 //! Half-edge mesh: every edge is two directed halves, each with a face on its left.
 //!
 //! Choose it to walk around vertices and to change connectivity; not for input with three faces
-//! on an edge, which it refuses. Start at [`HalfEdgeMesh`], whose numbered invariants explain the
+//! on an edge, which it refuses. Start at [`AnyHalfEdgeMesh`], whose numbered invariants explain the
 //! rest. After Weiler (1985) and Mäntylä (1988); twin pairs after Campagna, Kobbelt & Seidel (1998).
 //!
 //! | holds | |

@@ -3,7 +3,7 @@
 //! It is what files hold and what a renderer is handed. Choose it where faces are read in order, or
 //! where a mesh only waits in memory: no structure with shared vertices is smaller, and it holds
 //! every polygon mesh. FV, FE and EV take O(1) an item. Any question about a neighbourhood is a scan
-//! of all corners, for nothing else in the tables could answer it. Start at [`IndexedFaceSet`],
+//! of all corners, for nothing else in the tables could answer it. Start at [`AnyIndexedFaceSet`],
 //! whose three invariants explain the rest.
 //!
 //! Edges are not stored; an edge is the [pair](mesh_core::Pair) of its ends.

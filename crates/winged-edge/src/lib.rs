@@ -2,7 +2,7 @@
 //!
 //! Choose it where edges are what is asked for, or where an edge must be one thing with one
 //! record; not for input with three faces on an edge, which it refuses. It is the oldest structure
-//! with constant-time neighbourhoods. Start at [`WingedEdgeMesh`], whose numbered invariants explain
+//! with constant-time neighbourhoods. Start at [`AnyWingedEdgeMesh`], whose numbered invariants explain
 //! the rest. After Baumgart (1972, 1975).
 //!
 //! | holds | |
