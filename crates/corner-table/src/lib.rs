@@ -59,11 +59,11 @@
 //! Around a vertex each step needs the row that the last one read: a load, then the corner before
 //! (a multiplication to find `c % 3`, a comparison, a choice), about ten cycles in all with the
 //! tables in the nearest cache. That chain is the price of storing no `next`, and it bounds VV, VE,
-//! VF and EE in order, not the bytes: smoothing 2,562 vertices took 18 ns each and 40,962 took 25,
+//! VF and EE in order, not the bytes: smoothing 2,562 vertices took 18 ns each and 40,962 took 27,
 //! with 76 bytes to move (icospheres, one core of a shared AMD EPYC). In random order it is the
-//! latency of the cache or memory behind each step: 55 ns a vertex on 82,000 triangles, and 444 on
+//! latency of the cache or memory behind each step: 58 ns a vertex on 82,000 triangles, and 390 on
 //! 1.3 million, one trip to memory a neighbour. FV, FE and FF read three rows in sequence and are
-//! bound by what is done with the answer; so are the edges and EF, at 0.8 ns an edge.
+//! bound by what is done with the answer; so are the edges and EF, at 1.5 ns an edge.
 //!
 //! # Examples
 //!

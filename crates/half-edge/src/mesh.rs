@@ -30,7 +30,7 @@ impl HalfEdgeId {
 ///
 /// Kept as one record of 12 bytes rather than three columns: a step around a vertex needs two of
 /// the three fields of a row, and on meshes in random order the record saves the second cache miss
-/// (one-ring sweep 33 against 43 ns a vertex on 82,000 shuffled triangles).
+/// (when the two were compared, by a quarter of a one-ring sweep over 82,000 shuffled triangles).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Half {
     /// The next half along the face, or along the boundary loop.

@@ -63,7 +63,7 @@ pub use facts::{Facts, Spread};
 pub use few::{Few, Lookup};
 pub use glam::Vec3 as Point;
 pub use handle::{Handle, HandleMap, HashHandleMap, Pair, RowMap};
-pub use holes::{Holes, SolidRows};
+pub use holes::Holes;
 pub use incidence::EdgeUse;
 pub use memory::{MemoryFootprint, TableBytes};
 pub use pairing::TwinPairs;

@@ -166,7 +166,7 @@ pub fn decimate_watched<M: MeshEdit + Representation>(
 /// What there is to know of a vertex: one cache line, for a collapse looks at vertices all around.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
-struct Corner {
+struct Vertex {
     /// From the vertex itself, in the unit box.
     quadric: Packed,
     at: Point,
@@ -178,7 +178,7 @@ struct Corner {
 
 struct Work<M: MeshEdit> {
     numbering: Numbering<M>,
-    corners: Vec<Corner>,
+    vertices: Vec<Vertex>,
     queue: Queue,
     /// The mesh fits a unit box once it is divided by this.
     size: f64,
@@ -188,20 +188,20 @@ impl<M: MeshEdit + Representation> Work<M> {
     fn of(mesh: &M, boundary: Boundary) -> Result<Self, RemeshError> {
         let numbering = Numbering::of(mesh)?;
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let mut corners = Vec::with_capacity(numbering.len());
+        let mut vertices = Vec::with_capacity(numbering.len());
         for number in 0..row(numbering.len()) {
             let at = mesh.position(numbering.name(number));
             low = low.min(at.as_dvec3());
             high = high.max(at.as_dvec3());
-            corners.push(Corner {
+            vertices.push(Vertex {
                 at,
-                ..Corner::default()
+                ..Vertex::default()
             });
         }
         let size = (high - low).max_element();
         let mut work = Self {
             numbering,
-            corners,
+            vertices,
             queue: Queue::new(),
             size: if size > 0.0 { size } else { 1.0 },
         };
@@ -219,7 +219,7 @@ impl<M: MeshEdit + Representation> Work<M> {
                 uses[e] = uses[e].saturating_add(1);
             }
         }
-        let mut quadrics = vec![Quadric::default(); self.corners.len()];
+        let mut quadrics = vec![Quadric::default(); self.vertices.len()];
         let mut across: Vec<([u32; 2], Quadric)> = Vec::new();
         for f in mesh.faces() {
             let mut numbers = corners(mesh, f).map(|v| self.numbering.number(v));
@@ -227,7 +227,7 @@ impl<M: MeshEdit + Representation> Work<M> {
             let least = (0..3).min_by_key(|&i| numbers[i]).unwrap_or(0);
             numbers.rotate_left(least);
             let [a, b, c] = numbers;
-            let cross = self.from(a, b).cross(self.from(a, c));
+            let cross = self.way(a, b).cross(self.way(a, c));
             let Some(normal) = cross.try_normalize() else {
                 continue;
             };
@@ -238,14 +238,14 @@ impl<M: MeshEdit + Representation> Work<M> {
             for e in mesh.face_edges(f) {
                 let (i, j) = self.ends(mesh, e);
                 if uses[e] == 1 {
-                    let along = self.from(i, j);
+                    let along = self.way(i, j);
                     if let Some(normal) = along.cross(normal).try_normalize() {
                         let weight = BOUNDARY_WEIGHT * along.length_squared();
                         across.push(([i, j], Quadric::plane(normal, weight)));
                     }
                     if boundary == Boundary::Fixed {
-                        self.corners[i as usize].fixed = true;
-                        self.corners[j as usize].fixed = true;
+                        self.vertices[i as usize].fixed = true;
+                        self.vertices[j as usize].fixed = true;
                     }
                 }
             }
@@ -257,15 +257,15 @@ impl<M: MeshEdit + Representation> Work<M> {
                 quadrics[n as usize] += plane;
             }
         }
-        for (corner, quadric) in self.corners.iter_mut().zip(quadrics) {
-            corner.quadric = quadric.into();
+        for (vertex, quadric) in self.vertices.iter_mut().zip(quadrics) {
+            vertex.quadric = quadric.into();
         }
     }
 
     /// The way from one vertex to another, in the unit box.
     #[inline]
-    fn from(&self, a: u32, b: u32) -> DVec3 {
-        let [p, q] = [a, b].map(|n| self.corners[n as usize].at.as_dvec3());
+    fn way(&self, a: u32, b: u32) -> DVec3 {
+        let [p, q] = [a, b].map(|n| self.vertices[n as usize].at.as_dvec3());
         (q - p) / self.size
     }
 
@@ -294,7 +294,7 @@ impl<M: MeshEdit + Representation> Work<M> {
     /// The sum of both versions.
     #[inline]
     fn version(&self, ends: [u32; 2]) -> u32 {
-        let [a, b] = ends.map(|n| self.corners[n as usize].version);
+        let [a, b] = ends.map(|n| self.vertices[n as usize].version);
         a.wrapping_add(b)
     }
 
@@ -305,8 +305,8 @@ impl<M: MeshEdit + Representation> Work<M> {
     /// Where the two ends should meet.
     #[inline]
     fn best(&self, [a, b]: [u32; 2]) -> Option<Best> {
-        let [p, q] = [a, b].map(|n| &self.corners[n as usize]);
-        let way = self.from(a, b);
+        let [p, q] = [a, b].map(|n| &self.vertices[n as usize]);
+        let way = self.way(a, b);
         let sum = Quadric::from(p.quadric).plus(&Quadric::from(q.quadric).seen_from(-way));
         let at = |way: DVec3| Best {
             way,
@@ -336,7 +336,7 @@ impl<M: MeshEdit + Representation> Work<M> {
         let [a, b] = entry.ends;
         let e = self.numbering.edge(mesh, entry.ends)?;
         let best = self.best(entry.ends)?;
-        let [p, q] = [a, b].map(|n| self.corners[n as usize]);
+        let [p, q] = [a, b].map(|n| self.vertices[n as usize]);
         // What is fixed stays to the bit.
         let to = match [p.fixed, q.fixed] {
             [true, _] => p.at,
@@ -352,14 +352,14 @@ impl<M: MeshEdit + Representation> Work<M> {
         self.numbering.remove(b);
         // As the structure holds it: rounded to singles.
         let way = (to.as_dvec3() - p.at.as_dvec3()) / self.size;
-        self.corners[a as usize] = Corner {
+        self.vertices[a as usize] = Vertex {
             quadric: best.sum.seen_from(way).into(),
             at: to,
             version: p.version.wrapping_add(1),
             fixed: p.fixed || q.fixed,
         };
         // No number is used twice, so no entry of the end that is gone is fresh again.
-        self.corners[b as usize].version = q.version.wrapping_add(1);
+        self.vertices[b as usize].version = q.version.wrapping_add(1);
         for v in mesh.vertex_vertices(kept) {
             self.put(a, self.numbering.number(v));
         }

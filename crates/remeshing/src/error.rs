@@ -25,9 +25,14 @@ pub enum RemeshError {
     BadLength { length: f64 },
     /// A length that is lost in the rounding of positions.
     #[error(
-        "edges of {length} are too short so far from the origin: beside a coordinate of {far} positions are {step} apart, so move the mesh to the origin, or choose a length of {} or more", 4.0 * .step
+        "edges of {length} are too short so far from the origin: beside a coordinate of {far} positions are {step} apart, so move the mesh to the origin, or choose a length of {least} or more"
     )]
-    TooFar { length: f64, far: f64, step: f64 },
+    TooFar {
+        length: f64,
+        far: f64,
+        step: f64,
+        least: f64,
+    },
     /// A length that would take more faces than allowed.
     #[error(
         "edges of {length} would take about {faces:.0} triangles, and {limit} are allowed: choose a greater length, or allow more"

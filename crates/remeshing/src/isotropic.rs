@@ -171,9 +171,14 @@ fn check_steps<M: MeshEdit>(mesh: &M, length: f64) -> Result<(), RemeshError> {
         .map(|v| mesh.position(v).abs().max_element());
     let far = far.fold(0.0, f32::max);
     let step = f64::from(far.next_up()) - f64::from(far);
-    if length < FEWEST_STEPS * step {
-        let far = f64::from(far);
-        return Err(RemeshError::TooFar { length, far, step });
+    let least = FEWEST_STEPS * step;
+    if length < least {
+        return Err(RemeshError::TooFar {
+            length,
+            far: f64::from(far),
+            step,
+            least,
+        });
     }
     Ok(())
 }

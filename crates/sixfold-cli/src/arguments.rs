@@ -37,7 +37,8 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
 
 How it measures: every round runs each operation on each backend, one after the other, in random
 order, on the processor time of the thread; the table shows medians. The seed decides that order
-and which elements are sampled; how many is decided by the clock. Ctrl-C ends it between two
+and which elements are sampled; how many is decided by the clock. One backend is entered twice: what
+its two columns differ by is the noise, and no more than that is a tie. Ctrl-C ends it between two
 samples and keeps what is finished. A second Ctrl-C ends it at once, with code 130.
 
 Exit codes: 0 done; 1 backends found different results, a fault in Sixfold; 2 wrong usage or

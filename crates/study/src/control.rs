@@ -3,7 +3,6 @@
 use sixfold::QueryCost;
 
 use crate::candidate::Subject;
-use crate::clock::Time;
 use crate::measure::Entry;
 use crate::operation::Operation;
 use crate::report::{Control, ControlRow};
@@ -33,15 +32,10 @@ pub(crate) fn control(
     let mut operations = Vec::new();
     for again in entries.iter().filter(|e| e.subject == second) {
         let operation = again.job.operation;
-        let times = |e: &Entry| -> Vec<(u32, Time)> { e.samples.clone() };
         let Some(once) = of(first, operation) else {
             continue;
         };
-        let (once, again) = (times(once), times(again));
-        if once.is_empty() || again.is_empty() {
-            continue;
-        }
-        if let Some(ratio) = ratio(&again, &once) {
+        if let Some(ratio) = ratio(&again.samples, &once.samples) {
             operations.push(ControlRow {
                 operation,
                 ratio: ratio.value,

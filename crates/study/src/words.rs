@@ -91,7 +91,7 @@ fn noise(control: &Control) -> Option<String> {
         { control.operations.iter() }.max_by(|a, b| difference(a).total_cmp(&difference(b)))?;
     let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
     Some(format!(
-        "Noise: {} was entered twice, and its two columns differ by {}, at most {} ({}); what differs by no more is a tie.",
+        "Noise: {} was entered twice, and its two columns differ by {}, at most {} ({}); in each operation, what differs by no more than they do is a tie.",
         control.backend,
         percent(control.typical),
         percent(control.worst),
