@@ -4,12 +4,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use sixfold::{Point, PolygonMesh};
 
-use crate::candidate::{Job, Outcome, Subject};
-use crate::clock::Clock;
 use crate::measure::Entry;
-use crate::operation::Operation;
 use crate::report::Agreement;
-use crate::workload::field_sum;
+use workload::Clock;
+use workload::Operation;
+use workload::field_sum;
+use workload::{Job, Outcome, Subject};
 
 /// How far sums of `f32` may differ by the order of adding, relative to their size.
 const TOLERANCE: f64 = 1e-4;
@@ -138,8 +138,8 @@ mod tests {
     use sixfold::QueryCost;
 
     use super::*;
-    use crate::candidate::{Run, Sample};
-    use crate::clock::MachineClock;
+    use workload::MachineClock;
+    use workload::{Run, Sample};
 
     fn pillow() -> PolygonMesh {
         let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y];

@@ -2,12 +2,12 @@
 
 use sixfold::QueryCost;
 
-use crate::candidate::Subject;
 use crate::measure::Entry;
-use crate::operation::Operation;
 use crate::report::{Control, ControlRow};
 use crate::standing::{NO_DIFFERENCE, ratio};
 use crate::statistics::Median;
+use workload::Operation;
+use workload::Subject;
 
 /// Which of the subjects is entered twice: the first that never looks at all faces, for what scans is
 /// slow and steady.

@@ -5,7 +5,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::Serialize;
 
-use crate::clock::MachineClock;
+use workload::MachineClock;
 
 /// What else a figure depends on.
 #[derive(Clone, Debug, PartialEq, Serialize)]

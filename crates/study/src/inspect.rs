@@ -2,8 +2,8 @@
 
 use sixfold::{BuildError, Counts, Facts, PolygonMesh};
 
-use crate::backend::Backend;
 use crate::report::{BackendReport, Inspection, MeshReport, SCHEMA};
+use workload::Backend;
 
 /// A mesh to be looked into.
 #[derive(Clone, Debug)]

@@ -8,41 +8,29 @@
 //! command line and prints nothing: progress goes to a closure, and a flag stops it.
 
 mod agreement;
-mod backend;
-mod candidate;
-mod clock;
 mod control;
-mod editing;
 mod environment;
 mod inspect;
 mod measure;
 mod methods;
-mod operation;
 mod plan;
-mod refining;
 mod report;
-mod sample;
-mod single_edit;
 mod solo;
 mod standing;
 mod statistics;
 mod study;
-mod subdividing;
 mod words;
-mod workload;
 
-pub use backend::Backend;
-pub use clock::{Clock, MachineClock, Time};
-pub use editing::{Editing, Editor, Edits};
 pub use environment::Environment;
 pub use inspect::{Specimen, inspect};
 pub use measure::Progress;
-pub use operation::{Kind, Operation, UnknownOperation};
-pub use refining::{Refiner, Refining, Way};
 pub use report::{
     Agreement, BackendReport, Control, ControlRow, Inspection, MeshReport, Refusal, Report,
     ResultRow, SCHEMA, Standing,
 };
-pub use single_edit::SingleEdit;
 pub use solo::{Solo, SoloRun};
 pub use study::{Settings, StudyError, study};
+pub use workload::{
+    Backend, Clock, Editing, Editor, Edits, Kind, MachineClock, Operation, Refiner, Refining,
+    SingleEdit, Time, UnknownOperation, Way,
+};

@@ -12,9 +12,9 @@ use std::time::Duration;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
-use crate::candidate::{Job, Outcome, Run, Subject};
-use crate::clock::{Clock, Time};
-use crate::operation::Operation;
+use workload::Operation;
+use workload::{Clock, Time};
+use workload::{Job, Outcome, Run, Subject};
 
 /// No interval gets much better by more rounds than these.
 const MOST_ROUNDS: u32 = 200;

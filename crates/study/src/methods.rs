@@ -2,8 +2,8 @@
 
 use sixfold::subdivision::Method;
 
-use crate::operation::Operation;
 use crate::report::{BackendReport, ResultRow};
+use workload::Operation;
 
 /// Methods closer than this are not told apart.
 const ALIKE: f64 = 1.1;

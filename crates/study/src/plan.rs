@@ -1,9 +1,9 @@
 //! The warm-up: everything once, and from that a plan of samples that fit the budget.
 
-use crate::candidate::{Job, Run, Sample};
-use crate::clock::Time;
 use crate::measure::{Bench, Entry, LONG_RUN_NS};
-use crate::operation::{Kind, Operation};
+use workload::Time;
+use workload::{Job, Run, Sample};
+use workload::{Kind, Operation};
 
 /// How many rounds the plan aims at.
 const ROUNDS: u32 = 20;

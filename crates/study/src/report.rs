@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 use sixfold::{Capabilities, Facts, TableBytes};
 
 use crate::environment::Environment;
-use crate::operation::Operation;
+use workload::Operation;
 
 /// The version of the shape; it changes when a reader of the old one would go wrong.
 pub const SCHEMA: u32 = 1;

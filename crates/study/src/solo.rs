@@ -2,12 +2,12 @@
 
 use sixfold::{Facts, PolygonMesh};
 
-use crate::backend::Backend;
-use crate::candidate::{Job, Subject};
-use crate::clock::{Clock, Time};
-use crate::operation::Operation;
-use crate::sample::Draw;
 use crate::study::{StudyError, put_on_the_bench};
+use workload::Backend;
+use workload::Draw;
+use workload::Operation;
+use workload::{Clock, Time};
+use workload::{Job, Subject};
 
 /// One backend, built and ready: the same code that a study runs, without its rounds.
 pub struct Solo<'a> {

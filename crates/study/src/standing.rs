@@ -1,8 +1,8 @@
 //! Who is fastest, and who as fast as far as anybody can tell.
 
-use crate::clock::Time;
 use crate::report::Standing;
 use crate::statistics::Median;
+use workload::Time;
 
 /// Medians this close are a tie, whatever their intervals say.
 pub(crate) const NO_DIFFERENCE: f64 = 1.02;

@@ -8,19 +8,19 @@ use rand_chacha::rand_core::SeedableRng;
 use sixfold::{Counts, Facts, PolygonMesh, QueryCost, Relation, Spread, roster};
 
 use crate::agreement::judge;
-use crate::backend::Backend;
-use crate::candidate::Subject;
-use crate::clock::{MachineClock, Time};
 use crate::control::{control, entered_twice, noise};
 use crate::environment::Environment;
 use crate::inspect::{Specimen, per_vertex, unbuilt};
 use crate::measure::{Bench, Entry, Progress};
-use crate::operation::Operation;
 use crate::report::{Agreement, BackendReport, Control, Refusal, Report, ResultRow, SCHEMA};
-use crate::sample::Draw;
 use crate::standing::places;
 use crate::statistics::Median;
 use crate::words::words;
+use workload::Backend;
+use workload::Draw;
+use workload::Operation;
+use workload::Subject;
+use workload::{MachineClock, Time};
 
 /// Beyond this a valence or a degree makes a mesh skewed: its square is a millisecond's work.
 const MOST_NEIGHBOURS: usize = 1000;
@@ -170,7 +170,7 @@ pub fn study(
     let first = entered_twice(&subjects);
     let held = |backend: &&Backend| backend.name() == subjects[first].name();
     let again = chosen.iter().find(held);
-    let again = again.and_then(|backend| (backend.build)(polygons, draw.as_ref()).ok());
+    let again = again.and_then(|backend| backend.put_on_the_bench(polygons, draw.as_ref()).ok());
     let second = subjects.len();
     subjects.extend(again.map(|(subject, _)| subject));
 
@@ -235,7 +235,7 @@ pub(crate) fn put_on_the_bench<'a>(
     draw: Option<&'a Draw>,
     counts: &Counts,
 ) -> (BackendReport, Option<Box<dyn Subject + 'a>>) {
-    match (backend.build)(polygons, draw) {
+    match backend.put_on_the_bench(polygons, draw) {
         Err(refusal) => (unbuilt(backend, counts, Err(refusal)), None),
         Ok((subject, memory)) => {
             let bytes = memory.total();

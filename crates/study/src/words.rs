@@ -3,9 +3,9 @@
 use sixfold::{PolygonMesh, Relation};
 
 use crate::methods::methods;
-use crate::operation::Operation;
 use crate::report::{Agreement, BackendReport, Control, ControlRow, ResultRow, Standing};
 use crate::statistics::Median;
+use workload::Operation;
 
 /// Sentences on speed, scans, memory and merging; no winner is named where it ties.
 pub(crate) fn words(

@@ -94,7 +94,7 @@ impl Clock for MachineClock {
 
 /// The time that `work` takes.
 #[inline]
-pub(crate) fn timed(clock: &dyn Clock, work: impl FnOnce()) -> Time {
+pub fn timed(clock: &dyn Clock, work: impl FnOnce()) -> Time {
     let start = clock.now();
     work();
     clock.now() - start

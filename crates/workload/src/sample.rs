@@ -7,27 +7,27 @@ use sixfold::{FaceId, PolygonMesh, VertexId};
 
 /// One side of a face, standing for its edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Side {
+pub struct Side {
     /// The face.
-    pub(crate) face: FaceId,
+    pub face: FaceId,
     /// The two ends of the edge, the lower first.
-    pub(crate) ends: [VertexId; 2],
+    pub ends: [VertexId; 2],
 }
 
 /// All elements of a mesh in an order that the seed decides; every prefix is a fair sample.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Draw {
+pub struct Draw {
     /// Every vertex.
-    pub(crate) vertices: Vec<VertexId>,
+    pub vertices: Vec<VertexId>,
     /// Every edge once, by one of its sides.
-    pub(crate) edges: Vec<Side>,
+    pub edges: Vec<Side>,
     /// Every face.
-    pub(crate) faces: Vec<FaceId>,
+    pub faces: Vec<FaceId>,
 }
 
 impl Draw {
     /// The order that `seed` gives to the elements of `polygons`; O(n log n) in the corners.
-    pub(crate) fn of(polygons: &PolygonMesh, seed: u64) -> Self {
+    pub fn of(polygons: &PolygonMesh, seed: u64) -> Self {
         let mut draw = Self {
             vertices: polygons.vertices().collect(),
             edges: edges_of(polygons),
@@ -41,7 +41,7 @@ impl Draw {
     }
 
     /// How many elements there are, by kind.
-    pub(crate) fn population(&self) -> [usize; 3] {
+    pub fn population(&self) -> [usize; 3] {
         [self.vertices.len(), self.edges.len(), self.faces.len()]
     }
 }

@@ -10,41 +10,41 @@ use crate::operation::{Kind, Operation};
 use crate::refining::Refining;
 use crate::sample::{Draw, Side};
 use crate::subdividing::{OneThread, patch};
-use crate::workload::{All, Elements, Outputs, Tally, field_sum, share};
+use crate::sweeps::{All, Elements, Outputs, Tally, field_sum, share};
 
 /// What to run: an operation on all elements, or on a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Job {
+pub struct Job {
     /// The operation.
-    pub(crate) operation: Operation,
+    pub operation: Operation,
     /// Which elements stand for all; `None` for all of them.
-    pub(crate) sample: Option<Sample>,
+    pub sample: Option<Sample>,
 }
 
 /// The first few elements of the draw, of the kinds that are scanned for; the first few faces, as a
 /// mesh of their own, where they are subdivided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Sample {
+pub struct Sample {
     /// By kind: whether a sample stands for all. The other kinds are gone through in full.
-    pub(crate) scanned: [bool; 3],
+    pub scanned: [bool; 3],
     /// How many elements of each such kind, if there are as many.
-    pub(crate) size: usize,
+    pub size: usize,
 }
 
 /// What a run came to.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Run {
+pub struct Run {
     /// The time of one run of the whole operation; scaled where a sample stands for it.
-    pub(crate) time: Time,
+    pub time: Time,
     /// What it found; `None` if nobody asked.
-    pub(crate) outcome: Option<Outcome>,
+    pub outcome: Option<Outcome>,
     /// Why it cannot be done on this structure or mesh; the time means nothing then.
-    pub(crate) refusal: Option<String>,
+    pub refusal: Option<String>,
 }
 
 impl Run {
     /// A run that was done.
-    pub(crate) fn done(time: Time, outcome: Option<Outcome>) -> Self {
+    pub fn done(time: Time, outcome: Option<Outcome>) -> Self {
         Self {
             time,
             outcome,
@@ -55,15 +55,15 @@ impl Run {
 
 /// What an operation found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Outcome {
+pub struct Outcome {
     /// A number that depends on all results, and not on the order of neighbours.
-    pub(crate) checksum: f64,
+    pub checksum: f64,
     /// How many elements the whole operation visits; scaled where a sample stands for it.
-    pub(crate) elements: u64,
+    pub elements: u64,
 }
 
 /// Something that can be timed; a test can bring its own.
-pub(crate) trait Subject {
+pub trait Subject {
     /// What users call it.
     fn name(&self) -> &'static str;
     /// How much of the mesh each relation looks at.

@@ -16,8 +16,10 @@ use crate::sample::Draw;
 /// then measures beside them ([`Settings::extra`](crate::Settings::extra)).
 #[derive(Clone, Copy)]
 pub struct Backend {
-    pub(crate) info: BackendInfo,
-    pub(crate) layout_bytes: fn(&Counts) -> usize,
+    /// What is known of it without building it.
+    pub info: BackendInfo,
+    /// Bytes that its layout takes in theory for a mesh with such counts.
+    pub layout_bytes: fn(&Counts) -> usize,
     pub(crate) build: Build,
 }
 
@@ -25,7 +27,7 @@ pub struct Backend {
 type Build = for<'a> fn(&'a PolygonMesh, Option<&'a Draw>) -> Result<OnTheBench<'a>, BuildError>;
 
 /// A structure ready to be measured, and what it weighs.
-pub(crate) type OnTheBench<'a> = (Box<dyn Subject + 'a>, MemoryFootprint);
+pub type OnTheBench<'a> = (Box<dyn Subject + 'a>, MemoryFootprint);
 
 impl Backend {
     /// `M` as a backend.
@@ -54,6 +56,20 @@ impl Backend {
         }
 
         visit_all(&mut Row)
+    }
+
+    /// Builds it from `polygons` and puts it on the bench, with its names of what is drawn, if anything
+    /// is; and what it weighs.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot hold them.
+    pub fn put_on_the_bench<'a>(
+        &self,
+        polygons: &'a PolygonMesh,
+        draw: Option<&'a Draw>,
+    ) -> Result<OnTheBench<'a>, BuildError> {
+        (self.build)(polygons, draw)
     }
 
     /// What users call it.

@@ -168,13 +168,13 @@ impl Operation {
     }
 
     /// Whether each run of a series leaves a mesh of its own behind, or works on one made beforehand.
-    pub(crate) const fn holds_a_mesh_a_run(self) -> bool {
+    pub const fn holds_a_mesh_a_run(self) -> bool {
         matches!(self, Self::Build | Self::VvSmooth | Self::Editing(_))
     }
 
     /// Whether every series of its runs begins with one that nobody times: it fills the tables that
     /// the others use again.
-    pub(crate) const fn readies_itself(self) -> bool {
+    pub const fn readies_itself(self) -> bool {
         matches!(
             self,
             Self::CatmullClark(Method::Native) | Self::Loop(Method::Native)
@@ -182,7 +182,7 @@ impl Operation {
     }
 
     /// How many elements it visits on `polygons` where no run has told: the faces, or the new ones.
-    pub(crate) fn expected(self, polygons: &PolygonMesh) -> usize {
+    pub fn expected(self, polygons: &PolygonMesh) -> usize {
         match self {
             Self::CatmullClark(_) => polygons.corner_count(),
             Self::Loop(_) => polygons.face_count().saturating_mul(4),

@@ -82,7 +82,7 @@ impl Tally {
 }
 
 /// The checksum of a field of vectors: Σ |x| + 2|y| + 3|z|.
-pub(crate) fn field_sum(points: impl Iterator<Item = Point>) -> f64 {
+pub fn field_sum(points: impl Iterator<Item = Point>) -> f64 {
     let weigh =
         |p: Point| f64::from(p.x).abs() + 2.0 * f64::from(p.y).abs() + 3.0 * f64::from(p.z).abs();
     points.map(weigh).sum()
