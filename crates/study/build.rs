@@ -1,6 +1,7 @@
-//! Tells the report by which compiler and with which flags it was built.
+//! Tells the report from which commit, by which compiler and with which flags it was built.
 
 use std::env;
+use std::path::Path;
 use std::process::Command;
 
 fn main() {
@@ -9,6 +10,19 @@ fn main() {
     let version = version.and_then(|output| String::from_utf8(output.stdout).ok());
     let version = version.map_or("unknown".into(), |text| text.trim().to_owned());
     println!("cargo::rustc-env=STUDY_RUSTC={version}");
+    if let Some(commit) = git(&["describe", "--always", "--dirty", "--abbrev=12"]) {
+        println!("cargo::rustc-env=STUDY_COMMIT={commit}");
+    }
+    // It is written whenever HEAD moves; outside a repository there is none to be watched.
+    if let Some(log) = git(&[
+        "rev-parse",
+        "--path-format=absolute",
+        "--git-path",
+        "logs/HEAD",
+    ]) && Path::new(&log).exists()
+    {
+        println!("cargo::rerun-if-changed={log}");
+    }
     for name in ["PROFILE", "OPT_LEVEL", "TARGET"] {
         let value = env::var(name).unwrap_or_else(|_| "unknown".into());
         println!("cargo::rustc-env=STUDY_{name}={value}");
@@ -20,4 +34,12 @@ fn main() {
         flags.replace('\u{1f}', " ")
     );
     println!("cargo::rerun-if-changed=build.rs");
+}
+
+/// What git says, on one line; `None` where there is no git or no repository.
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(arguments).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    let text = text.trim();
+    (output.status.success() && !text.is_empty()).then(|| text.to_owned())
 }

@@ -358,6 +358,9 @@ mod tests {
             ],
             control: None,
             words: Vec::new(),
+            warnings: Vec::new(),
+            raw: Vec::new(),
+            timer: None,
             interrupted: false,
             environment: Environment::here(1, 1.0),
         }

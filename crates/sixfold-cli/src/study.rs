@@ -117,6 +117,9 @@ fn refusals(specimen: &Specimen, settings: &Settings) -> Result<Report, Failure>
         refusals: Vec::new(),
         control: None,
         words: Vec::new(),
+        warnings: Vec::new(),
+        raw: Vec::new(),
+        timer: None,
         interrupted: false,
         environment: Environment::here(settings.seed, settings.budget.as_secs_f64()),
     })
@@ -131,6 +134,9 @@ fn print(report: &Report, text: &mut Text) {
     text.say("");
     for words in &report.words {
         text.say(&hanging("- ", words));
+    }
+    for warning in &report.warnings {
+        text.say(&hanging("! ", warning));
     }
     text.say("");
     text.say(&hanging("", &setting(report)));
@@ -161,6 +167,13 @@ fn setting(report: &Report) -> String {
     let most = report.results.iter().map(|row| row.samples).max();
     let rounds = counted(most.unwrap_or(0), "round", "rounds");
     parts.push(format!("medians of up to {rounds}"));
+    if let Some(timer) = report.timer {
+        let share = timer.largest_share.map_or(String::new(), |share| {
+            format!(" ({:.2} % of the shortest sample)", 100.0 * share)
+        });
+        let overhead = timer.overhead_ns;
+        parts.push(format!("an empty sample takes {overhead:.0} ns{share}"));
+    }
     parts.push(format!("seed {seed}"));
     parts.join("; ") + "."
 }

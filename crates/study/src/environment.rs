@@ -4,7 +4,7 @@ use std::fs;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::Serialize;
-
+use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
 use workload::MachineClock;
 
 /// What else a figure depends on.
@@ -12,6 +12,9 @@ use workload::MachineClock;
 pub struct Environment {
     /// The version of Sixfold.
     pub sixfold: String,
+    /// The commit that the program was built from, `-dirty` where files differed from it; `None` where
+    /// it was not built from a repository.
+    pub commit: Option<String>,
     /// The compiler.
     pub rustc: String,
     /// The build profile: `release`.
@@ -24,6 +27,8 @@ pub struct Environment {
     pub target: String,
     /// The operating system.
     pub os: String,
+    /// The release of its kernel, where the platform tells.
+    pub kernel: Option<String>,
     /// The architecture.
     pub arch: String,
     /// The processor, where the platform tells.
@@ -32,6 +37,11 @@ pub struct Environment {
     pub cores: Option<usize>,
     /// Bytes of memory, where the platform tells.
     pub memory_bytes: Option<u64>,
+    /// What decides the frequency of the processor, where the platform tells: `performance`.
+    pub governor: Option<String>,
+    /// Whether the processor may run faster than its nominal frequency for a while, where the platform
+    /// tells.
+    pub boost: Option<bool>,
     /// Runnable threads over the last minute when the study began, where the platform tells.
     pub load_average: Option<f64>,
     /// The clock that the figures are of: `thread-cpu` or `wall`.
@@ -47,25 +57,32 @@ pub struct Environment {
 impl Environment {
     /// This machine, now.
     pub fn here(seed: u64, budget_s: f64) -> Self {
+        let what = RefreshKind::nothing()
+            .with_cpu(CpuRefreshKind::nothing())
+            .with_memory(MemoryRefreshKind::nothing().with_ram());
+        let system = System::new_with_specifics(what);
+        let cpu = system
+            .cpus()
+            .first()
+            .map(|cpu| cpu.brand().trim().to_owned());
         let since = SystemTime::now().duration_since(UNIX_EPOCH);
         Self {
             sixfold: env!("CARGO_PKG_VERSION").into(),
+            commit: option_env!("STUDY_COMMIT").map(str::to_owned),
             rustc: env!("STUDY_RUSTC").into(),
             profile: env!("STUDY_PROFILE").into(),
             opt_level: env!("STUDY_OPT_LEVEL").into(),
             rustflags: env!("STUDY_RUSTFLAGS").into(),
             target: env!("STUDY_TARGET").into(),
             os: std::env::consts::OS.into(),
+            kernel: System::kernel_version(),
             arch: std::env::consts::ARCH.into(),
-            cpu_model: field("/proc/cpuinfo", "model name"),
+            cpu_model: cpu.filter(|model| !model.is_empty()),
             cores: std::thread::available_parallelism().ok().map(Into::into),
-            memory_bytes: field("/proc/meminfo", "MemTotal").and_then(|text| {
-                let kibibytes: u64 = text.strip_suffix(" kB")?.parse().ok()?;
-                Some(kibibytes * 1024)
-            }),
-            load_average: fs::read_to_string("/proc/loadavg")
-                .ok()
-                .and_then(|text| text.split(' ').next()?.parse().ok()),
+            memory_bytes: Some(system.total_memory()).filter(|&bytes| bytes > 0),
+            governor: line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"),
+            boost: boost(),
+            load_average: cfg!(unix).then(|| System::load_average().one),
             clock: MachineClock::name().into(),
             unix_time: since.map_or(0, |time| time.as_secs()),
             seed,
@@ -74,10 +91,15 @@ impl Environment {
     }
 }
 
-/// The value of the first line `key : value` of a file that Linux keeps.
-fn field(path: &str, key: &str) -> Option<String> {
+/// Whether the processor may go beyond its nominal frequency, as the drivers of Linux tell it.
+fn boost() -> Option<bool> {
+    let of_acpi = line("/sys/devices/system/cpu/cpufreq/boost").map(|text| text == "1");
+    let of_intel = || line("/sys/devices/system/cpu/intel_pstate/no_turbo").map(|text| text == "0");
+    of_acpi.or_else(of_intel)
+}
+
+/// What stands in a file of one line that Linux keeps.
+fn line(path: &str) -> Option<String> {
     let text = fs::read_to_string(path).ok()?;
-    let line = text.lines().find(|line| line.starts_with(key))?;
-    let (_, value) = line.split_once(':')?;
-    Some(value.trim().to_owned())
+    Some(text.trim().to_owned())
 }

@@ -19,17 +19,20 @@ mod solo;
 mod standing;
 mod statistics;
 mod study;
+mod timer;
+mod warnings;
 mod words;
 
 pub use environment::Environment;
 pub use inspect::{Specimen, inspect};
 pub use measure::Progress;
 pub use report::{
-    Agreement, BackendReport, Control, ControlRow, Inspection, MeshReport, Refusal, Report,
-    ResultRow, SCHEMA, Standing,
+    Agreement, BackendReport, Control, ControlRow, Inspection, MeshReport, RawSamples, Refusal,
+    Report, ResultRow, SCHEMA, Standing,
 };
 pub use solo::{Solo, SoloRun};
 pub use study::{Settings, StudyError, study};
+pub use timer::Timer;
 pub use workload::{
     Backend, Clock, Editing, Editor, Edits, Kind, MachineClock, Operation, Refiner, Refining,
     SingleEdit, Time, UnknownOperation, Way,

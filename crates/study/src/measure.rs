@@ -76,6 +76,15 @@ impl Entry {
             (samples, _) => samples.to_vec(),
         }
     }
+
+    /// How long the shortest sample took between two looks at the clock, all its runs together.
+    pub(crate) fn shortest_sample_ns(&self) -> Option<f64> {
+        // A sample of the elements is scaled up to stand for all: how long it took is not kept.
+        let whole = self.samples.iter().filter(|_| self.job.sample.is_none());
+        let runs = f64::from(self.runs);
+        let times = whole.map(|(_, time)| time.ns() * runs);
+        times.min_by(f64::total_cmp)
+    }
 }
 
 /// Where a study stands: shown on a terminal.

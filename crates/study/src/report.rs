@@ -2,10 +2,13 @@
 
 use std::io;
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
+use serde_json::Serializer;
+use serde_json::ser::{Formatter, PrettyFormatter};
 use sixfold::{Capabilities, Facts, TableBytes};
 
 use crate::environment::Environment;
+use crate::timer::Timer;
 use workload::Operation;
 
 /// The version of the shape; it changes when a reader of the old one would go wrong.
@@ -41,10 +44,33 @@ pub struct Report {
     pub control: Option<Control>,
     /// What the table shows, in words.
     pub words: Vec<String>,
+    /// What may be wrong with it, and what helps, in words.
+    pub warnings: Vec<String>,
+    /// Every sample that was taken.
+    pub raw: Vec<RawSamples>,
     /// Told to stop before the end: some rows are missing, or rest on fewer samples.
     pub interrupted: bool,
+    /// What the clock and the engine cost; `None` where nothing was run.
+    pub timer: Option<Timer>,
     /// The machine and the program.
     pub environment: Environment,
+}
+
+/// The samples of one operation on one backend, as three columns of one length.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RawSamples {
+    /// The backend.
+    pub backend: String,
+    /// The operation.
+    pub operation: Operation,
+    /// It is the second entry of the backend, which the control is made of.
+    pub control: bool,
+    /// The round that each sample was taken in: samples of one round can be compared.
+    pub rounds: Vec<u32>,
+    /// Processor time of one run, in nanoseconds; `None` where the platform does not tell.
+    pub cpu_ns: Option<Vec<f64>>,
+    /// Wall time of one run, in nanoseconds.
+    pub wall_ns: Vec<f64>,
 }
 
 /// A mesh, as its file has it.
@@ -293,11 +319,54 @@ impl Inspection {
 }
 
 fn write_json(value: &impl Serialize, mut writer: impl io::Write) -> io::Result<()> {
-    serde_json::to_writer_pretty(&mut writer, value).map_err(io::Error::from)?;
+    let mut serializer = Serializer::with_formatter(&mut writer, Rows::default());
+    value.serialize(&mut serializer).map_err(io::Error::from)?;
     writeln!(writer)
 }
 
+/// JSON with a line for each field, and arrays without lines of their own: columns of samples would
+/// be thousands of them.
+#[derive(Default)]
+struct Rows<'a>(PrettyFormatter<'a>);
+
+impl Formatter for Rows<'_> {
+    fn begin_array_value<W: ?Sized + io::Write>(
+        &mut self,
+        w: &mut W,
+        first: bool,
+    ) -> io::Result<()> {
+        if first { Ok(()) } else { w.write_all(b", ") }
+    }
+
+    fn begin_object<W: ?Sized + io::Write>(&mut self, w: &mut W) -> io::Result<()> {
+        self.0.begin_object(w)
+    }
+
+    fn end_object<W: ?Sized + io::Write>(&mut self, w: &mut W) -> io::Result<()> {
+        self.0.end_object(w)
+    }
+
+    fn begin_object_key<W: ?Sized + io::Write>(
+        &mut self,
+        w: &mut W,
+        first: bool,
+    ) -> io::Result<()> {
+        self.0.begin_object_key(w, first)
+    }
+
+    fn begin_object_value<W: ?Sized + io::Write>(&mut self, w: &mut W) -> io::Result<()> {
+        self.0.begin_object_value(w)
+    }
+
+    fn end_object_value<W: ?Sized + io::Write>(&mut self, w: &mut W) -> io::Result<()> {
+        self.0.end_object_value(w)
+    }
+}
+
 /// A map by name that keeps the order.
-fn as_map<S: Serializer>(backends: &[BackendReport], serializer: S) -> Result<S::Ok, S::Error> {
+fn as_map<S: serde::Serializer>(
+    backends: &[BackendReport],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     serializer.collect_map(backends.iter().map(|backend| (&backend.name, backend)))
 }

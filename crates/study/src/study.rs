@@ -12,9 +12,13 @@ use crate::control::{control, entered_twice, noise};
 use crate::environment::Environment;
 use crate::inspect::{Specimen, per_vertex, unbuilt};
 use crate::measure::{Bench, Entry, Progress};
-use crate::report::{Agreement, BackendReport, Control, Refusal, Report, ResultRow, SCHEMA};
+use crate::report::{
+    Agreement, BackendReport, Control, RawSamples, Refusal, Report, ResultRow, SCHEMA,
+};
 use crate::standing::places;
 use crate::statistics::Median;
+use crate::timer::Timer;
+use crate::warnings::warnings;
 use crate::words::words;
 use workload::Backend;
 use workload::Draw;
@@ -175,6 +179,7 @@ pub fn study(
     subjects.extend(again.map(|(subject, _)| subject));
 
     let clock = MachineClock::start();
+    let timer = Timer::of(&clock);
     let mut bench = Bench {
         control: (subjects.len() > second).then_some(second),
         subjects: &mut subjects,
@@ -188,7 +193,9 @@ pub fn study(
         progress,
     };
     let mut entries = bench.measure(&operations);
+    let timer = timer.beside(&entries);
     let control = control(&entries, first, second, subjects[first].name());
+    let raw = raw(&entries, &subjects, second);
     entries.retain(|entry| entry.subject != second);
     let interrupted = stop.load(Ordering::Relaxed);
     let agreements = judge(&entries, &mut subjects, polygons, &clock, stop);
@@ -199,6 +206,7 @@ pub fn study(
         costs.is_some_and(|b| b.info.costs[relation as usize] == QueryCost::Scan)
     };
     let words = words(&backends, &results, polygons, control.as_ref(), &scanning);
+    let warnings = warnings(&environment, &timer, &results, control.as_ref());
     Ok(Report {
         schema: SCHEMA,
         mesh: specimen.report(),
@@ -207,7 +215,10 @@ pub fn study(
         refusals,
         control,
         words,
+        warnings,
+        raw,
         interrupted,
+        timer: Some(timer),
         environment,
     })
 }
@@ -322,6 +333,20 @@ fn results(
         }
     }
     rows
+}
+
+/// The samples of all entries; those of the subject `control` are a backend's second.
+fn raw(entries: &[Entry], subjects: &[Box<dyn Subject + '_>], control: usize) -> Vec<RawSamples> {
+    let taken = entries.iter().filter(|entry| !entry.samples.is_empty());
+    let columns = taken.map(|entry| RawSamples {
+        backend: subjects[entry.subject].name().into(),
+        operation: entry.job.operation,
+        control: entry.subject == control,
+        rounds: entry.samples.iter().map(|(round, _)| *round).collect(),
+        cpu_ns: entry.samples.iter().map(|(_, time)| time.cpu_ns).collect(),
+        wall_ns: entry.samples.iter().map(|(_, time)| time.wall_ns).collect(),
+    });
+    columns.collect()
 }
 
 /// What cannot be done, in the order of the entries.

@@ -23,7 +23,6 @@ pub(crate) fn words(
     }
     words.extend(methods(backends, results, times));
     words.extend(memory(backends));
-    words.extend(doubts(results));
     for backend in backends {
         words.extend(merging(backend, results));
     }
@@ -172,16 +171,6 @@ fn merging(backend: &BackendReport, results: &[ResultRow]) -> Option<String> {
     ))
 }
 
-/// Where the budget was too small for an answer.
-fn doubts(results: &[ResultRow]) -> Option<String> {
-    let measured = results.iter().filter(|r| r.median_ns.is_some());
-    let fewest = measured.map(|r| r.samples).min()?;
-    (fewest < 5).then(|| {
-        let samples = if fewest == 1 { "sample" } else { "samples" };
-        format!("Some figures rest on {fewest} {samples} only: a longer --budget makes them surer.")
-    })
-}
-
 /// `1.4 ×`, `2,100 ×`: a ratio as one says it.
 fn times(ratio: f64) -> String {
     match ratio {
@@ -209,41 +198,48 @@ fn duration(ns: f64) -> String {
     }
 }
 
+/// A row for tests, with what they ask of it.
+#[cfg(test)]
+pub(crate) fn row(
+    backend: &str,
+    operation: Operation,
+    ratio: f64,
+    standing: Standing,
+) -> ResultRow {
+    ResultRow {
+        backend: backend.into(),
+        operation,
+        median_ns: Some(100.0 * ratio),
+        min_ns: None,
+        ci_low_ns: None,
+        ci_high_ns: None,
+        elements: Some(1),
+        per: operation.per(),
+        ns_per_element: Some(100.0 * ratio),
+        wall_median_ns: None,
+        wall_min_ns: None,
+        sampled: false,
+        sample_size: None,
+        estimated_ns: None,
+        checksum: None,
+        agreement: Agreement::Same,
+        standing: Some(standing),
+        ratio_to_best: Some(ratio),
+        ratio_ci_low: None,
+        ratio_ci_high: None,
+        samples: 9,
+        runs_per_sample: 1,
+        warm_up_only: false,
+        by_name_only: false,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use sixfold::shapes;
 
     use super::*;
     use crate::inspect::{Specimen, inspect};
-
-    fn row(backend: &str, operation: Operation, ratio: f64, standing: Standing) -> ResultRow {
-        ResultRow {
-            backend: backend.into(),
-            operation,
-            median_ns: Some(100.0 * ratio),
-            min_ns: None,
-            ci_low_ns: None,
-            ci_high_ns: None,
-            elements: Some(1),
-            per: operation.per(),
-            ns_per_element: Some(100.0 * ratio),
-            wall_median_ns: None,
-            wall_min_ns: None,
-            sampled: false,
-            sample_size: None,
-            estimated_ns: None,
-            checksum: None,
-            agreement: Agreement::Same,
-            standing: Some(standing),
-            ratio_to_best: Some(ratio),
-            ratio_ci_low: None,
-            ratio_ci_high: None,
-            samples: 9,
-            runs_per_sample: 1,
-            warm_up_only: false,
-            by_name_only: false,
-        }
-    }
 
     #[test]
     fn winners_are_named_and_ties_are_not() {

@@ -1,0 +1,292 @@
+//! What may be wrong with the figures, in words, each with a remedy.
+
+use crate::environment::Environment;
+use crate::report::{Control, ResultRow};
+use crate::statistics::Median;
+use crate::timer::Timer;
+
+/// A load above this part of the cores was there before the study came.
+const BUSY: f64 = 0.5;
+/// Wall time above processor time by this much means that others had the processor meanwhile.
+const INTERRUPTED: f64 = 1.05;
+/// An interval that reaches this far from its median leaves much open.
+const WIDE: f64 = 0.1;
+/// What the clock may have of a sample.
+const COARSE: f64 = 0.01;
+/// Two columns of one backend should not differ by more than this, typically.
+const NOISY: f64 = 1.05;
+/// Fewer samples than these have no 95 % interval.
+const FEW: usize = 6;
+
+/// One sentence or two for each fault, the gravest first.
+pub(crate) fn warnings(
+    environment: &Environment,
+    timer: &Timer,
+    results: &[ResultRow],
+    control: Option<&Control>,
+) -> Vec<String> {
+    let all = [
+        nothing_measured(environment, results),
+        busy(environment),
+        interrupted(environment, results),
+        noisy(control),
+        coarse(timer),
+        wall_alone(environment),
+        few(results),
+        wide(results),
+        powersave(environment),
+    ];
+    all.into_iter().flatten().collect()
+}
+
+fn nothing_measured(environment: &Environment, results: &[ResultRow]) -> Option<String> {
+    let mut measured = results.iter().filter(|row| row.median_ns.is_some());
+    let nothing = measured.clone().next().is_some() && measured.all(|row| row.warm_up_only);
+    let budget = environment.budget_s;
+    nothing.then(|| {
+        format!(
+            "The budget of {budget} s was too small to measure anything: every figure is one run with cold caches. Give a longer --budget, or name fewer --operations."
+        )
+    })
+}
+
+fn busy(environment: &Environment) -> Option<String> {
+    let (load, cores) = environment.load_average.zip(environment.cores)?;
+    (load > BUSY * cores as f64).then(|| {
+        let cores = if cores == 1 { "1 core".into() } else { format!("{cores} cores") };
+        format!(
+            "The machine was busy: load {load:.1} on {cores} at the start. End what else runs and measure again; until then trust ratios, not nanoseconds."
+        )
+    })
+}
+
+fn interrupted(environment: &Environment, results: &[ResultRow]) -> Option<String> {
+    if environment.clock == "wall" {
+        return None; // there is nothing to compare it with
+    }
+    let ratios = results
+        .iter()
+        .filter_map(|row| Some(row.wall_median_ns? / row.median_ns?));
+    let ratio = Median::of(ratios)?.value;
+    (ratio > INTERRUPTED).then(|| {
+        format!(
+            "Others had the processor for {:.0} % of the time: caches were disturbed even where time was not counted. End what else runs, or pin the study to a core of its own.",
+            100.0 * (1.0 - 1.0 / ratio)
+        )
+    })
+}
+
+fn noisy(control: Option<&Control>) -> Option<String> {
+    let control = control.filter(|control| control.typical > NOISY)?;
+    Some(format!(
+        "One backend differs from itself by {:.0} %, typically: smaller differences between backends say nothing. Measure on a quieter machine, or with a longer --budget.",
+        100.0 * (control.typical - 1.0)
+    ))
+}
+
+fn coarse(timer: &Timer) -> Option<String> {
+    let shortest = timer.overhead_ns / timer.largest_share?;
+    let share = timer.resolution_ns.max(timer.overhead_ns) / shortest;
+    (share > COARSE).then(|| {
+        format!(
+            "The clock is too coarse: {:.1} % of the shortest sample is the clock itself. Study a larger mesh.",
+            100.0 * share
+        )
+    })
+}
+
+fn wall_alone(environment: &Environment) -> Option<String> {
+    (environment.clock == "wall").then(|| {
+        "This platform does not tell the processor time of a thread: the figures are wall time, which whatever else runs makes longer. Keep the machine quiet.".to_owned()
+    })
+}
+
+fn few(results: &[ResultRow]) -> Option<String> {
+    let measured = results.iter().filter(|row| row.median_ns.is_some());
+    let all = measured.clone().count();
+    let few = measured.filter(|row| row.samples < FEW).count();
+    let once = results.iter().all(|row| row.warm_up_only); // said already
+    (few > 0 && !once).then(|| {
+        format!(
+            "{few} of {all} figures rest on fewer than {FEW} samples, too few for a 95 % interval. A longer --budget, or fewer --operations, makes them surer."
+        )
+    })
+}
+
+fn wide(results: &[ResultRow]) -> Option<String> {
+    let doubt = |row: &ResultRow| {
+        let (low, high) = row.ci_low_ns.zip(row.ci_high_ns)?;
+        let median = row.median_ns?;
+        Some((median - low).max(high - median) / median)
+    };
+    let known: Vec<(f64, &ResultRow)> = results
+        .iter()
+        .filter(|row| row.samples >= FEW)
+        .filter_map(|row| Some((doubt(row)?, row)))
+        .collect();
+    let wide = known.iter().filter(|(doubt, _)| *doubt > WIDE);
+    let (count, all) = (wide.clone().count(), known.len());
+    let (worst, row) = wide.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(format!(
+        "{count} of {all} intervals reach further than {:.0} % from their median, at most {:.0} % ({} on {}). A longer --budget, or a quieter machine, narrows them.",
+        100.0 * WIDE,
+        100.0 * worst,
+        row.operation,
+        row.backend
+    ))
+}
+
+fn powersave(environment: &Environment) -> Option<String> {
+    let governor = environment
+        .governor
+        .as_ref()
+        .filter(|name| *name == "powersave")?;
+    Some(format!(
+        "The processor's governor is {governor}: its frequency follows the load. `cpupower frequency-set --governor performance` keeps it steady."
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use workload::Operation;
+
+    use super::*;
+    use crate::report::{ControlRow, Standing};
+    use crate::words::row;
+
+    fn quiet() -> Environment {
+        Environment {
+            load_average: Some(0.1),
+            cores: Some(2),
+            governor: Some("performance".into()),
+            clock: "thread-cpu".into(),
+            ..Environment::here(1, 20.0)
+        }
+    }
+
+    fn fine() -> ResultRow {
+        ResultRow {
+            wall_median_ns: Some(100.0),
+            ci_low_ns: Some(99.0),
+            ci_high_ns: Some(101.0),
+            samples: 20,
+            ..row("half-edge", Operation::Build, 1.0, Standing::Best)
+        }
+    }
+
+    const TIMER: Timer = Timer {
+        resolution_ns: 20.0,
+        overhead_ns: 100.0,
+        largest_share: Some(0.0005),
+    };
+
+    #[test]
+    fn nothing_is_said_of_a_good_run() {
+        let said = warnings(&quiet(), &TIMER, &[fine()], None);
+        assert_eq!(said, [""; 0]);
+    }
+
+    #[test]
+    fn each_fault_is_told_with_a_remedy() {
+        let good = quiet();
+        let control = Control {
+            backend: "half-edge".into(),
+            operations: vec![ControlRow {
+                operation: Operation::Build,
+                ratio: 1.2,
+                ci_low: None,
+                ci_high: None,
+            }],
+            typical: 1.2,
+            worst: 1.2,
+        };
+        let coarse = Timer {
+            largest_share: Some(0.05),
+            ..TIMER
+        };
+        let busy = Environment {
+            load_average: Some(1.5),
+            ..good.clone()
+        };
+        let wall = Environment {
+            clock: "wall".into(),
+            ..good.clone()
+        };
+        let powersave = Environment {
+            governor: Some("powersave".into()),
+            ..good.clone()
+        };
+        let shared = ResultRow {
+            wall_median_ns: Some(125.0),
+            ..fine()
+        };
+        let wide = ResultRow {
+            ci_high_ns: Some(134.0),
+            ..fine()
+        };
+        let few = ResultRow {
+            samples: 3,
+            ..fine()
+        };
+        let once = ResultRow {
+            samples: 1,
+            warm_up_only: true,
+            ci_low_ns: None,
+            ci_high_ns: None,
+            ..fine()
+        };
+        let cases = [
+            (
+                warnings(&busy, &TIMER, &[fine()], None),
+                "load 1.5 on 2 cores",
+                "End what else runs",
+            ),
+            (
+                warnings(&wall, &TIMER, &[fine()], None),
+                "wall time",
+                "quiet",
+            ),
+            (
+                warnings(&powersave, &TIMER, &[fine()], None),
+                "powersave",
+                "cpupower",
+            ),
+            (
+                warnings(&good, &coarse, &[fine()], None),
+                "5.0 % of the shortest",
+                "larger mesh",
+            ),
+            (
+                warnings(&good, &TIMER, &[fine()], Some(&control)),
+                "by 20 %",
+                "--budget",
+            ),
+            (
+                warnings(&good, &TIMER, &[shared], None),
+                "for 20 % of the time",
+                "pin",
+            ),
+            (
+                warnings(&good, &TIMER, &[fine(), wide], None),
+                "1 of 2 intervals",
+                "--budget",
+            ),
+            (
+                warnings(&good, &TIMER, &[fine(), few], None),
+                "1 of 2 figures",
+                "--budget",
+            ),
+            (
+                warnings(&good, &TIMER, &[once], None),
+                "too small to measure",
+                "--operations",
+            ),
+        ];
+        for (said, fault, remedy) in cases {
+            let [said] = &said[..] else {
+                panic!("{fault}: {said:?}");
+            };
+            assert!(said.contains(fault) && said.contains(remedy), "{said}");
+        }
+    }
+}
