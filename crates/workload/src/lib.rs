@@ -5,6 +5,7 @@
 //! this crate; who measures, and judges, is above it and knows no types of meshes.
 
 mod backend;
+mod built_in;
 mod candidate;
 mod clock;
 mod editing;
@@ -14,8 +15,11 @@ mod sample;
 mod single_edit;
 mod subdividing;
 mod sweeps;
+mod workload;
+mod workload_file;
 
 pub use backend::{Backend, OnTheBench};
+pub use built_in::{built_in, built_ins};
 pub use candidate::{Job, Outcome, Run, Sample, Subject};
 pub use clock::{Clock, MachineClock, Time, timed};
 pub use editing::{Editing, Editor, Edits};
@@ -24,3 +28,5 @@ pub use refining::{Refiner, Refining, Way};
 pub use sample::{Draw, Side};
 pub use single_edit::SingleEdit;
 pub use sweeps::field_sum;
+pub use workload::{Access, Action, Amount, NoAmount, Part, Workload};
+pub use workload_file::WorkloadError;

@@ -1,0 +1,316 @@
+//! Workloads as files: TOML in, a workload or the line at fault out.
+
+use std::fmt;
+use std::ops::Range;
+
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use toml::Spanned;
+
+use crate::workload::{Access, Action, Amount, Part, Workload};
+
+/// What is wrong with a workload file, and where.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}:{line}: {message}")]
+#[non_exhaustive]
+pub struct WorkloadError {
+    /// The name of the file.
+    pub file: String,
+    /// The line, from 1.
+    pub line: usize,
+    /// What is wrong there, and what is allowed.
+    pub message: String,
+}
+
+/// The file as it is written.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    summary: Option<String>,
+    access: Option<Spanned<String>>,
+    operations: Spanned<Loose>,
+    rebuilds: Option<Spanned<i64>>,
+    mix: Spanned<Mix>,
+}
+
+/// A number or a text.
+#[derive(serde::Deserialize)]
+#[serde(untagged)]
+enum Loose {
+    Whole(i64),
+    Number(f64),
+    Text(String),
+}
+
+/// The table of the mix, in the order of the file.
+struct Mix(Vec<(Spanned<String>, Spanned<Loose>)>);
+
+impl<'de> Deserialize<'de> for Mix {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Entries;
+
+        impl<'de> Visitor<'de> for Entries {
+            type Value = Mix;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a table of operations and their weights")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Mix, A::Error> {
+                let mut entries = Vec::new();
+                while let Some(key) = map.next_key()? {
+                    entries.push((key, map.next_value()?));
+                }
+                // The parser sorts keys by name; a mix is shown as it is written.
+                entries.sort_by_key(|(key, _): &(Spanned<String>, _)| key.span().start);
+                Ok(Mix(entries))
+            }
+        }
+
+        deserializer.deserialize_map(Entries)
+    }
+}
+
+impl Workload {
+    /// Reads the text of a workload file called `file`; the name of the workload is `name`.
+    ///
+    /// ```
+    /// let text = "operations = '20 per vertex'\n[mix]\nvertex_faces = 1\nneighbour_positions = 0.5";
+    /// let workload = workload::Workload::parse("mine", "mine.toml", text)?;
+    /// assert_eq!(workload.mix.len(), 2);
+    /// # Ok::<(), workload::WorkloadError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`WorkloadError`]: what is no TOML, a key or a name that there is not, a number out of range,
+    /// each with its line and what is allowed.
+    pub fn parse(name: &str, file: &str, text: &str) -> Result<Self, WorkloadError> {
+        let at = |span: Range<usize>, message: String| WorkloadError {
+            file: file.into(),
+            line: 1 + text[..span.start.min(text.len())].matches('\n').count(),
+            message,
+        };
+        let parsed: File = toml::from_str(text)
+            .map_err(|error| at(error.span().unwrap_or(0..0), explained(error.message())))?;
+
+        let access = match &parsed.access {
+            None => Access::Sequential,
+            Some(word) => { Access::ALL.into_iter() }
+                .find(|access| access.name() == word.get_ref())
+                .ok_or_else(|| {
+                    let allowed = Access::ALL.map(Access::name).join(", ");
+                    let word = word.get_ref();
+                    let message =
+                        format!("no access pattern is called `{word}`: choose from {allowed}");
+                    at(parsed.access.as_ref().map_or(0..0, Spanned::span), message)
+                })?,
+        };
+        let positive = |amount: Amount| amount.number() > 0.0 && amount.number() <= MOST;
+        let operations = amount(parsed.operations.get_ref());
+        let operations = operations.and_then(|amount| match positive(amount) {
+            true => Ok(amount),
+            false => Err(format!(
+                "operations are more than 0 and at most {MOST:e}, not {amount}"
+            )),
+        });
+        let operations = operations.map_err(|message| at(parsed.operations.span(), message))?;
+        let rebuilds = match &parsed.rebuilds {
+            None => 0,
+            Some(number) => u64::try_from(*number.get_ref()).map_err(|_| {
+                let message = format!("rebuilds are 0 or more, not {}", number.get_ref());
+                at(number.span(), message)
+            })?,
+        };
+
+        let mut mix: Vec<Part> = Vec::new();
+        for (key, value) in &parsed.mix.get_ref().0 {
+            let action = action(key.get_ref()).map_err(|message| at(key.span(), message))?;
+            let weight = amount(value.get_ref()).and_then(|weight| {
+                let fine = weight.number() == 0.0 || positive(weight);
+                let wrong = || format!("a weight is from 0 to {MOST:e}, not {weight}");
+                fine.then_some(weight).ok_or_else(wrong)
+            });
+            let weight = weight.map_err(|message| at(value.span(), message))?;
+            mix.push(Part { action, weight });
+        }
+        mix.retain(|part| part.weight.number() > 0.0);
+        if mix.is_empty() {
+            let message = "the mix has no operation with a weight: give at least one, as in `vertex_faces = 1`";
+            return Err(at(parsed.mix.span(), message.into()));
+        }
+        Ok(Self {
+            name: name.into(),
+            summary: parsed.summary.unwrap_or_default(),
+            access,
+            operations,
+            rebuilds,
+            mix,
+        })
+    }
+}
+
+/// More than this no program does, and less than this no arithmetic loses.
+const MOST: f64 = 1e15;
+
+fn amount(loose: &Loose) -> Result<Amount, String> {
+    match loose {
+        Loose::Whole(number) => Ok(Amount::Number(*number as f64)),
+        Loose::Number(number) => Ok(Amount::Number(*number)),
+        Loose::Text(text) => text.parse().map_err(|error| format!("{error}")),
+    }
+}
+
+fn action(name: &str) -> Result<Action, String> {
+    let all = Action::all();
+    let found = all.iter().copied().find(|action| action.name() == name);
+    found.ok_or_else(|| {
+        let names: Vec<&str> = all.iter().map(|action| action.name()).collect();
+        format!(
+            "no operation is called `{name}`: choose from {}",
+            names.join(", ")
+        )
+    })
+}
+
+/// What the parser says, in our words where it speaks of Rust's types.
+fn explained(message: &str) -> String {
+    let message = message.lines().collect::<Vec<_>>().join("; ");
+    match message.contains("untagged enum") {
+        true => "an amount is a number, or a text as in `\"2 per face\"`".into(),
+        false => message,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold::{Counts, Edit, Relation};
+
+    use super::*;
+    use crate::built_in::{built_in, built_ins};
+    use crate::operation::Kind;
+
+    fn parse(text: &str) -> Result<Workload, WorkloadError> {
+        Workload::parse("mine", "mine.toml", text)
+    }
+
+    #[test]
+    fn a_file_says_it_all() {
+        let text = "summary = 'who'\naccess = 'patches'\noperations = '20 per face'\nrebuilds = 3\n\
+            [mix]\nflip_edge = 1\nvertex_faces = '2 per edge'\nboundary = 0.5\nposition = 0";
+        let workload = parse(text).expect("fine");
+        let part = |action, weight| Part { action, weight };
+        let expected = Workload {
+            name: "mine".into(),
+            summary: "who".into(),
+            access: Access::Patches,
+            operations: Amount::Per(20.0, Kind::Face),
+            rebuilds: 3,
+            mix: vec![
+                part(Action::Edit(Edit::FlipEdge), Amount::Number(1.0)),
+                part(
+                    Action::Relation(Relation::VertexFaces),
+                    Amount::Per(2.0, Kind::Edge),
+                ),
+                part(
+                    Action::Pass(crate::Operation::Boundary),
+                    Amount::Number(0.5),
+                ),
+            ],
+        };
+        assert_eq!(workload, expected);
+        let counts = Counts {
+            vertices: 4,
+            edges: 6,
+            faces: 4,
+            corners: 12,
+            uniform: true,
+        };
+        assert_eq!(workload.operations_on(&counts), 80.0);
+        assert_eq!(
+            workload.shares(&counts),
+            [1.0 / 13.5, 12.0 / 13.5, 0.5 / 13.5]
+        );
+        assert!(!workload.is_read_only());
+    }
+
+    #[test]
+    fn faults_are_told_with_their_line_and_what_is_allowed() {
+        let cases = [
+            (
+                "operations = 5\n[mix]\nvertex_face = 1",
+                3,
+                "choose from vertex_vertices, ",
+            ),
+            (
+                "operations = 5\naccess = 'zigzag'\n[mix]\nposition = 1",
+                2,
+                "sequential, random, patches",
+            ),
+            ("operations = 0\n[mix]\nposition = 1", 1, "more than 0"),
+            ("operations = 'nan'\n[mix]\nposition = 1", 1, "more than 0"),
+            (
+                "operations = '5 per cow'\n[mix]\nposition = 1",
+                1,
+                "vertex, edge, face",
+            ),
+            (
+                "operations = true\n[mix]\nposition = 1",
+                1,
+                "an amount is a number",
+            ),
+            (
+                "operations = 5\nrebuilds = -1\n[mix]\nposition = 1",
+                2,
+                "0 or more",
+            ),
+            (
+                "operations = 5\n\n[mix]\nposition = 1\nedge_faces = -1",
+                5,
+                "a weight is from 0",
+            ),
+            (
+                "operations = 5\n\n[mix]\nposition = inf",
+                4,
+                "a weight is from 0",
+            ),
+            ("operations = 5\n[mix]\nposition = 0", 2, "at least one"),
+            (
+                "operations = 5\n[mix]\nposition = 1\nposition = 2",
+                4,
+                "duplicate key",
+            ),
+            (
+                "operations = 5\nspeed = 3\n[mix]\nposition = 1",
+                2,
+                "unknown field `speed`, expected one of",
+            ),
+            ("operations = 5\nmix = 3", 2, "a table of operations"),
+            ("operations = 5", 1, "missing field `mix`"),
+            ("operations = \n[mix]\nposition = 1", 1, ""),
+        ];
+        for (text, line, says) in cases {
+            let error = parse(text).expect_err(text);
+            assert_eq!(error.line, line, "{text}: {error}");
+            assert!(error.to_string().contains(says), "{text}: {error}");
+            assert!(error.to_string().starts_with("mine.toml:"), "{error}");
+        }
+    }
+
+    #[test]
+    fn what_we_ship_is_read_and_says_who_does_this() {
+        assert!(built_ins().count() >= 12);
+        for (name, _) in built_ins() {
+            let workload = built_in(name).expect("it has this name");
+            assert!(workload.summary.ends_with('.'), "{name}");
+            assert!(workload.summary.len() > 40, "{name}");
+        }
+        assert_eq!(built_in("abacus"), None);
+    }
+
+    #[test]
+    fn every_action_is_found_by_its_name_alone() {
+        for each in Action::all() {
+            assert_eq!(action(each.name()), Ok(each));
+        }
+    }
+}
