@@ -80,7 +80,7 @@ pub trait Subject {
 pub(crate) struct Candidate<'a, M: Representation> {
     polygons: &'a PolygonMesh,
     draw: Option<&'a Draw>,
-    mesh: M,
+    pub(crate) mesh: M,
     outputs: Outputs<M>,
     chosen: Chosen<M>,
     thread: OneThread,
@@ -387,7 +387,11 @@ impl<M: Representation> Chosen<M> {
 }
 
 /// The name of the edge that `side` stands for, looked up among the edges of its face.
-fn edge_name<M: Representation>(mesh: &M, polygons: &PolygonMesh, side: Side) -> M::Edge {
+pub(crate) fn edge_name<M: Representation>(
+    mesh: &M,
+    polygons: &PolygonMesh,
+    side: Side,
+) -> M::Edge {
     let [a, b] = side.ends.map(|v| M::vertex_name(polygons, v));
     let joins = |&e: &M::Edge| {
         let ends = mesh.edge_vertices(e);

@@ -1,11 +1,9 @@
 //! One edit by itself, at places that do not touch each other.
 
-use sixfold::{
-    Edit, EditVisitor, FaceId, FaceVertexMesh, MeshEdit, MeshQuery, Point, PolygonMesh, Refusal,
-    Representation, visit_editable,
-};
+use sixfold::{Edit, EditVisitor, MeshEdit, PolygonMesh, Representation, visit_editable};
 
 use crate::editing::{Editor, Edits};
+use crate::place::{Place, perform, places, prepare};
 
 /// An edit to be done at some places of a closed mesh of triangles.
 ///
@@ -51,55 +49,6 @@ impl SingleEdit {
     }
 }
 
-/// Faces none of whose one-rings touch, at most `most`, spread over the mesh, in no order.
-fn places(polygons: &PolygonMesh, most: usize) -> Result<Vec<FaceId>, String> {
-    let mesh = FaceVertexMesh::from_polygons(polygons).map_err(|refusal| refusal.to_string())?;
-    let mut taken = vec![false; polygons.vertex_count()];
-    let faces = polygons.face_count();
-    // A stride that shares no divisor with the number of faces comes by all of them, far apart.
-    let mut stride = (faces as f64 * 0.618) as usize | 1;
-    while gcd(stride, faces) != 1 {
-        stride += 2;
-    }
-    let mut chosen = Vec::new();
-    let mut at = 0;
-    for _ in 0..faces {
-        at = (at + stride) % faces;
-        let f = FaceId::new(at as u32);
-        let around = || {
-            let corners = mesh.face(f).iter();
-            let faces = corners.flat_map(|&v| mesh.fan(v));
-            faces.flat_map(|&g| mesh.face(g)).map(|v| v.index())
-        };
-        if around().any(|v| taken[v]) {
-            continue;
-        }
-        around().for_each(|v| taken[v] = true);
-        chosen.push(f);
-        if chosen.len() == most {
-            break;
-        }
-    }
-    Ok(chosen)
-}
-
-const fn gcd(mut a: usize, mut b: usize) -> usize {
-    while b > 0 {
-        (a, b) = (b, a % b);
-    }
-    a
-}
-
-/// What an edit needs to know of its place.
-struct Place<M: MeshQuery> {
-    face: M::Face,
-    corners: [M::Vertex; 3],
-    edge: Option<M::Edge>,
-    /// A neighbour of the first corner, far from the second.
-    far: Option<M::Vertex>,
-    at: Point,
-}
-
 /// An edit at places of a mesh that has been made ready for it.
 struct AtPlaces<M: MeshEdit> {
     edit: Edit,
@@ -117,37 +66,8 @@ impl<M: Representation + MeshEdit + 'static> AtPlaces<M> {
         }
         // One more, to be done before the clock starts.
         let places = places(polygons, job.places.saturating_add(1))?;
-        let mut ready = Vec::with_capacity(places.len());
-        // Some structures search for these handles: only what the edit takes is looked up.
-        let takes_edge = matches!(
-            job.edit,
-            Edit::SplitEdge
-                | Edit::BisectEdge
-                | Edit::SplitFace
-                | Edit::DissolveEdge
-                | Edit::FlipEdge
-                | Edit::CollapseEdge
-        );
-        for f in places {
-            let ids = polygons.faces().face(f);
-            let corners = [0, 1, 2].map(|i| M::vertex_name(polygons, ids[i]));
-            let [a, b, c] = [0, 1, 2].map(|i: usize| polygons.position(ids[i]));
-            let mut place = Place {
-                face: M::face_name(polygons, f),
-                corners,
-                edge: None,
-                far: None,
-                at: (a + b + c) / 3.0 + Point::splat(1e-3),
-            };
-            if takes_edge {
-                place.edge = mesh.edge_between(corners[0], corners[1]);
-            }
-            if job.edit == Edit::SplitVertex {
-                let mut around = mesh.vertex_vertices(corners[0]);
-                place.far = around.find(|v| !corners.contains(v));
-            }
-            ready.push(place);
-        }
+        let look_up = |f| Place::of(&mesh, polygons, job.edit, f);
+        let mut ready: Vec<Place<M>> = places.into_iter().map(look_up).collect();
         for place in &mut ready {
             let prepared = prepare(&mut mesh, job.edit, place);
             prepared.map_err(|refusal| refusal.to_string())?;
@@ -159,47 +79,6 @@ impl<M: Representation + MeshEdit + 'static> AtPlaces<M> {
             copies: Vec::new(),
             done: Vec::new(),
         })
-    }
-}
-
-/// Brings one place into the state in which the edit finds something to do.
-fn prepare<M: MeshEdit>(mesh: &mut M, edit: Edit, place: &mut Place<M>) -> Result<(), Refusal<M>> {
-    match edit {
-        Edit::AddFace | Edit::Compact => mesh.remove_face(place.face, &mut ()),
-        Edit::SplitFace => {
-            let edge = place.edge.take();
-            let edge = edge.expect("looked up for all edits at edges");
-            place.face = mesh.dissolve_edge(edge, &mut ())?;
-            Ok(())
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Does the edit at one place.
-#[inline(always)]
-fn perform<M: MeshEdit>(mesh: &mut M, edit: Edit, place: &Place<M>) -> Result<(), Refusal<M>> {
-    let [a, b, c] = place.corners;
-    let edge = || place.edge.expect("looked up for all edits at edges");
-    let log = &mut ();
-    match edit {
-        Edit::SetPosition => mesh.set_position(a, place.at, log).map(drop),
-        Edit::AddVertex => mesh.add_vertex(place.at, log).map(drop),
-        Edit::AddFace => mesh.add_face(&[a, b, c], log).map(drop),
-        Edit::RemoveFace => mesh.remove_face(place.face, log),
-        Edit::RemoveVertex => mesh.remove_vertex(a, log),
-        Edit::SplitEdge => mesh.split_edge(edge(), place.at, log).map(drop),
-        Edit::BisectEdge => mesh.bisect_edge(edge(), place.at, log).map(drop),
-        Edit::PokeFace => mesh.poke_face(place.face, place.at, log).map(drop),
-        Edit::SplitFace => mesh.split_face(place.face, [a, b], log).map(drop),
-        Edit::DissolveEdge => mesh.dissolve_edge(edge(), log).map(drop),
-        Edit::FlipEdge => mesh.flip_edge(edge(), log).map(drop),
-        Edit::CollapseEdge => mesh.collapse_edge(edge(), a, place.at, log).map(drop),
-        Edit::SplitVertex => mesh
-            .split_vertex(a, Some(b), place.far, place.at, log)
-            .map(drop),
-        // Passes over the whole mesh, and edits to come.
-        _ => Ok(()),
     }
 }
 
@@ -257,7 +136,7 @@ impl<M: Representation + MeshEdit + 'static> Editor for AtPlaces<M> {
 
 #[cfg(test)]
 mod tests {
-    use sixfold::{VertexId, roster, shapes};
+    use sixfold::{roster, shapes};
 
     use super::*;
 
@@ -292,19 +171,5 @@ mod tests {
                 "{edit}"
             );
         }
-    }
-
-    #[test]
-    fn places_do_not_touch() {
-        let torus = shapes::triangle_torus(30, 30).expect("small");
-        let places = places(&torus, usize::MAX).expect("held by all");
-        assert!(places.len() > 20, "{}", places.len());
-        let mut corners: Vec<VertexId> = places
-            .iter()
-            .flat_map(|&f| torus.faces().face(f).to_vec())
-            .collect();
-        corners.sort_unstable();
-        corners.dedup();
-        assert_eq!(corners.len(), 3 * places.len());
     }
 }

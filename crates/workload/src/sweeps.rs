@@ -123,14 +123,14 @@ pub(crate) fn share<M: MeshQuery, E: Elements<M>>(
 
 /// Counts handles, and adds their tokens up for the sink.
 #[derive(Default)]
-struct Sink {
+pub(crate) struct Sink {
     count: u64,
     tokens: u64,
 }
 
 impl Sink {
     #[inline(always)]
-    fn take<H: Handle>(&mut self, handles: impl IntoIterator<Item = H>) {
+    pub(crate) fn take<H: Handle>(&mut self, handles: impl IntoIterator<Item = H>) {
         // Added up in registers: a sum behind a reference would be stored for every handle.
         let add = |(count, tokens): (u64, u64), handle: H| {
             (count + 1, tokens.wrapping_add(handle.token()))
@@ -138,6 +138,13 @@ impl Sink {
         let (count, tokens) = handles.into_iter().fold((0, 0), add);
         self.count += count;
         self.tokens = self.tokens.wrapping_add(tokens);
+    }
+
+    /// How many handles it was given; what they are is needed, the compiler has to believe.
+    #[inline(always)]
+    pub(crate) fn swallow(self) -> u64 {
+        black_box(self.tokens);
+        self.count
     }
 }
 

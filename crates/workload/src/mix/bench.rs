@@ -1,0 +1,392 @@
+//! One structure on which a mix is run.
+
+use std::hint::black_box;
+use std::marker::PhantomData;
+use std::ops::Range;
+
+use sixfold::{
+    BuildError, Edit, EditVisitor, FaceId, MeshEdit, Point, PolygonMesh, QueryCost, Relation,
+    Representation, Visitor, visit, visit_editable,
+};
+
+use crate::candidate::{Candidate, Job, Run, Sample, Subject};
+use crate::clock::{Clock, Time, timed};
+use crate::mix::places::{NoPlace, Places};
+use crate::mix::route::Route;
+use crate::mix::script::Script;
+use crate::mix::streams::Streams;
+use crate::mix::{MixRun, Mixer};
+use crate::operation::Operation;
+use crate::place::{Place, perform, prepare};
+use crate::sample::Draw;
+use crate::workload::{Action, Part};
+
+/// A structure ready for a mix, or why it is not.
+pub type MixOutcome<'a> = Result<Box<dyn Mixer + 'a>, MixRefusal>;
+
+/// Why a structure takes no part in a mix.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MixRefusal {
+    /// It cannot hold the mesh.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// It has no such edit.
+    #[error("it has no {0}")]
+    NoEdit(Edit),
+    /// The mix cannot be run on this mesh, whatever the structure.
+    #[error(transparent)]
+    NoPlace(#[from] NoPlace),
+}
+
+/// Builds the structure called `backend` from `polygons` for `script` along `route`; `None` where there
+/// is no such structure. Where the script writes, it is built as a mesh that can be edited.
+pub fn set_up<'a>(
+    backend: &str,
+    polygons: &'a PolygonMesh,
+    draw: &'a Draw,
+    script: &'a Script,
+    route: &'a Route,
+) -> Option<MixOutcome<'a>> {
+    let mut start = Start {
+        polygons,
+        draw,
+        script,
+        route,
+    };
+    match script.writes() {
+        true => visit_editable(backend, &mut start),
+        false => visit(backend, &mut start),
+    }
+}
+
+struct Start<'a> {
+    polygons: &'a PolygonMesh,
+    draw: &'a Draw,
+    script: &'a Script,
+    route: &'a Route,
+}
+
+impl<'a> Visitor for Start<'a> {
+    type Output = MixOutcome<'a>;
+
+    fn visit<M: Representation + 'static>(&mut self) -> MixOutcome<'a> {
+        let bench: Bench<'a, M, Never> = Bench::of(self)?;
+        Ok(Box::new(bench))
+    }
+}
+
+impl<'a> EditVisitor for Start<'a> {
+    type Output = MixOutcome<'a>;
+
+    fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> MixOutcome<'a> {
+        for part in &self.script.parts {
+            if let Action::Edit(edit) = part.action
+                && !M::offers(edit)
+            {
+                return Err(MixRefusal::NoEdit(edit));
+            }
+        }
+        let bench: Bench<'a, M, ByEdits> = Bench::of(self)?;
+        Ok(Box::new(bench))
+    }
+}
+
+/// How a mesh is written to.
+trait Writing<M: Representation> {
+    fn set_position(mesh: &mut M, v: M::Vertex, to: Point);
+    fn prepare(mesh: &mut M, edit: Edit, place: &mut Place<M>) -> bool;
+    fn perform(mesh: &mut M, edit: Edit, place: &Place<M>) -> bool;
+    /// Whether an edit looks at all faces.
+    fn scans(edit: Edit) -> bool;
+}
+
+/// Scripts that do not write never come here.
+struct Never;
+
+impl<M: Representation> Writing<M> for Never {
+    fn set_position(_: &mut M, _: M::Vertex, _: Point) {}
+    fn prepare(_: &mut M, _: Edit, _: &mut Place<M>) -> bool {
+        false
+    }
+    fn perform(_: &mut M, _: Edit, _: &Place<M>) -> bool {
+        false
+    }
+    fn scans(_: Edit) -> bool {
+        false
+    }
+}
+
+struct ByEdits;
+
+impl<M: Representation + MeshEdit> Writing<M> for ByEdits {
+    #[inline(always)]
+    fn set_position(mesh: &mut M, v: M::Vertex, to: Point) {
+        // To where it is: no structure refuses that, and the mesh stays what it is.
+        let _ = black_box(mesh.set_position(v, to, &mut ()).is_ok());
+    }
+    fn prepare(mesh: &mut M, edit: Edit, place: &mut Place<M>) -> bool {
+        prepare(mesh, edit, place).is_ok()
+    }
+    #[inline(always)]
+    fn perform(mesh: &mut M, edit: Edit, place: &Place<M>) -> bool {
+        perform(mesh, edit, place).is_ok()
+    }
+    fn scans(edit: Edit) -> bool {
+        M::EDITS[edit as usize] == Some(QueryCost::Scan)
+    }
+}
+
+/// What there is to do: the script, the names of the route, and the places of the edits.
+struct Doing<'a, M: Representation, W> {
+    script: &'a Script,
+    streams: Streams<M>,
+    chosen: Places,
+    /// By edit of the script: where it is done, on a mesh made ready for it.
+    places: Vec<Vec<Place<M>>>,
+    writing: PhantomData<W>,
+}
+
+impl<M: Representation, W: Writing<M>> Doing<'_, M, W> {
+    /// The edit of the script that `part` is, with its places.
+    fn edit(&self, part: usize) -> Option<(Edit, &[Place<M>])> {
+        let nth = self.script.edits().position(|other| other == part)?;
+        match self.script.parts[part].action {
+            Action::Edit(edit) => Some((edit, self.places.get(nth)?)),
+            _ => None,
+        }
+    }
+
+    /// Does the operations of `range` of one part to `mesh`; edits are numbered from the first place.
+    /// How many operations, how much they yielded, how many edits were refused.
+    #[inline]
+    fn act(&self, mesh: &mut M, part: usize, range: Range<u64>) -> [u64; 3] {
+        let operations = range.end - range.start;
+        match self.script.parts[part].action {
+            Action::SetPosition => {
+                for run in self.streams.vertices(range) {
+                    run.iter().for_each(|&v| {
+                        let at = mesh.position(v);
+                        W::set_position(mesh, v, at);
+                    });
+                }
+                [operations, operations, 0]
+            }
+            Action::Edit(_) => {
+                let Some((edit, places)) = self.edit(part) else {
+                    return [0; 3];
+                };
+                let range = range.start as usize..range.end as usize;
+                let some = places.get(range).unwrap_or(&[]);
+                let refused = some.iter().filter(|place| !W::perform(mesh, edit, place));
+                let refused = refused.count() as u64;
+                let done = some.len() as u64 - refused;
+                [some.len() as u64, done, refused]
+            }
+            action => [operations, self.streams.ask(mesh, action, range), 0],
+        }
+    }
+
+    /// The element operations of some turns. Edits start anew with each copy of the mesh.
+    #[inline]
+    fn turns(&self, mesh: &mut M, turns: Range<u64>) -> [u64; 3] {
+        let mut sums = [0; 3];
+        for turn in turns.clone() {
+            for part in 0..self.script.parts.len() {
+                let is_edit = matches!(self.script.parts[part].action, Action::Edit(_));
+                let turn = if is_edit { turn - turns.start } else { turn };
+                let range = self.script.turn(part, turn);
+                if range.is_empty() {
+                    continue;
+                }
+                let came_to = self.act(mesh, part, range);
+                sums = std::array::from_fn(|i| sums[i] + came_to[i]);
+            }
+        }
+        sums
+    }
+}
+
+/// A structure and what there is to do to it.
+struct Bench<'a, M: Representation, W> {
+    candidate: Candidate<'a, M>,
+    polygons: &'a PolygonMesh,
+    doing: Doing<'a, M, W>,
+    /// The mesh made ready for its edits; `None` without.
+    ready: Option<M>,
+}
+
+impl<'a, M: Representation + 'static, W: Writing<M>> Bench<'a, M, W> {
+    fn of(start: &Start<'a>) -> Result<Self, MixRefusal> {
+        let mesh = M::from_polygons(start.polygons)?;
+        let chosen = Places::of(start.script, start.polygons)?;
+        let doing = Doing {
+            script: start.script,
+            streams: Streams::along(start.route, &mesh, start.polygons, &chosen.taken),
+            chosen,
+            places: Vec::new(),
+            writing: PhantomData,
+        };
+        let mut bench = Self {
+            candidate: Candidate::new(start.polygons, Some(start.draw), mesh),
+            polygons: start.polygons,
+            doing,
+            ready: None,
+        };
+        bench.look_up();
+        Ok(bench)
+    }
+
+    /// Names the places, and makes a mesh ready for the edits at them: by edit and place, whether it
+    /// could be.
+    fn look_up(&mut self) -> Vec<Vec<bool>> {
+        if self.doing.chosen.by_edit.is_empty() {
+            return Vec::new();
+        }
+        let mut mesh = self.candidate.mesh.clone();
+        let script = self.doing.script;
+        let edits = script
+            .edits()
+            .filter_map(|part| match script.parts[part].action {
+                Action::Edit(edit) => Some(edit),
+                _ => None,
+            });
+        let named = edits
+            .clone()
+            .zip(&self.doing.chosen.by_edit)
+            .map(|(edit, faces)| {
+                let place = |&f: &FaceId| Place::of(&mesh, self.polygons, edit, f);
+                faces.iter().map(place).collect()
+            });
+        let mut places: Vec<Vec<Place<M>>> = named.collect();
+        let prepared = edits.zip(&mut places).map(|(edit, places)| {
+            let places = places.iter_mut();
+            places
+                .map(|place| W::prepare(&mut mesh, edit, place))
+                .collect()
+        });
+        let prepared = prepared.collect();
+        self.doing.places = places;
+        self.ready = Some(mesh);
+        prepared
+    }
+
+    /// Runs `work` on the mesh, or, where there are edits, on each of so many copies made ready for
+    /// them, which are made and let go outside the timing.
+    fn worked(
+        &mut self,
+        copies: usize,
+        clock: &dyn Clock,
+        work: impl Fn(&Doing<'a, M, W>, &mut M) -> [u64; 3],
+    ) -> MixRun {
+        let Self {
+            candidate, doing, ..
+        } = self;
+        let mut meshes = match &self.ready {
+            Some(ready) => vec![ready.clone(); copies.max(1)],
+            None => Vec::new(),
+        };
+        let mut sums = [0; 3];
+        let time = timed(clock, || {
+            if meshes.is_empty() {
+                sums = work(doing, black_box(&mut candidate.mesh));
+            }
+            for mesh in &mut meshes {
+                let came_to = work(doing, black_box(mesh));
+                sums = std::array::from_fn(|i| sums[i] + came_to[i]);
+            }
+        });
+        let [operations, yielded, refused] = sums;
+        MixRun {
+            time,
+            operations,
+            yielded,
+            refused,
+        }
+    }
+}
+
+impl<M: Representation + 'static, W: Writing<M>> Mixer for Bench<'_, M, W> {
+    fn name(&self) -> &'static str {
+        M::NAME
+    }
+
+    fn bytes(&self) -> usize {
+        self.candidate.bytes()
+    }
+
+    fn merged_vertices(&self) -> usize {
+        self.candidate.merged_vertices()
+    }
+
+    fn scans(&self) -> Vec<bool> {
+        let scans = |relation: &Relation| M::COSTS[*relation as usize] == QueryCost::Scan;
+        let of_part = |part: &Part| match part.action {
+            Action::Edit(edit) => W::scans(edit),
+            Action::SetPosition => W::scans(Edit::SetPosition),
+            action => action.relations().iter().any(scans),
+        };
+        self.doing.script.parts.iter().map(of_part).collect()
+    }
+
+    fn run(&mut self, turn: u64, turns: u64, copies: usize, clock: &dyn Clock) -> MixRun {
+        self.worked(copies, clock, |doing, mesh| {
+            doing.turns(mesh, turn..turn + turns)
+        })
+    }
+
+    fn run_part(&mut self, part: usize, first: u64, operations: u64, clock: &dyn Clock) -> MixRun {
+        let is_edit = self.doing.edit(part).is_some();
+        let first = if is_edit { 0 } else { first };
+        self.worked(1, clock, |doing, mesh| {
+            doing.act(mesh, part, first..first + operations)
+        })
+    }
+
+    fn cycle(&self, part: usize) -> u64 {
+        let places = |(_, places): (Edit, &[Place<M>])| places.len() as u64;
+        let elements = |kind| self.doing.streams.len(kind) as u64;
+        let action = self.doing.script.parts[part].action;
+        let of_elements = || action.kind().map_or(1, elements);
+        self.doing.edit(part).map_or_else(of_elements, places)
+    }
+
+    fn run_pass(
+        &mut self,
+        operation: Operation,
+        sample: Option<Sample>,
+        runs: u32,
+        clock: &dyn Clock,
+        check: bool,
+    ) -> Run {
+        let job = Job { operation, sample };
+        self.candidate.run(&job, runs, clock, check)
+    }
+
+    fn accepted(&mut self) -> Vec<Vec<bool>> {
+        let mut accepted = self.look_up();
+        let Some(mut mesh) = self.ready.clone() else {
+            return accepted;
+        };
+        for (part, accepted) in self.doing.script.edits().zip(&mut accepted) {
+            let Some((edit, places)) = self.doing.edit(part) else {
+                continue;
+            };
+            for (place, accepted) in places.iter().zip(accepted) {
+                *accepted = *accepted && W::perform(&mut mesh, edit, place);
+            }
+        }
+        accepted
+    }
+
+    fn keep(&mut self, accepted: &[Vec<bool>]) {
+        self.doing.chosen = self.doing.chosen.kept(accepted);
+        self.look_up();
+    }
+
+    fn build(&self, polygons: &PolygonMesh, clock: &dyn Clock) -> Time {
+        timed(clock, || {
+            black_box(M::from_polygons(black_box(polygons)).is_ok());
+        })
+    }
+}

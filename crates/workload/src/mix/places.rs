@@ -1,0 +1,113 @@
+//! Where the edits of a mix are done: each at a place of its own, far from what is asked.
+
+use sixfold::{Edit, FaceId, FaceVertexMesh, PolygonMesh, Representation};
+
+use crate::mix::script::Script;
+use crate::place::places;
+use crate::workload::Action;
+
+/// One place for so many vertices at most: the rest of the mesh is there to be asked.
+const VERTICES_A_PLACE: usize = 60;
+/// More places than these make no sample better, and structures that scan need long for each.
+const MOST_PLACES: usize = 512;
+
+/// Why a mix with edits cannot be run on a mesh.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum NoPlace {
+    /// Edits are done to triangles.
+    #[error("face {face} has {degree} corners, and {edit} needs triangles: triangulate the mesh")]
+    NotATriangle {
+        edit: Edit,
+        face: FaceId,
+        degree: usize,
+    },
+    /// Around the places of the edits there has to be something else.
+    #[error(
+        "the mesh has no room for {edits} kinds of edits and something to ask besides: take a larger one"
+    )]
+    TooSmall { edits: usize },
+    /// Not one of the places takes the edit.
+    #[error(
+        "no place of the mesh takes {edit} on all backends: leave it out, or take another mesh"
+    )]
+    NowhereTaken { edit: Edit },
+}
+
+/// The faces at which each edit of a script is done, and the vertices around them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Places {
+    /// By edit of the script: its faces.
+    pub(crate) by_edit: Vec<Vec<FaceId>>,
+    /// By vertex of the mesh: whether it is near a place. Empty without edits.
+    pub(crate) taken: Vec<bool>,
+}
+
+impl Places {
+    /// Spreads the edits of `script` over `polygons`, each as often as its share says.
+    pub(crate) fn of(script: &Script, polygons: &PolygonMesh) -> Result<Self, NoPlace> {
+        let edits: Vec<(Edit, f64)> = script
+            .edits()
+            .map(|part| match script.parts[part].action {
+                Action::Edit(edit) => (edit, script.shares[part]),
+                _ => (Edit::Compact, 0.0), // no edit of a mix: it is filtered above
+            })
+            .collect();
+        let Some(&(edit, _)) = edits.first() else {
+            return Ok(Self::default());
+        };
+        if let Some((face, degree)) = polygons.first_polygon() {
+            return Err(NoPlace::NotATriangle { edit, face, degree });
+        }
+        let too_small = NoPlace::TooSmall { edits: edits.len() };
+        let most = (polygons.vertex_count() / VERTICES_A_PLACE).min(MOST_PLACES);
+        let mut faces = places(polygons, most.max(edits.len())).unwrap_or_default();
+        if faces.len() < edits.len() {
+            return Err(too_small);
+        }
+        // Each gets one, and then whoever has least beside its share.
+        let mut by_edit: Vec<Vec<FaceId>> = faces.drain(..edits.len()).map(|f| vec![f]).collect();
+        for face in faces {
+            let poorest = (0..edits.len()).min_by(|&a, &b| {
+                let wealth = |i: usize| by_edit[i].len() as f64 / edits[i].1;
+                wealth(a).total_cmp(&wealth(b))
+            });
+            by_edit[poorest.unwrap_or(0)].push(face);
+        }
+        let taken = around(&by_edit, polygons);
+        let free = |corners: &[sixfold::VertexId]| corners.iter().all(|v| !taken[v.index()]);
+        if !polygons.faces().iter().any(|(_, corners)| free(corners)) {
+            return Err(too_small);
+        }
+        Ok(Self { by_edit, taken })
+    }
+
+    /// Those that are accepted.
+    pub(crate) fn kept(&self, accepted: &[Vec<bool>]) -> Self {
+        let keep = |(faces, accepted): (&Vec<FaceId>, &Vec<bool>)| {
+            let both = faces.iter().zip(accepted);
+            both.filter(|(_, accepted)| **accepted)
+                .map(|(&f, _)| f)
+                .collect()
+        };
+        Self {
+            by_edit: self.by_edit.iter().zip(accepted).map(keep).collect(),
+            taken: self.taken.clone(),
+        }
+    }
+}
+
+/// By vertex: whether it is a corner of a face around a corner of a place.
+fn around(by_edit: &[Vec<FaceId>], polygons: &PolygonMesh) -> Vec<bool> {
+    let mut taken = vec![false; polygons.vertex_count()];
+    let Ok(mesh) = FaceVertexMesh::from_polygons(polygons) else {
+        return taken; // it holds every mesh but one with too many elements
+    };
+    for &f in by_edit.iter().flatten() {
+        let fans = mesh.face(f).iter().flat_map(|&v| mesh.fan(v));
+        fans.flat_map(|&g| mesh.face(g))
+            .for_each(|v| taken[v.index()] = true);
+    }
+    taken
+}

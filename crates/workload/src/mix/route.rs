@@ -1,0 +1,155 @@
+//! In which order a mix comes by the elements: the same for every structure.
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use sixfold::{FaceId, FaceVertexMesh, MeshQuery, PolygonMesh, Representation, VertexId};
+
+use crate::sample::{Draw, Side};
+use crate::workload::Access;
+
+/// A patch has so many faces.
+const PATCH: usize = 128;
+
+/// The elements of a mesh in the order in which they are visited.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Route {
+    /// In the order of each structure; the lists are empty then.
+    pub(crate) own: bool,
+    pub(crate) vertices: Vec<VertexId>,
+    pub(crate) edges: Vec<Side>,
+    pub(crate) faces: Vec<FaceId>,
+}
+
+impl Route {
+    /// The route through `polygons`; the seed decides what is random. O(corners) expected.
+    pub fn of(access: Access, polygons: &PolygonMesh, seed: u64) -> Self {
+        let nothing = Self {
+            own: true,
+            vertices: Vec::new(),
+            edges: Vec::new(),
+            faces: Vec::new(),
+        };
+        match access {
+            Access::Sequential => nothing,
+            Access::Random => {
+                let draw = Draw::of(polygons, seed);
+                Self {
+                    own: false,
+                    vertices: draw.vertices,
+                    edges: draw.edges,
+                    faces: draw.faces,
+                }
+            }
+            Access::Patches => match FaceVertexMesh::from_polygons(polygons) {
+                Ok(mesh) => patches(&mesh, polygons, seed),
+                Err(_) => nothing, // it holds every mesh but one with too many elements
+            },
+        }
+    }
+}
+
+/// Patches around random faces until they have as many faces as the mesh. Vertices without faces are
+/// in none.
+fn patches(mesh: &FaceVertexMesh, polygons: &PolygonMesh, seed: u64) -> Route {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut route = Route {
+        own: false,
+        vertices: Vec::new(),
+        edges: Vec::new(),
+        faces: Vec::new(),
+    };
+    let count = polygons.face_count();
+    // By element: the patch that came by it last, so that each has it once.
+    let mut face_seen = vec![0_u32; count];
+    let mut vertex_seen = vec![0_u32; polygons.vertex_count()];
+    let mut patch = 0;
+    while route.faces.len() < count {
+        patch += 1;
+        let seed = random.random_range(0..count);
+        let first = route.faces.len();
+        let mut head = first;
+        face_seen[seed] = patch;
+        route.faces.push(FaceId::new(seed as u32));
+        while head < route.faces.len() && head < first + PATCH {
+            let face = route.faces[head];
+            head += 1;
+            for beside in mesh.face_faces(face) {
+                if route.faces.len() < first + PATCH && face_seen[beside.index()] != patch {
+                    face_seen[beside.index()] = patch;
+                    route.faces.push(beside);
+                }
+            }
+        }
+        let sides = route.edges.len();
+        for &face in &route.faces[first..] {
+            let corners = polygons.faces().face(face);
+            for (i, &v) in corners.iter().enumerate() {
+                if vertex_seen[v.index()] != patch {
+                    vertex_seen[v.index()] = patch;
+                    route.vertices.push(v);
+                }
+                let next = corners[(i + 1) % corners.len()];
+                let ends = [v.min(next), v.max(next)];
+                route.edges.push(Side { face, ends });
+            }
+        }
+        // A side that two faces of the patch share is one edge: the first stands for it.
+        let mut of_patch = route.edges.split_off(sides);
+        let mut order: Vec<usize> = (0..of_patch.len()).collect();
+        order.sort_by_key(|&i| (of_patch[i].ends, i));
+        let mut again = vec![false; of_patch.len()];
+        for pair in order.windows(2) {
+            again[pair[1]] = of_patch[pair[0]].ends == of_patch[pair[1]].ends;
+        }
+        let mut repeats = again.iter();
+        of_patch.retain(|_| !repeats.next().is_some_and(|&again| again));
+        route.edges.append(&mut of_patch);
+    }
+    route
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use sixfold::shapes;
+
+    use super::*;
+
+    #[test]
+    fn a_patch_hangs_together_and_names_each_element_once() {
+        let mesh = shapes::triangle_torus(40, 40).expect("small");
+        let route = Route::of(Access::Patches, &mesh, 3);
+        assert!(route.faces.len() >= mesh.face_count());
+        let patch: BTreeSet<FaceId> = route.faces[..PATCH].iter().copied().collect();
+        assert_eq!(patch.len(), PATCH);
+        let built = FaceVertexMesh::from_polygons(&mesh).expect("closed");
+        for &face in &route.faces[1..PATCH] {
+            assert!(built.face_faces(face).any(|beside| patch.contains(&beside)));
+        }
+        // Euler: a patch without a hole has one more vertex and face than edges.
+        let corners = |f: &FaceId| mesh.faces().face(*f).to_vec();
+        let vertices: BTreeSet<VertexId> = patch.iter().flat_map(corners).collect();
+        assert_eq!(
+            route.vertices[..vertices.len()]
+                .iter()
+                .collect::<BTreeSet<_>>(),
+            vertices.iter().collect()
+        );
+        let edges = vertices.len() + PATCH - 1;
+        let ends: BTreeSet<_> = route.edges[..edges].iter().map(|side| side.ends).collect();
+        assert_eq!(ends.len(), edges);
+        assert_eq!(route, Route::of(Access::Patches, &mesh, 3));
+        assert_ne!(route, Route::of(Access::Patches, &mesh, 4));
+    }
+
+    #[test]
+    fn a_random_route_has_every_element_once() {
+        let mesh = shapes::default_study();
+        let route = Route::of(Access::Random, &mesh, 3);
+        assert_eq!(route.faces.len(), mesh.face_count());
+        assert_eq!(route.edges.len() * 2, mesh.corner_count());
+        assert!(Route::of(Access::Sequential, &mesh, 3).own);
+    }
+}

@@ -1,0 +1,384 @@
+//! The relations that a workload asks, as flat tables, in the place of a structure.
+
+use std::hint::black_box;
+
+use relation_table::{Numbering, RelationTable, TabulationError};
+use sixfold::{
+    EdgeId, FaceId, MeshQuery, Point, PolygonMesh, Relation, Representation, RowId, VertexId,
+    Visitor, visit,
+};
+
+use crate::candidate::{Outcome, Run, Sample};
+use crate::clock::{Clock, Time, timed};
+use crate::mix::route::Route;
+use crate::mix::script::Script;
+use crate::mix::streams::Streams;
+use crate::mix::{MixRun, Mixer};
+use crate::operation::{Kind, Operation};
+use crate::sweeps::{All, Outputs, Tally, field_sum, share};
+use crate::workload::Action;
+
+/// The relations asked, positions, and how many elements there are.
+struct Tables {
+    positions: Vec<Point>,
+    edges: usize,
+    faces: usize,
+    vertex_vertices: Option<RelationTable<VertexId, VertexId>>,
+    vertex_edges: Option<RelationTable<VertexId, EdgeId>>,
+    vertex_faces: Option<RelationTable<VertexId, FaceId>>,
+    edge_vertices: Option<RelationTable<EdgeId, VertexId>>,
+    edge_edges: Option<RelationTable<EdgeId, EdgeId>>,
+    edge_faces: Option<RelationTable<EdgeId, FaceId>>,
+    face_vertices: Option<RelationTable<FaceId, VertexId>>,
+    face_edges: Option<RelationTable<FaceId, EdgeId>>,
+    face_faces: Option<RelationTable<FaceId, FaceId>>,
+}
+
+impl Tables {
+    fn of<M: MeshQuery>(mesh: &M, relations: &[Relation]) -> Result<Self, TabulationError> {
+        let numbers = Numbering::of(mesh);
+        let asked = |relation| relations.contains(&relation);
+        macro_rules! table {
+            ($name:ident, $relation:ident) => {
+                match asked(Relation::$relation) {
+                    true => Some(numbers.$name()?),
+                    false => None,
+                }
+            };
+        }
+        Ok(Self {
+            positions: numbers.positions(),
+            edges: mesh.edge_count(),
+            faces: mesh.face_count(),
+            vertex_vertices: table!(vertex_vertices, VertexVertices),
+            vertex_edges: table!(vertex_edges, VertexEdges),
+            vertex_faces: table!(vertex_faces, VertexFaces),
+            edge_vertices: table!(edge_vertices, EdgeVertices),
+            edge_edges: table!(edge_edges, EdgeEdges),
+            edge_faces: table!(edge_faces, EdgeFaces),
+            face_vertices: table!(face_vertices, FaceVertices),
+            face_edges: table!(face_edges, FaceEdges),
+            face_faces: table!(face_faces, FaceFaces),
+        })
+    }
+
+    fn bytes(&self) -> usize {
+        fn of<A: RowId, B: RowId>(table: &Option<RelationTable<A, B>>) -> usize {
+            table.as_ref().map_or(0, RelationTable::bytes)
+        }
+        size_of_val(&self.positions[..])
+            + of(&self.vertex_vertices)
+            + of(&self.vertex_edges)
+            + of(&self.vertex_faces)
+            + of(&self.edge_vertices)
+            + of(&self.edge_edges)
+            + of(&self.edge_faces)
+            + of(&self.face_vertices)
+            + of(&self.face_edges)
+            + of(&self.face_faces)
+    }
+}
+
+/// The row of a relation that the workload asks, or it would not be asked here.
+macro_rules! row {
+    ($name:ident, $from:ty, $to:ty) => {
+        #[inline]
+        fn $name(&self, element: $from) -> impl Iterator<Item = $to> {
+            let row = self
+                .$name
+                .as_ref()
+                .map_or(&[][..], |table| table.of(element));
+            row.iter().copied()
+        }
+    };
+}
+
+fn numbered<H: RowId>(count: usize) -> impl Iterator<Item = H> {
+    (0..count as u32).map(H::from_row)
+}
+
+impl MeshQuery for Tables {
+    type Vertex = VertexId;
+    type Edge = EdgeId;
+    type Face = FaceId;
+
+    fn vertices(&self) -> impl Iterator<Item = VertexId> {
+        numbered(self.positions.len())
+    }
+    fn edges(&self) -> impl Iterator<Item = EdgeId> {
+        numbered(self.edges)
+    }
+    fn faces(&self) -> impl Iterator<Item = FaceId> {
+        numbered(self.faces)
+    }
+    fn vertex_count(&self) -> usize {
+        self.positions.len()
+    }
+    fn edge_count(&self) -> usize {
+        self.edges
+    }
+    fn face_count(&self) -> usize {
+        self.faces
+    }
+    #[inline]
+    fn position(&self, v: VertexId) -> Point {
+        self.positions[v.index()]
+    }
+    row!(vertex_vertices, VertexId, VertexId);
+    row!(vertex_edges, VertexId, EdgeId);
+    row!(vertex_faces, VertexId, FaceId);
+    #[inline]
+    fn edge_vertices(&self, e: EdgeId) -> [VertexId; 2] {
+        let table = self.edge_vertices.as_ref();
+        let row = table.and_then(|table| table.of(e).first_chunk());
+        *row.expect("asked of edges, it is tabulated, and an edge has two ends")
+    }
+    row!(edge_edges, EdgeId, EdgeId);
+    row!(edge_faces, EdgeId, FaceId);
+    row!(face_vertices, FaceId, VertexId);
+    row!(face_edges, FaceId, EdgeId);
+    row!(face_faces, FaceId, FaceId);
+    fn vertex_rows(&self) -> usize {
+        self.positions.len()
+    }
+    fn edge_rows(&self) -> usize {
+        self.edges
+    }
+    fn face_rows(&self) -> usize {
+        self.faces
+    }
+}
+
+/// Tabulates the `relations` that `script` asks over the structure called `backend`, built from
+/// `polygons`; `None` where there is no such structure, or it cannot hold them, or the script changes
+/// what the tables hold.
+pub fn tabulate<'a>(
+    backend: &str,
+    polygons: &'a PolygonMesh,
+    script: &'a Script,
+    route: &'a Route,
+) -> Option<Box<dyn Mixer + 'a>> {
+    struct Start<'a> {
+        polygons: &'a PolygonMesh,
+        script: &'a Script,
+        route: &'a Route,
+    }
+
+    impl<'a> Visitor for Start<'a> {
+        type Output = Option<Box<dyn Mixer + 'a>>;
+
+        fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
+            let mesh = M::from_polygons(self.polygons).ok()?;
+            let relations = relations(self.script);
+            let tables = Tables::of(&mesh, &relations).ok()?;
+            let streams = streams(&mesh, self.polygons, self.route);
+            Some(Box::new(Tabulated {
+                outputs: Outputs::for_mesh(&tables),
+                moved: tables.positions.clone(),
+                merged: self.polygons.vertex_count() - tables.positions.len(),
+                tables,
+                script: self.script,
+                streams,
+                build: build::<M>,
+            }))
+        }
+    }
+
+    if script
+        .parts
+        .iter()
+        .any(|part| part.action.changes_connectivity())
+    {
+        return None;
+    }
+    let mut start = Start {
+        polygons,
+        script,
+        route,
+    };
+    visit(backend, &mut start).flatten()
+}
+
+/// The relations that a script asks, each once.
+fn relations(script: &Script) -> Vec<Relation> {
+    let asked = script.parts.iter().flat_map(|part| part.action.relations());
+    asked.collect()
+}
+
+/// The route by the numbers of the tables.
+fn streams<M: Representation>(mesh: &M, polygons: &PolygonMesh, route: &Route) -> Streams<Tables> {
+    let named = Streams::along(route, mesh, polygons, &[]);
+    let numbers = Numbering::of(mesh);
+    named.renamed(
+        |v| numbers.vertex(v),
+        |e| numbers.edge(e),
+        |f| numbers.face(f),
+    )
+}
+
+/// Builds the structure and tabulates, in the time that both take.
+fn build<M: Representation>(
+    polygons: &PolygonMesh,
+    relations: &[Relation],
+    clock: &dyn Clock,
+) -> Time {
+    timed(clock, || {
+        let mesh = M::from_polygons(black_box(polygons));
+        let tables = mesh.ok().map(|mesh| Tables::of(&mesh, relations));
+        black_box(tables.is_some());
+    })
+}
+
+/// Tables on which a mix is run.
+struct Tabulated<'a> {
+    tables: Tables,
+    script: &'a Script,
+    streams: Streams<Tables>,
+    outputs: Outputs<Tables>,
+    moved: Vec<Point>,
+    merged: usize,
+    build: fn(&PolygonMesh, &[Relation], &dyn Clock) -> Time,
+}
+
+impl Tabulated<'_> {
+    fn act(&mut self, part: usize, range: std::ops::Range<u64>) -> u64 {
+        match self.script.parts[part].action {
+            Action::SetPosition => {
+                let count = range.end - range.start;
+                for run in self.streams.vertices(range) {
+                    for v in run {
+                        let at = &mut self.tables.positions[v.index()];
+                        *at = black_box(*at);
+                    }
+                }
+                count
+            }
+            action => self.streams.ask(black_box(&self.tables), action, range),
+        }
+    }
+}
+
+impl Mixer for Tabulated<'_> {
+    fn name(&self) -> &'static str {
+        "relation-tables"
+    }
+
+    fn bytes(&self) -> usize {
+        self.tables.bytes()
+    }
+
+    fn merged_vertices(&self) -> usize {
+        self.merged
+    }
+
+    fn scans(&self) -> Vec<bool> {
+        vec![false; self.script.parts.len()]
+    }
+
+    fn run(&mut self, turn: u64, turns: u64, _: usize, clock: &dyn Clock) -> MixRun {
+        let (mut operations, mut yielded) = (0, 0);
+        let time = timed(clock, || {
+            for turn in turn..turn + turns {
+                for part in 0..self.script.parts.len() {
+                    let range = self.script.turn(part, turn);
+                    operations += range.end - range.start;
+                    if !range.is_empty() {
+                        yielded += self.act(part, range);
+                    }
+                }
+            }
+        });
+        MixRun {
+            time,
+            operations,
+            yielded,
+            refused: 0,
+        }
+    }
+
+    fn run_part(&mut self, part: usize, first: u64, operations: u64, clock: &dyn Clock) -> MixRun {
+        let mut yielded = 0;
+        let time = timed(clock, || {
+            yielded = self.act(part, first..first + operations)
+        });
+        MixRun {
+            time,
+            operations,
+            yielded,
+            refused: 0,
+        }
+    }
+
+    fn cycle(&self, part: usize) -> u64 {
+        let kind = self.script.parts[part].action.kind();
+        kind.map_or(1, |kind| self.streams.len(kind) as u64)
+    }
+
+    fn run_pass(
+        &mut self,
+        operation: Operation,
+        _: Option<Sample>,
+        runs: u32,
+        clock: &dyn Clock,
+        check: bool,
+    ) -> Run {
+        let mut sum = Tally::default();
+        let time = timed(clock, || {
+            for _ in 0..runs {
+                sum = Tally::default();
+                for &kind in operation.kinds() {
+                    let tables = black_box(&self.tables);
+                    sum.add(share(operation, kind, tables, &All, &mut self.outputs));
+                }
+                if operation == Operation::VvSmooth {
+                    // Into a copy, as with every structure: the old positions stay.
+                    self.moved.copy_from_slice(self.outputs.vertices.values());
+                    black_box(&mut self.moved);
+                }
+                black_box(&mut self.outputs);
+            }
+        });
+        let checksum = || match operation {
+            Operation::FaceBarycenter => field_sum(self.outputs.faces.values().iter().copied()),
+            Operation::VertexNormal | Operation::VvSmooth => {
+                field_sum(self.outputs.vertices.values().iter().copied())
+            }
+            Operation::EdgeLength => sum.sum,
+            _ => sum.count as f64,
+        };
+        let elements = match operation.per() {
+            "visit" => sum.count,
+            per => self.count(per),
+        };
+        let outcome = check.then(|| Outcome {
+            checksum: checksum(),
+            elements,
+        });
+        Run {
+            time: time.scaled(1.0 / f64::from(runs)),
+            ..Run::done(time, outcome)
+        }
+    }
+
+    fn accepted(&mut self) -> Vec<Vec<bool>> {
+        Vec::new()
+    }
+
+    fn keep(&mut self, _: &[Vec<bool>]) {}
+
+    fn build(&self, polygons: &PolygonMesh, clock: &dyn Clock) -> Time {
+        (self.build)(polygons, &relations(self.script), clock)
+    }
+}
+
+impl Tabulated<'_> {
+    /// How many elements there are of the kind called `per`.
+    fn count(&self, per: &str) -> u64 {
+        let count = match Kind::ALL.into_iter().find(|kind| kind.name() == per) {
+            Some(Kind::Vertex) => self.tables.vertex_count(),
+            Some(Kind::Edge) => self.tables.edge_count(),
+            _ => self.tables.face_count(),
+        };
+        count as u64
+    }
+}

@@ -1,0 +1,157 @@
+//! Places of a mesh of triangles where edits can be done without touching one another.
+
+use sixfold::{
+    Edit, FaceId, FaceVertexMesh, MeshEdit, MeshQuery, Point, PolygonMesh, Refusal, Representation,
+};
+
+/// Faces none of whose one-rings touch, at most `most`, spread over the mesh, in no order.
+pub(crate) fn places(polygons: &PolygonMesh, most: usize) -> Result<Vec<FaceId>, String> {
+    let mesh = FaceVertexMesh::from_polygons(polygons).map_err(|refusal| refusal.to_string())?;
+    let mut taken = vec![false; polygons.vertex_count()];
+    let faces = polygons.face_count();
+    // A stride that shares no divisor with the number of faces comes by all of them, far apart.
+    let mut stride = (faces as f64 * 0.618) as usize | 1;
+    while gcd(stride, faces) != 1 {
+        stride += 2;
+    }
+    let mut chosen = Vec::new();
+    let mut at = 0;
+    for _ in 0..faces {
+        at = (at + stride) % faces;
+        let f = FaceId::new(at as u32);
+        let around = || {
+            let corners = mesh.face(f).iter();
+            let faces = corners.flat_map(|&v| mesh.fan(v));
+            faces.flat_map(|&g| mesh.face(g)).map(|v| v.index())
+        };
+        if around().any(|v| taken[v]) {
+            continue;
+        }
+        around().for_each(|v| taken[v] = true);
+        chosen.push(f);
+        if chosen.len() == most {
+            break;
+        }
+    }
+    Ok(chosen)
+}
+
+const fn gcd(mut a: usize, mut b: usize) -> usize {
+    while b > 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}
+
+/// What an edit needs to know of its place.
+pub(crate) struct Place<M: MeshQuery> {
+    pub(crate) face: M::Face,
+    corners: [M::Vertex; 3],
+    edge: Option<M::Edge>,
+    /// A neighbour of the first corner, far from the second.
+    far: Option<M::Vertex>,
+    at: Point,
+}
+
+impl<M: Representation> Place<M> {
+    /// Looks up what `edit` takes at face `f`: some structures search for these handles.
+    pub(crate) fn of(mesh: &M, polygons: &PolygonMesh, edit: Edit, f: FaceId) -> Self {
+        let takes_edge = matches!(
+            edit,
+            Edit::SplitEdge
+                | Edit::BisectEdge
+                | Edit::SplitFace
+                | Edit::DissolveEdge
+                | Edit::FlipEdge
+                | Edit::CollapseEdge
+        );
+        let ids = polygons.faces().face(f);
+        let corners = [0, 1, 2].map(|i| M::vertex_name(polygons, ids[i]));
+        let [a, b, c] = [0, 1, 2].map(|i: usize| polygons.position(ids[i]));
+        let mut place = Self {
+            face: M::face_name(polygons, f),
+            corners,
+            edge: None,
+            far: None,
+            at: (a + b + c) / 3.0 + Point::splat(1e-3),
+        };
+        if takes_edge {
+            place.edge = mesh.edge_between(corners[0], corners[1]);
+        }
+        if edit == Edit::SplitVertex {
+            let mut around = mesh.vertex_vertices(corners[0]);
+            place.far = around.find(|v| !corners.contains(v));
+        }
+        place
+    }
+}
+
+/// Brings one place into the state in which the edit finds something to do.
+pub(crate) fn prepare<M: MeshEdit>(
+    mesh: &mut M,
+    edit: Edit,
+    place: &mut Place<M>,
+) -> Result<(), Refusal<M>> {
+    match edit {
+        Edit::AddFace | Edit::Compact => mesh.remove_face(place.face, &mut ()),
+        Edit::SplitFace => {
+            let edge = place.edge.take();
+            let edge = edge.expect("looked up for all edits at edges");
+            place.face = mesh.dissolve_edge(edge, &mut ())?;
+            Ok(())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Does the edit at one place.
+#[inline(always)]
+pub(crate) fn perform<M: MeshEdit>(
+    mesh: &mut M,
+    edit: Edit,
+    place: &Place<M>,
+) -> Result<(), Refusal<M>> {
+    let [a, b, c] = place.corners;
+    let edge = || place.edge.expect("looked up for all edits at edges");
+    let log = &mut ();
+    match edit {
+        Edit::SetPosition => mesh.set_position(a, place.at, log).map(drop),
+        Edit::AddVertex => mesh.add_vertex(place.at, log).map(drop),
+        Edit::AddFace => mesh.add_face(&[a, b, c], log).map(drop),
+        Edit::RemoveFace => mesh.remove_face(place.face, log),
+        Edit::RemoveVertex => mesh.remove_vertex(a, log),
+        Edit::SplitEdge => mesh.split_edge(edge(), place.at, log).map(drop),
+        Edit::BisectEdge => mesh.bisect_edge(edge(), place.at, log).map(drop),
+        Edit::PokeFace => mesh.poke_face(place.face, place.at, log).map(drop),
+        Edit::SplitFace => mesh.split_face(place.face, [a, b], log).map(drop),
+        Edit::DissolveEdge => mesh.dissolve_edge(edge(), log).map(drop),
+        Edit::FlipEdge => mesh.flip_edge(edge(), log).map(drop),
+        Edit::CollapseEdge => mesh.collapse_edge(edge(), a, place.at, log).map(drop),
+        Edit::SplitVertex => mesh
+            .split_vertex(a, Some(b), place.far, place.at, log)
+            .map(drop),
+        // Passes over the whole mesh, and edits to come.
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold::{VertexId, shapes};
+
+    use super::*;
+
+    #[test]
+    fn places_do_not_touch() {
+        let torus = shapes::triangle_torus(30, 30).expect("small");
+        let places = places(&torus, usize::MAX).expect("held by all");
+        assert!(places.len() > 20, "{}", places.len());
+        let mut corners: Vec<VertexId> = places
+            .iter()
+            .flat_map(|&f| torus.faces().face(f).to_vec())
+            .collect();
+        corners.sort_unstable();
+        corners.dedup();
+        assert_eq!(corners.len(), 3 * places.len());
+    }
+}
