@@ -13,6 +13,7 @@ mod environment;
 mod inspect;
 mod measure;
 mod methods;
+mod pick;
 mod plan;
 mod report;
 mod solo;
@@ -26,6 +27,10 @@ mod words;
 pub use environment::Environment;
 pub use inspect::{Specimen, inspect};
 pub use measure::Progress;
+pub use pick::{
+    Answer, BreakEven, Excluded, Need, OnMesh, PartCost, PickError, Question, Ranked, UnknownNeed,
+    pick,
+};
 pub use report::{
     Agreement, BackendReport, Control, ControlRow, Inspection, MeshReport, RawSamples, Refusal,
     Report, ResultRow, SCHEMA, Standing,
@@ -33,6 +38,7 @@ pub use report::{
 pub use solo::{Solo, SoloRun};
 pub use study::{Settings, StudyError, study};
 pub use timer::Timer;
+pub use workload::{Access, Action, Amount, NoPlace, Workload, WorkloadError, built_in, built_ins};
 pub use workload::{
     Backend, Clock, Editing, Editor, Edits, Kind, MachineClock, Operation, Refiner, Refining,
     SingleEdit, Time, UnknownOperation, Way,

@@ -318,7 +318,7 @@ impl Inspection {
     }
 }
 
-fn write_json(value: &impl Serialize, mut writer: impl io::Write) -> io::Result<()> {
+pub(crate) fn write_json(value: &impl Serialize, mut writer: impl io::Write) -> io::Result<()> {
     let mut serializer = Serializer::with_formatter(&mut writer, Rows::default());
     value.serialize(&mut serializer).map_err(io::Error::from)?;
     writeln!(writer)

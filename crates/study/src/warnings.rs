@@ -39,6 +39,16 @@ pub(crate) fn warnings(
     all.into_iter().flatten().collect()
 }
 
+/// What is wrong with the machine itself.
+pub(crate) fn of_machine(environment: &Environment) -> Vec<String> {
+    let all = [
+        busy(environment),
+        wall_alone(environment),
+        powersave(environment),
+    ];
+    all.into_iter().flatten().collect()
+}
+
 fn nothing_measured(environment: &Environment, results: &[ResultRow]) -> Option<String> {
     let mut measured = results.iter().filter(|row| row.median_ns.is_some());
     let nothing = measured.clone().next().is_some() && measured.all(|row| row.warm_up_only);

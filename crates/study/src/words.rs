@@ -172,7 +172,7 @@ fn merging(backend: &BackendReport, results: &[ResultRow]) -> Option<String> {
 }
 
 /// `1.4 ×`, `2,100 ×`: a ratio as one says it.
-fn times(ratio: f64) -> String {
+pub(crate) fn times(ratio: f64) -> String {
     match ratio {
         r if r < 1.095 => format!("{r:.2} ×"),
         r if r < 9.95 => format!("{r:.1} ×"),
@@ -181,7 +181,7 @@ fn times(ratio: f64) -> String {
 }
 
 /// `1,234,567`.
-fn grouped(number: usize) -> String {
+pub(crate) fn grouped(number: usize) -> String {
     match number {
         n if n < 1000 => n.to_string(),
         n => format!("{},{:03}", grouped(n / 1000), n % 1000),
@@ -189,7 +189,7 @@ fn grouped(number: usize) -> String {
 }
 
 /// A time with the unit that suits it.
-fn duration(ns: f64) -> String {
+pub(crate) fn duration(ns: f64) -> String {
     match ns {
         ns if ns < 1e3 => format!("{ns:.1} ns"),
         ns if ns < 1e6 => format!("{:.1} µs", ns / 1e3),

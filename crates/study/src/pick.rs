@@ -1,0 +1,243 @@
+//! The answer: which backend for this mesh and this workload, how sure, and why.
+//!
+//! Every backend that qualifies runs the very mix of the workload, in its order of elements, in
+//! interleaved rounds as a study does; what costs what is measured after that, part by part, to say
+//! why. Where the mix leaves connectivity alone, tables of just the relations that it asks take part
+//! as one more candidate.
+
+mod answer;
+mod break_even;
+mod contest;
+mod entrant;
+mod needs;
+mod pooled;
+mod reasons;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use workload::{Backend, Draw, MachineClock, MixRefusal, NoPlace, Route, Script, Workload};
+
+pub use answer::{Answer, BreakEven, Excluded, OnMesh, PartCost, Ranked};
+pub use needs::{Need, UnknownNeed};
+
+use crate::environment::Environment;
+use crate::inspect::Specimen;
+use crate::study::StudyError;
+use crate::timer::Timer;
+use contest::Contest;
+use entrant::Entrant;
+
+/// What is asked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Question {
+    /// What the program does.
+    pub workload: Workload,
+    /// Names of backends that may be the answer; empty for all.
+    pub backends: Vec<String>,
+    /// What the structure has to be able to do.
+    pub needs: Vec<Need>,
+    /// How many bytes it may hold.
+    pub max_memory: Option<u64>,
+    /// How long measuring may take, for all meshes together.
+    pub budget: Duration,
+    /// Decides what is random: routes, and the order in which backends are measured.
+    pub seed: u64,
+}
+
+/// Why there is no answer.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum PickError {
+    /// The question cannot be put to a mesh without faces, or names what there is not.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// The workload cannot be run on a mesh.
+    #[error("{mesh}: {reason}")]
+    Impossible { mesh: String, reason: NoPlace },
+    /// Not even three rounds fit.
+    #[error(
+        "{mesh}: a budget of {budget_s} s is too small to measure anything: three rounds take about {needed_s} s; give at least --budget {needed_s}s"
+    )]
+    BudgetTooSmall {
+        mesh: String,
+        budget_s: u64,
+        needed_s: u64,
+    },
+    /// There is no mesh to ask about.
+    #[error("there is no mesh to pick a backend for")]
+    NoMesh,
+}
+
+/// Ranks the backends for `question` on `specimens`, by running its workload on each.
+///
+/// Where none qualifies the ranking is empty, and `excluded` says why. `stop` ends it early, between
+/// two samples; what is finished is in the answer. `progress` hears how much is done, and what is
+/// going on.
+///
+/// # Errors
+///
+/// [`PickError`]: names that there are not, meshes without faces, workloads that cannot be run on
+/// them, and budgets that measure nothing.
+pub fn pick(
+    specimens: &[Specimen],
+    question: &Question,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(f64, &str),
+) -> Result<Answer, PickError> {
+    if specimens.is_empty() {
+        return Err(PickError::NoMesh);
+    }
+    let environment = Environment::here(question.seed, question.budget.as_secs_f64());
+    let clock = MachineClock::start();
+    let timer = Timer::of(&clock);
+    let budget = question.budget / specimens.len() as u32;
+    let mut answers = Vec::new();
+    for (i, specimen) in specimens.iter().enumerate() {
+        if stop.load(Ordering::Relaxed) && i > 0 {
+            break;
+        }
+        let part = |done: f64| (i as f64 + done) / specimens.len() as f64;
+        let mut progress = |done: f64, what: &str| progress(part(done), what);
+        answers.push(on_one(
+            specimen,
+            question,
+            budget,
+            &clock,
+            stop,
+            &mut progress,
+        )?);
+    }
+    let interrupted = stop.load(Ordering::Relaxed);
+    Ok(pooled::pooled(
+        answers,
+        question,
+        timer,
+        environment,
+        interrupted,
+    ))
+}
+
+/// The backends that may take part, and why the others may not.
+fn qualified(
+    specimen: &Specimen,
+    question: &Question,
+) -> Result<(Vec<Backend>, Vec<Excluded>), PickError> {
+    let settings = crate::study::Settings {
+        backends: question.backends.clone(),
+        ..Default::default()
+    };
+    let polygons = &specimen.polygons;
+    if polygons.face_count() == 0 {
+        return Err(StudyError::NoFaces.into());
+    }
+    let counts = polygons.counts(specimen.facts.edges);
+    let mut excluded = Vec::new();
+    let mut qualified = Vec::new();
+    for backend in settings.chosen_backends()? {
+        let lacks = question
+            .needs
+            .iter()
+            .find_map(|need| need.lacking(&backend));
+        let bytes = (backend.layout_bytes)(&counts) as u64;
+        let reason = match (lacks, question.max_memory) {
+            (Some(lacks), _) => Some(lacks),
+            (None, Some(most)) if bytes > most => Some(answer::too_heavy(bytes, most)),
+            _ => backend
+                .info
+                .verdict(polygons)
+                .err()
+                .map(|refusal| refusal.to_string()),
+        };
+        match reason {
+            Some(reason) => excluded.push(Excluded::of(backend.name(), reason)),
+            None => qualified.push(backend),
+        }
+    }
+    Ok((qualified, excluded))
+}
+
+fn on_one(
+    specimen: &Specimen,
+    question: &Question,
+    budget: Duration,
+    clock: &MachineClock,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(f64, &str),
+) -> Result<contest::Outcome, PickError> {
+    let (backends, mut excluded) = qualified(specimen, question)?;
+    let polygons = &specimen.polygons;
+    let counts = polygons.counts(specimen.facts.edges);
+    let workload = &question.workload;
+    let script = Script::of(workload, &counts);
+    let route = Route::of(workload.access, polygons, question.seed);
+    let draw = Draw::of(polygons, question.seed);
+    let impossible = |reason: NoPlace| PickError::Impossible {
+        mesh: specimen.name.clone(),
+        reason,
+    };
+    let set_up = |name: &str| workload::set_up(name, polygons, &draw, &script, &route);
+
+    let mut entrants = Vec::new();
+    for (i, backend) in backends.iter().enumerate() {
+        progress(
+            0.05 * i as f64 / backends.len() as f64,
+            &format!("building {}", backend.name()),
+        );
+        match set_up(backend.name()) {
+            Some(Ok(mixer)) => entrants.push(Entrant::of(mixer)),
+            Some(Err(MixRefusal::NoPlace(reason))) => return Err(impossible(reason)),
+            Some(Err(refusal)) => excluded.push(Excluded::of(backend.name(), refusal.to_string())),
+            None => {}
+        }
+    }
+    if let Some(most) = question.max_memory {
+        let heavy = |e: &Entrant<'_>| e.mixer.bytes() as u64 > most;
+        for entrant in entrants.iter().filter(|e| heavy(e)) {
+            let reason = answer::too_heavy(entrant.mixer.bytes() as u64, most);
+            excluded.push(Excluded::of(entrant.mixer.name(), reason));
+        }
+        entrants.retain(|entrant| !heavy(entrant));
+    }
+    if let Some(again) = entrants.iter().find(|e| !e.scans()).map(|e| e.mixer.name())
+        && let Some(Ok(mixer)) = set_up(again)
+    {
+        entrants.push(Entrant::control(mixer));
+    }
+    entrant::agree_on_places(&mut entrants, &script).map_err(impossible)?;
+    if question.needs.contains(&Need::Edit) {
+        excluded.push(Excluded::of(
+            "relation-tables",
+            "they cannot be edited".into(),
+        ));
+    } else {
+        progress(0.05, "tabulating");
+        let tabulate = |name: &str| workload::tabulate(name, polygons, &script, &route);
+        let tables = entrant::tables(&entrants, polygons, clock, tabulate);
+        match tables {
+            Some(tables)
+                if question
+                    .max_memory
+                    .is_some_and(|m| tables.mixer.bytes() as u64 > m) =>
+            {
+                let bytes = tables.mixer.bytes() as u64;
+                let reason = answer::too_heavy(bytes, question.max_memory.unwrap_or(0));
+                excluded.push(Excluded::of("relation-tables", reason));
+            }
+            Some(tables) => entrants.push(tables),
+            None => {}
+        }
+    }
+    let contest = Contest {
+        specimen,
+        question,
+        counts,
+        script: &script,
+        budget,
+        clock,
+        stop,
+        progress,
+    };
+    contest.held(entrants, excluded)
+}

@@ -1,0 +1,183 @@
+//! One answer from the contests on one mesh or several.
+
+use std::collections::BTreeMap;
+
+use crate::environment::Environment;
+use crate::pick::Question;
+use crate::pick::answer::{Answer, BreakEven, Excluded, OnMesh, Ranked};
+use crate::pick::contest::Outcome;
+use crate::pick::reasons;
+use crate::report::SCHEMA;
+use crate::standing::NO_DIFFERENCE;
+use crate::timer::Timer;
+
+/// Puts the outcomes together. Who is excluded on one mesh is no answer for all; the others are
+/// compared by geometric means over the meshes.
+pub(crate) fn pooled(
+    mut outcomes: Vec<Outcome>,
+    question: &Question,
+    timer: Timer,
+    environment: Environment,
+    interrupted: bool,
+) -> Answer {
+    let several = outcomes.len() > 1;
+    let mut excluded: Vec<Excluded> = Vec::new();
+    for outcome in &mut outcomes {
+        for out in outcome.excluded.drain(..) {
+            if excluded.iter().any(|known| known.backend == out.backend) {
+                continue;
+            }
+            let reason = match several {
+                true => format!("{}: {}", outcome.mesh, out.reason),
+                false => out.reason,
+            };
+            excluded.push(Excluded { reason, ..out });
+        }
+    }
+    let noise = outcomes.iter().filter_map(|o| o.noise);
+    let noise = noise.reduce(f64::max);
+    let ranking = match &outcomes[..] {
+        [only] => only.ranking.clone(),
+        many => ranked_on_all(many, noise.unwrap_or(1.0).max(NO_DIFFERENCE)),
+    };
+    let operations = mean(outcomes.iter().map(|o| o.operations)).unwrap_or(0.0);
+    let break_even = match &outcomes[..] {
+        [only] => only.break_even.clone(),
+        many => ranking
+            .iter()
+            .filter_map(|ranked| on_all(many, ranked))
+            .collect(),
+    };
+    let shortest = outcomes.iter().filter_map(|o| o.shortest_ns);
+    let shortest = shortest.min_by(f64::total_cmp);
+    let timer = Timer {
+        largest_share: shortest.map(|ns| timer.overhead_ns / ns),
+        ..timer
+    };
+    let mut disagreeing: Vec<String> = { outcomes.iter() }
+        .flat_map(|o| o.disagreeing.clone())
+        .collect();
+    disagreeing.sort();
+    disagreeing.dedup();
+    let mut answer = Answer {
+        schema: SCHEMA,
+        meshes: outcomes.iter().map(|o| o.mesh.clone()).collect(),
+        workload: question.workload.clone(),
+        operations,
+        needs: question.needs.clone(),
+        max_memory: question.max_memory,
+        ranking,
+        excluded,
+        break_even,
+        noise,
+        words: Vec::new(),
+        warnings: Vec::new(),
+        interrupted,
+        timer,
+        environment,
+        by_mesh: Vec::new(),
+    };
+    if several {
+        let each = outcomes.into_iter().map(|outcome| OnMesh {
+            mesh: outcome.mesh,
+            ranking: outcome.ranking,
+            break_even: outcome.break_even,
+            noise: outcome.noise,
+        });
+        answer.by_mesh = each.collect();
+    }
+    answer.words = reasons::words(&answer);
+    answer.warnings = reasons::warnings(&answer, &disagreeing);
+    answer
+}
+
+/// The backends that took part on all meshes, by the geometric mean of their times.
+fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
+    let mut by_name: BTreeMap<&str, Vec<&Ranked>> = BTreeMap::new();
+    for ranked in outcomes.iter().flat_map(|o| &o.ranking) {
+        by_name.entry(&ranked.backend).or_default().push(ranked);
+    }
+    let everywhere = by_name
+        .into_values()
+        .filter(|rows| rows.len() == outcomes.len());
+    let mut everywhere: Vec<Vec<&Ranked>> = everywhere.collect();
+    let time = |rows: &Vec<&Ranked>| geometric(rows.iter().map(|r| r.ns_per_operation));
+    everywhere.sort_by(|a, b| time(a).total_cmp(&time(b)));
+    let Some(best) = everywhere.first().cloned() else {
+        return Vec::new();
+    };
+    let rows = everywhere.iter().map(|rows| {
+        let ratio = geometric(
+            rows.iter()
+                .zip(&best)
+                .map(|(r, b)| r.ratio_to_best / b.ratio_to_best),
+        );
+        // Meshes are measured apart: their doubts add up as squares, and the best has its own.
+        let doubt = |rows: &[&Ranked]| -> f64 {
+            let width = |r: &&Ranked| Some((r.ci_high? / r.ci_low?).ln() / 2.0);
+            rows.iter()
+                .map(|r| width(r).unwrap_or(f64::INFINITY).powi(2))
+                .sum()
+        };
+        let same = rows[0].backend == best[0].backend;
+        let doubt = if same {
+            0.0
+        } else {
+            (doubt(rows) + doubt(&best)).sqrt() / rows.len() as f64
+        };
+        let known = doubt.is_finite();
+        let bytes = rows.iter().map(|r| r.bytes).max().unwrap_or(0);
+        Ranked {
+            ns_per_operation: time(rows),
+            ns_ci_low: None,
+            ns_ci_high: None,
+            ratio_to_best: ratio,
+            ci_low: known.then(|| ratio * (-doubt).exp()),
+            ci_high: known.then(|| ratio * doubt.exp()),
+            tied_with_best: ratio <= noise || (known && ratio * (-doubt).exp() <= 1.0),
+            build_ns: geometric(rows.iter().map(|r| r.build_ns)),
+            bytes,
+            bytes_per_vertex: geometric(rows.iter().map(|r| r.bytes_per_vertex)),
+            sampled: rows.iter().any(|r| r.sampled),
+            estimated: rows.iter().any(|r| r.estimated),
+            samples: rows.iter().map(|r| r.samples).min().unwrap_or(0),
+            ..rows[0].clone()
+        }
+    });
+    rows.collect()
+}
+
+/// The break-even of `ranked` over all meshes; never where it never pays on one.
+fn on_all(outcomes: &[Outcome], ranked: &Ranked) -> Option<BreakEven> {
+    let rows: Option<Vec<&BreakEven>> = outcomes
+        .iter()
+        .map(|o| {
+            o.break_even
+                .iter()
+                .find(|row| row.backend == ranked.backend)
+        })
+        .collect();
+    let rows = rows?;
+    let all = |of: fn(&BreakEven) -> Option<f64>| {
+        let values: Option<Vec<f64>> = rows.iter().map(|row| of(row)).collect();
+        values.map(|values| geometric(values.into_iter()))
+    };
+    Some(BreakEven {
+        backend: ranked.backend.clone(),
+        build_ns: ranked.build_ns,
+        saves_ns_per_operation: mean(rows.iter().map(|r| r.saves_ns_per_operation))?,
+        operations: all(|row| row.operations),
+        ci_low: all(|row| row.ci_low),
+        ci_high: all(|row| row.ci_high),
+        uses: all(|row| row.uses),
+    })
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = values.fold((0.0, 0), |(sum, count), value| (sum + value, count + 1));
+    (count > 0).then(|| sum / f64::from(count))
+}
+
+fn geometric(values: impl Iterator<Item = f64>) -> f64 {
+    mean(values.map(f64::ln)).map_or(f64::NAN, f64::exp)
+}
