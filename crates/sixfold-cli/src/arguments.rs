@@ -1,5 +1,6 @@
 //! What can be asked for.
 
+mod picking;
 mod remeshing;
 mod render;
 mod reshaping;
@@ -12,6 +13,7 @@ use ::study::Operation;
 use clap::{Args, Parser, Subcommand};
 use sixfold::shapes::Order;
 
+pub(crate) use picking::{Pick, Workloads};
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
@@ -20,6 +22,7 @@ pub(crate) use subdivision::{Schemes, Select, Subdivide};
 const EXAMPLES: &str = "Examples:
   sixfold                                    study the built-in mesh
   sixfold study bunny.obj                    study your own
+  sixfold pick --workload smoothing bunny.obj
   sixfold inspect bunny.obj                  what it is, and which backends can hold it
   sixfold generate geodesic frequency=20 -o ball.obj
   sixfold subdivide --scheme loop --levels 2 bunny.obj -o smooth.obj
@@ -65,6 +68,10 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Measure what each backend costs for a mesh
     Study(Study),
+    /// Say which backend fits a mesh and a workload
+    Pick(Pick),
+    /// List the built-in workloads, and who does this
+    Workloads(Workloads),
     /// Say what a mesh is, and which backends can hold it
     Inspect(Inspect),
     /// Write a built-in shape

@@ -5,7 +5,7 @@
 //! | code | means |
 //! |---|---|
 //! | 0 | done |
-//! | 1 | done, and the answer is no: backends found different results, a fault in Sixfold |
+//! | 1 | done, and the answer is no: no backend qualifies; backends found different results, a fault in Sixfold |
 //! | 2 | wrong usage, or unusable input |
 //! | 3 | not supported: no backend asked for can hold the mesh |
 //! | 4 | interrupted; the finished part is kept |
@@ -19,6 +19,7 @@ mod inspect;
 mod load;
 mod numbers;
 mod output;
+mod pick;
 mod progress;
 mod remesh;
 mod render;
@@ -30,6 +31,7 @@ mod subdivide;
 mod tables;
 mod text;
 mod triangulate;
+mod workloads;
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -53,6 +55,8 @@ fn main() -> ExitCode {
         Err(error) => told(&error),
         Ok(None) => study::run(&arguments::Study::default()),
         Ok(Some(Command::Study(arguments))) => study::run(&arguments),
+        Ok(Some(Command::Pick(arguments))) => pick::run(&arguments),
+        Ok(Some(Command::Workloads(arguments))) => workloads::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
         Ok(Some(Command::Generate(arguments))) => generate::run(&arguments),
         Ok(Some(Command::Schemes(arguments))) => schemes::run(&arguments),

@@ -28,17 +28,22 @@ impl Bar {
         Self(Some(ProgressBar::new(STEPS).with_style(style)))
     }
 
+    /// Shows how much is done, and what is going on.
+    pub(crate) fn at(&self, done: f64, what: &str) {
+        let Self(Some(bar)) = self else { return };
+        bar.set_position((done * STEPS as f64) as u64);
+        bar.set_message(what.to_owned());
+    }
+
     /// Shows where the study stands.
     pub(crate) fn show(&self, progress: Progress<'_>) {
-        let Self(Some(bar)) = self else { return };
         let Progress {
             done,
             stage,
             operation,
             backend,
         } = progress;
-        bar.set_position((done * STEPS as f64) as u64);
-        bar.set_message(format!("{stage} {operation} on {backend}"));
+        self.at(done, &format!("{stage} {operation} on {backend}"));
     }
 
     /// Takes the bar away.

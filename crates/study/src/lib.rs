@@ -9,6 +9,8 @@
 
 mod agreement;
 mod control;
+#[cfg(test)]
+mod disturbed;
 mod environment;
 mod inspect;
 mod measure;

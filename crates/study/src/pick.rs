@@ -12,6 +12,8 @@ mod entrant;
 mod needs;
 mod pooled;
 mod reasons;
+#[cfg(test)]
+mod tests;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;

@@ -1,9 +1,7 @@
-//! A machine whose speed drifts and structures whose costs are known.
+//! Structures whose costs are known, on a machine whose speed drifts.
 
 use std::cell::Cell;
 use std::rc::Rc;
-use std::sync::Arc;
-use std::sync::Mutex;
 
 use rand_chacha::rand_core::SeedableRng;
 use sixfold::subdivision::Method;
@@ -11,43 +9,9 @@ use sixfold::{QueryCost, Relation};
 
 use super::*;
 use crate::control::{control, noise};
+use crate::disturbed::Machine;
 use crate::plan::FEWEST_ELEMENTS;
 use crate::statistics::Median;
-
-/// A machine that slows down by half, jumps, and stutters; time passes only while it works.
-#[derive(Clone, Default)]
-struct Machine {
-    /// The time, and how often it has worked.
-    state: Arc<Mutex<(f64, u64)>>,
-}
-
-impl Machine {
-    fn work(&self, ns: f64) {
-        let (time, steps) = &mut *self.state.lock().expect("no panics");
-        *steps += 1;
-        let drift = 1.0 + 0.5 * (*steps as f64 / 900.0).sin();
-        let stutter = if steps.is_multiple_of(17) { 1.6 } else { 1.0 };
-        let jump = if (*steps / 400).is_multiple_of(2) {
-            1.0
-        } else {
-            1.8
-        };
-        *time += ns * drift * stutter * jump;
-    }
-
-    fn ns(&self) -> f64 {
-        self.state.lock().expect("no panics").0
-    }
-}
-
-impl Clock for Machine {
-    fn now(&self) -> Time {
-        Time {
-            cpu_ns: None,
-            wall_ns: self.ns(),
-        }
-    }
-}
 
 /// A structure whose every element costs the same, known, time.
 struct Synthetic {

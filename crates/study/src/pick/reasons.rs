@@ -63,7 +63,7 @@ fn verdict(answer: &Answer, best: &Ranked) -> String {
             .ci_low
             .zip(next.ci_high)
             .map_or(String::new(), |(low, high)| {
-                format!(" (95 %: {} to {})", bare(low), times(high))
+                format!(" (95 %: {} to {})", precise(low), precise(high))
             });
         format!(
             "; {} takes {} as long{sure}",
@@ -84,9 +84,13 @@ fn verdict(answer: &Answer, best: &Ranked) -> String {
     }
 }
 
-/// `1.04`, without its sign.
-fn bare(ratio: f64) -> String {
-    times(ratio).trim_end_matches(" ×").to_owned()
+/// `1.04`, `12.3`, `123`: a ratio beside another that may be close.
+fn precise(ratio: f64) -> String {
+    match ratio {
+        r if r < 10.0 => format!("{r:.2}"),
+        r if r < 100.0 => format!("{r:.1}"),
+        r => grouped(r.round() as usize),
+    }
 }
 
 /// Which part of the mix takes most of the time.

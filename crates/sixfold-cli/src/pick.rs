@@ -1,0 +1,206 @@
+//! `sixfold pick`: the answer for a mesh and a workload.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use ::study::{Answer, BreakEven, Question, Ranked, Specimen};
+use comfy_table::{Cell, CellAlignment};
+
+use crate::arguments::Pick;
+use crate::failure::Failure;
+use crate::load;
+use crate::numbers::{counted, duration, figure, grouped};
+use crate::output::{Output, check_places, is_stdout};
+use crate::progress::{Bar, INTERRUPTED, interrupt_flag};
+use crate::tables::table;
+use crate::text::{Text, complain, hanging};
+use crate::workloads::workload;
+
+/// No backend qualifies.
+const NONE: u8 = 1;
+
+/// Measures, and shows the answer; text first, so that no file that fails can take it along.
+pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
+    for mesh in &arguments.meshes {
+        check_places(Some(mesh), &[("--json", arguments.json.as_ref())])?;
+    }
+    let workload = workload(&arguments.workload)?;
+    // Before the draft of the output, so that Ctrl-C can leave none behind.
+    let stop = interrupt_flag();
+    let json = Output::open_if(arguments.json.as_ref())?;
+    let specimens = specimens(arguments)?;
+    let question = Question {
+        workload,
+        backends: arguments.backends.clone(),
+        needs: arguments.needs.clone(),
+        max_memory: arguments.max_memory,
+        budget: arguments.budget,
+        seed: arguments.seed,
+    };
+    if cfg!(debug_assertions) {
+        complain("note: this is a debug build, and its times mean nothing: build with --release");
+    }
+    let bar = Bar::new();
+    let answer = ::study::pick(&specimens, &question, &stop, &mut |done, what| {
+        bar.at(done, what)
+    });
+    bar.clear();
+    let answer = answer.map_err(Failure::usage)?;
+
+    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
+    print(&answer, &specimens, &mut text);
+    let mut done = text.finish();
+    if let Some(output) = json {
+        done = done.and(output.finish(|writer| answer.write_json(writer)));
+    }
+    done?;
+    if answer.interrupted {
+        complain("interrupted: what was finished is kept");
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    if answer.ranking.is_empty() {
+        complain(
+            "error: no backend qualifies: loosen --needs, --max-memory or --backends, or mend the mesh (`sixfold inspect`)",
+        );
+        return Ok(ExitCode::from(NONE));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn specimens(arguments: &Pick) -> Result<Vec<Specimen>, Failure> {
+    if arguments.meshes.is_empty() {
+        return Ok(vec![load::built_in()]);
+    }
+    let read = |path: &std::path::PathBuf| -> Result<Specimen, Failure> {
+        load::for_study(Path::new(path), false, arguments.triangulate)
+    };
+    arguments.meshes.iter().map(read).collect()
+}
+
+fn print(answer: &Answer, specimens: &[Specimen], text: &mut Text) {
+    for specimen in specimens {
+        let vertices = counted(specimen.polygons.vertex_count(), "vertex", "vertices");
+        let faces = counted(specimen.polygons.face_count(), "face", "faces");
+        text.say(&hanging(
+            "Mesh:     ",
+            &format!("{}: {vertices}, {faces}", specimen.name),
+        ));
+    }
+    let summary = format!("{}. {}", answer.workload.name, answer.workload.summary);
+    text.say(&hanging("Workload: ", summary.trim()));
+    let operations = counted(
+        answer.operations.round() as usize,
+        "operation",
+        "operations",
+    );
+    let mix: Vec<String> = { answer.workload.mix.iter() }
+        .map(|part| format!("{} {}", part.weight, part.action))
+        .collect();
+    let rebuilt = match answer.workload.rebuilds {
+        0 => String::new(),
+        times => format!(", built anew {}", counted(times as usize, "time", "times")),
+    };
+    let mix = mix.join(", ");
+    text.say(&hanging(
+        "Its mix:  ",
+        &format!("{mix}; {}; {operations}{rebuilt}", answer.workload.access),
+    ));
+    text.say("");
+    if !answer.ranking.is_empty() {
+        text.say(&ranking(answer));
+        text.say("");
+    }
+    for words in &answer.words {
+        text.say(&hanging("- ", words));
+    }
+    for out in &answer.excluded {
+        text.say(&hanging(
+            "- ",
+            &format!("Not {}: {}.", out.backend, out.reason),
+        ));
+    }
+    for warning in &answer.warnings {
+        text.say(&hanging("! ", warning));
+    }
+}
+
+/// The backends, best first, with what each costs, holds, and when it pays.
+fn ranking(answer: &Answer) -> String {
+    let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
+    let header = [
+        "",
+        "an operation",
+        "/ best",
+        "95 %",
+        "to build",
+        "bytes a vertex",
+        "pays after",
+    ];
+    let mut rows = table(header.iter().map(|name| right((*name).into())).collect());
+    let mut notes = [false; 3];
+    for ranked in &answer.ranking {
+        let mark = match (ranked.estimated, ranked.sampled) {
+            (true, _) => "?",
+            (_, true) => "~",
+            _ => "",
+        };
+        notes[0] |= ranked.sampled && !ranked.estimated;
+        notes[1] |= ranked.estimated;
+        notes[2] |= ranked.tied_with_best && answer.ranking.len() > 1;
+        let tied = if ranked.tied_with_best { " =" } else { "" };
+        let interval = ranked.ci_low.zip(ranked.ci_high);
+        let interval = interval.map_or("–".into(), |(low, high)| {
+            format!("{} to {}", ratio(low), ratio(high))
+        });
+        rows.add_row(vec![
+            Cell::new(&ranked.backend),
+            right(format!("{}{mark}", duration(ranked.ns_per_operation))),
+            right(ratio(ranked.ratio_to_best) + tied),
+            right(interval),
+            right(duration(ranked.build_ns)),
+            right(format!("{:.1}", ranked.bytes_per_vertex)),
+            right(pays(answer, ranked)),
+        ]);
+    }
+    let mut text = rows.trim_fmt();
+    let legend = [
+        "~ a sample of the elements stands for all, for it looks at all faces to answer",
+        "? not run in full, for that would outlast the budget: an estimate",
+        "= nobody can tell it from the best",
+    ];
+    for (line, _) in legend.into_iter().zip(notes).filter(|(_, note)| *note) {
+        text += "\n";
+        text += line;
+    }
+    let tables = answer
+        .ranking
+        .iter()
+        .find_map(|ranked| ranked.over.as_deref());
+    if let Some(over) = tables {
+        text += &format!("\nrelation-tables: flat tables of just what is asked, made of {over}");
+    }
+    text + "\npays after: so many operations, where an indexed face set is there already"
+}
+
+/// `1.04`, `12.3`, `1,230`.
+fn ratio(ratio: f64) -> String {
+    match ratio < 1.0 {
+        true => format!("{ratio:.2}"),
+        false => figure(ratio),
+    }
+}
+
+fn pays(answer: &Answer, ranked: &Ranked) -> String {
+    let row = |row: &&BreakEven| row.backend == ranked.backend;
+    match answer.break_even.iter().find(row) {
+        None => "–".into(),
+        Some(BreakEven {
+            operations: None, ..
+        }) => "never".into(),
+        Some(BreakEven {
+            operations: Some(operations),
+            ..
+        }) if *operations < 1e15 => grouped(operations.ceil() as usize),
+        Some(_) => "never".into(),
+    }
+}

@@ -1,0 +1,119 @@
+//! `sixfold workloads`: which workloads there are, and what a mix may have.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use ::study::{Action, Workload, built_in, built_ins};
+use serde_json::json;
+
+use crate::arguments::Workloads;
+use crate::failure::Failure;
+use crate::output::{Output, is_stdout};
+use crate::text::{Text, hanging};
+
+/// Files that are no workloads are not read to their end to find that out.
+const LONGEST_FILE: u64 = 1 << 20;
+
+/// Lists the workloads, shows the file of one, or lists operations.
+pub(crate) fn run(arguments: &Workloads) -> Result<ExitCode, Failure> {
+    if let Some(name) = &arguments.show {
+        let file = built_ins().find(|(known, _)| known == name);
+        let (_, file) = file.ok_or_else(|| unknown(name))?;
+        let mut text = Text::shown(true);
+        text.say(file.trim_end());
+        text.finish()?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let json = Output::open_if(arguments.json.as_ref())?;
+    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
+    text.say(&match arguments.operations {
+        true => operations(),
+        false => list(),
+    });
+    let mut done = text.finish();
+    if let Some(output) = json {
+        let all: Vec<Workload> = built_ins().filter_map(|(name, _)| built_in(name)).collect();
+        done = done.and(output.finish(|writer| {
+            serde_json::to_writer_pretty(&mut *writer, &json!(all))?;
+            writeln!(writer)
+        }));
+    }
+    done?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The workload called `word`, or in the file of that name.
+pub(crate) fn workload(word: &str) -> Result<Workload, Failure> {
+    let path = Path::new(word);
+    let is_file = path.extension().is_some_and(|ending| ending == "toml");
+    if !is_file {
+        return built_in(word).ok_or_else(|| unknown(word));
+    }
+    let told = |error: std::io::Error| Failure::usage(format!("{word}: {error}"));
+    let length = std::fs::metadata(path).map_err(told)?.len();
+    if length > LONGEST_FILE {
+        return Err(Failure::usage(format!(
+            "{word}: {length} bytes are no workload: it has a few lines (`sixfold workloads --show smoothing`)"
+        )));
+    }
+    let text = std::fs::read_to_string(path).map_err(told)?;
+    let name = path.file_stem().map(|stem| stem.to_string_lossy());
+    Workload::parse(&name.unwrap_or_default(), word, &text).map_err(Failure::usage)
+}
+
+fn unknown(name: &str) -> Failure {
+    let names: Vec<&str> = built_ins().map(|(name, _)| name).collect();
+    Failure::usage(format!(
+        "no workload is called `{name}`: choose from {}, or name a file that ends in .toml",
+        names.join(", ")
+    ))
+}
+
+fn list() -> String {
+    let mut lines = Vec::new();
+    for (name, _) in built_ins() {
+        let Some(workload) = built_in(name) else {
+            continue;
+        };
+        lines.push(name.to_owned());
+        lines.push(hanging("  ", &workload.summary));
+        let mix = workload
+            .mix
+            .iter()
+            .map(|part| format!("{} {}", part.weight, part.action));
+        let mix = mix.collect::<Vec<_>>().join(", ");
+        let rebuilt = match workload.rebuilds {
+            0 => String::new(),
+            1 => ", built anew once".into(),
+            times => format!(", built anew {times} times"),
+        };
+        let access = workload.access;
+        let operations = workload.operations;
+        lines.push(hanging(
+            "  ",
+            &format!("{access}; {operations} operations{rebuilt}: {mix}"),
+        ));
+    }
+    lines.join("\n")
+}
+
+fn operations() -> String {
+    let names = |of: fn(&Action) -> bool| {
+        let all = Action::all().into_iter().filter(of);
+        all.map(Action::name).collect::<Vec<_>>().join(", ")
+    };
+    let on_elements = names(|action| action.kind().is_some());
+    let edits = names(|action| matches!(action, Action::Edit(_)));
+    let passes = names(|action| action.is_a_pass());
+    [
+        hanging("One element:  ", &on_elements),
+        hanging("One edit:     ", &edits),
+        hanging("Whole passes: ", &passes),
+        String::new(),
+        hanging(
+            "",
+            "A weight is a number, or a text as in \"2 per face\". `access` is sequential, random or patches.",
+        ),
+    ]
+    .join("\n")
+}
