@@ -1,0 +1,247 @@
+//! A mix does the same work on every structure, whatever its route, its edits and its names.
+
+use sixfold::{PolygonMesh, roster, shapes};
+use workload::{
+    Access, Action, Draw, MachineClock, MixRefusal, MixRun, Mixer, Operation, Route, Script,
+    Workload, built_in, built_ins, set_up, tabulate,
+};
+
+/// A mesh with what a mix needs to know of it.
+struct Setting {
+    polygons: PolygonMesh,
+    draw: Draw,
+    script: Script,
+    route: Route,
+}
+
+impl Setting {
+    fn of(workload: &Workload, polygons: PolygonMesh) -> Self {
+        let edges = sixfold::Facts::of(&polygons).edges;
+        Self {
+            draw: Draw::of(&polygons, 3),
+            script: Script::of(workload, &polygons.counts(edges)),
+            route: Route::of(workload.access, &polygons, 3),
+            polygons,
+        }
+    }
+
+    /// Everybody who takes part, on places that all accept.
+    fn mixers(&self) -> Vec<Box<dyn Mixer + '_>> {
+        let start =
+            |name: &str| set_up(name, &self.polygons, &self.draw, &self.script, &self.route);
+        let started = roster().into_iter().filter_map(|row| start(row.name));
+        let mut mixers: Vec<Box<dyn Mixer + '_>> = started.filter_map(Result::ok).collect();
+        let accepted: Vec<Vec<Vec<bool>>> = mixers.iter_mut().map(|m| m.accepted()).collect();
+        let mut common = accepted[0].clone();
+        for other in &accepted[1..] {
+            for (ours, theirs) in common.iter_mut().zip(other) {
+                ours.iter_mut().zip(theirs).for_each(|(a, b)| *a &= b);
+            }
+        }
+        mixers.iter_mut().for_each(|mixer| mixer.keep(&common));
+        mixers.extend(tabulate(
+            "half-edge",
+            &self.polygons,
+            &self.script,
+            &self.route,
+        ));
+        mixers
+    }
+}
+
+fn parsed(text: &str) -> Workload {
+    Workload::parse("test", "test.toml", text).expect("a sound file")
+}
+
+/// What a run came to, but for its time.
+fn found(run: MixRun) -> [u64; 3] {
+    [run.operations, run.yielded, run.refused]
+}
+
+const ASKING: &str = "operations = 5\naccess = 'random'\n[mix]\nvertex_vertices = 3\n\
+    vertex_edges = 1\nvertex_faces = 2\nedge_vertices = 1\nedge_edges = 0.5\nedge_faces = 2\n\
+    face_vertices = 1\nface_edges = 1\nface_faces = 1\nposition = 4\nneighbour_positions = 1\n\
+    corner_positions = 2\nend_positions = 1\n";
+
+#[test]
+fn all_structures_yield_the_same_along_a_route() {
+    let clock = MachineClock::start();
+    for access in [Access::Random, Access::Patches] {
+        let workload = Workload {
+            access,
+            ..parsed(ASKING)
+        };
+        for polygons in [
+            shapes::triangle_torus(12, 9).expect("small"),
+            shapes::mixed_grid(9, 7).expect("small"),
+            shapes::icosahedron(),
+        ] {
+            let setting = Setting::of(&workload, polygons);
+            let mut mixers = setting.mixers();
+            assert!(mixers.len() >= 6, "{}", mixers.len());
+            for turn in [0, 1, 17] {
+                let runs: Vec<_> = { mixers.iter_mut() }
+                    .map(|mixer| (mixer.name(), found(mixer.run(turn, 2, 1, &clock))))
+                    .collect();
+                let [operations, yielded, _] = runs[0].1;
+                assert!(operations.abs_diff(512) <= 16 && yielded > 512, "{runs:?}");
+                let same = |(_, run): &(&str, [u64; 3])| *run == runs[0].1;
+                assert!(runs.iter().all(same), "{access} {runs:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn all_structures_yield_the_same_on_all_elements_in_their_own_order() {
+    let clock = MachineClock::start();
+    let workload = Workload {
+        access: Access::Sequential,
+        ..parsed(ASKING)
+    };
+    let setting = Setting::of(&workload, shapes::mixed_grid(9, 7).expect("small"));
+    let mut mixers = setting.mixers();
+    for part in setting.script.elements() {
+        let runs: Vec<_> = { mixers.iter_mut() }
+            .map(|mixer| {
+                let cycle = mixer.cycle(part);
+                (mixer.name(), found(mixer.run_part(part, 5, cycle, &clock)))
+            })
+            .collect();
+        let action = setting.script.parts[part].action;
+        let same = |(_, run): &(&str, [u64; 3])| *run == runs[0].1;
+        assert!(runs.iter().all(same), "{action} {runs:?}");
+    }
+}
+
+#[test]
+fn edits_are_accepted_at_the_places_that_all_accept_again_and_again() {
+    let clock = MachineClock::start();
+    let workload = parsed(
+        "operations = 5\naccess = 'patches'\n[mix]\nbisect_edge = 1\ncollapse_edge = 1\n\
+         flip_edge = 2\npoke_face = 1\nremove_face = 1\nsplit_vertex = 1\nset_position = 5\n\
+         vertex_faces = 40\nedge_faces = 40\nface_faces = 40",
+    );
+    let torus = shapes::triangle_torus(80, 60).expect("small");
+    let setting = Setting::of(&workload, torus);
+    let mut mixers = setting.mixers();
+    let names: Vec<&str> = mixers.iter().map(|mixer| mixer.name()).collect();
+    assert_eq!(names.len(), 6, "{names:?}");
+    for turn in [0, 1, 7, 7] {
+        let runs: Vec<_> = { mixers.iter_mut() }
+            .map(|mixer| (mixer.name(), found(mixer.run(turn, 1, 2, &clock))))
+            .collect();
+        let same = |(_, run): &(&str, [u64; 3])| *run == runs[0].1;
+        assert!(runs.iter().all(same), "{runs:?}");
+        assert_eq!(runs[0].1[2], 0, "refused");
+    }
+    for part in setting.script.edits() {
+        let cycle = mixers[0].cycle(part);
+        assert!(cycle >= 1);
+        for mixer in &mut mixers {
+            let run = mixer.run_part(part, 0, cycle, &clock);
+            assert_eq!(found(run), [cycle, cycle, 0], "{}", mixer.name());
+        }
+    }
+}
+
+#[test]
+fn tables_pass_over_the_mesh_as_structures_do() {
+    let clock = MachineClock::start();
+    let workload = parsed(
+        "operations = 5\n[mix]\ncirculate = 1\nface_barycenter = 1\nvertex_normal = 1\n\
+         vv_smooth = 1\nedge_length = 1\nboundary = 1\nff_bfs = 1\nall_queries = 1",
+    );
+    let setting = Setting::of(&workload, shapes::mixed_grid(9, 7).expect("small"));
+    let mut mixers = setting.mixers();
+    let names: Vec<&str> = mixers.iter().map(|mixer| mixer.name()).collect();
+    assert_eq!(names.last(), Some(&"relation-tables"));
+    for part in setting.script.passes() {
+        let Action::Pass(operation) = setting.script.parts[part].action else {
+            panic!("only passes");
+        };
+        let outcomes: Vec<_> = { mixers.iter_mut() }
+            .map(|mixer| mixer.run_pass(operation, None, 2, &clock, true))
+            .map(|run| run.outcome.expect("checked"))
+            .collect();
+        for (outcome, name) in outcomes.iter().zip(&names) {
+            let off = (outcome.checksum - outcomes[0].checksum).abs();
+            let most = 1e-4 * outcomes[0].checksum.abs();
+            assert!(off <= most, "{operation} on {name}: {outcomes:?}");
+            let elements = outcomes[0].elements;
+            assert_eq!(outcome.elements, elements, "{operation} on {name}");
+        }
+    }
+}
+
+#[test]
+fn nobody_tabulates_what_changes() {
+    for (name, changes) in [
+        ("decimation", true),
+        ("remeshing", true),
+        ("subdivision", true),
+        ("smoothing", false),
+    ] {
+        let workload = built_in(name).expect("it is built in");
+        let torus = shapes::triangle_torus(30, 20).expect("small");
+        let setting = Setting::of(&workload, torus);
+        let tables = tabulate(
+            "half-edge",
+            &setting.polygons,
+            &setting.script,
+            &setting.route,
+        );
+        assert_eq!(tables.is_none(), changes, "{name}");
+    }
+}
+
+#[test]
+fn every_built_in_runs() {
+    let clock = MachineClock::start();
+    for (name, _) in built_ins() {
+        let workload = built_in(name).expect("it is built in");
+        let torus = shapes::triangle_torus(30, 20).expect("small");
+        let setting = Setting::of(&workload, torus);
+        let mut mixers = setting.mixers();
+        assert!(mixers.len() >= 6, "{name}");
+        let half_edge = { mixers.iter_mut() }.find(|mixer| mixer.name() == "half-edge");
+        let half_edge = half_edge.expect("it holds tori");
+        let run = half_edge.run(0, 1, 1, &clock);
+        let on_elements = setting.script.on_elements > 0.0;
+        assert_eq!(run.operations > 0, on_elements, "{name}");
+        for part in setting.script.passes() {
+            let operation = match setting.script.parts[part].action {
+                Action::Pass(operation) => operation,
+                _ => Operation::Loop(sixfold::subdivision::Method::Native),
+            };
+            let run = half_edge.run_pass(operation, None, 1, &clock, true);
+            assert!(run.outcome.is_some(), "{name}: {:?}", run.refusal);
+        }
+    }
+}
+
+#[test]
+fn who_cannot_take_part_says_why() {
+    let splits = parsed("operations = 5\n[mix]\nsplit_edge = 1\nvertex_faces = 9");
+    let torus = shapes::triangle_torus(30, 20).expect("small");
+    let setting = Setting::of(&splits, torus);
+    let start = |setting: &'_ Setting, name: &str| {
+        let Setting {
+            polygons,
+            draw,
+            script,
+            route,
+        } = setting;
+        set_up(name, polygons, draw, script, route).map(|mixer| mixer.err())
+    };
+    let refusal = start(&setting, "corner-table").expect("it is in the roster");
+    assert!(
+        matches!(refusal, Some(MixRefusal::NoEdit(_))),
+        "{refusal:?}"
+    );
+    assert!(start(&setting, "abacus").is_none());
+    let smoothing = built_in("smoothing").expect("it is built in");
+    let quads = Setting::of(&smoothing, shapes::grid(4, 4).expect("small"));
+    let refusal = start(&quads, "corner-table").expect("it is in the roster");
+    assert!(matches!(refusal, Some(MixRefusal::Build(_))), "{refusal:?}");
+}
