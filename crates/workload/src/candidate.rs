@@ -80,7 +80,7 @@ pub trait Subject {
 pub(crate) struct Candidate<'a, M: Representation> {
     polygons: &'a PolygonMesh,
     draw: Option<&'a Draw>,
-    pub(crate) mesh: M,
+    mesh: M,
     outputs: Outputs<M>,
     chosen: Chosen<M>,
     thread: OneThread,

@@ -6,6 +6,7 @@
 //! Passes over the whole mesh take their place between turns.
 
 mod bench;
+mod passes;
 mod places;
 mod route;
 mod script;

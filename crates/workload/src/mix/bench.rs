@@ -9,8 +9,10 @@ use sixfold::{
     Representation, Visitor, visit, visit_editable,
 };
 
-use crate::candidate::{Candidate, Job, Run, Sample, Subject};
+use crate::backend::Backend;
+use crate::candidate::{Job, Run, Sample, Subject};
 use crate::clock::{Clock, Time, timed};
+use crate::mix::passes::pass_over;
 use crate::mix::places::{NoPlace, Places};
 use crate::mix::route::Route;
 use crate::mix::script::Script;
@@ -19,6 +21,7 @@ use crate::mix::{MixRun, Mixer};
 use crate::operation::Operation;
 use crate::place::{Place, perform, prepare};
 use crate::sample::Draw;
+use crate::sweeps::Outputs;
 use crate::workload::{Action, Part};
 
 /// A structure ready for a mix, or why it is not.
@@ -228,11 +231,16 @@ impl<M: Representation, W: Writing<M>> Doing<'_, M, W> {
 
 /// A structure and what there is to do to it.
 struct Bench<'a, M: Representation, W> {
-    candidate: Candidate<'a, M>,
+    mesh: M,
     polygons: &'a PolygonMesh,
+    draw: &'a Draw,
+    outputs: Outputs<M>,
     doing: Doing<'a, M, W>,
     /// The mesh made ready for its edits; `None` without.
     ready: Option<M>,
+    /// The structure as a study has it, for passes that make a mesh or go over a sample; built when it
+    /// is first needed.
+    as_studied: Option<Box<dyn Subject + 'a>>,
 }
 
 impl<'a, M: Representation + 'static, W: Writing<M>> Bench<'a, M, W> {
@@ -247,10 +255,13 @@ impl<'a, M: Representation + 'static, W: Writing<M>> Bench<'a, M, W> {
             writing: PhantomData,
         };
         let mut bench = Self {
-            candidate: Candidate::new(start.polygons, Some(start.draw), mesh),
+            outputs: Outputs::for_mesh(&mesh),
+            mesh,
             polygons: start.polygons,
+            draw: start.draw,
             doing,
             ready: None,
+            as_studied: None,
         };
         bench.look_up();
         Ok(bench)
@@ -262,7 +273,7 @@ impl<'a, M: Representation + 'static, W: Writing<M>> Bench<'a, M, W> {
         if self.doing.chosen.by_edit.is_empty() {
             return Vec::new();
         }
-        let mut mesh = self.candidate.mesh.clone();
+        let mut mesh = self.mesh.clone();
         let script = self.doing.script;
         let edits = script
             .edits()
@@ -298,9 +309,7 @@ impl<'a, M: Representation + 'static, W: Writing<M>> Bench<'a, M, W> {
         clock: &dyn Clock,
         work: impl Fn(&Doing<'a, M, W>, &mut M) -> [u64; 3],
     ) -> MixRun {
-        let Self {
-            candidate, doing, ..
-        } = self;
+        let Self { mesh, doing, .. } = self;
         let mut meshes = match &self.ready {
             Some(ready) => vec![ready.clone(); copies.max(1)],
             None => Vec::new(),
@@ -309,7 +318,7 @@ impl<'a, M: Representation + 'static, W: Writing<M>> Bench<'a, M, W> {
         let mut sums = [0; 3];
         let time = timed(clock, || {
             if meshes.is_empty() {
-                sums = work(doing, black_box(&mut candidate.mesh));
+                sums = work(doing, black_box(mesh));
             }
             for mesh in &mut meshes {
                 let came_to = work(doing, black_box(mesh));
@@ -332,11 +341,14 @@ impl<M: Representation + 'static, W: Writing<M>> Mixer for Bench<'_, M, W> {
     }
 
     fn bytes(&self) -> usize {
-        self.candidate.bytes()
+        self.mesh.memory().total()
     }
 
     fn merged_vertices(&self) -> usize {
-        self.candidate.merged_vertices()
+        {
+            let input = self.polygons.vertex_count();
+            input.saturating_sub(self.mesh.vertex_count())
+        }
     }
 
     fn scans(&self) -> Vec<bool> {
@@ -379,8 +391,22 @@ impl<M: Representation + 'static, W: Writing<M>> Mixer for Bench<'_, M, W> {
         clock: &dyn Clock,
         check: bool,
     ) -> Run {
-        let job = Job { operation, sample };
-        self.candidate.run(&job, runs, clock, check)
+        if sample.is_none() && !operation.makes_a_mesh() && operation != Operation::VvSmooth {
+            return pass_over(&self.mesh, &mut self.outputs, operation, runs, clock, check);
+        }
+        if self.as_studied.is_none() {
+            let roster = Backend::roster();
+            let backend = roster.iter().find(|backend| backend.name() == M::NAME);
+            let built = backend.map(|b| b.put_on_the_bench(self.polygons, Some(self.draw)));
+            self.as_studied = built.and_then(Result::ok).map(|(subject, _)| subject);
+        }
+        match &mut self.as_studied {
+            Some(subject) => subject.run(&Job { operation, sample }, runs, clock, check),
+            None => Run {
+                refusal: Some("no such structure is in the roster".into()),
+                ..Run::done(Time::none_like(clock.now()), None)
+            },
+        }
     }
 
     fn accepted(&mut self) -> Vec<Vec<bool>> {

@@ -8,14 +8,15 @@ use sixfold::{
     Visitor, visit,
 };
 
-use crate::candidate::{Outcome, Run, Sample};
+use crate::candidate::{Run, Sample};
 use crate::clock::{Clock, Time, timed};
+use crate::mix::passes::pass_over;
 use crate::mix::route::Route;
 use crate::mix::script::Script;
 use crate::mix::streams::Streams;
 use crate::mix::{MixRun, Mixer};
-use crate::operation::{Kind, Operation};
-use crate::sweeps::{All, Outputs, Tally, field_sum, share};
+use crate::operation::Operation;
+use crate::sweeps::Outputs;
 use crate::workload::Action;
 
 /// The relations asked, positions, and how many elements there are.
@@ -322,42 +323,34 @@ impl Mixer for Tabulated<'_> {
         clock: &dyn Clock,
         check: bool,
     ) -> Run {
-        let mut sum = Tally::default();
-        let time = timed(clock, || {
-            for _ in 0..runs {
-                sum = Tally::default();
-                for &kind in operation.kinds() {
-                    let tables = black_box(&self.tables);
-                    sum.add(share(operation, kind, tables, &All, &mut self.outputs));
+        if operation == Operation::VvSmooth {
+            let moved = &mut self.moved;
+            let run = pass_over(
+                &self.tables,
+                &mut self.outputs,
+                operation,
+                runs,
+                clock,
+                check,
+            );
+            // Into a copy, as with every structure: the old positions stay.
+            let swap = timed(clock, || {
+                for _ in 0..runs {
+                    moved.copy_from_slice(black_box(self.outputs.vertices.values()));
+                    black_box(&mut *moved);
                 }
-                if operation == Operation::VvSmooth {
-                    // Into a copy, as with every structure: the old positions stay.
-                    self.moved.copy_from_slice(self.outputs.vertices.values());
-                    black_box(&mut self.moved);
-                }
-                black_box(&mut self.outputs);
-            }
-        });
-        let checksum = || match operation {
-            Operation::FaceBarycenter => field_sum(self.outputs.faces.values().iter().copied()),
-            Operation::VertexNormal | Operation::VvSmooth => {
-                field_sum(self.outputs.vertices.values().iter().copied())
-            }
-            Operation::EdgeLength => sum.sum,
-            _ => sum.count as f64,
-        };
-        let elements = match operation.per() {
-            "visit" => sum.count,
-            per => self.count(per),
-        };
-        let outcome = check.then(|| Outcome {
-            checksum: checksum(),
-            elements,
-        });
-        Run {
-            time: time.scaled(1.0 / f64::from(runs)),
-            ..Run::done(time, outcome)
+            });
+            let time = run.time.plus(swap.scaled(1.0 / f64::from(runs)));
+            return Run { time, ..run };
         }
+        pass_over(
+            &self.tables,
+            &mut self.outputs,
+            operation,
+            runs,
+            clock,
+            check,
+        )
     }
 
     fn accepted(&mut self) -> Vec<Vec<bool>> {
@@ -368,17 +361,5 @@ impl Mixer for Tabulated<'_> {
 
     fn build(&self, polygons: &PolygonMesh, clock: &dyn Clock) -> Time {
         (self.build)(polygons, &relations(self.script), clock)
-    }
-}
-
-impl Tabulated<'_> {
-    /// How many elements there are of the kind called `per`.
-    fn count(&self, per: &str) -> u64 {
-        let count = match Kind::ALL.into_iter().find(|kind| kind.name() == per) {
-            Some(Kind::Vertex) => self.tables.vertex_count(),
-            Some(Kind::Edge) => self.tables.edge_count(),
-            _ => self.tables.face_count(),
-        };
-        count as u64
     }
 }

@@ -1,0 +1,52 @@
+//! Passes that only ask, on any mesh.
+
+use std::hint::black_box;
+
+use sixfold::MeshQuery;
+
+use crate::candidate::{Outcome, Run};
+use crate::clock::{Clock, timed};
+use crate::operation::{Kind, Operation};
+use crate::sweeps::{All, Outputs, Tally, field_sum, share};
+
+/// Runs `operation` over all of `mesh` so many times; the time is that of one.
+pub(crate) fn pass_over<M: MeshQuery>(
+    mesh: &M,
+    outputs: &mut Outputs<M>,
+    operation: Operation,
+    runs: u32,
+    clock: &dyn Clock,
+    check: bool,
+) -> Run {
+    let mut sum = Tally::default();
+    let time = timed(clock, || {
+        for _ in 0..runs {
+            sum = Tally::default();
+            for &kind in operation.kinds() {
+                sum.add(share(operation, kind, black_box(mesh), &All, outputs));
+            }
+            black_box(&mut *outputs);
+        }
+    });
+    let outcome = check.then(|| {
+        let of_vertices = || field_sum(mesh.vertices().map(|v| outputs.vertices[v]));
+        let of_faces = || field_sum(mesh.faces().map(|f| outputs.faces[f]));
+        let checksum = match operation {
+            Operation::FaceBarycenter => of_faces(),
+            Operation::VertexNormal | Operation::VvSmooth => of_vertices(),
+            Operation::EdgeLength => sum.sum,
+            _ => sum.count as f64,
+        };
+        let named = Kind::ALL
+            .into_iter()
+            .find(|kind| kind.name() == operation.per());
+        let elements = match named {
+            Some(Kind::Vertex) => mesh.vertex_count() as u64,
+            Some(Kind::Edge) => mesh.edge_count() as u64,
+            Some(Kind::Face) => mesh.face_count() as u64,
+            None => sum.count,
+        };
+        Outcome { checksum, elements }
+    });
+    Run::done(time.scaled(1.0 / f64::from(runs)), outcome)
+}
