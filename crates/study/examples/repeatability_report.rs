@@ -1,0 +1,260 @@
+//! The same study again and again: how often each winner is named, and whether intervals hold what
+//! they promise.
+//!
+//! ```sh
+//! cargo run --release -p study --example repeatability_report -- reports/repeatability 20 45
+//! ```
+//!
+//! Arguments: the folder to write to, how many studies, and the budget of each in seconds. Studies a
+//! torus of 100,352 triangles, shuffled, with all structures and all nine relations.
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::fmt::Write as _;
+use std::fs;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+use sixfold::{Relation, shapes};
+use study::{Environment, Operation, Report, ResultRow, Settings, Specimen, Standing, study};
+
+/// Above this the order of two backends has to be the same, again and again.
+const GAP: f64 = 1.1;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let folder = arguments.next().unwrap_or("reports/repeatability".into());
+    let runs: usize = arguments.next().map_or(Ok(20), |text| text.parse())?;
+    let seconds: u64 = arguments.next().map_or(Ok(45), |text| text.parse())?;
+
+    let torus = shapes::triangle_torus(224, 224)?;
+    let specimen = Specimen::new(
+        "torus of 100,352 triangles, shuffled",
+        shapes::shuffled(&torus, 1),
+    );
+    let environment = Environment::here(1, seconds as f64);
+    let mut reports = Vec::new();
+    let start = Instant::now();
+    for run in 0..runs {
+        let settings = Settings {
+            operations: Relation::ALL.map(Operation::Relation).to_vec(),
+            budget: Duration::from_secs(seconds),
+            seed: run as u64 + 1,
+            ..Settings::default()
+        };
+        let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ())?;
+        eprintln!(
+            "{} of {runs}, {:.0} s",
+            run + 1,
+            start.elapsed().as_secs_f64()
+        );
+        reports.push(report);
+    }
+    let each = start.elapsed().as_secs_f64() / runs as f64;
+    let text = told(&reports, &environment, seconds, each);
+    fs::create_dir_all(&folder)?;
+    fs::write(format!("{folder}/repeatability.md"), &text)?;
+    print!("{text}");
+    Ok(())
+}
+
+/// The report: winners, orders of pairs, coverage, noise.
+fn told(reports: &[Report], environment: &Environment, seconds: u64, each: f64) -> String {
+    let runs = reports.len();
+    let Environment {
+        cpu_model,
+        cores,
+        rustc,
+        load_average,
+        ..
+    } = environment;
+    let mut text = format!(
+        "# The same study again and again\n\n```sh\n\
+         cargo run --release -p study --example repeatability_report -- reports/repeatability {runs} {seconds}\n\
+         ```\n\n{}, {} cores, load {:.1} at the start; {rustc}; processor time of the thread.\n\n",
+        cpu_model.as_deref().unwrap_or("unknown processor"),
+        cores.unwrap_or(0),
+        load_average.unwrap_or(f64::NAN),
+    );
+    let _ = writeln!(
+        text,
+        "{runs} studies, one after the other, of a shuffled torus of 100,352 triangles: all structures, all nine\n\
+         relations, a budget of {seconds} s and another seed each; {each:.0} s from beginning to end, on average.\n"
+    );
+    text += &winners(reports);
+    text += &orders(reports);
+    text += &coverage(reports);
+    text
+}
+
+/// How often who was named.
+fn winners(reports: &[Report]) -> String {
+    let mut text = String::from(
+        "## Who was named\n\n| operation | named best, or tied with the best, in so many studies |\n|---|---|\n",
+    );
+    for operation in Relation::ALL.map(Operation::Relation) {
+        let mut named: BTreeMap<String, [usize; 2]> = BTreeMap::new();
+        for row in reports.iter().flat_map(|report| report.rows(operation)) {
+            match row.standing {
+                Some(Standing::Best) => named.entry(row.backend.clone()).or_default()[0] += 1,
+                Some(Standing::Tied) => named.entry(row.backend.clone()).or_default()[1] += 1,
+                _ => {}
+            }
+        }
+        let mut named: Vec<_> = named.into_iter().collect();
+        named.sort_by_key(|(_, [best, tied])| std::cmp::Reverse((*best, *tied)));
+        let words: Vec<String> = named
+            .into_iter()
+            .map(|(backend, [best, tied])| match (best, tied) {
+                (best, 0) => format!("{backend} best {best}"),
+                (0, tied) => format!("{backend} tied {tied}"),
+                (best, tied) => format!("{backend} best {best}, tied {tied}"),
+            })
+            .collect();
+        let _ = writeln!(text, "| {operation} | {} |", words.join("; "));
+    }
+    text + "\n"
+}
+
+/// The times of one backend in one operation, study by study.
+fn series(reports: &[Report], operation: Operation, backend: &str) -> Vec<f64> {
+    let of = |report: &Report| {
+        let row = report.rows(operation).find(|row| row.backend == backend)?;
+        row.median_ns
+    };
+    reports.iter().filter_map(of).collect()
+}
+
+/// Whether pairs that differ by more than a tenth are in one order in all studies.
+fn orders(reports: &[Report]) -> String {
+    let (mut pairs, mut apart, mut steady) = (0, 0, 0);
+    let mut worst: Option<(usize, String)> = None;
+    let backends: Vec<&str> = reports[0]
+        .backends
+        .iter()
+        .map(|b| b.name.as_str())
+        .collect();
+    for operation in Relation::ALL.map(Operation::Relation) {
+        for (i, a) in backends.iter().enumerate() {
+            for b in &backends[i + 1..] {
+                let both = series(reports, operation, a)
+                    .into_iter()
+                    .zip(series(reports, operation, b));
+                let ratios: Vec<f64> = both.map(|(a, b)| a / b).collect();
+                if ratios.is_empty() {
+                    continue;
+                }
+                pairs += 1;
+                let gap = median(&ratios);
+                if gap.max(1.0 / gap) <= GAP {
+                    continue;
+                }
+                apart += 1;
+                let same = ratios
+                    .iter()
+                    .filter(|&&ratio| (ratio > 1.0) == (gap > 1.0))
+                    .count();
+                steady += usize::from(20 * same >= 19 * ratios.len());
+                if worst.as_ref().is_none_or(|(least, _)| same < *least) {
+                    let what = format!(
+                        "{operation}: {a} and {b}, a gap of {:.2}",
+                        gap.max(1.0 / gap)
+                    );
+                    worst = Some((same, what));
+                }
+            }
+        }
+    }
+    let runs = reports.len();
+    let worst = worst.map_or(String::new(), |(same, what)| {
+        format!(" The least steady is in one order in {same} of {runs} ({what}).")
+    });
+    format!(
+        "## Whether the order is the same\n\nOf {pairs} pairs of backends, {apart} differ by more than {:.0} % in the median of all studies; {steady} of\n\
+         these are in the same order in 19 of 20 studies or more.{worst}\n\n",
+        100.0 * (GAP - 1.0)
+    )
+}
+
+/// How often the interval of one study holds the median of all.
+fn coverage(reports: &[Report]) -> String {
+    let mut text = String::from(
+        "## What the intervals hold\n\nThe share of 95 % intervals that hold the median over all studies, and how wide they are (from one end to\n\
+         the other, by the median; the median of all). Nanoseconds drift with the machine from study to study, which\n\
+         no interval within one study can know; ratios drift less.\n\n\
+         | interval of | hold it | of | width |\n|---|---|---|---|\n",
+    );
+    let of_time = |row: &ResultRow| Some([row.ci_low_ns?, row.median_ns?, row.ci_high_ns?]);
+    let of_ratio =
+        |row: &ResultRow| Some([row.ratio_ci_low?, row.ratio_to_best?, row.ratio_ci_high?]);
+    type Of = dyn Fn(&ResultRow) -> Option<[f64; 3]>;
+    let kinds: [(&str, &Of); 2] = [("the time", &of_time), ("the ratio to the best", &of_ratio)];
+    for (name, of) in kinds {
+        for scanning in [false, true] {
+            let (mut held, mut all, mut widths) = (0, 0, Vec::new());
+            for operation in Relation::ALL.map(Operation::Relation) {
+                let mut rows: BTreeMap<&str, Vec<[f64; 3]>> = BTreeMap::new();
+                // Where another is best, the ratio is another.
+                let best = |report: &Report| {
+                    let best = report
+                        .rows(operation)
+                        .find(|row| row.ratio_to_best == Some(1.0));
+                    best.map(|row| row.backend.clone())
+                };
+                let usual = reports.iter().filter_map(best).next();
+                for report in reports {
+                    if best(report) != usual {
+                        continue;
+                    }
+                    for row in report.rows(operation).filter(|row| row.sampled == scanning) {
+                        let itself = name != "the time" && Some(&row.backend) == usual.as_ref();
+                        if let Some(interval) = of(row).filter(|_| !itself) {
+                            rows.entry(&row.backend).or_default().push(interval);
+                        }
+                    }
+                }
+                for intervals in rows.into_values() {
+                    let middles: Vec<f64> =
+                        intervals.iter().map(|[_, middle, _]| *middle).collect();
+                    let truth = median(&middles);
+                    for [low, middle, high] in intervals {
+                        held += usize::from(low <= truth && truth <= high);
+                        all += 1;
+                        widths.push((high - low) / middle);
+                    }
+                }
+            }
+            if all == 0 {
+                continue;
+            }
+            let what = if scanning { ", scans" } else { "" };
+            let share = 100.0 * held as f64 / all as f64;
+            let width = 100.0 * median(&widths);
+            let _ = writeln!(
+                text,
+                "| {name}{what} | {share:.0} % | {all} | {width:.1} % |"
+            );
+        }
+    }
+    let noises: Vec<f64> = { reports.iter() }
+        .filter_map(|report| Some(report.control.as_ref()?.typical))
+        .collect();
+    if !noises.is_empty() {
+        let worst = noises.iter().copied().fold(1.0, f64::max);
+        let _ = writeln!(
+            text,
+            "\nThe two columns of the backend that is entered twice differ by {:.1} % (the median over the studies of the\n\
+             median over the relations), at most {:.1} %.",
+            100.0 * (median(&noises) - 1.0),
+            100.0 * (worst - 1.0)
+        );
+    }
+    text
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let count = sorted.len();
+    f64::midpoint(sorted[(count - 1) / 2], sorted[count / 2])
+}
