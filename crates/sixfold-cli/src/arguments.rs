@@ -1,5 +1,6 @@
 //! What can be asked for.
 
+mod memory;
 mod remeshing;
 mod render;
 mod reshaping;
@@ -12,6 +13,7 @@ use ::study::Operation;
 use clap::{Args, Parser, Subcommand};
 use sixfold::shapes::Order;
 
+pub(crate) use memory::Memory;
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
@@ -67,6 +69,8 @@ pub(crate) enum Command {
     Study(Study),
     /// Say what a mesh is, and which backends can hold it
     Inspect(Inspect),
+    /// Say what each backend takes in memory, counted in three ways that must agree
+    Memory(Memory),
     /// Write a built-in shape
     Generate(Generate),
     /// Say what subdivision schemes there are, and what runs on which backend

@@ -15,8 +15,10 @@ mod edits;
 mod facts_text;
 mod failure;
 mod generate;
+mod heap;
 mod inspect;
 mod load;
+mod memory;
 mod numbers;
 mod output;
 mod progress;
@@ -54,6 +56,7 @@ fn main() -> ExitCode {
         Ok(None) => study::run(&arguments::Study::default()),
         Ok(Some(Command::Study(arguments))) => study::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
+        Ok(Some(Command::Memory(arguments))) => memory::run(&arguments),
         Ok(Some(Command::Generate(arguments))) => generate::run(&arguments),
         Ok(Some(Command::Schemes(arguments))) => schemes::run(&arguments),
         Ok(Some(Command::Subdivide(arguments))) => subdivide::run(&arguments),

@@ -292,7 +292,7 @@ impl Inspection {
     }
 }
 
-fn write_json(value: &impl Serialize, mut writer: impl io::Write) -> io::Result<()> {
+pub(crate) fn write_json(value: &impl Serialize, mut writer: impl io::Write) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut writer, value).map_err(io::Error::from)?;
     writeln!(writer)
 }
