@@ -85,7 +85,15 @@ fn print(audit: &Audit, text: &mut Text) {
 
 /// The three ways for each backend that holds the mesh, and its tables beneath.
 fn bytes_table(audit: &Audit) -> String {
-    let header = ["bytes", "rows", "formula", "tables", "counted", "peak", "/ counted"];
+    let header = [
+        "bytes",
+        "rows",
+        "formula",
+        "tables",
+        "counted",
+        "peak",
+        "/ counted",
+    ];
     let mut table = headed(&header);
     for one in &audit.backends {
         let backend = &one.backend;
@@ -115,7 +123,15 @@ fn bytes_table(audit: &Audit) -> String {
             let name = format!("  {}", part.table);
             let held = format!("{} ", grouped(part.bytes));
             let blank = String::new;
-            let cells = [name, grouped(part.rows), blank(), held, blank(), blank(), blank()];
+            let cells = [
+                name,
+                grouped(part.rows),
+                blank(),
+                held,
+                blank(),
+                blank(),
+                blank(),
+            ];
             row(&mut table, cells);
         }
     }
@@ -124,7 +140,12 @@ fn bytes_table(audit: &Audit) -> String {
 
 /// What that is for each vertex, beside a large closed mesh of triangles.
 fn words_table(audit: &Audit) -> String {
-    let header = ["for each vertex", "bytes", "words", "words in a closed triangle mesh"];
+    let header = [
+        "for each vertex",
+        "bytes",
+        "words",
+        "words in a closed triangle mesh",
+    ];
     let mut table = headed(&header);
     for one in audit.backends.iter().filter(|one| one.backend.holds) {
         let figure = |figure: Option<f64>| figure.map_or("–".into(), |n| format!("{n:.1}"));

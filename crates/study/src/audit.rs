@@ -245,7 +245,12 @@ mod tests {
     /// What comes of one backend on a torus of 12 vertices, 36 edges and 24 triangles.
     fn audited(backend: Backend, heap: &Told) -> Audit {
         let torus = shapes::triangle_torus(4, 3).expect("a small torus");
-        audit(&Specimen::new("torus", torus), &[backend], heap, &mut |_| ())
+        audit(
+            &Specimen::new("torus", torus),
+            &[backend],
+            heap,
+            &mut |_| (),
+        )
     }
 
     /// Of half-edges: 36 · 24 + 12 · 16 + 24 · 4.
@@ -270,14 +275,13 @@ mod tests {
     fn what_differs_is_named_with_its_bytes() {
         let honest = Backend::of::<HalfEdgeMesh>();
         let spare = audited(honest, &Told::new([[BYTES + 40, BYTES]]));
-        let expected = "half-edge: the allocator counted 1192 bytes, 40 bytes more than its tables hold, 1152";
+        let expected =
+            "half-edge: the allocator counted 1192 bytes, 40 bytes more than its tables hold, 1152";
         assert_eq!(spare.faults(), [expected]);
         assert_eq!(spare.backends[0].agrees, Some(false));
 
-        let wrong = Backend {
-            layout_bytes: |counts| HalfEdgeMesh::layout_bytes(counts) + 8,
-            ..honest
-        };
+        let mut wrong = honest;
+        wrong.layout_bytes = |counts| HalfEdgeMesh::layout_bytes(counts) + 8;
         let formula = audited(wrong, &Told::new([[BYTES, BYTES]]));
         let expected = "half-edge: its tables hold 1152 bytes, 8 bytes fewer than its layout has by the formula, 1160";
         assert_eq!(formula.faults(), [expected]);
