@@ -68,7 +68,8 @@ fn memories() {
     let sixfold = Sixfold::new();
     golden("memory.txt", &printed(&sixfold, &["memory"]));
     // Mixed degrees, and two vertices at one place, which a soup merges.
-    let seam = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 2 0 0\nf 1 2 3 4\nf 5 6 3\n";
+    let seam =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\nf 5 6 7\n";
     sixfold.file("seam.obj", seam);
     let some = [
         "memory",

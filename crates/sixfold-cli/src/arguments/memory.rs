@@ -11,16 +11,16 @@ const EXAMPLES: &str = "Examples:
   sixfold memory bunny.obj --backends half-edge,corner-table
   sixfold memory quads.obj --triangulate --json -
 
-Three ways to one number. formula: what the layout takes, by the sizes of the mesh alone. tables: what
-the tables of the structure hold, room to spare included. counted: bytes that the program's allocator
-has handed out after building, less those before. They must be equal, to the byte. The peak is the
-most that building takes at once; the polygons it builds from are not in it. What an allocator adds to
-each block, and the structure's own few dozen bytes that are on no heap, are in none of them.
+Three ways to one number. formula: what the layout takes, by the sizes of the mesh alone. tables:
+what the tables of the structure hold, room to spare included. counted: the bytes that the program's
+allocator has handed out after building, less those before. They must be equal, to the byte. The
+peak is the most that building takes at once; the polygons it builds from are not in it. What an
+allocator adds to each block, and the structure's own few dozen bytes outside the heap, are in none.
 
 A word is 4 bytes, an index or a coordinate. The literature counts words for each vertex of a large
 closed mesh of triangles, with 2 faces and 3 edges a vertex: 18 for a polygon soup, 9 for an indexed
-face set, 16 for face-vertex (here 17: a list of faces has its length beside its start, so that it can
-grow), 30 for winged-edge, 24 for half-edge without links back, 16 for a corner table.
+face set, 16 for face-vertex (here 17: each list of faces has its length beside its start, so that
+it can grow), 30 for winged-edge, 24 for half-edge without links back, 16 for a corner table.
 
 Exit codes: 0 done; 1 the three differ, a fault in Sixfold; 2 wrong usage or unusable input;
 3 no backend asked for can hold the mesh; 4 interrupted.";
