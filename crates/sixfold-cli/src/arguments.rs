@@ -1,6 +1,7 @@
 //! What can be asked for.
 
 mod picking;
+mod memory;
 mod remeshing;
 mod render;
 mod reshaping;
@@ -14,6 +15,7 @@ use clap::{Args, Parser, Subcommand};
 use sixfold::shapes::Order;
 
 pub(crate) use picking::{Pick, Workloads};
+pub(crate) use memory::Memory;
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
@@ -74,6 +76,8 @@ pub(crate) enum Command {
     Workloads(Workloads),
     /// Say what a mesh is, and which backends can hold it
     Inspect(Inspect),
+    /// Say what each backend takes in memory, counted in three ways that must agree
+    Memory(Memory),
     /// Write a built-in shape
     Generate(Generate),
     /// Say what subdivision schemes there are, and what runs on which backend

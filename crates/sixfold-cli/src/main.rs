@@ -15,8 +15,10 @@ mod edits;
 mod facts_text;
 mod failure;
 mod generate;
+mod heap;
 mod inspect;
 mod load;
+mod memory;
 mod numbers;
 mod output;
 mod pick;
@@ -58,6 +60,7 @@ fn main() -> ExitCode {
         Ok(Some(Command::Pick(arguments))) => pick::run(&arguments),
         Ok(Some(Command::Workloads(arguments))) => workloads::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
+        Ok(Some(Command::Memory(arguments))) => memory::run(&arguments),
         Ok(Some(Command::Generate(arguments))) => generate::run(&arguments),
         Ok(Some(Command::Schemes(arguments))) => schemes::run(&arguments),
         Ok(Some(Command::Subdivide(arguments))) => subdivide::run(&arguments),

@@ -139,6 +139,33 @@ impl Waiting {
     }
 }
 
+/// A line that says what is being done, on standard error if that is a terminal. It stands still: no
+/// thread of its own allocates while somebody counts.
+pub(crate) struct Stage(Option<ProgressBar>);
+
+impl Stage {
+    /// An empty line.
+    pub(crate) fn new() -> Self {
+        let shown = io::stderr().is_terminal();
+        Self(shown.then(ProgressBar::new_spinner))
+    }
+
+    /// Says what is next.
+    pub(crate) fn show(&self, what: String) {
+        if let Self(Some(line)) = self {
+            line.set_message(what);
+            line.tick();
+        }
+    }
+
+    /// Takes the line away.
+    pub(crate) fn clear(&self) {
+        if let Self(Some(line)) = self {
+            line.finish_and_clear();
+        }
+    }
+}
+
 /// The exit code of a command that was ended before its time.
 pub(crate) const INTERRUPTED: u8 = 4;
 

@@ -36,6 +36,7 @@ fn help() {
         ("help.txt", &["--help"][..]),
         ("help_study.txt", &["study", "--help"]),
         ("help_inspect.txt", &["inspect", "--help"]),
+        ("help_memory.txt", &["memory", "--help"]),
         ("help_generate.txt", &["generate", "--help"]),
         ("help_render.txt", &["render", "--help"]),
         ("help_schemes.txt", &["schemes", "--help"]),
@@ -59,6 +60,24 @@ fn schemes() {
 #[test]
 fn edits() {
     golden("edits.txt", &printed(&Sixfold::new(), &["edits"]));
+}
+
+/// The bytes that building takes are the same each time: nothing here has to be left out.
+#[test]
+fn memories() {
+    let sixfold = Sixfold::new();
+    golden("memory.txt", &printed(&sixfold, &["memory"]));
+    // Mixed degrees, and two vertices at one place, which a soup merges.
+    let seam =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\nf 5 6 7\n";
+    sixfold.file("seam.obj", seam);
+    let some = [
+        "memory",
+        "seam.obj",
+        "--backends",
+        "polygon-soup,half-edge,corner-table",
+    ];
+    golden("memory_seam.txt", &printed(&sixfold, &some));
 }
 
 #[test]

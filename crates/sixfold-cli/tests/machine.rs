@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::run::{Sixfold, TETRAHEDRON};
 
-const FACTS: [(&str, &str); 19] = [
+pub(crate) const FACTS: [(&str, &str); 19] = [
     ("vertices", "number"),
     ("edges", "number"),
     ("faces", "number"),
@@ -67,7 +67,7 @@ fn kind(value: &Value) -> &'static str {
     }
 }
 
-fn has(object: &Value, fields: &[(&str, &str)]) {
+pub(crate) fn has(object: &Value, fields: &[(&str, &str)]) {
     for (field, kinds) in fields {
         let value = object
             .get(field)
@@ -79,7 +79,7 @@ fn has(object: &Value, fields: &[(&str, &str)]) {
     }
 }
 
-fn parsed(text: &str) -> Value {
+pub(crate) fn parsed(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 

@@ -4,6 +4,7 @@ mod bad_input;
 mod golden;
 mod interrupt;
 mod machine;
+mod memory;
 mod obj;
 mod outputs;
 mod places;

@@ -17,6 +17,7 @@ fn no_output_takes_the_place_of_the_mesh_or_of_another() {
         (&["study", "ok.obj", "--csv", "./ok.obj"], "overwrite"),
         (&["study", "./ok.obj", "--json", &same], "overwrite"),
         (&["inspect", "ok.obj", "--json", &same], "overwrite"),
+        (&["memory", "ok.obj", "--json", &same], "overwrite"),
         // A week: it is refused before it is measured.
         (
             &[
@@ -47,6 +48,7 @@ fn text_that_gets_lost_is_an_error() {
         &["generate", "cube", "-o", "-"],
         &["decimate", "ok.obj", "--faces", "4", "-o", "small.obj"],
         &["edits"],
+        &["memory", "ok.obj"],
         &["--help"],
         &["study", "--help"],
         &["--version"],

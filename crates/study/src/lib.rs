@@ -3,11 +3,13 @@
 //! [`study`] builds every backend asked for, runs the [`Operation`]s on them in interleaved rounds
 //! until the budget is spent, proves by checksum that all did the same work, and gives a [`Report`].
 //! [`inspect`] says what a mesh is and which backends can hold it, and measures nothing.
+//! [`audit`] counts the bytes of each in three ways, which must agree.
 //!
 //! What a reader of the figures should know is in `reports/SCHEMA.md`. This crate knows no
 //! command line and prints nothing: progress goes to a closure, and a flag stops it.
 
 mod agreement;
+mod audit;
 mod control;
 #[cfg(test)]
 mod disturbed;
@@ -26,6 +28,7 @@ mod timer;
 mod warnings;
 mod words;
 
+pub use audit::{Audit, Audited, audit};
 pub use environment::Environment;
 pub use inspect::{Specimen, inspect};
 pub use measure::Progress;
@@ -42,6 +45,6 @@ pub use study::{Settings, StudyError, study};
 pub use timer::Timer;
 pub use workload::{Access, Action, Amount, NoPlace, Workload, WorkloadError, built_in, built_ins};
 pub use workload::{
-    Backend, Clock, Editing, Editor, Edits, Kind, MachineClock, Operation, Refiner, Refining,
-    SingleEdit, Time, UnknownOperation, Way,
+    Backend, Clock, Editing, Editor, Edits, Heap, Kind, MachineClock, Operation, Refiner, Refining,
+    SingleEdit, Time, UnknownOperation, Way, Weighed,
 };

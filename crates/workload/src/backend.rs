@@ -8,12 +8,13 @@ use sixfold::{
 };
 
 use crate::candidate::{Candidate, Subject};
+use crate::heap::{Heap, Weighed, weigh};
 use crate::sample::Draw;
 
 /// A representation, with what is known of it and how it is built and put to the test.
 ///
 /// [`Backend::roster`] has those of Sixfold; [`Backend::of`] makes one of any other, which a study
-/// then measures beside them ([`Settings::extra`](crate::Settings::extra)).
+/// then measures beside them (`extra` of its settings).
 #[derive(Clone, Copy)]
 pub struct Backend {
     /// What is known of it without building it.
@@ -21,6 +22,7 @@ pub struct Backend {
     /// Bytes that its layout takes in theory for a mesh with such counts.
     pub layout_bytes: fn(&Counts) -> usize,
     pub(crate) build: Build,
+    pub(crate) weigh: fn(&PolygonMesh, &dyn Heap) -> Result<Weighed, BuildError>,
 }
 
 /// Builds the structure and puts it on the bench; what it weighs is asked before anything is run.
@@ -40,6 +42,7 @@ impl Backend {
                 let memory = mesh.memory();
                 Ok((Box::new(Candidate::new(polygons, draw, mesh)), memory))
             },
+            weigh: weigh::<M>,
         }
     }
 
@@ -70,6 +73,15 @@ impl Backend {
         draw: Option<&'a Draw>,
     ) -> Result<OnTheBench<'a>, BuildError> {
         (self.build)(polygons, draw)
+    }
+
+    /// Builds it from `polygons` alone, with nothing beside it, and has `heap` count what that takes.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot hold them.
+    pub fn weigh(&self, polygons: &PolygonMesh, heap: &dyn Heap) -> Result<Weighed, BuildError> {
+        (self.weigh)(polygons, heap)
     }
 
     /// What users call it.

@@ -1,0 +1,68 @@
+//! The allocator of the program: the system's, with counters.
+
+use std::alloc::System;
+
+use ::study::Heap;
+use peakmem_alloc::{PeakMemAlloc, PeakMemAllocTrait};
+use stats_alloc::StatsAlloc;
+
+/// Counts what comes and goes; hands everything on to the system, as it was asked for.
+static LIVE: StatsAlloc<System> = StatsAlloc::system();
+
+/// Counts how much there has been at once.
+#[global_allocator]
+static PEAK: PeakMemAlloc<&StatsAlloc<System>> = PeakMemAlloc::new(&LIVE);
+
+/// The counters of the allocator, over all threads.
+pub(crate) struct Counters;
+
+impl Heap for Counters {
+    fn live(&self) -> usize {
+        let stats = LIVE.stats();
+        // Growing and shrinking blocks are in both already.
+        stats
+            .bytes_allocated
+            .saturating_sub(stats.bytes_deallocated)
+    }
+
+    fn restart_peak(&self) {
+        PEAK.reset_peak_memory();
+    }
+
+    fn peak(&self) -> usize {
+        PEAK.get_peak_memory()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BYTES: usize = 256 << 20;
+
+    /// So large a block that what tests beside this one allocate does not count.
+    fn about(figure: usize, expected: usize) -> bool {
+        figure.abs_diff(expected) < BYTES / 8
+    }
+
+    #[test]
+    fn blocks_are_counted_as_they_come_grow_shrink_and_go() {
+        let before = Counters.live();
+        Counters.restart_peak();
+        let live = || Counters.live().saturating_sub(before);
+        let mut block = Vec::<u8>::with_capacity(1);
+        assert!(about(live(), 0) && about(Counters.peak(), 0));
+        block.reserve_exact(BYTES);
+        assert!(about(live(), BYTES), "{}", live());
+        block.shrink_to(BYTES / 2);
+        assert!(about(live(), BYTES / 2), "{}", live());
+        drop(block);
+        assert!(about(live(), 0), "{}", live());
+        let zeros = vec![0_u8; BYTES / 2];
+        assert!(about(live(), BYTES / 2), "{}", live());
+        drop(zeros);
+        assert!(about(Counters.peak(), BYTES), "{}", Counters.peak());
+        Counters.restart_peak();
+        assert!(about(Counters.peak(), 0), "{}", Counters.peak());
+    }
+}

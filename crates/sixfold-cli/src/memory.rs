@@ -1,0 +1,266 @@
+//! `sixfold memory`: what each backend takes, by its formula, its tables and the allocator.
+
+use std::process::ExitCode;
+
+use ::study::{Audit, Audited, BackendReport, Settings, audit};
+use comfy_table::{Cell, CellAlignment, Table};
+
+use crate::arguments::Memory;
+use crate::facts_text::{facts_text, verdicts_text};
+use crate::failure::Failure;
+use crate::heap::Counters;
+use crate::load;
+use crate::numbers::{counted, grouped};
+use crate::output::{Output, check_places, is_stdout};
+use crate::progress::{Stage, end_on_interrupt};
+use crate::tables::table;
+use crate::text::{Text, complain, hanging};
+
+/// Two of the three ways differ.
+const DIFFERENT: u8 = 1;
+
+/// Weighs what was asked for, and shows it.
+pub(crate) fn run(arguments: &Memory) -> Result<ExitCode, Failure> {
+    end_on_interrupt();
+    check_places(
+        arguments.mesh.as_deref(),
+        &[("--json", arguments.json.as_ref())],
+    )?;
+    let json = Output::open_if(arguments.json.as_ref())?;
+    let specimen = match &arguments.mesh {
+        Some(path) => load::for_study(path, false, arguments.triangulate)?,
+        None => load::built_in(),
+    };
+    let settings = Settings {
+        backends: arguments.backends.clone(),
+        ..Settings::default()
+    };
+    let backends = settings.chosen_backends().map_err(Failure::usage)?;
+    let stage = Stage::new();
+    let audit = audit(&specimen, &backends, &Counters, &mut |backend| {
+        stage.show(format!("building {} and counting", backend.name()));
+    });
+    stage.clear();
+
+    let write = |json: Option<Output>| match json {
+        Some(output) => output.finish(|writer| audit.write_json(writer)),
+        None => Ok(()),
+    };
+    // That is an answer: who was asked, and why each refuses.
+    if let Some(none) = audit.none_holds() {
+        write(json)?;
+        return Err(Failure::unsupported(none));
+    }
+    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
+    print(&audit, &mut text);
+    // The text is out before a file can fail.
+    let done = text.finish().and(write(json));
+    let code = judged(&audit.faults());
+    done.map(|()| code)
+}
+
+/// Says where the three ways differ, if they do; that is an answer of its own.
+fn judged(faults: &[String]) -> ExitCode {
+    for fault in faults {
+        complain(&format!(
+            "error: {fault}: a fault in Sixfold, please report it"
+        ));
+    }
+    match faults.is_empty() {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::from(DIFFERENT),
+    }
+}
+
+fn print(audit: &Audit, text: &mut Text) {
+    let reports: Vec<BackendReport> = audit.backends.iter().map(|b| b.backend.clone()).collect();
+    text.say(&facts_text(&audit.mesh));
+    text.say("");
+    text.say(&verdicts_text(&audit.mesh, &reports));
+    text.say("");
+    text.say(&bytes_table(audit));
+    text.say("");
+    text.say(&words_table(audit));
+    text.say("");
+    for words in words(audit) {
+        text.say(&hanging("- ", &words));
+    }
+}
+
+/// The three ways for each backend that holds the mesh, and its tables beneath.
+fn bytes_table(audit: &Audit) -> String {
+    let header = [
+        "bytes",
+        "rows",
+        "formula",
+        "tables",
+        "counted",
+        "peak",
+        "/ counted",
+    ];
+    let mut table = headed(&header);
+    for one in &audit.backends {
+        let backend = &one.backend;
+        let bytes = |bytes: Option<usize>| bytes.map_or(String::new(), grouped);
+        // A figure that differs from the one before it has a sign.
+        let beside = |figure: Option<usize>, before: Option<usize>| {
+            let sign = if figure == before { " " } else { "!" };
+            format!("{}{sign}", bytes(figure))
+        };
+        if !backend.holds {
+            continue;
+        }
+        let ratio = one.peak_to_counted;
+        row(
+            &mut table,
+            [
+                backend.name.clone(),
+                String::new(),
+                format!("{} ", bytes(backend.layout_bytes)),
+                beside(backend.bytes, backend.layout_bytes),
+                beside(one.counted_bytes, backend.bytes),
+                bytes(one.peak_bytes),
+                ratio.map_or("–".into(), |ratio| format!("{ratio:.2}")),
+            ],
+        );
+        for part in &backend.tables {
+            let name = format!("  {}", part.table);
+            let held = format!("{} ", grouped(part.bytes));
+            let blank = String::new;
+            let cells = [
+                name,
+                grouped(part.rows),
+                blank(),
+                held,
+                blank(),
+                blank(),
+                blank(),
+            ];
+            row(&mut table, cells);
+        }
+    }
+    table.trim_fmt()
+}
+
+/// What that is for each vertex, beside a large closed mesh of triangles.
+fn words_table(audit: &Audit) -> String {
+    let header = [
+        "for each vertex",
+        "bytes",
+        "words",
+        "words in a closed triangle mesh",
+    ];
+    let mut table = headed(&header);
+    for one in audit.backends.iter().filter(|one| one.backend.holds) {
+        let figure = |figure: Option<f64>| figure.map_or("–".into(), |n| format!("{n:.1}"));
+        let cells = [
+            one.backend.name.clone(),
+            figure(one.counted_bytes_per_vertex),
+            figure(one.layout_words_per_vertex),
+            figure(Some(one.closed_triangles_words_per_vertex)),
+        ];
+        row(&mut table, cells);
+    }
+    table.trim_fmt()
+}
+
+/// An empty table under `header`, whose figures stand to the right.
+fn headed<const COLUMNS: usize>(header: &[&str; COLUMNS]) -> Table {
+    let aligned = |(i, text): (usize, &&str)| Cell::new(text).set_alignment(side(i));
+    table(header.iter().enumerate().map(aligned).collect())
+}
+
+fn row<const COLUMNS: usize>(table: &mut Table, cells: [String; COLUMNS]) {
+    let cells = cells.into_iter().enumerate();
+    table.add_row(
+        cells
+            .map(|(i, text)| Cell::new(text).set_alignment(side(i)))
+            .collect::<Vec<_>>(),
+    );
+}
+
+fn side(column: usize) -> CellAlignment {
+    match column {
+        0 => CellAlignment::Left,
+        _ => CellAlignment::Right,
+    }
+}
+
+/// What the tables show, in sentences.
+fn words(audit: &Audit) -> Vec<String> {
+    let held: Vec<&Audited> = audit.backends.iter().filter(|b| b.backend.holds).collect();
+    let mut words = Vec::new();
+    let faults = audit.faults();
+    match faults.is_empty() {
+        true => words.push(
+            "Formula, tables and allocator agree to the byte: no table has room to spare, and \
+             nothing is held outside the tables."
+                .to_owned(),
+        ),
+        false => words.extend(faults.into_iter().map(|fault| format!("! {fault}."))),
+    }
+    words.push(
+        "A word is 4 bytes, an index or a coordinate. The last column is the formula for 2 faces \
+         and 3 edges a vertex, as the literature counts."
+            .to_owned(),
+    );
+    for one in held {
+        let backend = &one.backend;
+        if let Some(merged @ 1..) = backend.merged_vertices {
+            words.push(format!(
+                "{} merges {} with others at the same place. Its bytes are those of its corners all \
+                 the same, and a vertex here is one of the file.",
+                backend.name,
+                counted(merged, "vertex", "vertices")
+            ));
+        }
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use ::study::{Backend, Heap, Specimen};
+    use sixfold::{HalfEdgeMesh, shapes};
+
+    use super::*;
+    use crate::text::WIDTH;
+
+    /// An allocator that never counts anything.
+    struct Idle;
+
+    impl Heap for Idle {
+        fn live(&self) -> usize {
+            0
+        }
+
+        fn restart_peak(&self) {}
+
+        fn peak(&self) -> usize {
+            0
+        }
+    }
+
+    #[test]
+    fn what_differs_is_marked_said_and_ends_with_its_own_code() {
+        let cube = Specimen::new("cube", shapes::cube());
+        let audit = audit(&cube, &[Backend::of::<HalfEdgeMesh>()], &Idle, &mut |_| ());
+        // 24 halves of 12 bytes, 8 vertices of 16, and 6 faces.
+        let table = bytes_table(&audit);
+        let line = table.lines().find(|line| line.contains("half-edge"));
+        let cells: Vec<&str> = line.expect("a row").split_whitespace().collect();
+        assert_eq!(cells, ["half-edge", "440", "440", "0!", "0", "–"]);
+        assert!(table.lines().all(|line| line.chars().count() <= WIDTH));
+        let words = words(&audit);
+        assert!(
+            words[0].starts_with("! half-edge: the allocator counted 0 bytes"),
+            "{words:?}"
+        );
+        assert!(
+            words.iter().all(|words| !words.contains("agree")),
+            "{words:?}"
+        );
+        assert_eq!(judged(&audit.faults()), ExitCode::from(DIFFERENT));
+        assert_eq!(judged(&[]), ExitCode::SUCCESS);
+    }
+}

@@ -1,0 +1,331 @@
+//! Memory, audited: what the layout says, what the tables hold and what the allocator counted.
+//!
+//! Three ways to one number. The formula of a layout knows nothing but the sizes of the mesh; the sum
+//! over the tables knows their capacities; the allocator knows neither, and counts. Where two of them
+//! differ there is a fault in Sixfold: a formula that is wrong, spare room that nobody gave back, or
+//! memory that no table owns up to.
+
+use std::io;
+
+use serde::{Serialize, Serializer};
+use sixfold::{BuildError, Counts, PolygonMesh};
+use workload::{Backend, Heap, Weighed};
+
+use crate::inspect::{Specimen, per_vertex, unbuilt};
+use crate::report::{BackendReport, MeshReport, SCHEMA, write_json};
+use crate::study::StudyError;
+
+/// Bytes of a word, as the lectures count: an index, or a coordinate.
+const WORD: f64 = 4.0;
+
+/// How often a backend is weighed at most until two weighings in a row are the same.
+const MOST_WEIGHINGS: usize = 8;
+
+/// The memory of each backend, counted in three ways.
+#[derive(Clone, Debug, Serialize)]
+pub struct Audit {
+    /// The version of the shape.
+    pub schema: u32,
+    /// What the mesh is.
+    pub mesh: MeshReport,
+    /// By name, in the order in which they were asked for.
+    #[serde(serialize_with = "as_map")]
+    pub backends: Vec<Audited>,
+}
+
+/// The memory of one backend.
+#[derive(Clone, Debug, Serialize)]
+pub struct Audited {
+    /// Whether it holds the mesh; the bytes by its layout, and those of its tables.
+    #[serde(flatten)]
+    pub backend: BackendReport,
+    /// Words that the layout takes for each vertex of this mesh; `None` if it does not hold the mesh.
+    pub layout_words_per_vertex: Option<f64>,
+    /// The same for a closed mesh of triangles without end, with 2 faces and 3 edges a vertex.
+    pub closed_triangles_words_per_vertex: f64,
+    /// Bytes that the allocator counted; `None` if the mesh is refused.
+    pub counted_bytes: Option<usize>,
+    /// The same for each vertex of the mesh.
+    pub counted_bytes_per_vertex: Option<f64>,
+    /// The most bytes at any moment of building; the polygons it is built from are not among them.
+    pub peak_bytes: Option<usize>,
+    /// The peak by the bytes that are left in the end.
+    pub peak_to_counted: Option<f64>,
+    /// Whether the three ways come to the same; `None` if the mesh is refused.
+    pub agrees: Option<bool>,
+}
+
+/// Builds each of `backends` from the mesh, one at a time, while `heap` counts.
+///
+/// A backend is weighed until two weighings in a row are the same, for other threads may allocate
+/// meanwhile. `weighing` hears which backend is next.
+pub fn audit(
+    specimen: &Specimen,
+    backends: &[Backend],
+    heap: &dyn Heap,
+    weighing: &mut dyn FnMut(&Backend),
+) -> Audit {
+    let polygons = &specimen.polygons;
+    let counts = polygons.counts(specimen.facts.edges);
+    let backends = backends.iter().map(|backend| {
+        weighing(backend);
+        Audited::of(backend, weigh(backend, polygons, heap), &counts)
+    });
+    Audit {
+        schema: SCHEMA,
+        mesh: specimen.report(),
+        backends: backends.collect(),
+    }
+}
+
+fn weigh(
+    backend: &Backend,
+    polygons: &PolygonMesh,
+    heap: &dyn Heap,
+) -> Result<Weighed, BuildError> {
+    let mut last = backend.weigh(polygons, heap)?;
+    for _ in 1..MOST_WEIGHINGS {
+        let again = backend.weigh(polygons, heap)?;
+        if again == last {
+            break;
+        }
+        last = again;
+    }
+    Ok(last)
+}
+
+impl Audit {
+    /// Where the three ways differ, in words: the backend, and by how much.
+    pub fn faults(&self) -> Vec<String> {
+        self.backends.iter().flat_map(Audited::faults).collect()
+    }
+
+    /// That none of the backends holds the mesh, if so.
+    pub fn none_holds(&self) -> Option<StudyError> {
+        let refusal = |Audited { backend, .. }: &Audited| {
+            let reason = backend.reason.clone()?;
+            Some((backend.name.clone(), reason))
+        };
+        let refusals: Option<Vec<_>> = self.backends.iter().map(refusal).collect();
+        refusals.map(|refusals| StudyError::NoneHolds { refusals })
+    }
+
+    /// Writes the audit as JSON.
+    ///
+    /// # Errors
+    ///
+    /// What `writer` reports.
+    pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
+        write_json(self, writer)
+    }
+}
+
+impl Audited {
+    fn of(backend: &Backend, weighed: Result<Weighed, BuildError>, counts: &Counts) -> Self {
+        let closed_triangles = closed_triangles_words(backend);
+        let (report, weighed) = match weighed {
+            Err(refusal) => (unbuilt(backend, counts, Err(refusal)), None),
+            Ok(weighed) => {
+                let bytes = weighed.memory.total();
+                let report = BackendReport {
+                    bytes: Some(bytes),
+                    bytes_per_vertex: per_vertex(bytes, counts),
+                    tables: weighed.memory.tables,
+                    merged_vertices: Some(weighed.merged_vertices),
+                    ..unbuilt(backend, counts, Ok(()))
+                };
+                (report, Some((weighed.counted, weighed.peak)))
+            }
+        };
+        let [layout, tables] = [report.layout_bytes, report.bytes];
+        let (counted, peak) = weighed.unzip();
+        Self {
+            layout_words_per_vertex: report.layout_bytes_per_vertex.map(|bytes| bytes / WORD),
+            closed_triangles_words_per_vertex: closed_triangles,
+            counted_bytes: counted,
+            counted_bytes_per_vertex: counted.and_then(|bytes| per_vertex(bytes, counts)),
+            peak_bytes: peak,
+            peak_to_counted: peak
+                .zip(counted.filter(|&bytes| bytes > 0))
+                .map(|(peak, counted)| peak as f64 / counted as f64),
+            agrees: counted.map(|_| layout == tables && tables == counted),
+            backend: report,
+        }
+    }
+
+    /// Where the three ways differ, in words.
+    fn faults(&self) -> Vec<String> {
+        let BackendReport {
+            name,
+            layout_bytes,
+            bytes,
+            ..
+        } = &self.backend;
+        let (Some(layout), Some(tables), Some(counted)) =
+            (*layout_bytes, *bytes, self.counted_bytes)
+        else {
+            return Vec::new();
+        };
+        let beside = |what: &str, is: usize, other: &str, than: usize| {
+            let more = if is > than { "more" } else { "fewer" };
+            let by = is.abs_diff(than);
+            (by > 0).then(|| format!("{name}: {what}, {by} bytes {more} than {other}, {than}"))
+        };
+        let of_tables = format!("its tables hold {tables} bytes");
+        let of_heap = format!("the allocator counted {counted} bytes");
+        let faults = [
+            beside(&of_tables, tables, "its layout has by the formula", layout),
+            beside(&of_heap, counted, "its tables hold", tables),
+        ];
+        faults.into_iter().flatten().collect()
+    }
+}
+
+/// Words for each vertex of a closed mesh of triangles, so large that its genus does not count.
+fn closed_triangles_words(backend: &Backend) -> f64 {
+    const VERTICES: usize = 1 << 20;
+    let counts = Counts {
+        vertices: VERTICES,
+        edges: 3 * VERTICES,
+        faces: 2 * VERTICES,
+        corners: 6 * VERTICES,
+        uniform: true,
+    };
+    (backend.layout_bytes)(&counts) as f64 / WORD / VERTICES as f64
+}
+
+/// A map by name that keeps the order.
+fn as_map<S: Serializer>(backends: &[Audited], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(backends.iter().map(|one| (&one.backend.name, one)))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use sixfold::{HalfEdgeMesh, IndexedFaceSet, Representation, shapes};
+
+    use super::*;
+
+    /// An allocator that counts what it is told to, weighing by weighing: `[live, peak]` of each.
+    struct Told {
+        weighings: Vec<[usize; 2]>,
+        asked: Cell<usize>,
+    }
+
+    impl Told {
+        fn new(weighings: impl IntoIterator<Item = [usize; 2]>) -> Self {
+            Self {
+                weighings: weighings.into_iter().collect(),
+                asked: Cell::new(0),
+            }
+        }
+
+        fn now(&self) -> [usize; 2] {
+            let last = self.weighings.len() - 1;
+            self.weighings[(self.asked.get() / 2).min(last)]
+        }
+    }
+
+    impl Heap for Told {
+        /// A weighing asks twice: before and after.
+        fn live(&self) -> usize {
+            let [live, _] = self.now();
+            let asked = self.asked.replace(self.asked.get() + 1);
+            1000 + (asked % 2) * live
+        }
+
+        fn restart_peak(&self) {}
+
+        fn peak(&self) -> usize {
+            self.weighings[((self.asked.get() - 1) / 2).min(self.weighings.len() - 1)][1]
+        }
+    }
+
+    /// What comes of one backend on a torus of 12 vertices, 36 edges and 24 triangles.
+    fn audited(backend: Backend, heap: &Told) -> Audit {
+        let torus = shapes::triangle_torus(4, 3).expect("a small torus");
+        audit(
+            &Specimen::new("torus", torus),
+            &[backend],
+            heap,
+            &mut |_| (),
+        )
+    }
+
+    /// Of half-edges: 36 · 24 + 12 · 16 + 24 · 4.
+    const BYTES: usize = 1152;
+
+    #[test]
+    fn what_agrees_is_no_fault() {
+        let audit = audited(
+            Backend::of::<HalfEdgeMesh>(),
+            &Told::new([[BYTES, 2 * BYTES]]),
+        );
+        assert_eq!(audit.faults(), Vec::<String>::new());
+        let one = &audit.backends[0];
+        assert_eq!(one.agrees, Some(true));
+        assert_eq!(one.peak_to_counted, Some(2.0));
+        assert_eq!(one.layout_words_per_vertex, Some(24.0));
+        assert_eq!(one.counted_bytes_per_vertex, Some(96.0));
+        assert_eq!(audit.none_holds(), None);
+    }
+
+    #[test]
+    fn what_differs_is_named_with_its_bytes() {
+        let honest = Backend::of::<HalfEdgeMesh>();
+        let spare = audited(honest, &Told::new([[BYTES + 40, BYTES]]));
+        let expected =
+            "half-edge: the allocator counted 1192 bytes, 40 bytes more than its tables hold, 1152";
+        assert_eq!(spare.faults(), [expected]);
+        assert_eq!(spare.backends[0].agrees, Some(false));
+
+        let mut wrong = honest;
+        wrong.layout_bytes = |counts| HalfEdgeMesh::layout_bytes(counts) + 8;
+        let formula = audited(wrong, &Told::new([[BYTES, BYTES]]));
+        let expected = "half-edge: its tables hold 1152 bytes, 8 bytes fewer than its layout has by the formula, 1160";
+        assert_eq!(formula.faults(), [expected]);
+
+        let both = audited(wrong, &Told::new([[0, 0]]));
+        assert_eq!(both.faults().len(), 2);
+        assert_eq!(both.backends[0].peak_to_counted, None);
+    }
+
+    #[test]
+    fn another_thread_does_not_make_a_fault() {
+        let right = [BYTES, 2 * BYTES];
+        let disturbed = [[BYTES + 7, 2 * BYTES], [BYTES, 3 * BYTES], right, right];
+        let audit = audited(Backend::of::<HalfEdgeMesh>(), &Told::new(disturbed));
+        assert_eq!(audit.faults(), Vec::<String>::new());
+        assert_eq!(audit.backends[0].peak_bytes, Some(2 * BYTES));
+        // Nothing that stays the same twice: the last is taken, and the audit ends.
+        let restless = (0..100).map(|i| [BYTES + i, BYTES]);
+        let audit = audited(Backend::of::<HalfEdgeMesh>(), &Told::new(restless));
+        assert_eq!(audit.faults().len(), 1);
+    }
+
+    #[test]
+    fn a_refusal_has_a_reason_and_no_bytes() {
+        let quads = Specimen::new("cube", shapes::cube());
+        let [face_set, table] = [
+            Backend::of::<IndexedFaceSet>(),
+            Backend::of::<sixfold::CornerTable>(),
+        ];
+        let bytes = 8 * 12 + 24 * 4;
+        let heap = Told::new([[bytes, bytes]]);
+        let mut heard = Vec::new();
+        let audit = audit(&quads, &[face_set, table], &heap, &mut |backend| {
+            heard.push(backend.name());
+        });
+        assert_eq!(heard, ["indexed-face-set", "corner-table"]);
+        assert_eq!((audit.none_holds(), audit.faults().len()), (None, 0));
+        let refused = &audit.backends[1];
+        assert!(refused.backend.reason.is_some() && !refused.backend.holds);
+        assert_eq!((refused.agrees, refused.counted_bytes), (None, None));
+        assert_eq!(refused.closed_triangles_words_per_vertex, 16.0);
+
+        let none = self::audit(&quads, &[table], &heap, &mut |_| ()).none_holds();
+        let none = none.expect("the only one refuses").to_string();
+        assert!(none.contains("corner-table: "), "{none}");
+    }
+}
