@@ -2,7 +2,8 @@
 //!
 //! [`study`] builds every backend asked for, runs the [`Operation`]s on them in interleaved rounds
 //! until the budget is spent, proves by checksum that all did the same work, and gives a [`Report`].
-//! [`inspect`] says what a mesh is and which backends can hold it, and measures nothing.
+//! [`inspect`] says what a mesh is and which backends can hold it, and measures nothing. [`why`] counts
+//! what the relations read, and holds their times against the speed of memory.
 //!
 //! What a reader of the figures should know is in `reports/SCHEMA.md`. This crate knows no
 //! command line and prints nothing: progress goes to a closure, and a flag stops it.
@@ -19,6 +20,7 @@ mod solo;
 mod standing;
 mod statistics;
 mod study;
+mod why;
 mod words;
 
 pub use environment::Environment;
@@ -30,7 +32,8 @@ pub use report::{
 };
 pub use solo::{Solo, SoloRun};
 pub use study::{Settings, StudyError, study};
+pub use why::{Bound, Model, Timed, Timing, Why, WhyRow, WhySettings, why};
 pub use workload::{
-    Backend, Clock, Editing, Editor, Edits, Kind, MachineClock, Operation, Refiner, Refining,
-    SingleEdit, Time, UnknownOperation, Way,
+    Backend, Clock, Editing, Editor, Edits, Kind, MachineClock, MemorySpeed, Operation, Reads,
+    Refiner, Refining, Rung, SingleEdit, TableReads, Time, UnknownOperation, Way,
 };
