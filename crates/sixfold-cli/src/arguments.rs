@@ -4,6 +4,7 @@ mod remeshing;
 mod render;
 mod reshaping;
 mod subdivision;
+mod why;
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -16,6 +17,7 @@ pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
+pub(crate) use why::Why;
 
 const EXAMPLES: &str = "Examples:
   sixfold                                    study the built-in mesh
@@ -65,6 +67,8 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Measure what each backend costs for a mesh
     Study(Study),
+    /// Say what queries read, and whether that is what they take their time for
+    Why(Why),
     /// Say what a mesh is, and which backends can hold it
     Inspect(Inspect),
     /// Write a built-in shape

@@ -30,6 +30,8 @@ mod subdivide;
 mod tables;
 mod text;
 mod triangulate;
+mod why;
+mod why_text;
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -53,6 +55,7 @@ fn main() -> ExitCode {
         Err(error) => told(&error),
         Ok(None) => study::run(&arguments::Study::default()),
         Ok(Some(Command::Study(arguments))) => study::run(&arguments),
+        Ok(Some(Command::Why(arguments))) => why::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
         Ok(Some(Command::Generate(arguments))) => generate::run(&arguments),
         Ok(Some(Command::Schemes(arguments))) => schemes::run(&arguments),

@@ -35,6 +35,7 @@ fn help() {
     for (name, arguments) in [
         ("help.txt", &["--help"][..]),
         ("help_study.txt", &["study", "--help"]),
+        ("help_why.txt", &["why", "--help"]),
         ("help_inspect.txt", &["inspect", "--help"]),
         ("help_generate.txt", &["generate", "--help"]),
         ("help_render.txt", &["render", "--help"]),
@@ -59,6 +60,13 @@ fn schemes() {
 #[test]
 fn edits() {
     golden("edits.txt", &printed(&Sixfold::new(), &["edits"]));
+}
+
+/// What the built-in mesh reads needs no clock.
+#[test]
+fn counts() {
+    let why = ["why", "--counts-only"];
+    golden("why_counts.txt", &printed(&Sixfold::new(), &why));
 }
 
 #[test]

@@ -11,3 +11,4 @@ mod remeshing;
 mod render;
 mod run;
 mod subdivision;
+mod why;
