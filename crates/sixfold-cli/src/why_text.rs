@@ -1,12 +1,15 @@
 //! The tables of `sixfold why`: one for each relation, a row for each backend.
 
-use ::study::{Bound, Rung, TableReads, Timed, Why, WhyRow};
+use ::study::{Bound, Model, Rung, TableReads, Timed, Why, WhyRow};
 use comfy_table::{Cell, CellAlignment};
 use sixfold::Relation;
 
 use crate::numbers::{bytes, figure};
 use crate::tables::table;
-use crate::text::hanging;
+use crate::text::{hanging, wrapped};
+
+/// Columns for the names of tables: what is left beside the figures.
+const TABLES: usize = 36;
 
 /// What a relation yields, in a few words.
 fn meaning(relation: Relation) -> &'static str {
@@ -52,7 +55,7 @@ pub(crate) fn relation_text(rows: &[WhyRow], timed: bool) -> String {
     let relation = first.reads.relation;
     let heads = ["answers", "reads", "lines", "bytes", "jumps", "moved"];
     let more: &[&str] = match timed {
-        true => &["floor ns", "waits ns", "measured", "bound by"],
+        true => &["floor", "waits", "measured", "bound by"],
         false => &["reads by table"],
     };
     let heads = ["a query:"].iter().chain(&heads).chain(more);
@@ -66,7 +69,7 @@ pub(crate) fn relation_text(rows: &[WhyRow], timed: bool) -> String {
             continue;
         };
         let is_word = column == 0 || column + 1 == columns;
-        column_of.set_padding(if column == 0 { (1, 0) } else { (2, 0) });
+        column_of.set_padding(if column == 0 { (0, 0) } else { (1, 0) });
         if !is_word {
             column_of.set_cell_alignment(CellAlignment::Right);
         }
@@ -115,13 +118,15 @@ fn by_table(tables: &[TableReads]) -> String {
     let tables = tables
         .iter()
         .map(|table| format!("{} {}", table.table, short(table.reads)));
-    tables.collect::<Vec<_>>().join(", ")
+    let tables = tables.collect::<Vec<_>>().join(", ");
+    wrapped(&tables, TABLES).join("\n")
 }
 
-/// A number in five letters: `0`, `0.052`, `7.00`, `60.5k`, `3.63M`.
+/// A number in five letters: `0`, `<.001`, `0.052`, `7.00`, `60.5k`, `3.63M`.
 fn short(number: f64) -> String {
     match number {
         0.0 => "0".into(),
+        n if n < 0.000_5 => "<.001".into(),
         n if n < 999.5 => figure(n),
         n if n < 999.5e3 => format!("{}k", figure(n / 1e3)),
         n if n < 999.5e6 => format!("{}M", figure(n / 1e6)),
@@ -197,68 +202,80 @@ fn article(word: &str) -> &'static str {
 
 /// What each column is.
 pub(crate) fn legend(why: &Why) -> String {
-    let line = why.model.line_bytes;
-    let mut lines = vec![
+    let Model {
+        line_bytes,
+        cache_lines,
+        sample,
+        ..
+    } = why.model;
+    let first = [
         (
             "answers",
-            "elements that a query yields; all figures are means".to_owned(),
+            "elements that a query yields; figures are means over all queries",
         ),
         (
             "reads",
-            "rows of tables that it reads, one as often as it is read".into(),
+            "rows of tables that it reads, each as often as it is read",
         ),
         (
             "lines",
-            format!(
-                "cache lines of {line} bytes that it touches, each once; tables begin at a line of their own"
+            &format!(
+                "cache lines of {line_bytes} bytes that it touches, each once; a table begins with a line"
             ),
         ),
-        ("bytes", "what it reads in them, each byte once".into()),
+        ("bytes", "what it reads in these lines, each byte once"),
         (
             "jumps",
-            format!(
-                "lines that a small cache ({} lines, the first to come the first to go) lacks in a sweep \
-                 over all elements in their order, and of which it has neither neighbour: nothing foresees them",
-                why.model.cache_lines
+            &format!(
+                "in a sweep over all elements in their order, the lines for each element that are not \
+                 among the last {cache_lines} fetched, nor is a line beside them: no prefetcher foresees them"
             ),
         ),
         (
             "moved",
-            "bytes that the sweep has to move at least, for each element: each of its lines once; \
-             after ~ all lines of a query"
-                .into(),
+            "bytes for each element that a sweep has to move at least: each of its lines once; \
+             in a row with ~, all lines of a query",
         ),
     ];
-    match why.memory.is_some() {
-        true => lines.extend([
-            ("floor", "what moving them takes, in order, in memory of the size of the sweep".to_owned()),
-            ("waits", "what the jumps take there, one after the other".into()),
-            ("measured", "nanoseconds for each element of the sweep; ~ from a sample".into()),
-            (
-                "bound by",
-                "bandwidth, if the floor is half of the time or more; latency, if it is not and the waits \
-                 are; work, if neither: reading what is near, comparing, branching"
-                    .into(),
-            ),
-        ]),
-        false => lines.push(("by table", "which rows a query reads".into())),
-    }
-    lines.push((
-        "~",
-        format!(
-            "{} elements, evenly spaced, stand for all",
-            why.model.sample
+    let timed = [
+        (
+            "floor",
+            "ns to move them: read in order, from the largest buffer above that is no larger than what \
+             the sweep touches",
         ),
-    ));
-    lines.push((
-        "",
-        "Jumps, moved and times include listing the elements, where a table has to be read for that; \
-         what a structure sets up besides to list its edges is in the times alone."
-            .into(),
-    ));
-    let lines = lines
-        .into_iter()
-        .map(|(name, meaning)| hanging(&format!("{name:<10}"), &meaning));
+        (
+            "waits",
+            "ns for the jumps, if each waits for the one before, in the same buffer",
+        ),
+        (
+            "measured",
+            "ns for each element of the sweep, the median; ~ from a sample",
+        ),
+        (
+            "bound by",
+            "bandwidth, where the floor is half of the time or more; else latency, where the waits are; \
+             else work: reading what is near, comparing, branching",
+        ),
+    ];
+    let counted = [("by table", "how the reads of a query fall on the tables")];
+    let last = [
+        (
+            "~",
+            &*format!("{sample} elements, evenly spaced, stand for all"),
+        ),
+        (
+            "",
+            "Jumps, moved and measured include listing the elements. What a structure without a table of \
+             them sets up to list its edges is in measured alone.",
+        ),
+    ];
+    let second: &[(&str, &str)] = if why.memory.is_some() {
+        &timed
+    } else {
+        &counted
+    };
+    let lines = first.iter().chain(second).chain(&last);
+    let lines = lines.map(|(name, meaning)| hanging(&format!("{name:<10}"), meaning));
     lines.collect::<Vec<_>>().join("\n")
 }
 
@@ -269,10 +286,10 @@ mod tests {
     #[test]
     fn numbers_take_five_letters() {
         let numbers = [
-            0.0, 0.0521, 7.0, 999.4, 999.6, 60_480.0, 999_600.0, 3.63e6, 2e9,
+            0.0, 0.0004, 0.0521, 7.0, 999.4, 999.6, 60_480.0, 999_600.0, 3.63e6, 2e9,
         ];
         let expected = [
-            "0", "0.052", "7.00", "999", "1.00k", "60.5k", "1.00M", "3.63M", "2.00G",
+            "0", "<.001", "0.052", "7.00", "999", "1.00k", "60.5k", "1.00M", "3.63M", "2.00G",
         ];
         assert_eq!(numbers.map(short), expected);
         assert!(numbers.map(short).iter().all(|text| text.len() <= 5));

@@ -37,10 +37,8 @@ const STREAMED: usize = 1 << 24;
 /// Reads that a series makes one after the other.
 const CHASED: usize = 1 << 16;
 
-/// A cache line of words; the first may be the place of another line.
-#[derive(Clone, Copy)]
-#[repr(align(64))]
-struct Line([u64; LINE_BYTES / 8]);
+/// Words of a cache line; the first may be the place of another line.
+const WORDS: usize = LINE_BYTES / size_of::<u64>();
 
 /// How fast a buffer of one size is read.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -69,14 +67,14 @@ impl MemorySpeed {
     fn of_sizes(sizes: &[usize], clock: &dyn Clock, stop: &AtomicBool) -> Option<Self> {
         let mut rungs = Vec::new();
         for &bytes in sizes {
-            let lines = cycle(bytes / LINE_BYTES);
+            let words = cycle(bytes / LINE_BYTES);
             if stop.load(Ordering::Relaxed) {
                 return None;
             }
             rungs.push(Rung {
                 bytes,
-                gb_per_s: bandwidth(&lines, clock),
-                latency_ns: latency(&lines, clock),
+                gb_per_s: bandwidth(&words, clock),
+                latency_ns: latency(&words, clock),
             });
         }
         Some(Self { rungs })
@@ -100,47 +98,43 @@ impl MemorySpeed {
     }
 }
 
-/// Lines of which each names the next, one cycle through them all in random order.
-fn cycle(lines: usize) -> Vec<Line> {
+/// Lines whose first words each name the next, one cycle through them all in random order.
+fn cycle(lines: usize) -> Vec<u64> {
     let mut order: Vec<u32> = (0..).take(lines).collect();
     order.shuffle(&mut ChaCha8Rng::seed_from_u64(1));
-    let mut cycle = vec![Line([0; LINE_BYTES / 8]); lines];
+    let mut words = vec![0; WORDS * lines];
     let next = order.iter().cycle().skip(1);
     for (&at, &next) in order.iter().zip(next) {
-        cycle[at as usize].0[0] = next.into();
+        words[WORDS * at as usize] = next.into();
     }
-    cycle
+    words
 }
 
 /// Bytes a nanosecond.
-fn bandwidth(lines: &[Line], clock: &dyn Clock) -> f64 {
-    let bytes = size_of_val(lines);
+fn bandwidth(words: &[u64], clock: &dyn Clock) -> f64 {
+    let bytes = size_of_val(words);
     let passes = (STREAMED / bytes).max(1);
     let ns = least(clock, || {
         for _ in 0..passes {
-            black_box(sum(black_box(lines)));
+            black_box(sum(black_box(words)));
         }
     });
     (passes * bytes) as f64 / ns
 }
 
-/// Adds up all words, in as many sums as a line has words: they become vectors.
-fn sum(lines: &[Line]) -> [u64; LINE_BYTES / 8] {
-    let mut sums = [0_u64; LINE_BYTES / 8];
-    for Line(words) in lines {
-        for (sum, word) in sums.iter_mut().zip(words) {
-            *sum = sum.wrapping_add(*word);
-        }
-    }
-    sums
+/// All words added up: over a plain slice, so that it becomes vectors, and several of them at once.
+fn sum(words: &[u64]) -> u64 {
+    words
+        .iter()
+        .fold(0, |sum: u64, &word| sum.wrapping_add(word))
 }
 
 /// Nanoseconds a read, when each waits for the one before.
-fn latency(lines: &[Line], clock: &dyn Clock) -> f64 {
+fn latency(words: &[u64], clock: &dyn Clock) -> f64 {
     let mut at = 0;
     let ns = least(clock, || {
         for _ in 0..CHASED {
-            at = lines[at].0[0] as usize;
+            at = words[WORDS * at] as usize;
         }
         at = black_box(at);
     });
@@ -163,21 +157,20 @@ mod tests {
     #[test]
     fn the_cycle_goes_through_every_line_once() {
         for lines in [1, 2, 257, 1024] {
-            let cycle = cycle(lines);
+            let words = cycle(lines);
             let mut seen = vec![false; lines];
             let mut at = 0;
             for _ in 0..lines {
                 assert!(!std::mem::replace(&mut seen[at], true), "{at} of {lines}");
-                at = cycle[at].0[0] as usize;
+                at = words[WORDS * at] as usize;
             }
             assert_eq!(at, 0, "and comes back");
         }
     }
 
     #[test]
-    fn the_sum_is_over_all_lines() {
-        let lines: Vec<Line> = (1..=100).map(|i| Line([i; 8])).collect();
-        assert_eq!(sum(&lines), [5050; 8]);
+    fn the_sum_is_over_all_words() {
+        assert_eq!(sum(&(1..=1001).collect::<Vec<u64>>()), 501_501);
     }
 
     #[test]
