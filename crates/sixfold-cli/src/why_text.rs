@@ -9,7 +9,9 @@ use crate::tables::table;
 use crate::text::{hanging, wrapped};
 
 /// Columns for the names of tables: what is left beside the figures.
-const TABLES: usize = 36;
+const TABLES: usize = 38;
+/// A blank at which no line ends, while lines are broken.
+const NO_BREAK: char = '\u{a0}';
 
 /// What a relation yields, in a few words.
 fn meaning(relation: Relation) -> &'static str {
@@ -117,9 +119,10 @@ fn by_table(tables: &[TableReads]) -> String {
     tables.sort_by(|a, b| b.reads.total_cmp(&a.reads));
     let tables = tables
         .iter()
-        .map(|table| format!("{} {}", table.table, short(table.reads)));
+        .map(|table| format!("{}{NO_BREAK}{}", table.table, short(table.reads)));
     let tables = tables.collect::<Vec<_>>().join(", ");
-    wrapped(&tables, TABLES).join("\n")
+    let lines = wrapped(&tables, TABLES).join("\n");
+    lines.replace(NO_BREAK, " ")
 }
 
 /// A number in five letters: `0`, `<.001`, `0.052`, `7.00`, `60.5k`, `3.63M`.
@@ -304,6 +307,10 @@ mod tests {
         };
         let text = by_table(&[read("leaving", 1.0), read("halves", 6.0)]);
         assert_eq!(text, "halves 6.00, leaving 1.00");
+        // Nobody breaks a line between a table and its figure.
+        let many = ["vertex", "opposite", "corner"].map(|table| read(table, 1.0));
+        let text = by_table(&many);
+        assert_eq!(text, "vertex 1.00, opposite 1.00,\ncorner 1.00");
         assert_eq!(by_table(&[]), "none: the name says it");
     }
 }
