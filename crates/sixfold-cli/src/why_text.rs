@@ -4,7 +4,7 @@ use ::study::{Bound, Model, Rung, TableReads, Timed, Why, WhyRow};
 use comfy_table::{Cell, CellAlignment};
 use sixfold::Relation;
 
-use crate::numbers::{bytes, figure};
+use crate::numbers::{bytes, figure, grouped};
 use crate::tables::table;
 use crate::text::{hanging, wrapped};
 
@@ -231,7 +231,8 @@ pub(crate) fn legend(why: &Why) -> String {
             "jumps",
             &format!(
                 "in a sweep over all elements in their order, the lines for each element that are not \
-                 among the last {cache_lines} fetched, nor is a line beside them: no prefetcher foresees them"
+                 among the last {} fetched, nor is a line beside them: no prefetcher foresees them",
+                grouped(cache_lines as usize)
             ),
         ),
         (
@@ -261,16 +262,19 @@ pub(crate) fn legend(why: &Why) -> String {
         ),
     ];
     let counted = [("by table", "how the reads of a query fall on the tables")];
+    let listing = match why.memory.is_some() {
+        true => {
+            "Jumps, moved and measured include listing the elements. What a structure without a table \
+             of edges sets up to list them is in measured alone."
+        }
+        false => "Jumps and moved include listing the elements.",
+    };
     let last = [
         (
             "~",
             &*format!("{sample} elements, evenly spaced, stand for all"),
         ),
-        (
-            "",
-            "Jumps, moved and measured include listing the elements. What a structure without a table of \
-             them sets up to list its edges is in measured alone.",
-        ),
+        ("", listing),
     ];
     let second: &[(&str, &str)] = if why.memory.is_some() {
         &timed
