@@ -11,6 +11,9 @@ pub struct TableBytes {
     pub rows: usize,
     /// Bytes allocated for them, capacity included.
     pub bytes: usize,
+    /// Bytes of one row; no table of a report needs them.
+    #[serde(skip)]
+    pub row_bytes: usize,
 }
 
 /// The bytes that a structure really holds on the heap, table by table, positions included.

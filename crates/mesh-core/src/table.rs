@@ -214,6 +214,7 @@ impl<T, P: Probe> Table<T, P> {
             table: self.name,
             rows: self.rows.len(),
             bytes: self.rows.capacity() * size_of::<T>(),
+            row_bytes: size_of::<T>(),
         }
     }
 

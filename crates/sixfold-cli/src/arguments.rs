@@ -1,11 +1,12 @@
 //! What can be asked for.
 
-mod picking;
 mod memory;
+mod picking;
 mod remeshing;
 mod render;
 mod reshaping;
 mod subdivision;
+mod why;
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -14,12 +15,13 @@ use ::study::Operation;
 use clap::{Args, Parser, Subcommand};
 use sixfold::shapes::Order;
 
-pub(crate) use picking::{Pick, Workloads};
 pub(crate) use memory::Memory;
+pub(crate) use picking::{Pick, Workloads};
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
+pub(crate) use why::Why;
 
 const EXAMPLES: &str = "Examples:
   sixfold                                    study the built-in mesh
@@ -74,6 +76,8 @@ pub(crate) enum Command {
     Pick(Pick),
     /// List the built-in workloads, and who does this
     Workloads(Workloads),
+    /// Say what queries read, and whether that is what they take their time for
+    Why(Why),
     /// Say what a mesh is, and which backends can hold it
     Inspect(Inspect),
     /// Say what each backend takes in memory, counted in three ways that must agree

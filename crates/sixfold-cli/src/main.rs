@@ -33,6 +33,8 @@ mod subdivide;
 mod tables;
 mod text;
 mod triangulate;
+mod why;
+mod why_text;
 mod workloads;
 
 use std::io::{self, Write};
@@ -59,6 +61,7 @@ fn main() -> ExitCode {
         Ok(Some(Command::Study(arguments))) => study::run(&arguments),
         Ok(Some(Command::Pick(arguments))) => pick::run(&arguments),
         Ok(Some(Command::Workloads(arguments))) => workloads::run(&arguments),
+        Ok(Some(Command::Why(arguments))) => why::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
         Ok(Some(Command::Memory(arguments))) => memory::run(&arguments),
         Ok(Some(Command::Generate(arguments))) => generate::run(&arguments),

@@ -35,6 +35,7 @@ fn help() {
     for (name, arguments) in [
         ("help.txt", &["--help"][..]),
         ("help_study.txt", &["study", "--help"]),
+        ("help_why.txt", &["why", "--help"]),
         ("help_inspect.txt", &["inspect", "--help"]),
         ("help_memory.txt", &["memory", "--help"]),
         ("help_generate.txt", &["generate", "--help"]),
@@ -78,6 +79,13 @@ fn memories() {
         "polygon-soup,half-edge,corner-table",
     ];
     golden("memory_seam.txt", &printed(&sixfold, &some));
+}
+
+/// What the built-in mesh reads needs no clock.
+#[test]
+fn counts() {
+    let why = ["why", "--counts-only"];
+    golden("why_counts.txt", &printed(&Sixfold::new(), &why));
 }
 
 #[test]

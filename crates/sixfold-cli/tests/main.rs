@@ -12,3 +12,4 @@ mod remeshing;
 mod render;
 mod run;
 mod subdivision;
+mod why;

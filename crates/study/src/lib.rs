@@ -2,8 +2,9 @@
 //!
 //! [`study`] builds every backend asked for, runs the [`Operation`]s on them in interleaved rounds
 //! until the budget is spent, proves by checksum that all did the same work, and gives a [`Report`].
-//! [`inspect`] says what a mesh is and which backends can hold it, and measures nothing.
-//! [`audit`] counts the bytes of each in three ways, which must agree.
+//! [`inspect`] says what a mesh is and which backends can hold it, and measures nothing. [`pick`]
+//! answers for a workload. [`audit`] counts the bytes of each in three ways, which must agree. [`why`]
+//! counts what the relations read, and holds their times against the speed of memory.
 //!
 //! What a reader of the figures should know is in `reports/SCHEMA.md`. This crate knows no
 //! command line and prints nothing: progress goes to a closure, and a flag stops it.
@@ -26,6 +27,7 @@ mod statistics;
 mod study;
 mod timer;
 mod warnings;
+mod why;
 mod words;
 
 pub use audit::{Audit, Audited, audit};
@@ -43,8 +45,9 @@ pub use report::{
 pub use solo::{Solo, SoloRun};
 pub use study::{Settings, StudyError, study};
 pub use timer::Timer;
+pub use why::{Bound, Model, Timed, Timing, Why, WhyRow, WhySettings, why};
 pub use workload::{Access, Action, Amount, NoPlace, Workload, WorkloadError, built_in, built_ins};
 pub use workload::{
-    Backend, Clock, Editing, Editor, Edits, Heap, Kind, MachineClock, Operation, Refiner, Refining,
-    SingleEdit, Time, UnknownOperation, Way, Weighed,
+    Backend, Clock, Editing, Editor, Edits, Heap, Kind, MachineClock, MemorySpeed, Operation,
+    Reads, Refiner, Refining, Rung, SingleEdit, TableReads, Time, UnknownOperation, Way, Weighed,
 };

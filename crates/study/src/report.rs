@@ -364,7 +364,7 @@ impl Formatter for Rows<'_> {
 }
 
 /// A map by name that keeps the order.
-fn as_map<S: serde::Serializer>(
+pub(crate) fn as_map<S: serde::Serializer>(
     backends: &[BackendReport],
     serializer: S,
 ) -> Result<S::Ok, S::Error> {

@@ -1,14 +1,16 @@
 //! A representation as a study takes it.
 
 use std::fmt;
+use std::sync::atomic::AtomicBool;
 
 use sixfold::{
-    BackendInfo, BuildError, Counts, MemoryFootprint, PolygonMesh, Representation, Visitor,
-    visit_all,
+    BackendInfo, BuildError, Counts, MemoryFootprint, PolygonMesh, Relation, Representation,
+    Visitor, visit_all,
 };
 
 use crate::candidate::{Candidate, Subject};
 use crate::heap::{Heap, Weighed, weigh};
+use crate::reads::{Counted, count};
 use crate::sample::Draw;
 
 /// A representation, with what is known of it and how it is built and put to the test.
@@ -23,10 +25,14 @@ pub struct Backend {
     pub layout_bytes: fn(&Counts) -> usize,
     pub(crate) build: Build,
     pub(crate) weigh: fn(&PolygonMesh, &dyn Heap) -> Result<Weighed, BuildError>,
+    count: Count,
 }
 
 /// Builds the structure and puts it on the bench; what it weighs is asked before anything is run.
 type Build = for<'a> fn(&'a PolygonMesh, Option<&'a Draw>) -> Result<OnTheBench<'a>, BuildError>;
+
+/// Builds the structure, and counts what relations read.
+type Count = fn(&PolygonMesh, &[Relation], &AtomicBool, &mut dyn Counted) -> Result<(), BuildError>;
 
 /// A structure ready to be measured, and what it weighs.
 pub type OnTheBench<'a> = (Box<dyn Subject + 'a>, MemoryFootprint);
@@ -43,6 +49,10 @@ impl Backend {
                 Ok((Box::new(Candidate::new(polygons, draw, mesh)), memory))
             },
             weigh: weigh::<M>,
+            count: |polygons, relations, stop, counted| {
+                count(M::from_polygons(polygons)?, relations, stop, counted);
+                Ok(())
+            },
         }
     }
 
@@ -82,6 +92,21 @@ impl Backend {
     /// Why it cannot hold them.
     pub fn weigh(&self, polygons: &PolygonMesh, heap: &dyn Heap) -> Result<Weighed, BuildError> {
         (self.weigh)(polygons, heap)
+    }
+
+    /// Builds it from `polygons` and counts what `relations` read, until told to stop.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot hold them.
+    pub fn count_reads(
+        &self,
+        polygons: &PolygonMesh,
+        relations: &[Relation],
+        stop: &AtomicBool,
+        counted: &mut dyn Counted,
+    ) -> Result<(), BuildError> {
+        (self.count)(polygons, relations, stop, counted)
     }
 
     /// What users call it.

@@ -1,0 +1,112 @@
+//! `sixfold why`: what queries read, and whether that is what they take their time for.
+
+use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
+
+use ::study::{MachineClock, MemorySpeed, StudyError, Timing, WhySettings};
+
+use crate::arguments::Why;
+use crate::facts_text::{facts_text, verdicts_text};
+use crate::failure::Failure;
+use crate::load;
+use crate::numbers::counted;
+use crate::output::{Output, check_places, is_stdout};
+use crate::progress::{Bar, INTERRUPTED, Waiting, interrupt_flag};
+use crate::text::{Text, complain, hanging};
+use crate::why_text::{legend, memory_text, relation_text, sentence};
+
+/// The study found that backends disagree.
+const MISMATCH: u8 = 1;
+
+/// Counts, measures if asked to, and shows; text first, so that no file that fails can take it along.
+pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
+    check_places(
+        arguments.mesh.as_deref(),
+        &[("--json", arguments.json.as_ref())],
+    )?;
+    // Before the draft of the output, so that Ctrl-C can leave none behind.
+    let stop = interrupt_flag();
+    let json = Output::open_if(arguments.json.as_ref())?;
+    let specimen = match &arguments.mesh {
+        Some(path) => load::for_study(path, false, arguments.triangulate)?,
+        None => load::built_in(),
+    };
+    let timing = match arguments.counts_only {
+        true => None,
+        false => timing(arguments, &stop),
+    };
+    let settings = WhySettings {
+        backends: arguments.backends.clone(),
+        extra: Vec::new(),
+        relations: arguments.relations.clone(),
+        timing,
+    };
+    let bar = Bar::new();
+    let why = ::study::why(&specimen, &settings, &stop, &mut |at| bar.show(at));
+    bar.clear();
+    let why = why.map_err(|error| match error {
+        StudyError::NoneHolds { .. } => Failure::unsupported(error),
+        error => Failure::usage(error),
+    })?;
+
+    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
+    print(&why, !arguments.relations.is_empty(), &mut text);
+    let mut done = text.finish();
+    if let Some(output) = json {
+        done = done.and(output.finish(|writer| why.write_json(writer)));
+    }
+    let mismatches = why.mismatches();
+    if mismatches > 0 {
+        let results = counted(mismatches, "result differs", "results differ");
+        complain(&format!(
+            "error: {results} from those of other backends for the same work: a fault in Sixfold, please report it"
+        ));
+        done?;
+        return Ok(ExitCode::from(MISMATCH));
+    }
+    done?;
+    if why.interrupted {
+        complain("interrupted: what was finished is kept");
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Measures the memory; `None` if interrupted meanwhile.
+fn timing(arguments: &Why, stop: &AtomicBool) -> Option<Timing> {
+    if cfg!(debug_assertions) {
+        complain("note: this is a debug build, and its times mean nothing: build with --release");
+    }
+    let waiting = Waiting::shown("measuring how fast memory is read".into());
+    let memory = MemorySpeed::measure(&MachineClock::start(), stop);
+    waiting.clear();
+    Some(Timing {
+        budget: arguments.budget,
+        memory: memory?,
+    })
+}
+
+fn print(why: &::study::Why, sentences: bool, text: &mut Text) {
+    text.say(&facts_text(&why.mesh));
+    text.say("");
+    text.say(&verdicts_text(&why.mesh, &why.backends));
+    if let Some(rungs) = &why.memory {
+        text.say("");
+        text.say(&memory_text(rungs));
+    }
+    for rows in why
+        .rows
+        .chunk_by(|a, b| a.reads.relation == b.reads.relation)
+    {
+        text.say("");
+        text.say(&relation_text(rows, why.memory.is_some()));
+        if sentences {
+            text.say("");
+            for row in rows {
+                text.say(&hanging("- ", &sentence(row)));
+            }
+        }
+    }
+    text.say("");
+    text.say(&legend(why));
+}

@@ -1,0 +1,320 @@
+//! The tables of `sixfold why`: one for each relation, a row for each backend.
+
+use ::study::{Bound, Model, Rung, TableReads, Timed, Why, WhyRow};
+use comfy_table::{Cell, CellAlignment};
+use sixfold::Relation;
+
+use crate::numbers::{bytes, figure, grouped};
+use crate::tables::table;
+use crate::text::{hanging, wrapped};
+
+/// Columns for the names of tables: what is left beside the figures.
+const TABLES: usize = 38;
+/// A blank at which no line ends, while lines are broken.
+const NO_BREAK: char = '\u{a0}';
+
+/// What a relation yields, in a few words.
+fn meaning(relation: Relation) -> &'static str {
+    match relation {
+        Relation::VertexVertices => "the other ends of the edges at a vertex",
+        Relation::VertexEdges => "the edges that end at a vertex",
+        Relation::VertexFaces => "the faces with a corner at a vertex",
+        Relation::EdgeVertices => "the two ends of an edge",
+        Relation::EdgeEdges => "the edges that share an end with an edge",
+        Relation::EdgeFaces => "the faces along an edge",
+        Relation::FaceVertices => "the corners of a face",
+        Relation::FaceEdges => "the sides of a face",
+        Relation::FaceFaces => "the faces that share an edge with a face",
+    }
+}
+
+/// How fast memory is read, by the size of the buffer.
+pub(crate) fn memory_text(rungs: &[Rung]) -> String {
+    let line = |name: &str, what: &str, of: &dyn Fn(&Rung) -> String| {
+        let figures: String = rungs
+            .iter()
+            .map(|rung| format!("{:>9}", of(rung)))
+            .collect();
+        format!("{name:<13}{what:<10}{figures}")
+    };
+    let size = |rung: &Rung| match rung.bytes >> 10 {
+        kib if kib < 1024 => format!("{kib} KiB"),
+        kib => format!("{} MiB", kib >> 10),
+    };
+    [
+        line("memory", "buffer of", &size),
+        line("", "GB/s", &|rung| figure(rung.gb_per_s)),
+        line("", "latency ns", &|rung| figure(rung.latency_ns)),
+    ]
+    .join("\n")
+}
+
+/// The rows of one relation, with times or with the tables that are read.
+pub(crate) fn relation_text(rows: &[WhyRow], timed: bool) -> String {
+    let Some(first) = rows.first() else {
+        return String::new();
+    };
+    let relation = first.reads.relation;
+    let heads = ["answers", "reads", "lines", "bytes", "jumps", "moved"];
+    let more: &[&str] = match timed {
+        true => &["floor", "waits", "measured", "bound by"],
+        false => &["reads by table"],
+    };
+    let heads = ["a query:"].iter().chain(&heads).chain(more);
+    let mut block = table(heads.map(Cell::new).collect());
+    for row in rows {
+        block.add_row(cells(row, timed));
+    }
+    let columns = 1 + 6 + more.len();
+    for column in 0..columns {
+        let Some(column_of) = block.column_mut(column) else {
+            continue;
+        };
+        let is_word = column == 0 || column + 1 == columns;
+        column_of.set_padding(if column == 0 { (0, 0) } else { (1, 0) });
+        if !is_word {
+            column_of.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    let lines = block.trim_fmt();
+    format!("{relation}: {}\n{lines}", meaning(relation))
+}
+
+fn cells(row: &WhyRow, timed: bool) -> Vec<Cell> {
+    let reads = &row.reads;
+    let sign = if reads.sampled { " ~" } else { "" };
+    let mut cells = vec![format!("{}{sign}", row.backend)];
+    let counts = [
+        reads.answers,
+        reads.reads,
+        reads.lines,
+        reads.bytes,
+        reads.jumps,
+        reads.moved_bytes,
+    ];
+    cells.extend(counts.map(short));
+    match (timed, &row.timed) {
+        (false, _) => cells.push(by_table(&reads.tables)),
+        (true, None) => cells.extend(["–"; 4].map(str::to_owned)),
+        (true, Some(timed)) => cells.extend([
+            short(timed.floor_ns),
+            short(timed.waits_ns),
+            format!(
+                "{}{}",
+                if timed.sampled { "~" } else { "" },
+                short(timed.ns_per_element)
+            ),
+            timed.bound.name().to_owned(),
+        ]),
+    }
+    cells.into_iter().map(Cell::new).collect()
+}
+
+/// `halves 6.00, leaving 1.00`, the most read first.
+fn by_table(tables: &[TableReads]) -> String {
+    if tables.is_empty() {
+        return "none: the name says it".into();
+    }
+    let mut tables: Vec<&TableReads> = tables.iter().collect();
+    tables.sort_by(|a, b| b.reads.total_cmp(&a.reads));
+    let tables = tables
+        .iter()
+        .map(|table| format!("{}{NO_BREAK}{}", table.table, short(table.reads)));
+    let tables = tables.collect::<Vec<_>>().join(", ");
+    let lines = wrapped(&tables, TABLES).join("\n");
+    lines.replace(NO_BREAK, " ")
+}
+
+/// A number in five letters: `0`, `<.001`, `0.052`, `7.00`, `60.5k`, `3.63M`.
+fn short(number: f64) -> String {
+    match number {
+        0.0 => "0".into(),
+        n if n < 0.000_5 => "<.001".into(),
+        n if n < 999.5 => figure(n),
+        n if n < 999.5e3 => format!("{}k", figure(n / 1e3)),
+        n if n < 999.5e6 => format!("{}M", figure(n / 1e6)),
+        n => format!("{}G", figure(n / 1e9)),
+    }
+}
+
+/// A row in words.
+pub(crate) fn sentence(row: &WhyRow) -> String {
+    let WhyRow {
+        backend,
+        per,
+        reads,
+        timed,
+    } = row;
+    let mut text = format!("{backend}: ");
+    text += &match reads.reads {
+        0.0 => "a query reads nothing".into(),
+        number => format!(
+            "{} reads in {} lines, {} bytes a query",
+            short(number),
+            short(reads.lines),
+            short(reads.bytes)
+        ),
+    };
+    if reads.sampled {
+        text += &format!(" (the mean of {})", reads.asked);
+    }
+    let swept = bytes(reads.sweep_bytes());
+    text += &match reads.moved_bytes {
+        0.0 => "; nor does a sweep".into(),
+        moved => format!(
+            "; a sweep touches {swept} and moves {} bytes {} {per}",
+            short(moved),
+            article(per)
+        ),
+    };
+    match timed {
+        None => text + ".",
+        Some(timed) => text + &in_time(timed),
+    }
+}
+
+/// What the bytes and the jumps take, what is measured, and what follows.
+fn in_time(timed: &Timed) -> String {
+    let Timed {
+        ns_per_element,
+        speed,
+        floor_ns,
+        waits_ns,
+        bound,
+        ..
+    } = timed;
+    let (measured, floor, waits) = (short(*ns_per_element), short(*floor_ns), short(*waits_ns));
+    let speed = short(speed.gb_per_s);
+    let verdict = match bound {
+        Bound::Bandwidth => "bound by the bytes that move",
+        Bound::Latency => "bound by waiting for lines that could not be foreseen",
+        Bound::Work => "bound by the steps of the query itself, and not by memory",
+    };
+    format!(
+        ", {floor} ns at {speed} GB/s, and waits {waits} ns for what jumps; measured {measured} ns: {verdict}."
+    )
+}
+
+fn article(word: &str) -> &'static str {
+    if word.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        "an"
+    } else {
+        "a"
+    }
+}
+
+/// What each column is.
+pub(crate) fn legend(why: &Why) -> String {
+    let Model {
+        line_bytes,
+        cache_lines,
+        sample,
+        ..
+    } = why.model;
+    let first = [
+        (
+            "answers",
+            "elements that a query yields; figures are means over all queries",
+        ),
+        (
+            "reads",
+            "rows of tables that it reads, each as often as it is read",
+        ),
+        (
+            "lines",
+            &format!(
+                "cache lines of {line_bytes} bytes that it touches, each once; a table begins with a line"
+            ),
+        ),
+        ("bytes", "what it reads in these lines, each byte once"),
+        (
+            "jumps",
+            &format!(
+                "in a sweep over all elements in their order, the lines for each element that are not \
+                 among the last {} fetched, nor is a line beside them: no prefetcher foresees them",
+                grouped(cache_lines as usize)
+            ),
+        ),
+        (
+            "moved",
+            "bytes for each element that a sweep has to move at least: each of its lines once; \
+             in a row with ~, all lines of a query",
+        ),
+    ];
+    let timed = [
+        (
+            "floor",
+            "ns to move them: read in order, from the largest buffer above that is no larger than what \
+             the sweep touches",
+        ),
+        (
+            "waits",
+            "ns for the jumps, if each waits for the one before, in the same buffer",
+        ),
+        (
+            "measured",
+            "ns for each element of the sweep, the median; ~ from a sample",
+        ),
+        (
+            "bound by",
+            "bandwidth, where the floor is half of the time or more; else latency, where the waits are; \
+             else work: reading what is near, comparing, branching",
+        ),
+    ];
+    let counted = [("by table", "how the reads of a query fall on the tables")];
+    let listing = match why.memory.is_some() {
+        true => {
+            "Jumps, moved and measured include listing the elements. What a structure without a table \
+             of edges sets up to list them is in measured alone."
+        }
+        false => "Jumps and moved include listing the elements.",
+    };
+    let last = [
+        (
+            "~",
+            &*format!("{sample} elements, evenly spaced, stand for all"),
+        ),
+        ("", listing),
+    ];
+    let second: &[(&str, &str)] = if why.memory.is_some() {
+        &timed
+    } else {
+        &counted
+    };
+    let lines = first.iter().chain(second).chain(&last);
+    let lines = lines.map(|(name, meaning)| hanging(&format!("{name:<10}"), meaning));
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_take_five_letters() {
+        let numbers = [
+            0.0, 0.0004, 0.0521, 7.0, 999.4, 999.6, 60_480.0, 999_600.0, 3.63e6, 2e9,
+        ];
+        let expected = [
+            "0", "<.001", "0.052", "7.00", "999", "1.00k", "60.5k", "1.00M", "3.63M", "2.00G",
+        ];
+        assert_eq!(numbers.map(short), expected);
+        assert!(numbers.map(short).iter().all(|text| text.len() <= 5));
+    }
+
+    #[test]
+    fn the_most_read_table_comes_first() {
+        let read = |table, reads| TableReads {
+            table,
+            row_bytes: 4,
+            reads,
+        };
+        let text = by_table(&[read("leaving", 1.0), read("halves", 6.0)]);
+        assert_eq!(text, "halves 6.00, leaving 1.00");
+        // Nobody breaks a line between a table and its figure.
+        let many = ["vertex", "opposite", "corner"].map(|table| read(table, 1.0));
+        let text = by_table(&many);
+        assert_eq!(text, "vertex 1.00, opposite 1.00,\ncorner 1.00");
+        assert_eq!(by_table(&[]), "none: the name says it");
+    }
+}

@@ -1,0 +1,150 @@
+//! `sixfold why`: counts that can be worked out by hand, times beside them, and what is refused.
+
+use serde_json::Value;
+
+use crate::run::{Sixfold, TETRAHEDRON, done, text};
+
+/// Two triangles along an edge, so that there is a boundary.
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
+
+fn row<'a>(why: &'a Value, backend: &str, relation: &str) -> &'a Value {
+    let rows = why["rows"].as_array().expect("a list");
+    let is_it = |row: &&Value| row["backend"] == backend && row["relation"] == relation;
+    rows.iter().find(is_it).expect("a row")
+}
+
+#[test]
+fn counts_are_those_worked_out_by_hand() {
+    let sixfold = Sixfold::new();
+    sixfold.file("square.obj", SQUARE);
+    let arguments = ["why", "square.obj", "--counts-only", "--json", "-"];
+    let why: Value = serde_json::from_str(&done(&sixfold, &arguments).stdout).expect("JSON");
+    assert_eq!(why["schema"], 1);
+    assert_eq!(why["rows"].as_array().map(Vec::len), Some(6 * 9));
+    assert_eq!(why["memory"], Value::Null);
+    assert_eq!(why["environment"], Value::Null);
+    assert_eq!(why["model"]["line_bytes"], 64);
+
+    // Three corners of four bytes, all in one line.
+    let corners = row(&why, "indexed-face-set", "face_vertices");
+    for (field, value) in [
+        ("reads", 3.0),
+        ("bytes", 12.0),
+        ("lines", 1.0),
+        ("moved_bytes", 32.0),
+    ] {
+        assert_eq!(corners[field], value, "{field}");
+    }
+    // Five edges of two halves, 24 bytes each; one of them lies in two lines.
+    let ends = row(&why, "half-edge", "edge_vertices");
+    for (field, value) in [
+        ("reads", 2.0),
+        ("bytes", 24.0),
+        ("lines", 1.2),
+        ("moved_bytes", 25.6),
+    ] {
+        assert_eq!(ends[field], value, "{field}");
+    }
+    assert_eq!(ends["tables"][0]["table"], "halves");
+    assert_eq!(ends["timed"], Value::Null);
+    // An edge of a soup is its ends.
+    assert_eq!(row(&why, "polygon-soup", "edge_vertices")["reads"], 0.0);
+}
+
+#[test]
+fn times_come_with_what_bounds_them() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let arguments = [
+        "why",
+        "grid.obj",
+        "--relations",
+        "vertex_faces,edge_vertices",
+        "--budget",
+        "200ms",
+        "--json",
+        "why.json",
+    ];
+    let run = done(&sixfold, &arguments);
+    for line in run.stdout.lines() {
+        assert!(line.chars().count() <= 100, "too wide: {line}");
+    }
+    let why: Value = serde_json::from_str(&text(&sixfold, "why.json")).expect("JSON");
+    let rungs = why["memory"].as_array().expect("a list");
+    assert!(rungs.len() > 1);
+    for row in why["rows"].as_array().expect("a list") {
+        let timed = &row["timed"];
+        let number = |field: &str| timed[field].as_f64().expect("a number");
+        let speed = timed["speed"]["gb_per_s"].as_f64().expect("a number");
+        let moved = row["moved_bytes"].as_f64().expect("a number");
+        let close = (number("floor_ns") - moved / speed).abs() <= 1e-9 * moved;
+        assert!(close, "{row}");
+        let half = number("ns_per_element") / 2.0;
+        let expected = match () {
+            () if number("floor_ns") >= half => "bandwidth",
+            () if number("waits_ns") >= half => "latency",
+            () => "work",
+        };
+        assert_eq!(timed["bound"], expected, "{row}");
+        assert_eq!(timed["agreement"], "same");
+    }
+    // Relations that are named are told in sentences.
+    assert!(run.stdout.contains("- half-edge: "), "{}", run.stdout);
+    assert!(run.stdout.contains("GB/s"), "{}", run.stdout);
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_advice() {
+    let sixfold = Sixfold::new();
+    sixfold.file("ok.obj", TETRAHEDRON);
+    let book = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
+    sixfold.file("book.obj", book);
+    sixfold.file("points.obj", "v 0 0 0\n");
+    for (arguments, code, says) in [
+        (
+            &["why", "ok.obj", "--relations", "neighbours"][..],
+            2,
+            "choose from vertex_vertices",
+        ),
+        (
+            &["why", "ok.obj", "--backends", "abacus"],
+            2,
+            "choose from polygon-soup",
+        ),
+        (&["why", "ok.obj", "--json", "ok.obj"], 2, "overwrite"),
+        (&["why", "--counts-only", "--budget", "1s"], 2, "--budget"),
+        (
+            &["why", "points.obj", "--counts-only"],
+            2,
+            "nothing to study",
+        ),
+        (&["why", "none.obj", "--counts-only"], 2, "none.obj"),
+        (
+            &[
+                "why",
+                "book.obj",
+                "--counts-only",
+                "--backends",
+                "half-edge",
+            ],
+            3,
+            "f0, f1, f2",
+        ),
+    ] {
+        let run = sixfold.run(arguments);
+        assert_eq!(run.code, Some(code), "{run:?}");
+        assert!(run.stderr.contains(says), "{says}: {run:?}");
+        assert_eq!(run.stdout, "");
+    }
+    // Who cannot hold it is named, and the others are counted.
+    let run = done(&sixfold, &["why", "book.obj", "--counts-only"]);
+    assert!(run.stdout.contains("half-edge         refuses"), "{run:?}");
+    let rows = |name: &str| {
+        run.stdout
+            .lines()
+            .filter(|line| line.trim_start().starts_with(name))
+            .count()
+    };
+    assert_eq!(rows("face-vertex "), 1 + 9);
+    assert_eq!(rows("corner-table "), 1);
+}
