@@ -8,26 +8,40 @@
 //! command line and prints nothing: progress goes to a closure, and a flag stops it.
 
 mod agreement;
+mod caches;
 mod control;
 mod environment;
+mod growth;
 mod inspect;
 mod measure;
 mod methods;
+mod orders;
 mod plan;
 mod report;
+mod slope;
 mod solo;
 mod standing;
 mod statistics;
 mod study;
 mod words;
 
+pub use caches::{Cache, caches};
 pub use environment::Environment;
+pub use growth::{
+    CacheEnd, Fit, GROWING, Growing, GrowthError, GrowthReport, GrowthSettings, SizeReport, Unheld,
+    Weight, growth, growth_bytes,
+};
 pub use inspect::{Specimen, inspect};
 pub use measure::Progress;
+pub use orders::{
+    Comparison, Factor, Larger, OrderEffect, OrderRow, OrdersError, OrdersReport, StructureEffect,
+    orders, orders_bytes,
+};
 pub use report::{
     Agreement, BackendReport, Control, ControlRow, Inspection, MeshReport, Refusal, Report,
     ResultRow, SCHEMA, Standing,
 };
+pub use slope::Slope;
 pub use solo::{Solo, SoloRun};
 pub use study::{Settings, StudyError, study};
 pub use workload::{

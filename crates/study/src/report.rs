@@ -292,12 +292,15 @@ impl Inspection {
     }
 }
 
-fn write_json(value: &impl Serialize, mut writer: impl io::Write) -> io::Result<()> {
+pub(crate) fn write_json(value: &impl Serialize, mut writer: impl io::Write) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut writer, value).map_err(io::Error::from)?;
     writeln!(writer)
 }
 
 /// A map by name that keeps the order.
-fn as_map<S: Serializer>(backends: &[BackendReport], serializer: S) -> Result<S::Ok, S::Error> {
+pub(crate) fn as_map<S: Serializer>(
+    backends: &[BackendReport],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     serializer.collect_map(backends.iter().map(|backend| (&backend.name, backend)))
 }

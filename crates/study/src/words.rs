@@ -183,7 +183,7 @@ fn doubts(results: &[ResultRow]) -> Option<String> {
 }
 
 /// `1.4 ×`, `2,100 ×`: a ratio as one says it.
-fn times(ratio: f64) -> String {
+pub(crate) fn times(ratio: f64) -> String {
     match ratio {
         r if r < 1.095 => format!("{r:.2} ×"),
         r if r < 9.95 => format!("{r:.1} ×"),
@@ -192,7 +192,7 @@ fn times(ratio: f64) -> String {
 }
 
 /// `1,234,567`.
-fn grouped(number: usize) -> String {
+pub(crate) fn grouped(number: usize) -> String {
     match number {
         n if n < 1000 => n.to_string(),
         n => format!("{},{:03}", grouped(n / 1000), n % 1000),
