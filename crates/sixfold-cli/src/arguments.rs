@@ -1,5 +1,6 @@
 //! What can be asked for.
 
+mod comparing;
 mod remeshing;
 mod render;
 mod reshaping;
@@ -12,6 +13,7 @@ use ::study::Operation;
 use clap::{Args, Parser, Subcommand};
 use sixfold::shapes::Order;
 
+pub(crate) use comparing::{GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
@@ -65,6 +67,10 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Measure what each backend costs for a mesh
     Study(Study),
+    /// Measure what the order of a mesh in memory costs each backend
+    Orders(Orders),
+    /// Measure how the cost of each backend grows with the mesh
+    Growth(Growth),
     /// Say what a mesh is, and which backends can hold it
     Inspect(Inspect),
     /// Write a built-in shape

@@ -15,9 +15,12 @@ mod edits;
 mod facts_text;
 mod failure;
 mod generate;
+mod growth;
 mod inspect;
 mod load;
+mod memory;
 mod numbers;
+mod orders;
 mod output;
 mod progress;
 mod remesh;
@@ -45,6 +48,8 @@ fn main() -> ExitCode {
     // Help lists shapes, backends and operations as the registries have them.
     let command = Arguments::command()
         .mut_subcommand("study", |study| study.after_help(study::help()))
+        .mut_subcommand("orders", |orders| orders.after_help(orders::help()))
+        .mut_subcommand("growth", |growth| growth.after_help(growth::help()))
         .mut_subcommand("generate", |generate| generate.after_help(generate::help()));
     let arguments = command
         .try_get_matches()
@@ -53,6 +58,8 @@ fn main() -> ExitCode {
         Err(error) => told(&error),
         Ok(None) => study::run(&arguments::Study::default()),
         Ok(Some(Command::Study(arguments))) => study::run(&arguments),
+        Ok(Some(Command::Orders(arguments))) => orders::run(&arguments),
+        Ok(Some(Command::Growth(arguments))) => growth::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
         Ok(Some(Command::Generate(arguments))) => generate::run(&arguments),
         Ok(Some(Command::Schemes(arguments))) => schemes::run(&arguments),

@@ -35,6 +35,8 @@ fn help() {
     for (name, arguments) in [
         ("help.txt", &["--help"][..]),
         ("help_study.txt", &["study", "--help"]),
+        ("help_orders.txt", &["orders", "--help"]),
+        ("help_growth.txt", &["growth", "--help"]),
         ("help_inspect.txt", &["inspect", "--help"]),
         ("help_generate.txt", &["generate", "--help"]),
         ("help_render.txt", &["render", "--help"]),

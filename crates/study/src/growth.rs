@@ -155,9 +155,6 @@ pub fn growth(
         let made = plan.shape.make(faces)?;
         let mesh = settings.order.of(&made, settings.study.seed);
         drop(made);
-        if sizes.last().map(|size| size.faces) == Some(mesh.face_count()) {
-            continue; // the shape does not come in every size
-        }
         let range = time.range(step);
         let share = || time.share(step);
         let mut here = |at: Progress<'_>| {
@@ -174,10 +171,6 @@ pub fn growth(
         }
     }
     let interrupted = stop.load(Ordering::Relaxed);
-    if sizes.len() < 2 && !interrupted {
-        let GrowthSettings { from, to, .. } = *settings;
-        return Err(GrowthError::OneSize { from, to });
-    }
     let backends: Vec<&Backend> = plan
         .backends
         .iter()

@@ -130,9 +130,15 @@ impl GrowthSettings {
                 steps,
             });
         }
+        // The shape does not come in every size.
+        let mut sizes = sizes(from, to, steps);
+        sizes.dedup_by_key(|faces| shape.parameters(*faces));
+        if sizes.len() < 2 {
+            return Err(GrowthError::OneSize { from, to });
+        }
         Ok(Plan {
             shape,
-            sizes: sizes(from, to, steps),
+            sizes,
             backends: study.chosen_backends()?,
             operations: chosen_operations(study),
         })
@@ -206,7 +212,8 @@ mod tests {
             assert_eq!(growth_bytes(&settings), Err(refusal.clone()), "both say it");
             refusal.to_string()
         };
-        let cases: [(&dyn Fn(&mut GrowthSettings), &str); 8] = [
+        let cases: [(&dyn Fn(&mut GrowthSettings), &str); 9] = [
+            (&|s| s.to = 1001, "further apart"),
             (&|s| s.shape = "teapot".into(), "geodesic"),
             (&|s| (s.from, s.to) = (5000, 1000), "the smaller first"),
             (&|s| (s.from, s.to) = (5000, 5000), "the smaller first"),

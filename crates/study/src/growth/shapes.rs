@@ -10,7 +10,7 @@ pub struct Growing {
     pub name: &'static str,
     /// What it is, in one line.
     pub summary: &'static str,
-    parameters: fn(f64) -> Vec<(&'static str, f64)>,
+    takes: fn(f64) -> Vec<(&'static str, f64)>,
 }
 
 impl Growing {
@@ -19,15 +19,19 @@ impl Growing {
         GROWING.iter().find(|shape| shape.name == name)
     }
 
+    /// What its recipe takes to come near so many faces.
+    pub(super) fn parameters(&self, faces: usize) -> Vec<(&'static str, f64)> {
+        (self.takes)(faces as f64)
+    }
+
     /// The shape with about so many faces.
     ///
     /// # Errors
     ///
     /// A number of faces beyond what the shape allows.
     pub fn make(&self, faces: usize) -> Result<PolygonMesh, ShapeError> {
-        let parameters = (self.parameters)(faces as f64);
         let recipe = recipe(self.name).expect("each of the list is a recipe, as a test shows");
-        recipe.make(&parameters)
+        recipe.make(&self.parameters(faces))
     }
 }
 
@@ -36,42 +40,42 @@ pub const GROWING: &[Growing] = &[
     Growing {
         name: "geodesic",
         summary: "triangles on a sphere, closed",
-        parameters: |faces| vec![("frequency", (faces / 20.0).sqrt().round().max(1.0))],
+        takes: |faces| vec![("frequency", (faces / 20.0).sqrt().round().max(1.0))],
     },
     Growing {
         name: "triangle-torus",
         summary: "triangles around a ring, closed, every vertex of valence 6",
-        parameters: |faces| cells(faces / 2.0, 2.0),
+        takes: |faces| cells(faces / 2.0, 2.0),
     },
     Growing {
         name: "torus",
         summary: "quads around a ring, closed",
-        parameters: |faces| cells(faces, 2.0),
+        takes: |faces| cells(faces, 2.0),
     },
     Growing {
         name: "triangle-grid",
         summary: "triangles in the plane, with a boundary",
-        parameters: |faces| cells(faces / 2.0, 1.0),
+        takes: |faces| cells(faces / 2.0, 1.0),
     },
     Growing {
         name: "grid",
         summary: "squares in the plane, with a boundary",
-        parameters: |faces| cells(faces, 1.0),
+        takes: |faces| cells(faces, 1.0),
     },
     Growing {
         name: "mixed-grid",
         summary: "squares and triangles in the plane, with a boundary",
-        parameters: |faces| cells(faces / 1.5, 1.0),
+        takes: |faces| cells(faces / 1.5, 1.0),
     },
     Growing {
         name: "hexagon-tiling",
         summary: "hexagons in the plane, with a boundary",
-        parameters: |faces| cells(faces, 1.0),
+        takes: |faces| cells(faces, 1.0),
     },
     Growing {
         name: "blobs",
         summary: "irregular triangles of marching tetrahedra, closed",
-        parameters: |faces| vec![("faces", faces.round())],
+        takes: |faces| vec![("faces", faces.round())],
     },
 ];
 

@@ -105,35 +105,35 @@ fn compared(comparison: &Comparison) -> Option<String> {
     let most = local().max_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
     let said = |effect: &OrderEffect| match effect.matters {
         true => format!("{} ({})", times(effect.worst_to_best.ratio), effect.backend),
-        false => format!("no difference ({})", effect.backend),
+        false => format!("nothing ({})", effect.backend),
     };
+    let operation = comparison.operation;
     let orders = match local().count() {
-        1 => format!("the worst order takes {} as long as the best", said(most)),
+        1 => format!("{operation}: the order makes {}", said(most)),
         _ => format!(
-            "from {} to {} lie between the best order and the worst",
+            "{operation}: the order makes {} to {}",
             said(least),
             said(most)
         ),
     };
-    let operation = comparison.operation;
     let Some(structures) = &comparison.structures else {
-        return Some(format!("{operation}: {orders}."));
+        return Some(format!("{orders}."));
     };
     let between = match structures.matters {
         true => format!(
-            "{} between {} and {}, each in its best order",
+            "the structure {} ({} to {}, each in its best order)",
             times(structures.slowest_to_fastest.ratio),
             structures.fastest,
             structures.slowest
         ),
-        false => "no difference between the structures in their best orders".into(),
+        false => "the structures do not differ in their best orders".into(),
     };
     let larger = match comparison.larger? {
         Larger::Order => "the order matters more",
         Larger::Structure => "the structure matters more",
         Larger::Depends => "which matters more depends on the structure",
     };
-    Some(format!("{operation}: {orders}, {between}: {larger}."))
+    Some(format!("{orders}, {between}: {larger}."))
 }
 
 /// What looks at all faces goes through memory from end to end.
