@@ -402,8 +402,8 @@ pub fn orders_bytes(specimen: &Specimen, settings: &Settings) -> Result<u64, Stu
 
 /// Bytes of a structure with the outputs of operations beside it.
 pub(crate) fn on_the_bench_bytes(backend: &Backend, counts: &Counts) -> u64 {
-    /// A position for each vertex and face, in a hash map where they have no rows.
-    const OUTPUTS: u64 = 24;
+    /// A position for each vertex and face.
+    const OUTPUTS: u64 = 12;
     let outputs = OUTPUTS * (counts.vertices + counts.faces) as u64;
     (backend.layout_bytes)(counts) as u64 + outputs
 }

@@ -38,7 +38,9 @@ pub(super) fn words(
 fn exponents(fits: &[Fit], caches: &[Cache]) -> Vec<String> {
     let range = |scans: bool, slope: &dyn Fn(&Fit) -> Option<Slope>| {
         let slopes = fits.iter().filter(|fit| fit.scans == scans);
-        let mut slopes: Vec<f64> = slopes.filter_map(|f| Some(slope(f)?.exponent)).collect();
+        // A line through two points says nothing of how far it may be off.
+        let sure = slopes.filter_map(|fit| slope(fit).filter(|s| s.standard_error.is_some()));
+        let mut slopes: Vec<f64> = sure.map(|slope| slope.exponent).collect();
         slopes.sort_by(f64::total_cmp);
         let (least, most) = (slopes.first()?, slopes.last()?);
         Some(format!("{least:.2} to {most:.2}"))
@@ -63,9 +65,13 @@ fn exponents(fits: &[Fit], caches: &[Cache]) -> Vec<String> {
             "Where a structure looks at all faces for each element, to the power {all}."
         ));
     }
-    if last_level(caches).is_some() && fits.iter().all(|fit| fit.beyond.is_none()) {
+    let sure = |fit: &Fit| {
+        fit.beyond
+            .is_some_and(|slope| slope.standard_error.is_some())
+    };
+    if last_level(caches).is_some() && !fits.iter().any(sure) {
         words.push(
-            "Too few sizes lie beyond the last cache for a line of their own: a larger --to, or more --steps, has some.".into(),
+            "Fewer than three sizes lie beyond the last cache, too few to trust a line of their own: a larger --to, or more --steps, has some.".into(),
         );
     }
     words
