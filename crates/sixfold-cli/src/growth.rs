@@ -12,7 +12,7 @@ use crate::arguments::{GROWTH_EXAMPLES, Growth};
 use crate::failure::Failure;
 use crate::memory::check_room;
 use crate::numbers::{counted, grouped};
-use crate::orders::short;
+use crate::orders::{few, short};
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Bar, INTERRUPTED, interrupt_flag};
 use crate::study::{MISMATCH, names, setting};
@@ -86,7 +86,10 @@ pub(crate) fn help() -> String {
     let shape = |Growing { name, summary, .. }: &Growing| format!("  {name:<width$}  {summary}");
     let shapes: Vec<String> = GROWING.iter().map(shape).collect();
     let (shapes, names) = (shapes.join("\n"), names());
-    format!("{GROWTH_EXAMPLES}\n\nShapes:\n{shapes}\n\n{names}")
+    format!(
+        "{GROWTH_EXAMPLES}\n\nShapes:\n{shapes}\n\n{names}\n{}",
+        few()
+    )
 }
 
 fn print(report: &GrowthReport, text: &mut Text) {

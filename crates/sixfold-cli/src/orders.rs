@@ -3,7 +3,8 @@
 use std::process::ExitCode;
 
 use ::study::{
-    Agreement, Comparison, OrderRow, OrdersError, OrdersReport, Settings, Standing, StudyError,
+    Agreement, Comparison, FEW_OPERATIONS, OrderRow, OrdersError, OrdersReport, Settings, Standing,
+    StudyError,
 };
 use comfy_table::{Attribute, Cell, CellAlignment, Table};
 use sixfold::shapes::Order;
@@ -81,7 +82,12 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
 
 /// What help says after the options: examples, how it measures, and the names that there are.
 pub(crate) fn help() -> String {
-    format!("{ORDERS_EXAMPLES}\n\n{}", names())
+    format!("{ORDERS_EXAMPLES}\n\n{}\n{}", names(), few())
+}
+
+/// The operations that are measured where none are named.
+pub(crate) fn few() -> String {
+    hanging("Unless named: ", &FEW_OPERATIONS.join(", "))
 }
 
 fn print(report: &OrdersReport, text: &mut Text) {

@@ -2,6 +2,7 @@
 //!
 //! [`study`] builds every backend asked for, runs the [`Operation`]s on them in interleaved rounds
 //! until the budget is spent, proves by checksum that all did the same work, and gives a [`Report`].
+//! [`orders`] does so for one mesh in several orders, and [`growth`] for one shape in many sizes.
 //! [`inspect`] says what a mesh is and which backends can hold it, and measures nothing.
 //!
 //! What a reader of the figures should know is in `reports/SCHEMA.md`. This crate knows no
@@ -34,8 +35,8 @@ pub use growth::{
 pub use inspect::{Specimen, inspect};
 pub use measure::Progress;
 pub use orders::{
-    Comparison, Factor, Larger, OrderEffect, OrderRow, OrdersError, OrdersReport, StructureEffect,
-    orders, orders_bytes,
+    Comparison, FEW_OPERATIONS, Factor, Larger, OrderEffect, OrderRow, OrdersError, OrdersReport,
+    StructureEffect, orders, orders_bytes,
 };
 pub use report::{
     Agreement, BackendReport, Control, ControlRow, Inspection, MeshReport, Refusal, Report,

@@ -34,7 +34,7 @@ use workload::{Backend, Draw, MachineClock, Operation, Side, Subject};
 
 /// What is measured where no operations are named: around vertices, faces and edges, a sum over
 /// faces, and a walk through the whole mesh.
-pub(crate) const FEW_OPERATIONS: [&str; 6] = [
+pub const FEW_OPERATIONS: [&str; 6] = [
     "vertex_vertices",
     "vertex_faces",
     "edge_faces",

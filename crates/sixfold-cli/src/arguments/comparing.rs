@@ -16,20 +16,20 @@ pub(crate) const ORDERS_EXAMPLES: &str = "Examples:
   sixfold orders bunny.obj --operations vertex_vertices --backends half-edge,corner-table
   sixfold orders bunny.obj --budget 2m --json orders.json
 
-Orders: given, as the file has it; shuffled, vertices and faces at random; morton, along a curve that
-fills space; breadth-first, as a walk over the faces meets them. All pairs of a backend and an order
-are measured in one interleaved run, as `study` does; each backend in its four orders is compared with
-itself, and then the backends in their best orders with each other. One backend in the order given is
-entered twice: what its two columns differ by is the noise.
+Orders: given, as the file has it; shuffled, vertices and faces at random; morton, along a curve
+that fills space; breadth-first, as a walk over the faces meets them. All pairs of a backend and
+an order are measured in one interleaved run, as `study` does; each backend in its four orders
+is compared with itself, and then the backends in their best orders with each other. One backend
+in the order given is entered twice: what its two columns differ by is the noise.
 
-Exit codes: 0 done; 1 backends or orders found different results, a fault in Sixfold; 2 wrong usage or
-unusable input; 3 no backend asked for can hold the mesh, or too little memory; 4 interrupted,
-finished part kept.";
+Exit codes: 0 done; 1 backends or orders found different results, a fault in Sixfold; 2 wrong
+usage or unusable input; 3 no backend asked for can hold the mesh, or too little memory; 4
+interrupted, finished part kept.";
 
 /// Measure what the order of a mesh in memory costs each backend.
 ///
-/// The same mesh as given, shuffled, along a space-filling curve and as a walk meets it: which order is
-/// best, how much that matters, and whether it matters more than the backend does.
+/// The same mesh as given, shuffled, along a space-filling curve and as a walk meets it: which order
+/// is best, how much that matters, and whether it matters more than the backend does.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Orders {
@@ -45,7 +45,7 @@ pub(crate) struct Orders {
     /// How long to measure: 20s, 500ms, 2m
     #[arg(long, value_name = "TIME", default_value = "25s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
-    /// What decides the order `shuffled`, that of measurement, and which elements are sampled
+    /// What decides the order `shuffled`, and what is sampled
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
     /// Cut every polygon into a fan of triangles first
@@ -63,18 +63,19 @@ pub(crate) const GROWTH_EXAMPLES: &str = "Examples:
   sixfold growth --shape blobs --order shuffled --to 4000000 --budget 5m
   sixfold growth --shape grid --from 500 --to 50000 --steps 5 --json growth.json
 
-At each size all backends are measured in interleaved rounds, as `study` does. The power is the slope
-of a straight line through the logarithms of faces and time, with its standard error: 1 is a price for
-each element that does not depend on the size, 2 is a look at all faces for each. Sizes that fit into
-the last cache and those beyond have lines of their own. What looks at all faces is sampled.
+At each size all backends are measured in interleaved rounds, as `study` does. The power is the
+slope of a straight line through the logarithms of faces and time, with its standard error: 1 is
+a price for each element that does not depend on the size, 2 is a look at all faces for each.
+Sizes that fit into the last cache and those beyond have lines of their own. What looks at all
+faces is sampled.
 
-Exit codes: 0 done; 1 backends found different results, a fault in Sixfold; 2 wrong usage; 3 no backend
-asked for can hold the shape, or too little memory; 4 interrupted, finished sizes kept.";
+Exit codes: 0 done; 1 backends found different results, a fault in Sixfold; 2 wrong usage; 3 no
+backend asked for can hold the shape, or too little memory; 4 interrupted, finished sizes kept.";
 
 /// Measure how the cost of each backend grows with the mesh.
 ///
-/// One shape in sizes that grow by a factor: nanoseconds for each element, the power by which time goes
-/// with the number of faces, and where each cache of this machine ends.
+/// One shape in sizes that grow by a factor: nanoseconds for each element, the power by which time
+/// goes with the number of faces, and where each cache of this machine ends.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Growth {
@@ -96,13 +97,13 @@ pub(crate) struct Growth {
     /// These operations, by name, instead of a few that show most
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
     pub(crate) operations: Vec<Operation>,
-    /// The order of the elements: given, shuffled, morton, breadth-first
+    /// given, shuffled, morton or breadth-first
     #[arg(long, value_name = "ORDER", default_value = "given")]
     pub(crate) order: Order,
     /// How long all of it may take: 60s, 500ms, 2m
     #[arg(long, value_name = "TIME", default_value = "60s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
-    /// What decides the order `shuffled`, that of measurement, and which elements are sampled
+    /// What decides the order `shuffled`, and what is sampled
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
     /// Write everything as JSON (- for standard output)
