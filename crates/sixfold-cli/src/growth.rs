@@ -164,12 +164,12 @@ fn table(report: &GrowthReport, operation: Operation, bold: bool) -> String {
         let of_it = |fit: &&Fit| fit.backend == *name && fit.operation == operation;
         report.fits.iter().find(of_it)
     };
-    let lines: [(&str, fn(&Fit) -> Option<Slope>); 3] = [
-        ("power", |fit| fit.all),
-        ("in cache", |fit| fit.in_cache),
-        ("beyond", |fit| fit.beyond),
-    ];
-    for (label, slope) in lines {
+    for label in ["power", "in cache", "beyond"] {
+        let slope = |fit: &Fit| match label {
+            "power" => fit.all,
+            "in cache" => fit.in_cache,
+            _ => fit.beyond,
+        };
         let slopes = report.backends.iter().map(|name| slope(fit(name)?));
         let slopes: Vec<Option<Slope>> = slopes.collect();
         if slopes.iter().all(Option::is_none) {

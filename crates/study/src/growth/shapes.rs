@@ -29,8 +29,12 @@ impl Growing {
     /// # Errors
     ///
     /// A number of faces beyond what the shape allows.
+    ///
+    /// # Panics
+    ///
+    /// Never: each of the list is a recipe, as a test shows.
     pub fn make(&self, faces: usize) -> Result<PolygonMesh, ShapeError> {
-        let recipe = recipe(self.name).expect("each of the list is a recipe, as a test shows");
+        let recipe = recipe(self.name).expect("a recipe");
         recipe.make(&self.parameters(faces))
     }
 }
