@@ -205,23 +205,24 @@ mod tests {
 
     #[test]
     fn what_makes_no_sense_is_refused_by_name() {
-        let refused = |change: &dyn Fn(&mut GrowthSettings)| {
+        let refused = |change: fn(&mut GrowthSettings)| {
             let mut settings = GrowthSettings::default();
             change(&mut settings);
             let refusal = settings.plan().err().expect("refused");
             assert_eq!(growth_bytes(&settings), Err(refusal.clone()), "both say it");
             refusal.to_string()
         };
-        let cases: [(&dyn Fn(&mut GrowthSettings), &str); 9] = [
-            (&|s| s.to = 1001, "further apart"),
-            (&|s| s.shape = "teapot".into(), "geodesic"),
-            (&|s| (s.from, s.to) = (5000, 1000), "the smaller first"),
-            (&|s| (s.from, s.to) = (5000, 5000), "the smaller first"),
-            (&|s| s.from = 3, "choose from 100"),
-            (&|s| s.to = usize::MAX, "to 500000000"),
-            (&|s| s.steps = 1, "from 2"),
-            (&|s| s.study.budget = Duration::from_millis(1299), "1300 ms"),
-            (&|s| s.study.backends = vec!["abacus".into()], "half-edge"),
+        type Case = (fn(&mut GrowthSettings), &'static str);
+        let cases: [Case; 9] = [
+            (|s| s.to = 1001, "further apart"),
+            (|s| s.shape = "teapot".into(), "geodesic"),
+            (|s| (s.from, s.to) = (5000, 1000), "the smaller first"),
+            (|s| (s.from, s.to) = (5000, 5000), "the smaller first"),
+            (|s| s.from = 3, "choose from 100"),
+            (|s| s.to = usize::MAX, "to 500000000"),
+            (|s| s.steps = 1, "from 2"),
+            (|s| s.study.budget = Duration::from_millis(1299), "1300 ms"),
+            (|s| s.study.backends = vec!["abacus".into()], "half-edge"),
         ];
         for (change, says) in cases {
             let said = refused(change);
