@@ -138,6 +138,7 @@ fn growth_is_data_for_machines() {
         "environment",
         "fits",
         "interrupted",
+        "left_out",
         "order",
         "schema",
         "shape",

@@ -12,9 +12,10 @@ mod shapes;
 mod shares;
 mod words;
 
+use std::cell::Cell;
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -54,6 +55,8 @@ pub struct GrowthReport {
     pub unheld: Vec<Unheld>,
     /// Size by size, the smallest first; finished ones only.
     pub sizes: Vec<SizeReport>,
+    /// About how many faces those have that there was no time for: a longer budget has them.
+    pub left_out: Vec<usize>,
     /// Operation by operation, and within each backend by backend.
     pub fits: Vec<Fit>,
     /// The caches of this machine; empty where the platform does not tell.
@@ -125,7 +128,8 @@ impl GrowthReport {
     }
 }
 
-/// Sweeps over the sizes, within the budget as far as one run of everything at each size allows.
+/// Sweeps over the sizes, within the budget as far as one run of everything at each size allows. Sizes
+/// whose meshes and structures could not even be built in what is left of it are left out.
 ///
 /// `stop` ends it early; the sizes that are finished by then are in the report.
 ///
@@ -151,12 +155,24 @@ pub fn growth(
     };
     let time = Shares::of(&plan.sizes, budget);
     let mut sizes: Vec<SizeReport> = Vec::new();
+    let mut left_out = Vec::new();
+    // Seconds for each face, at the size before.
+    let mut building = 0.0;
     for (step, &faces) in plan.sizes.iter().enumerate() {
+        if building * faces as f64 > time.left().as_secs_f64() {
+            left_out = plan.sizes[step..].to_vec();
+            break;
+        }
+        let begun = Instant::now();
+        let built = Cell::new(Duration::ZERO);
         let made = plan.shape.make(faces)?;
         let mesh = settings.order.of(&made, settings.study.seed);
         drop(made);
         let range = time.range(step);
-        let share = || time.share(step);
+        let share = || {
+            built.set(begun.elapsed());
+            time.share(step)
+        };
         let mut here = |at: Progress<'_>| {
             let stage = format!("{} faces: {}", mesh.face_count(), at.stage);
             progress(Progress {
@@ -169,6 +185,7 @@ pub fn growth(
             Some(size) => sizes.push(size),
             None => break,
         }
+        building = built.get().as_secs_f64() / faces as f64;
     }
     let interrupted = stop.load(Ordering::Relaxed);
     let backends: Vec<&Backend> = plan
@@ -180,7 +197,8 @@ pub fn growth(
     let cache_ends = sweep
         .counts
         .map_or_else(Vec::new, |counts| cache_ends(&backends, &counts, &caches));
-    let words = words::words(&sizes, &fits, &caches, &cache_ends);
+    let mut words = words::words(&sizes, &fits, &caches, &cache_ends);
+    words.extend(words::left_out(&left_out));
     Ok(GrowthReport {
         schema: SCHEMA,
         shape: settings.shape.clone(),
@@ -188,6 +206,7 @@ pub fn growth(
         backends: backends.iter().map(|b| b.name().to_owned()).collect(),
         unheld: sweep.unheld,
         sizes,
+        left_out,
         fits,
         cache_ends,
         caches,

@@ -6,6 +6,7 @@
 //! Samples are of the same elements in every order, so that checksums can be compared.
 
 mod effects;
+mod meshes;
 mod words;
 
 use std::io;
@@ -15,7 +16,7 @@ use std::time::Duration;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use serde::{Serialize, Serializer};
-use sixfold::shapes::{Order, Reordered};
+use sixfold::shapes::Order;
 use sixfold::{Counts, PolygonMesh};
 
 pub use effects::{Comparison, Factor, Larger, OrderEffect, StructureEffect};
@@ -30,7 +31,8 @@ use crate::report::{
 };
 use crate::study::{Settings, StudyError, is_skewed, put_on_the_bench, refusals, results, scans};
 use effects::Timed;
-use workload::{Backend, Draw, MachineClock, Operation, Side, Subject};
+use meshes::Meshes;
+use workload::{Backend, MachineClock, Operation, Subject};
 
 /// What is measured where no operations are named: around vertices, faces and edges, a sum over
 /// faces, and a walk through the whole mesh.
@@ -265,49 +267,6 @@ pub fn orders(
 struct Held {
     backend: Backend,
     order: Order,
-}
-
-/// The mesh in every order, each with the same draw in its own names.
-struct Meshes(Vec<(Order, PolygonMesh, Option<Draw>)>);
-
-impl Meshes {
-    fn of(polygons: &PolygonMesh, seed: u64, drawn: bool) -> Self {
-        // Another stream than the shuffle, or the first drawn might be the first in memory.
-        let draw = drawn.then(|| Draw::of(polygons, !seed));
-        let meshes = Order::ALL.map(|order| {
-            let reordered = order.with_names(polygons, seed);
-            let draw = draw.as_ref().map(|draw| renamed(draw, &reordered));
-            (order, reordered.mesh, draw)
-        });
-        Self(meshes.into())
-    }
-
-    fn iter(&self) -> impl Iterator<Item = (Order, &PolygonMesh, Option<&Draw>)> {
-        self.0
-            .iter()
-            .map(|(order, mesh, draw)| (*order, mesh, draw.as_ref()))
-    }
-}
-
-/// The same elements under the names that they have after reordering.
-fn renamed(draw: &Draw, to: &Reordered) -> Draw {
-    let side = |side: &Side| {
-        let mut ends = side.ends.map(|v| to.vertices[v.index()]);
-        ends.sort_unstable();
-        Side {
-            face: to.faces[side.face.index()],
-            ends,
-        }
-    };
-    Draw {
-        vertices: draw
-            .vertices
-            .iter()
-            .map(|v| to.vertices[v.index()])
-            .collect(),
-        edges: draw.edges.iter().map(side).collect(),
-        faces: draw.faces.iter().map(|f| to.faces[f.index()]).collect(),
-    }
 }
 
 /// Whether what it finds depends on the order of the input: it begins at the first face, or edits

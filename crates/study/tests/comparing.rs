@@ -129,7 +129,7 @@ fn orders_are_ranked_within_a_structure_and_compared_between_them() {
 
 #[test]
 fn what_cannot_be_compared_is_refused() {
-    let refusal = |mesh, settings: &Settings| quick_orders(mesh, settings).err().expect("refused");
+    let refusal = |mesh, settings: &Settings| quick_orders(mesh, settings).expect_err("refused");
     let short = refusal(shapes::cube(), &brief(99, &[]));
     assert!(
         matches!(short, OrdersError::BudgetTooSmall { .. }) && short.to_string().contains("100 ms")
@@ -158,7 +158,7 @@ fn what_cannot_be_compared_is_refused() {
 
 fn small() -> GrowthSettings {
     GrowthSettings {
-        study: brief(900, &["vertex_vertices", "face_vertices"]),
+        study: brief(2000, &["vertex_vertices", "face_vertices"]),
         shape: "triangle-torus".into(),
         from: 400,
         to: 12_800,
@@ -223,6 +223,29 @@ fn finished_sizes_outlive_a_stop() {
     );
     let report = growth(&small(), &AtomicBool::new(true), &mut |_| ()).expect("no failure");
     assert!(report.interrupted && report.sizes.is_empty() && report.fits.is_empty());
+}
+
+#[test]
+fn sizes_that_would_outlast_the_budget_are_left_out_aloud() {
+    let mut settings = small();
+    settings.study = brief(400, &["face_vertices"]);
+    settings.study.backends = vec!["corner-table".into()];
+    (settings.from, settings.to) = (400, 40_000_000);
+    let start = std::time::Instant::now();
+    let report = quick_growth(&settings).expect("it holds triangles");
+    // To make the largest alone takes several seconds.
+    assert!(
+        start.elapsed() < Duration::from_secs(8),
+        "{:?}",
+        start.elapsed()
+    );
+    assert!(!report.interrupted && !report.sizes.is_empty());
+    assert_eq!(report.left_out.last(), Some(&40_000_000));
+    assert_eq!(report.left_out.len() + report.sizes.len(), 4);
+    let words = report.words.join(" ");
+    assert!(words.contains("40,000,000 faces are left out"), "{words}");
+    let all = quick_growth(&small()).expect("everybody holds it");
+    assert!(all.left_out.is_empty(), "{:?}", all.left_out);
 }
 
 #[test]

@@ -25,11 +25,15 @@ impl Shares {
         [step, step + 1].map(|end| self.weights[..end].iter().sum::<f64>() / all)
     }
 
+    /// What is left of the budget.
+    pub(super) fn left(&self) -> Duration {
+        self.budget.saturating_sub(self.start.elapsed())
+    }
+
     /// The share of this size in what is left.
     pub(super) fn share(&self, step: usize) -> Duration {
-        let left = self.budget.saturating_sub(self.start.elapsed());
         let rest: f64 = self.weights[step..].iter().sum();
-        left.mul_f64((self.weights[step] / rest).min(1.0))
+        self.left().mul_f64((self.weights[step] / rest).min(1.0))
     }
 }
 

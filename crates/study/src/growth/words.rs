@@ -34,6 +34,17 @@ pub(super) fn words(
     words
 }
 
+/// Which sizes there was no time for.
+pub(super) fn left_out(sizes: &[usize]) -> Option<String> {
+    let names: Vec<String> = sizes.iter().map(|&faces| grouped(faces)).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "Sizes of about {} faces are left out for want of time: a longer --budget has them.",
+            names.join(", ")
+        )
+    })
+}
+
 /// The exponents of what scans and of what does not.
 fn exponents(fits: &[Fit], caches: &[Cache]) -> Vec<String> {
     let range = |scans: bool, slope: &dyn Fn(&Fit) -> Option<Slope>| {
