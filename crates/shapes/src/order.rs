@@ -42,13 +42,33 @@ impl Order {
 
     /// The mesh in this order; `seed` matters to [`Shuffled`](Self::Shuffled) alone.
     pub fn of(self, mesh: &PolygonMesh, seed: u64) -> PolygonMesh {
+        self.with_names(mesh, seed).mesh
+    }
+
+    /// The same, and what each element is called there.
+    pub fn with_names(self, mesh: &PolygonMesh, seed: u64) -> Reordered {
         match self {
-            Self::Given => mesh.clone(),
-            Self::Shuffled => shuffled(mesh, seed),
-            Self::Morton => morton(mesh),
-            Self::BreadthFirst => breadth_first(mesh),
+            Self::Given => Reordered {
+                mesh: mesh.clone(),
+                vertices: mesh.vertices().collect(),
+                faces: mesh.faces().iter().map(|(f, _)| f).collect(),
+            },
+            Self::Shuffled => by_chance(mesh, seed),
+            Self::Morton => along_the_curve(mesh),
+            Self::BreadthFirst => by_a_walk(mesh),
         }
     }
+}
+
+/// A mesh in another order, and the names that its elements have there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reordered {
+    /// The mesh.
+    pub mesh: PolygonMesh,
+    /// By the name of a vertex before: its name now.
+    pub vertices: Vec<VertexId>,
+    /// By the name of a face before: its name now.
+    pub faces: Vec<FaceId>,
 }
 
 impl fmt::Display for Order {
@@ -80,6 +100,10 @@ impl FromStr for Order {
 ///
 /// The same seed gives the same order on every machine (ChaCha8; Fisher and Yates).
 pub fn shuffled(mesh: &PolygonMesh, seed: u64) -> PolygonMesh {
+    by_chance(mesh, seed).mesh
+}
+
+fn by_chance(mesh: &PolygonMesh, seed: u64) -> Reordered {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let vertices = permutation(mesh.vertex_count(), &mut random);
     let faces = permutation(mesh.face_count(), &mut random);
@@ -92,6 +116,10 @@ pub fn shuffled(mesh: &PolygonMesh, seed: u64) -> PolygonMesh {
 /// coordinates interlaced; faces by the mean of their vertices. Ties keep the order given.
 /// O(n log n).
 pub fn morton(mesh: &PolygonMesh) -> PolygonMesh {
+    along_the_curve(mesh).mesh
+}
+
+fn along_the_curve(mesh: &PolygonMesh) -> Reordered {
     let finite = mesh.positions().iter().filter(|p| p.is_finite());
     let (low, high) = finite.fold((Point::INFINITY, Point::NEG_INFINITY), |(low, high), &p| {
         (low.min(p), high.max(p))
@@ -126,6 +154,10 @@ pub fn morton(mesh: &PolygonMesh) -> PolygonMesh {
 /// The walk visits the faces around each vertex in turn, and calls up the vertices of each; where it
 /// ends it goes on at the lowest vertex that is left.
 pub fn breadth_first(mesh: &PolygonMesh) -> PolygonMesh {
+    by_a_walk(mesh).mesh
+}
+
+fn by_a_walk(mesh: &PolygonMesh) -> Reordered {
     let around = FacesAround::of(mesh);
     let mut vertices = Vec::with_capacity(mesh.vertex_count());
     let mut faces = Vec::with_capacity(mesh.face_count());
@@ -198,7 +230,7 @@ fn reordered(
     vertices: &[u32],
     faces: &[u32],
     mut start: impl FnMut(usize) -> usize,
-) -> PolygonMesh {
+) -> Reordered {
     let mut names = vec![VertexId::new(0); vertices.len()];
     for (name, &v) in (0..).zip(vertices) {
         names[v as usize] = VertexId::new(name);
@@ -206,13 +238,19 @@ fn reordered(
     let position = |&v: &u32| mesh.position(VertexId::new(v));
     let positions = vertices.iter().map(position).collect();
     let mut list = FaceList::with_capacity(mesh.corner_count());
-    for &face in faces {
+    let mut places = vec![FaceId::new(0); faces.len()];
+    for (place, &face) in (0..).zip(faces) {
+        places[face as usize] = FaceId::new(place);
         let corners = mesh.faces().face(FaceId::new(face));
         let (late, early) = corners.split_at(start(corners.len()));
         let corners = early.iter().chain(late).map(|v| names[v.index()]);
         list.push(corners).expect("as many corners as before");
     }
-    PolygonMesh::from_faces(positions, list).expect("the same faces as before")
+    Reordered {
+        mesh: PolygonMesh::from_faces(positions, list).expect("the same faces as before"),
+        vertices: names,
+        faces: places,
+    }
 }
 
 /// The numbers below `count` in random order.

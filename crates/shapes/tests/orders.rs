@@ -46,6 +46,27 @@ fn every_order_keeps_the_mesh() {
 }
 
 #[test]
+fn names_lead_to_the_same_places_and_corners() {
+    for mesh in meshes() {
+        for order in Order::ALL {
+            let after = order.with_names(&mesh, 3);
+            assert_eq!(after.mesh, order.of(&mesh, 3), "{order}");
+            for v in mesh.vertices() {
+                let now = after.vertices[v.index()];
+                assert_eq!(after.mesh.position(now), mesh.position(v), "{order}: {v}");
+            }
+            for (f, face) in mesh.faces().iter() {
+                let mut renamed: Vec<_> = face.iter().map(|v| after.vertices[v.index()]).collect();
+                let mut now = after.mesh.faces().face(after.faces[f.index()]).to_vec();
+                renamed.sort_unstable();
+                now.sort_unstable();
+                assert_eq!(now, renamed, "{order}: {f}");
+            }
+        }
+    }
+}
+
+#[test]
 fn shuffling_depends_on_the_seed_alone() {
     let mesh = shapes::torus(10, 10).expect("small");
     assert_eq!(shuffled(&mesh, 5), shuffled(&mesh, 5));

@@ -1,5 +1,6 @@
 //! What can be asked for.
 
+mod comparing;
 mod memory;
 mod picking;
 mod remeshing;
@@ -15,6 +16,7 @@ use ::study::Operation;
 use clap::{Args, Parser, Subcommand};
 use sixfold::shapes::Order;
 
+pub(crate) use comparing::{GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
 pub(crate) use memory::Memory;
 pub(crate) use picking::{Pick, Workloads};
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
@@ -78,6 +80,10 @@ pub(crate) enum Command {
     Workloads(Workloads),
     /// Say what queries read, and whether that is what they take their time for
     Why(Why),
+    /// Measure what the order of a mesh in memory costs each backend
+    Orders(Orders),
+    /// Measure how the cost of each backend grows with the mesh
+    Growth(Growth),
     /// Say what a mesh is, and which backends can hold it
     Inspect(Inspect),
     /// Say what each backend takes in memory, counted in three ways that must agree

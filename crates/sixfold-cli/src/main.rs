@@ -14,12 +14,15 @@ mod arguments;
 mod edits;
 mod facts_text;
 mod failure;
+mod free_memory;
 mod generate;
+mod growth;
 mod heap;
 mod inspect;
 mod load;
 mod memory;
 mod numbers;
+mod orders;
 mod output;
 mod pick;
 mod progress;
@@ -51,6 +54,8 @@ fn main() -> ExitCode {
     // Help lists shapes, backends and operations as the registries have them.
     let command = Arguments::command()
         .mut_subcommand("study", |study| study.after_help(study::help()))
+        .mut_subcommand("orders", |orders| orders.after_help(orders::help()))
+        .mut_subcommand("growth", |growth| growth.after_help(growth::help()))
         .mut_subcommand("generate", |generate| generate.after_help(generate::help()));
     let arguments = command
         .try_get_matches()
@@ -62,6 +67,8 @@ fn main() -> ExitCode {
         Ok(Some(Command::Pick(arguments))) => pick::run(&arguments),
         Ok(Some(Command::Workloads(arguments))) => workloads::run(&arguments),
         Ok(Some(Command::Why(arguments))) => why::run(&arguments),
+        Ok(Some(Command::Orders(arguments))) => orders::run(&arguments),
+        Ok(Some(Command::Growth(arguments))) => growth::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
         Ok(Some(Command::Memory(arguments))) => memory::run(&arguments),
         Ok(Some(Command::Generate(arguments))) => generate::run(&arguments),

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use ::study::{Environment, Operation, Report, SCHEMA, Settings, Specimen, StudyError};
+use ::study::{Environment, Operation, Report, SCHEMA, Settings, Specimen, StudyError, Timer};
 
 use crate::arguments::{STUDY_EXAMPLES, Study};
 use crate::facts_text::{facts_text, verdicts_text};
@@ -15,7 +15,7 @@ use crate::results_table::results_table;
 use crate::text::{Text, complain, hanging};
 
 /// The study found that backends disagree.
-const MISMATCH: u8 = 1;
+pub(crate) const MISMATCH: u8 = 1;
 
 /// Measures what was asked for; text first, so that no file that fails can take it along.
 pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
@@ -83,12 +83,17 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
 
 /// What help says after the options: examples, how it measures, and the names that there are.
 pub(crate) fn help() -> String {
+    format!("{STUDY_EXAMPLES}\n\n{}", names())
+}
+
+/// The names of all backends and operations.
+pub(crate) fn names() -> String {
     let backends = sixfold::roster();
     let backends: Vec<&str> = backends.iter().map(|backend| backend.name).collect();
     let operations = Operation::ALL.map(Operation::name).join(", ");
     let backends = hanging("Backends:    ", &backends.join(", "));
     let operations = hanging("Operations:  ", &operations);
-    format!("{STUDY_EXAMPLES}\n\n{backends}\n{operations}")
+    format!("{backends}\n{operations}")
 }
 
 /// Writes the files asked for; each is tried, whatever comes of the other.
@@ -139,11 +144,27 @@ fn print(report: &Report, text: &mut Text) {
         text.say(&hanging("! ", warning));
     }
     text.say("");
-    text.say(&hanging("", &setting(report)));
+    let most = report.results.iter().map(|row| row.samples).max();
+    let how = setting(&report.environment, most.unwrap_or(0));
+    text.say(&hanging("", &how));
+    if let Some(timer) = report.timer {
+        text.say(&hanging("", &overhead(timer)));
+    }
+}
+
+/// What the engine itself costs.
+fn overhead(timer: Timer) -> String {
+    let share = timer.largest_share.map_or(String::new(), |share| {
+        format!(": {:.2} % of the shortest", 100.0 * share)
+    });
+    format!(
+        "A sample of nothing takes {:.0} ns{share}.",
+        timer.overhead_ns
+    )
 }
 
 /// How and where it was measured, in a line.
-fn setting(report: &Report) -> String {
+pub(crate) fn setting(environment: &Environment, most_rounds: usize) -> String {
     let Environment {
         rustc,
         profile,
@@ -153,7 +174,7 @@ fn setting(report: &Report) -> String {
         clock,
         seed,
         ..
-    } = &report.environment;
+    } = environment;
     let rustc = rustc.split(" (").next().unwrap_or_default();
     let mut parts = Vec::new();
     parts.extend(cpu_model.clone());
@@ -164,16 +185,8 @@ fn setting(report: &Report) -> String {
         "thread-cpu" => "processor time of the thread".into(),
         _ => "wall time".into(),
     });
-    let most = report.results.iter().map(|row| row.samples).max();
-    let rounds = counted(most.unwrap_or(0), "round", "rounds");
+    let rounds = counted(most_rounds, "round", "rounds");
     parts.push(format!("medians of up to {rounds}"));
-    if let Some(timer) = report.timer {
-        let share = timer.largest_share.map_or(String::new(), |share| {
-            format!(" ({:.2} % of the shortest sample)", 100.0 * share)
-        });
-        let overhead = timer.overhead_ns;
-        parts.push(format!("an empty sample takes {overhead:.0} ns{share}"));
-    }
     parts.push(format!("seed {seed}"));
     parts.join("; ") + "."
 }

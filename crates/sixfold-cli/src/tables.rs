@@ -16,6 +16,18 @@ pub(crate) fn table(header: Vec<Cell>) -> Table {
     table
 }
 
+/// A table of figures under `header`, of which some may be bold.
+pub(crate) fn styled(header: Vec<Cell>, bold: bool) -> Table {
+    let mut table = table(header);
+    if bold {
+        table.enforce_styling();
+    }
+    if let Some(names) = table.column_mut(0) {
+        names.set_padding((0, 1));
+    }
+    table
+}
+
 /// A table of words with a column for each backend; `rows` says what the rows are.
 pub(crate) fn table_of_backends(rows: &str) -> Table {
     let backends = roster();

@@ -36,6 +36,8 @@ fn help() {
         ("help.txt", &["--help"][..]),
         ("help_study.txt", &["study", "--help"]),
         ("help_why.txt", &["why", "--help"]),
+        ("help_orders.txt", &["orders", "--help"]),
+        ("help_growth.txt", &["growth", "--help"]),
         ("help_inspect.txt", &["inspect", "--help"]),
         ("help_memory.txt", &["memory", "--help"]),
         ("help_generate.txt", &["generate", "--help"]),

@@ -1,6 +1,7 @@
 //! The command line as users meet it: one binary, run for real.
 
 mod bad_input;
+mod comparing;
 mod golden;
 mod interrupt;
 mod machine;

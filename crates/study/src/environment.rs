@@ -7,6 +7,8 @@ use serde::Serialize;
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
 use workload::MachineClock;
 
+use crate::caches::{Cache, caches};
+
 /// What else a figure depends on.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Environment {
@@ -35,6 +37,8 @@ pub struct Environment {
     pub cpu_model: Option<String>,
     /// How many threads it can run at once.
     pub cores: Option<usize>,
+    /// The caches of its first core; empty where the platform does not tell.
+    pub caches: Vec<Cache>,
     /// Bytes of memory, where the platform tells.
     pub memory_bytes: Option<u64>,
     /// What decides the frequency of the processor, where the platform tells: `performance`.
@@ -79,6 +83,7 @@ impl Environment {
             arch: std::env::consts::ARCH.into(),
             cpu_model: cpu.filter(|model| !model.is_empty()),
             cores: std::thread::available_parallelism().ok().map(Into::into),
+            caches: caches(),
             memory_bytes: Some(system.total_memory()).filter(|&bytes| bytes > 0),
             governor: line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"),
             boost: boost(),

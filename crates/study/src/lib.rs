@@ -2,6 +2,7 @@
 //!
 //! [`study`] builds every backend asked for, runs the [`Operation`]s on them in interleaved rounds
 //! until the budget is spent, proves by checksum that all did the same work, and gives a [`Report`].
+//! [`orders`] does so for one mesh in several orders, and [`growth`] for one shape in many sizes.
 //! [`inspect`] says what a mesh is and which backends can hold it, and measures nothing. [`pick`]
 //! answers for a workload. [`audit`] counts the bytes of each in three ways, which must agree. [`why`]
 //! counts what the relations read, and holds their times against the speed of memory.
@@ -11,16 +12,20 @@
 
 mod agreement;
 mod audit;
+mod caches;
 mod control;
 #[cfg(test)]
 mod disturbed;
 mod environment;
+mod growth;
 mod inspect;
 mod measure;
 mod methods;
+mod orders;
 mod pick;
 mod plan;
 mod report;
+mod slope;
 mod solo;
 mod standing;
 mod statistics;
@@ -31,9 +36,18 @@ mod why;
 mod words;
 
 pub use audit::{Audit, Audited, audit};
+pub use caches::{Cache, caches};
 pub use environment::Environment;
+pub use growth::{
+    CacheEnd, Fit, GROWING, Growing, GrowthError, GrowthReport, GrowthSettings, SizeReport, Unheld,
+    Weight, growth, growth_bytes,
+};
 pub use inspect::{Specimen, inspect};
 pub use measure::Progress;
+pub use orders::{
+    Comparison, FEW_OPERATIONS, Factor, Larger, OrderEffect, OrderRow, OrdersError, OrdersReport,
+    StructureEffect, orders, orders_bytes,
+};
 pub use pick::{
     Answer, BreakEven, Excluded, Need, OnMesh, PartCost, PickError, Question, Ranked, UnknownNeed,
     pick,
@@ -42,6 +56,7 @@ pub use report::{
     Agreement, BackendReport, Control, ControlRow, Inspection, MeshReport, RawSamples, Refusal,
     Report, ResultRow, SCHEMA, Standing,
 };
+pub use slope::Slope;
 pub use solo::{Solo, SoloRun};
 pub use study::{Settings, StudyError, study};
 pub use timer::Timer;

@@ -225,13 +225,13 @@ pub fn study(
 
 /// Whether some vertex or face has so many neighbours that to walk around it once for each of them
 /// may outlast any budget.
-fn is_skewed(facts: &Facts) -> bool {
+pub(crate) fn is_skewed(facts: &Facts) -> bool {
     let most = |spread: &Option<Spread>| spread.as_ref().map_or(0, |s| s.max);
     most(&facts.valence).max(most(&facts.face_degree)) > MOST_NEIGHBOURS
 }
 
 /// Whether some operation scans on this backend.
-fn scans(backend: &Backend, operations: &[Operation]) -> bool {
+pub(crate) fn scans(backend: &Backend, operations: &[Operation]) -> bool {
     let costs = &backend.info.costs;
     costs.contains(&QueryCost::Scan)
         && operations
@@ -263,7 +263,7 @@ pub(crate) fn put_on_the_bench<'a>(
 }
 
 /// One row for each entry that was measured or estimated.
-fn results(
+pub(crate) fn results(
     entries: &[Entry],
     agreements: Vec<Agreement>,
     subjects: &[Box<dyn Subject + '_>],
@@ -350,7 +350,7 @@ fn raw(entries: &[Entry], subjects: &[Box<dyn Subject + '_>], control: usize) ->
 }
 
 /// What cannot be done, in the order of the entries.
-fn refusals(entries: &[Entry], subjects: &[Box<dyn Subject + '_>]) -> Vec<Refusal> {
+pub(crate) fn refusals(entries: &[Entry], subjects: &[Box<dyn Subject + '_>]) -> Vec<Refusal> {
     let refusal = |entry: &Entry| {
         let reason = entry.refusal.clone()?;
         Some(Refusal {

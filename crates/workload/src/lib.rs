@@ -14,7 +14,6 @@ mod ledger;
 mod memory_speed;
 mod mix;
 mod operation;
-mod operation;
 mod place;
 mod reads;
 mod refining;

@@ -2,9 +2,9 @@
 
 use sixfold::subdivision::{Extent, Method, Subdivision};
 use sixfold::{Counts, MAX_ROWS, Point, PolygonMesh, Representation, VertexId, Visitor, visit};
-use sysinfo::{MemoryRefreshKind, System};
 
 use crate::failure::Failure;
+use crate::free_memory::check_room;
 use crate::numbers::{bytes, counted};
 
 /// What a pass over the faces adds up for each edge, in a hash map where edges have no rows.
@@ -104,13 +104,13 @@ impl Forecast {
 
 /// Refuses `what` if it takes more than the memory that is free, unless told to go on.
 pub(super) fn check_memory(what: &str, peak: usize, force: bool) -> Result<(), Failure> {
-    match free_memory() {
-        Some(free) if peak as u64 > free && !force => Err(Failure::unsupported(format!(
-            "{what} takes some {}, and {} are free: take fewer levels, or go on with --force",
-            bytes(peak),
-            bytes(free as usize)
-        ))),
-        _ => Ok(()),
+    match force {
+        true => Ok(()),
+        false => check_room(
+            what,
+            peak as u64,
+            "take fewer levels, or go on with --force",
+        ),
     }
 }
 
@@ -133,14 +133,4 @@ fn held(backend: &str, counts: &Counts) -> usize {
     }
 
     visit(backend, &mut Layout(counts)).unwrap_or(0)
-}
-
-/// Bytes of memory that programs can still have, where the system tells.
-fn free_memory() -> Option<u64> {
-    let mut system = System::new();
-    system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
-    let free = system.available_memory();
-    let allowed = system.cgroup_limits().map(|limits| limits.free_memory);
-    let free = allowed.map_or(free, |allowed| free.min(allowed));
-    (free > 0).then_some(free)
 }

@@ -263,7 +263,7 @@ fn needs_memory_and_edits_exclude() {
     };
     let answer = quick(
         &asked(&[Need::Edit, Need::NonManifold], None),
-        &[torus.clone()],
+        std::slice::from_ref(&torus),
     );
     let answer = answer.expect("time enough");
     let mut names: Vec<&str> = answer
@@ -276,7 +276,11 @@ fn needs_memory_and_edits_exclude() {
     assert_eq!(answer.excluded.len(), 4, "{:?}", answer.excluded);
     // Nine words a vertex is the least there is.
     let vertices = torus.vertex_count() as u64;
-    let answer = quick(&asked(&[], Some(36 * vertices)), &[torus.clone()]).expect("fine");
+    let answer = quick(
+        &asked(&[], Some(36 * vertices)),
+        std::slice::from_ref(&torus),
+    )
+    .expect("fine");
     assert!(
         answer
             .ranking
@@ -340,7 +344,10 @@ fn several_meshes_are_one_answer() {
 #[test]
 fn what_cannot_be_asked_is_refused() {
     let torus = shapes::triangle_torus(20, 20).expect("small");
-    let nothing = quick(&question(Duration::from_nanos(1)), &[torus.clone()]);
+    let nothing = quick(
+        &question(Duration::from_nanos(1)),
+        std::slice::from_ref(&torus),
+    );
     let said = nothing.expect_err("no time at all").to_string();
     assert!(
         said.contains("too small to measure anything") && said.contains("--budget"),

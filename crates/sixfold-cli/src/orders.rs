@@ -1,0 +1,205 @@
+//! `sixfold orders`: what the order of a mesh in memory costs.
+
+use std::process::ExitCode;
+
+use ::study::{
+    Agreement, Comparison, FEW_OPERATIONS, OrderRow, OrdersError, OrdersReport, Settings, Standing,
+    StudyError,
+};
+use comfy_table::{Attribute, Cell, CellAlignment, Table};
+use sixfold::shapes::Order;
+
+use crate::arguments::{ORDERS_EXAMPLES, Orders};
+use crate::facts_text::{facts_text, verdicts_text};
+use crate::failure::Failure;
+use crate::free_memory::check_room;
+use crate::load;
+use crate::numbers::{counted, figure};
+use crate::output::{Output, check_places, is_stdout};
+use crate::progress::{Bar, INTERRUPTED, interrupt_flag};
+use crate::study::{MISMATCH, names, setting};
+use crate::tables::styled;
+use crate::text::{Text, complain, hanging};
+
+/// Measures the mesh in all orders; text first, so that no file that fails can take it along.
+pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
+    check_places(
+        arguments.mesh.as_deref(),
+        &[("--json", arguments.json.as_ref())],
+    )?;
+    let stop = interrupt_flag();
+    let json = Output::open_if(arguments.json.as_ref())?;
+    let specimen = match &arguments.mesh {
+        Some(path) => load::for_study(path, false, arguments.triangulate)?,
+        None => load::built_in(),
+    };
+    let settings = Settings {
+        backends: arguments.backends.clone(),
+        operations: arguments.operations.clone(),
+        budget: arguments.budget,
+        seed: arguments.seed,
+        ..Settings::default()
+    };
+    let needed = ::study::orders_bytes(&specimen, &settings).map_err(Failure::usage)?;
+    check_room(
+        "the mesh in four orders on each backend",
+        needed,
+        "name fewer --backends, or take a smaller mesh",
+    )?;
+    if cfg!(debug_assertions) {
+        complain("note: this is a debug build, and its times mean nothing: build with --release");
+    }
+    let bar = Bar::new();
+    let report = ::study::orders(&specimen, &settings, &stop, &mut |at| bar.show(at));
+    bar.clear();
+    let report = report.map_err(|error| match error {
+        OrdersError::Study(StudyError::NoneHolds { .. }) => Failure::unsupported(error),
+        error => Failure::usage(error),
+    })?;
+
+    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
+    print(&report, &mut text);
+    let mut done = text.finish();
+    if let Some(output) = json {
+        done = done.and(output.finish(|writer| report.write_json(writer)));
+    }
+    let mismatches = report.mismatches();
+    if mismatches > 0 {
+        let results = counted(mismatches, "result differs", "results differ");
+        complain(&format!(
+            "error: {results} from those of other backends or orders for the same work: a fault in Sixfold, please report it"
+        ));
+        done?;
+        return Ok(ExitCode::from(MISMATCH));
+    }
+    done?;
+    if report.interrupted {
+        complain("interrupted: what was finished is kept");
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What help says after the options: examples, how it measures, and the names that there are.
+pub(crate) fn help() -> String {
+    format!("{ORDERS_EXAMPLES}\n\n{}\n{}", names(), few())
+}
+
+/// The operations that are measured where none are named.
+pub(crate) fn few() -> String {
+    hanging("Unless named: ", &FEW_OPERATIONS.join(", "))
+}
+
+fn print(report: &OrdersReport, text: &mut Text) {
+    text.say(&facts_text(&report.mesh));
+    text.say("");
+    text.say(&verdicts_text(&report.mesh, &report.backends));
+    for comparison in &report.comparisons {
+        let rows: Vec<&OrderRow> = report.rows(comparison.operation).collect();
+        if !rows.is_empty() {
+            text.say("");
+            text.say(&table(comparison, &rows, text.bold()));
+        }
+    }
+    text.say("");
+    text.say(&hanging("", LEGEND));
+    for refusal in &report.refusals {
+        let said = format!(
+            "{} on {}: {}",
+            refusal.operation, refusal.backend, refusal.reason
+        );
+        text.say(&hanging("– ", &said));
+    }
+    text.say("");
+    for words in &report.words {
+        text.say(&hanging("- ", words));
+    }
+    text.say("");
+    let most = report.results.iter().map(|row| row.row.samples).max();
+    let how = setting(&report.environment, most.unwrap_or(0));
+    text.say(&hanging("", &how));
+}
+
+const LEGEND: &str = "ns for each element, and how many times as long as the best order of that \
+    backend; * its best order; = tied for it; ~ from a sample of the elements; ? estimated, not run; \
+    m of a mesh with merged vertices; ! WRONG; worst/best: – no difference beyond the noise.";
+
+/// One row for each backend, one column for each order.
+fn table(comparison: &Comparison, rows: &[&OrderRow], bold: bool) -> String {
+    let operation = comparison.operation;
+    let first = format!("{operation}\nns per {}", operation.per());
+    let orders = Order::ALL.map(|order| right(order.name().to_owned()));
+    let mut header = vec![Cell::new(first)];
+    header.extend(orders);
+    header.push(right("worst/best".into()));
+    let mut table: Table = styled(header, bold);
+    for of_one in rows.chunk_by(|a, b| a.row.backend == b.row.backend) {
+        let backend = &of_one[0].row.backend;
+        let mut line = vec![Cell::new(backend)];
+        for order in Order::ALL {
+            let row = of_one.iter().find(|row| row.order == order);
+            line.push(row.map_or_else(|| right("–".into()), |row| cell(row, bold)));
+        }
+        let effect = comparison.orders.iter().find(|e| e.backend == *backend);
+        line.push(right(match effect {
+            Some(effect) if effect.matters => format!("{:.2}×", effect.worst_to_best.ratio),
+            _ => "–".into(),
+        }));
+        table.add_row(line);
+    }
+    table.trim_fmt()
+}
+
+fn right(text: String) -> Cell {
+    Cell::new(text).set_alignment(CellAlignment::Right)
+}
+
+/// `24.9 1.52× `: the price of an element, its ratio to the best order, and a sign.
+fn cell(OrderRow { row, .. }: &OrderRow, bold: bool) -> Cell {
+    let price = match (row.ns_per_element, row.estimated_ns, row.elements) {
+        (Some(each), ..) => Some((if row.sampled { "~" } else { "" }, each)),
+        (None, Some(ns), Some(elements)) => Some(("?", ns / elements.max(1) as f64)),
+        _ => None,
+    };
+    let Some((sign, each)) = price else {
+        return right("–".into());
+    };
+    let ratio = row.ratio_to_best.map(|ratio| format!("{ratio:.2}×"));
+    let standing = match row.standing {
+        Some(Standing::Best) => '*',
+        Some(Standing::Tied) => '=',
+        _ => ' ',
+    };
+    let note = match row.agreement {
+        Agreement::Mismatch => "!",
+        Agreement::Merged => "m",
+        _ => "",
+    };
+    let (each, ratio) = (short(each), ratio.unwrap_or_default());
+    let cell = right(format!("{sign}{each} {ratio:>5}{standing}{note}"));
+    match bold && standing == '*' {
+        true => cell.add_attribute(Attribute::Bold),
+        false => cell,
+    }
+}
+
+/// A figure in six columns at most.
+pub(crate) fn short(number: f64) -> String {
+    match number {
+        n if n >= 99_999.5 => format!("{n:.1e}"),
+        n => figure(n),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_figures_stay_short() {
+        assert_eq!(
+            [4.126, 41_234.5, 123_456.0].map(short),
+            ["4.13", "41,235", "1.2e5"]
+        );
+    }
+}

@@ -1,0 +1,283 @@
+//! Orders and growth as users meet them: what machines read, what is refused, what Ctrl-C keeps.
+
+use serde_json::Value;
+
+use crate::bad_input::refused;
+use crate::run::{Sixfold, TETRAHEDRON, done};
+
+fn parsed(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+/// The members of a list in an object.
+fn list<'v>(value: &'v Value, name: &str) -> &'v [Value] {
+    let list = value[name].as_array();
+    list.unwrap_or_else(|| panic!("no list {name} in {value}"))
+}
+
+/// The names in an object, sorted.
+fn names(value: &Value) -> Vec<&str> {
+    let object = value.as_object();
+    let object = object.unwrap_or_else(|| panic!("no object: {value}"));
+    let mut names: Vec<&str> = object.keys().map(String::as_str).collect();
+    names.sort_unstable();
+    names
+}
+
+#[test]
+fn orders_are_data_for_machines() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let arguments = [
+        "orders",
+        "grid.obj",
+        "--budget",
+        "300ms",
+        "--operations",
+        "vertex_faces,ff_bfs",
+        "--json",
+        "-",
+    ];
+    let report = parsed(&done(&sixfold, &arguments).stdout);
+    let fields = [
+        "backends",
+        "comparisons",
+        "control",
+        "environment",
+        "interrupted",
+        "mesh",
+        "orders",
+        "refusals",
+        "results",
+        "schema",
+        "words",
+    ];
+    assert_eq!(names(&report), fields);
+    assert_eq!(report["mesh"]["faces"], 242);
+    let orders = ["given", "shuffled", "morton", "breadth-first"];
+    assert_eq!(list(&report, "orders"), orders);
+    let results = list(&report, "results");
+    assert_eq!(results.len(), 2 * 6 * 4);
+    for (row, order) in results.iter().zip(orders.iter().cycle()) {
+        assert_eq!(row["order"], *order);
+        for field in ["backend", "operation", "agreement", "per"] {
+            assert!(row[field].is_string(), "{field} in {row}");
+        }
+        let time = row["median_ns"].as_f64().or(row["estimated_ns"].as_f64());
+        assert!(time > Some(0.0), "{row}");
+    }
+    let comparisons = list(&report, "comparisons");
+    assert_eq!(comparisons.len(), 2);
+    for comparison in comparisons {
+        let fields = ["larger", "noise", "operation", "orders", "structures"];
+        assert_eq!(names(comparison), fields);
+        let effect = &list(comparison, "orders")[0];
+        let fields = [
+            "backend",
+            "best",
+            "given_to_best",
+            "matters",
+            "scans",
+            "worst",
+            "worst_to_best",
+        ];
+        assert_eq!(names(effect), fields);
+        assert_eq!(
+            names(&effect["worst_to_best"]),
+            ["ci_high", "ci_low", "ratio"]
+        );
+        let larger = comparison["larger"].as_str();
+        assert!(
+            matches!(larger, Some("order" | "structure" | "depends")),
+            "{comparison}"
+        );
+        let fields = [
+            "fastest",
+            "fastest_order",
+            "matters",
+            "slowest",
+            "slowest_order",
+            "slowest_to_fastest",
+        ];
+        assert_eq!(names(&comparison["structures"]), fields);
+    }
+    assert_eq!(report["interrupted"], false);
+}
+
+#[test]
+fn growth_is_data_for_machines() {
+    let sixfold = Sixfold::new();
+    let arguments = [
+        "growth",
+        "--shape",
+        "torus",
+        "--from",
+        "100",
+        "--to",
+        "900",
+        "--steps",
+        "3",
+        "--order",
+        "shuffled",
+        "--budget",
+        "600ms",
+        "--operations",
+        "vertex_faces",
+        "--json",
+        "growth.json",
+    ];
+    let run = done(&sixfold, &arguments);
+    // Quads: one structure refuses, the others have a column.
+    assert!(run.stdout.contains("corner-table refuses"), "{run:?}");
+    assert!(run.stdout.contains("power"), "{run:?}");
+    let report = parsed(&crate::run::text(&sixfold, "growth.json"));
+    let fields = [
+        "backends",
+        "cache_ends",
+        "caches",
+        "environment",
+        "fits",
+        "interrupted",
+        "left_out",
+        "order",
+        "schema",
+        "shape",
+        "sizes",
+        "unheld",
+        "words",
+    ];
+    assert_eq!(names(&report), fields);
+    assert_eq!(
+        (&report["shape"], &report["order"]),
+        (&"torus".into(), &"shuffled".into())
+    );
+    assert_eq!(list(&report, "backends").len(), 5);
+    assert_eq!(names(&list(&report, "unheld")[0]), ["backend", "reason"]);
+    let sizes = list(&report, "sizes");
+    assert_eq!(sizes.len(), 3);
+    for size in sizes {
+        let fields = [
+            "control", "edges", "faces", "refusals", "results", "vertices", "weights",
+        ];
+        assert_eq!(names(size), fields);
+        assert_eq!(
+            size["edges"].as_u64(),
+            size["faces"].as_u64().map(|faces| 2 * faces)
+        );
+        assert_eq!(list(size, "results").len(), 5);
+        assert_eq!(
+            names(&list(size, "weights")[0]),
+            ["backend", "bytes", "fits_in"]
+        );
+    }
+    let fits = list(&report, "fits");
+    assert_eq!(fits.len(), 5);
+    for fit in fits {
+        let fields = [
+            "all",
+            "backend",
+            "beyond",
+            "estimated",
+            "in_cache",
+            "operation",
+            "scans",
+        ];
+        assert_eq!(names(fit), fields);
+        assert_eq!(names(&fit["all"]), ["exponent", "sizes", "standard_error"]);
+        assert_eq!(fit["all"]["sizes"], 3);
+    }
+    for cache in list(&report, "caches") {
+        assert_eq!(names(cache), ["bytes", "kind", "level", "shared_by"]);
+    }
+    for end in list(&report, "cache_ends") {
+        assert_eq!(names(end), ["backend", "cache_bytes", "faces", "level"]);
+    }
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let sixfold = Sixfold::new();
+    sixfold.file("mesh.obj", TETRAHEDRON);
+    sixfold.file("points.obj", "v 0 0 0\n");
+    for (arguments, code, says) in [
+        (
+            &["orders", "mesh.obj", "--budget", "50ms"][..],
+            2,
+            "100 ms or more",
+        ),
+        (
+            &["orders", "mesh.obj", "--backends", "abacus"],
+            2,
+            "half-edge",
+        ),
+        (
+            &["orders", "mesh.obj", "--operations", "fly"],
+            2,
+            "vv_smooth",
+        ),
+        (
+            &["orders", "mesh.obj", "--json", "mesh.obj"],
+            2,
+            "overwrite",
+        ),
+        (&["orders", "points.obj"], 2, "no faces"),
+        (&["growth", "--shape", "teapot"], 2, "geodesic"),
+        (
+            &["growth", "--from", "9000", "--to", "1000"],
+            2,
+            "the smaller first",
+        ),
+        (&["growth", "--from", "ten"], 2, "whole number"),
+        (&["growth", "--from", "-5"], 2, "whole number"),
+        (&["growth", "--steps", "1"], 2, "from 2"),
+        (&["growth", "--to", "99999999999"], 2, "choose from 100"),
+        (&["growth", "--budget", "1s"], 2, "1300 ms"),
+        (&["growth", "--order", "odd"], 2, "morton"),
+        (
+            &["growth", "--from", "1000", "--to", "1001", "--steps", "2"],
+            2,
+            "further apart",
+        ),
+        (
+            &["growth", "--shape", "grid", "--backends", "corner-table"],
+            3,
+            "corner-table",
+        ),
+        // Hundreds of gigabytes: told before anything is made.
+        (&["growth", "--to", "500000000"], 3, "smaller --to"),
+    ] {
+        refused(&sixfold, arguments, code, says);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_sweep_keeps_the_sizes_that_are_finished() {
+    use std::process::{Command, Stdio};
+    use std::thread::sleep;
+    use std::time::{Duration, Instant};
+    let sixfold = Sixfold::new();
+    let arguments = ["growth", "--budget", "40s", "--json", "kept.json"];
+    let mut command = sixfold.command(&arguments);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let child = command.spawn().expect("the binary runs");
+    let start = Instant::now();
+    while sixfold.names().is_empty() && start.elapsed() < Duration::from_secs(60) {
+        sleep(Duration::from_millis(20));
+    }
+    // The first size has half a second of the budget.
+    sleep(Duration::from_secs(4));
+    let sent = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(sent.expect("kill runs").success());
+    let output = child.wait_with_output().expect("it ends");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(4), "{stderr}");
+    assert!(stderr.contains("finished are kept"), "{stderr}");
+    let report = parsed(&crate::run::text(&sixfold, "kept.json"));
+    assert_eq!(report["interrupted"], true);
+    let sizes = list(&report, "sizes").len();
+    assert!((1..13).contains(&sizes), "{sizes} sizes");
+    assert_eq!(sixfold.names(), ["kept.json"]);
+}

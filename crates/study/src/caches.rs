@@ -1,0 +1,154 @@
+//! The caches of the processor, where the platform tells: what fits into which explains many a figure.
+//!
+//! Linux keeps them as small files under `/sys`. Elsewhere the list is empty, and who reads it says
+//! so instead of guessing.
+
+use std::fs;
+use std::path::Path;
+
+use serde::Serialize;
+
+/// Where Linux describes the caches that the first processor sees.
+const FOLDER: &str = "/sys/devices/system/cpu/cpu0/cache";
+
+/// One cache, as one processor sees it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Cache {
+    /// 1 is the nearest.
+    pub level: u8,
+    /// What it keeps: `data`, `instruction`, or `unified` for both.
+    pub kind: String,
+    /// Its size.
+    pub bytes: u64,
+    /// How many processors share it, where the platform tells.
+    pub shared_by: Option<usize>,
+}
+
+impl Cache {
+    /// Whether data comes through it.
+    pub fn holds_data(&self) -> bool {
+        self.kind != "instruction"
+    }
+
+    /// From what the file of each name says.
+    fn read(file: impl Fn(&str) -> Option<String>) -> Option<Self> {
+        Some(Self {
+            level: file("level")?.trim().parse().ok()?,
+            kind: file("type")?.trim().to_lowercase(),
+            bytes: size(file("size")?.trim()).filter(|&bytes| bytes > 0)?,
+            shared_by: file("shared_cpu_list").and_then(|list| listed(list.trim())),
+        })
+    }
+}
+
+/// The caches of the first processor, the nearest first; empty where the platform does not tell.
+pub fn caches() -> Vec<Cache> {
+    let Ok(entries) = fs::read_dir(FOLDER) else {
+        return Vec::new();
+    };
+    let cache = |folder: &Path| Cache::read(|name| fs::read_to_string(folder.join(name)).ok());
+    let mut caches: Vec<Cache> = entries
+        .flatten()
+        .filter_map(|entry| cache(&entry.path()))
+        .collect();
+    caches.sort_by(|a, b| (a.level, &a.kind).cmp(&(b.level, &b.kind)));
+    caches
+}
+
+/// The bytes of the last level that data comes through, if any is known.
+pub(crate) fn last_level(caches: &[Cache]) -> Option<u64> {
+    let data = caches.iter().filter(|cache| cache.holds_data());
+    data.max_by_key(|cache| cache.level)
+        .map(|cache| cache.bytes)
+}
+
+/// `32K`, `1M` in bytes: a thousand and twenty-four of each to the next.
+fn size(text: &str) -> Option<u64> {
+    let digits = text.trim_end_matches(|c: char| !c.is_ascii_digit());
+    let unit = match &text[digits.len()..] {
+        "" => 1,
+        "K" => 1 << 10,
+        "M" => 1 << 20,
+        "G" => 1 << 30,
+        _ => return None,
+    };
+    digits.parse::<u64>().ok()?.checked_mul(unit)
+}
+
+/// How many numbers a list like `0-3,8` names.
+fn listed(text: &str) -> Option<usize> {
+    let part = |part: &str| {
+        let (first, last) = part.split_once('-').unwrap_or((part, part));
+        let (first, last): (usize, usize) = (first.parse().ok()?, last.parse().ok()?);
+        last.checked_sub(first)?.checked_add(1)
+    };
+    text.split(',').map(part).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cache(files: &[(&str, &str)]) -> Option<Cache> {
+        let file = |name: &str| files.iter().find(|(n, _)| *n == name);
+        Cache::read(|name| file(name).map(|(_, text)| format!("{text}\n")))
+    }
+
+    #[test]
+    fn a_cache_is_read_from_its_files() {
+        let files = [("level", "3"), ("type", "Unified"), ("size", "32768K")];
+        let expected = Cache {
+            level: 3,
+            kind: "unified".into(),
+            bytes: 32 << 20,
+            shared_by: None,
+        };
+        assert_eq!(cache(&files), Some(expected.clone()));
+        let shared = [&files[..], &[("shared_cpu_list", "0-3,8,10-11")]].concat();
+        assert_eq!(cache(&shared).and_then(|c| c.shared_by), Some(7));
+        // Half an answer is none.
+        assert_eq!(cache(&files[..2]), None);
+        for wrong in ["", "K", "12Q", "0K", "many"] {
+            let files = [files[0], files[1], ("size", wrong)];
+            assert_eq!(cache(&files), None, "{wrong}");
+        }
+        let all = [
+            expected.clone(),
+            Cache {
+                level: 1,
+                ..expected
+            },
+        ];
+        assert_eq!(last_level(&all), Some(32 << 20));
+        assert_eq!(last_level(&[]), None);
+    }
+
+    #[test]
+    fn lists_and_sizes_are_counted() {
+        assert_eq!(["0", "0-1", "0,4"].map(listed), [Some(1), Some(2), Some(2)]);
+        assert_eq!(["", "x", "3-1"].map(listed), [None; 3]);
+        assert_eq!(
+            ["64", "48K", "2M"].map(size),
+            [Some(64), Some(49_152), Some(2 << 20)]
+        );
+    }
+
+    #[test]
+    fn instructions_are_no_data() {
+        let level = |level: u8, kind: &str, bytes: u64| Cache {
+            level,
+            kind: kind.into(),
+            bytes,
+            shared_by: Some(1),
+        };
+        let caches = [level(1, "data", 32), level(2, "instruction", 64)];
+        assert_eq!(last_level(&caches), Some(32));
+    }
+
+    #[test]
+    fn what_this_machine_tells_is_in_order() {
+        let caches = caches();
+        assert!(caches.is_sorted_by_key(|cache| cache.level), "{caches:?}");
+        assert!(caches.iter().all(|cache| cache.bytes > 0));
+    }
+}

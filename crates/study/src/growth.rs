@@ -1,0 +1,321 @@
+//! Growth: how the cost of every operation on every structure goes with the size of the mesh.
+//!
+//! One shape is made in sizes that grow by one factor; at each, all structures are measured in
+//! interleaved rounds as in a study. A straight line through the logarithms gives the exponent of
+//! the total time: 1 is a price for each element that does not depend on the size, 2 is a scan of all
+//! faces for each. The price does depend on the caches, so the sizes that fit into the last of them
+//! and those beyond have lines of their own.
+
+mod fits;
+mod settings;
+mod shapes;
+mod shares;
+mod words;
+
+use std::cell::Cell;
+use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use serde::Serialize;
+use sixfold::shapes::Order;
+use sixfold::{Counts, Facts, PolygonMesh};
+
+pub use fits::{CacheEnd, Fit};
+pub use settings::{GrowthError, GrowthSettings, growth_bytes};
+pub use shapes::{GROWING, Growing};
+
+use crate::agreement::judge;
+use crate::caches::{Cache, caches, last_level};
+use crate::control::{control, entered_twice};
+use crate::environment::Environment;
+use crate::measure::{Bench, Progress};
+use crate::report::{Agreement, Control, Refusal, ResultRow, SCHEMA, write_json};
+use crate::study::{StudyError, is_skewed, put_on_the_bench, refusals, results, scans};
+use fits::{cache_ends, fits};
+use settings::Plan;
+use shares::Shares;
+use workload::{Backend, Draw, MachineClock, Subject};
+
+/// What a sweep over sizes finds.
+#[derive(Clone, Debug, Serialize)]
+pub struct GrowthReport {
+    /// The version of the shape of the data.
+    pub schema: u32,
+    /// The shape that grows.
+    pub shape: String,
+    /// The order of its elements.
+    #[serde(serialize_with = "crate::orders::name")]
+    pub order: Order,
+    /// The backends that were measured, in the order of tables.
+    pub backends: Vec<String>,
+    /// Those that cannot hold the shape.
+    pub unheld: Vec<Unheld>,
+    /// Size by size, the smallest first; finished ones only.
+    pub sizes: Vec<SizeReport>,
+    /// About how many faces those have that there was no time for: a longer budget has them.
+    pub left_out: Vec<usize>,
+    /// Operation by operation, and within each backend by backend.
+    pub fits: Vec<Fit>,
+    /// The caches of this machine; empty where the platform does not tell.
+    pub caches: Vec<Cache>,
+    /// Where each of them ends, cache by cache and within each backend by backend.
+    pub cache_ends: Vec<CacheEnd>,
+    /// What the tables show, in words.
+    pub words: Vec<String>,
+    /// Told to stop before the last size.
+    pub interrupted: bool,
+    /// The machine and the program.
+    pub environment: Environment,
+}
+
+/// A backend that cannot hold the shape.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Unheld {
+    /// Its name.
+    pub backend: String,
+    /// Why not.
+    pub reason: String,
+}
+
+/// One size, measured as a study is.
+#[derive(Clone, Debug, Serialize)]
+pub struct SizeReport {
+    /// How many vertices.
+    pub vertices: usize,
+    /// How many edges.
+    pub edges: usize,
+    /// How many faces.
+    pub faces: usize,
+    /// What each backend weighs.
+    pub weights: Vec<Weight>,
+    /// The rows of a study.
+    pub results: Vec<ResultRow>,
+    /// What cannot be done at this size.
+    pub refusals: Vec<Refusal>,
+    /// One backend entered twice.
+    pub control: Option<Control>,
+}
+
+/// What a backend weighs at one size.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Weight {
+    /// The backend.
+    pub backend: String,
+    /// Bytes really held.
+    pub bytes: usize,
+    /// The level of the nearest cache that has room for them; `None` if none has, or none is known.
+    pub fits_in: Option<u8>,
+}
+
+impl GrowthReport {
+    /// Results that no difference between the backends explains.
+    pub fn mismatches(&self) -> usize {
+        let rows = self.sizes.iter().flat_map(|size| &size.results);
+        rows.filter(|row| row.agreement == Agreement::Mismatch)
+            .count()
+    }
+
+    /// Writes the report as JSON.
+    ///
+    /// # Errors
+    ///
+    /// What `writer` reports.
+    pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
+        write_json(self, writer)
+    }
+}
+
+/// Sweeps over the sizes, within the budget as far as one run of everything at each size allows. Sizes
+/// whose meshes and structures could not even be built in what is left of it are left out.
+///
+/// `stop` ends it early; the sizes that are finished by then are in the report.
+///
+/// # Errors
+///
+/// Settings that make no sense, or a shape that no backend asked for can hold.
+pub fn growth(
+    settings: &GrowthSettings,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(Progress<'_>),
+) -> Result<GrowthReport, GrowthError> {
+    let plan = settings.plan()?;
+    let caches = caches();
+    let budget = settings.study.budget;
+    let environment = Environment::here(settings.study.seed, budget.as_secs_f64());
+    let mut sweep = Sweep {
+        settings,
+        plan: &plan,
+        caches: &caches,
+        stop,
+        unheld: Vec::new(),
+        counts: None,
+    };
+    let time = Shares::of(&plan.sizes, budget);
+    let mut sizes: Vec<SizeReport> = Vec::new();
+    let mut left_out = Vec::new();
+    // Seconds for each face, at the size before.
+    let mut building = 0.0;
+    for (step, &faces) in plan.sizes.iter().enumerate() {
+        if building * faces as f64 > time.left().as_secs_f64() {
+            left_out = plan.sizes[step..].to_vec();
+            break;
+        }
+        let begun = Instant::now();
+        let built = Cell::new(Duration::ZERO);
+        let made = plan.shape.make(faces)?;
+        let mesh = settings.order.of(&made, settings.study.seed);
+        drop(made);
+        let range = time.range(step);
+        let share = || {
+            built.set(begun.elapsed());
+            time.share(step)
+        };
+        let mut here = |at: Progress<'_>| {
+            let stage = format!("{} faces: {}", mesh.face_count(), at.stage);
+            progress(Progress {
+                done: range[0] + (range[1] - range[0]) * at.done,
+                stage: &stage,
+                ..at
+            });
+        };
+        match sweep.size(&mesh, step, &share, &mut here)? {
+            Some(size) => sizes.push(size),
+            None => break,
+        }
+        building = built.get().as_secs_f64() / faces as f64;
+    }
+    let interrupted = stop.load(Ordering::Relaxed);
+    let backends: Vec<&Backend> = plan
+        .backends
+        .iter()
+        .filter(|b| sweep.unheld.iter().all(|other| other.backend != b.name()))
+        .collect();
+    let fits = fits(&sizes, &backends, &plan.operations, last_level(&caches));
+    let cache_ends = sweep
+        .counts
+        .map_or_else(Vec::new, |counts| cache_ends(&backends, &counts, &caches));
+    let mut words = words::words(&sizes, &fits, &caches, &cache_ends);
+    words.extend(words::left_out(&left_out));
+    Ok(GrowthReport {
+        schema: SCHEMA,
+        shape: settings.shape.clone(),
+        order: settings.order,
+        backends: backends.iter().map(|b| b.name().to_owned()).collect(),
+        unheld: sweep.unheld,
+        sizes,
+        left_out,
+        fits,
+        cache_ends,
+        caches,
+        words,
+        interrupted,
+        environment,
+    })
+}
+
+/// What all sizes have in common.
+struct Sweep<'s> {
+    settings: &'s GrowthSettings,
+    plan: &'s Plan,
+    caches: &'s [Cache],
+    stop: &'s AtomicBool,
+    unheld: Vec<Unheld>,
+    /// Of the largest size that is finished.
+    counts: Option<Counts>,
+}
+
+impl Sweep<'_> {
+    /// Measures one size; `None` if it was told to stop before the end.
+    fn size(
+        &mut self,
+        mesh: &PolygonMesh,
+        step: usize,
+        share: &dyn Fn() -> Duration,
+        progress: &mut dyn FnMut(Progress<'_>),
+    ) -> Result<Option<SizeReport>, GrowthError> {
+        let Plan {
+            backends,
+            operations,
+            ..
+        } = self.plan;
+        let stopped = || self.stop.load(Ordering::Relaxed);
+        let facts = Facts::of(mesh);
+        let counts = mesh.counts(facts.edges);
+        let skewed = is_skewed(&facts);
+        let seed = self.settings.study.seed;
+        let drawn = backends.iter().any(|b| skewed || scans(b, operations));
+        let draw = drawn.then(|| Draw::of(mesh, seed));
+        let mut subjects: Vec<Box<dyn Subject + '_>> = Vec::new();
+        let (mut weights, mut unheld) = (Vec::new(), Vec::new());
+        for backend in backends {
+            if stopped() {
+                return Ok(None);
+            }
+            let (report, subject) = put_on_the_bench(backend, mesh, draw.as_ref(), &counts);
+            match subject {
+                Some(subject) => {
+                    weights.push(self.weight(report.name, report.bytes.unwrap_or(0)));
+                    subjects.push(subject);
+                }
+                None => unheld.push(Unheld {
+                    backend: report.name,
+                    reason: report.reason.unwrap_or_default(),
+                }),
+            }
+        }
+        if subjects.is_empty() {
+            let refusals = unheld.into_iter().map(|u| (u.backend, u.reason)).collect();
+            return Err(StudyError::NoneHolds { refusals }.into());
+        }
+        self.unheld = unheld;
+        let first = entered_twice(&subjects);
+        let second = subjects.len();
+        let twice = |backend: &&Backend| backend.name() == subjects[first].name();
+        let again = backends.iter().find(twice);
+        let again = again.and_then(|b| b.put_on_the_bench(mesh, draw.as_ref()).ok());
+        subjects.extend(again.map(|(subject, _)| subject));
+        let clock = MachineClock::start();
+        let mut bench = Bench {
+            control: (subjects.len() > second).then_some(second),
+            subjects: &mut subjects,
+            population: [counts.vertices, counts.edges, counts.faces],
+            skewed,
+            clock: &clock,
+            budget: share(),
+            named: !self.settings.study.operations.is_empty(),
+            random: ChaCha8Rng::seed_from_u64(seed.wrapping_add(step as u64)),
+            stop: self.stop,
+            progress,
+        };
+        let mut entries = bench.measure(operations);
+        let control = control(&entries, first, second, subjects[first].name());
+        entries.retain(|entry| entry.subject != second);
+        let agreements = judge(&entries, &mut subjects, mesh, &clock, self.stop);
+        if self.stop.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        self.counts = Some(counts);
+        Ok(Some(SizeReport {
+            vertices: counts.vertices,
+            edges: counts.edges,
+            faces: counts.faces,
+            weights,
+            results: results(&entries, agreements, &subjects, mesh, control.as_ref()),
+            refusals: refusals(&entries, &subjects),
+            control,
+        }))
+    }
+
+    fn weight(&self, backend: String, bytes: usize) -> Weight {
+        let data = self.caches.iter().filter(|cache| cache.holds_data());
+        let room = data.filter(|cache| cache.bytes >= bytes as u64);
+        Weight {
+            backend,
+            bytes,
+            fits_in: room.map(|cache| cache.level).min(),
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! The lines through the times, and where the caches end.
+
+use serde::Serialize;
+use sixfold::Counts;
+
+use super::SizeReport;
+use super::settings::scaled;
+use crate::caches::Cache;
+use crate::slope::Slope;
+use workload::{Backend, Operation};
+
+/// How the time of one operation on one backend goes with the number of faces.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fit {
+    /// The backend.
+    pub backend: String,
+    /// The operation.
+    pub operation: Operation,
+    /// It looks at all faces for each element.
+    pub scans: bool,
+    /// Over all sizes; `None` for a single one.
+    pub all: Option<Slope>,
+    /// Over those whose structure fits into the last cache.
+    pub in_cache: Option<Slope>,
+    /// Over those whose structure does not.
+    pub beyond: Option<Slope>,
+    /// At how many sizes the time is an estimate.
+    pub estimated: usize,
+}
+
+/// Where a structure outgrows a cache.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct CacheEnd {
+    /// The backend.
+    pub backend: String,
+    /// The level of the cache.
+    pub level: u8,
+    /// Its bytes.
+    pub cache_bytes: u64,
+    /// The fewest faces at which the layout takes more.
+    pub faces: usize,
+}
+
+/// The lines through the times of each backend and operation that has any.
+pub(super) fn fits(
+    sizes: &[SizeReport],
+    backends: &[&Backend],
+    operations: &[Operation],
+    last_level: Option<u64>,
+) -> Vec<Fit> {
+    let mut fits = Vec::new();
+    for &operation in operations {
+        for backend in backends {
+            let mut points: Vec<(f64, f64, bool)> = Vec::new();
+            let mut estimated = 0;
+            for size in sizes {
+                let row = size.results.iter();
+                let mut row =
+                    row.filter(|r| r.operation == operation && r.backend == backend.name());
+                let weight = size.weights.iter().find(|w| w.backend == backend.name());
+                let Some((row, weight)) = row.next().zip(weight) else {
+                    continue;
+                };
+                let Some(ns) = row.median_ns.or(row.estimated_ns) else {
+                    continue;
+                };
+                estimated += usize::from(row.median_ns.is_none());
+                let fits = last_level.is_some_and(|bytes| weight.bytes as u64 <= bytes);
+                points.push((size.faces as f64, ns, fits));
+            }
+            if points.is_empty() {
+                continue;
+            }
+            let slope = |takes_part: &dyn Fn(bool) -> bool| {
+                let part = points.iter().filter(|(.., fits)| takes_part(*fits));
+                Slope::of(part.map(|&(faces, ns, _)| (faces, ns)))
+            };
+            let known = last_level.is_some();
+            fits.push(Fit {
+                backend: backend.name().into(),
+                operation,
+                scans: operation.scans(&backend.info.costs).contains(&true),
+                all: slope(&|_| true),
+                in_cache: slope(&|fits| known && fits),
+                beyond: slope(&|fits| known && !fits),
+                estimated,
+            });
+        }
+    }
+    fits
+}
+
+/// For each cache of data, where each layout outgrows it; `counts` are those of a large mesh.
+pub(super) fn cache_ends(
+    backends: &[&Backend],
+    counts: &Counts,
+    caches: &[Cache],
+) -> Vec<CacheEnd> {
+    let mut ends = Vec::new();
+    for cache in caches.iter().filter(|cache| cache.holds_data()) {
+        for backend in backends {
+            let beyond = |faces: usize| {
+                let counts = scaled(counts, faces as f64 / counts.faces as f64);
+                (backend.layout_bytes)(&counts) as u64 > cache.bytes
+            };
+            // No layout has less than a byte for a face.
+            let (mut fits, mut does_not) = (0, cache.bytes as usize + 1);
+            while does_not - fits > 1 {
+                let middle = usize::midpoint(fits, does_not);
+                match beyond(middle) {
+                    true => does_not = middle,
+                    false => fits = middle,
+                }
+            }
+            ends.push(CacheEnd {
+                backend: backend.name().into(),
+                level: cache.level,
+                cache_bytes: cache.bytes,
+                faces: does_not,
+            });
+        }
+    }
+    ends
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::growth::Weight;
+    use crate::report::{Agreement, ResultRow};
+    use sixfold::{Facts, shapes};
+
+    fn size(faces: usize, bytes: usize, ns: f64, estimated: bool) -> SizeReport {
+        let operation = Operation::Boundary;
+        let row = ResultRow {
+            backend: "half-edge".into(),
+            operation,
+            median_ns: (!estimated).then_some(ns),
+            min_ns: None,
+            ci_low_ns: None,
+            ci_high_ns: None,
+            elements: None,
+            per: operation.per(),
+            ns_per_element: None,
+            wall_median_ns: None,
+            wall_min_ns: None,
+            sampled: false,
+            sample_size: None,
+            estimated_ns: estimated.then_some(ns),
+            checksum: None,
+            agreement: Agreement::Same,
+            standing: None,
+            ratio_to_best: None,
+            ratio_ci_low: None,
+            ratio_ci_high: None,
+            samples: 1,
+            runs_per_sample: 1,
+            warm_up_only: false,
+            by_name_only: false,
+        };
+        SizeReport {
+            vertices: 0,
+            edges: 0,
+            faces,
+            weights: vec![Weight {
+                backend: "half-edge".into(),
+                bytes,
+                fits_in: None,
+            }],
+            results: vec![row],
+            refusals: Vec::new(),
+            control: None,
+        }
+    }
+
+    #[test]
+    fn each_side_of_the_last_cache_has_its_own_line() {
+        // Linear up to 10⁵ faces, which fill the cache; beyond, with the power 1.5.
+        let time = |n: f64| {
+            if n <= 1e5 {
+                n
+            } else {
+                1e5 * (n / 1e5).powf(1.5)
+            }
+        };
+        let sizes: Vec<SizeReport> = [1e3, 1e4, 1e5, 1e6, 1e7]
+            .map(|n| size(n as usize, 10 * n as usize, time(n), n == 1e7))
+            .into();
+        let backends = Backend::roster();
+        let backends: Vec<&Backend> = backends.iter().collect();
+        let fit = |last_level| fits(&sizes, &backends, &[Operation::Boundary], last_level);
+        let found = fit(Some(1_000_000));
+        let [fit_of_it] = &found[..] else {
+            panic!("one backend has times: {found:?}")
+        };
+        assert_eq!((fit_of_it.estimated, fit_of_it.scans), (1, false));
+        let [small, large, all] = [fit_of_it.in_cache, fit_of_it.beyond, fit_of_it.all];
+        let (small, large) = (small.expect("three"), large.expect("two"));
+        assert!((small.exponent - 1.0).abs() < 1e-9 && small.sizes == 3);
+        assert!((large.exponent - 1.5).abs() < 1e-9 && large.sizes == 2);
+        assert!(all.is_some_and(|all| all.sizes == 5));
+        // Where nobody tells how large it is, there is one line only.
+        let blind = &fit(None)[0];
+        assert_eq!((blind.in_cache, blind.beyond), (None, None));
+        assert_eq!(blind.all, fit_of_it.all);
+    }
+
+    #[test]
+    fn a_cache_ends_where_the_layout_passes_it() {
+        let mesh = shapes::triangle_torus(20, 10).expect("small");
+        let counts = mesh.counts(Facts::of(&mesh).edges);
+        let cache = |kind: &str| Cache {
+            level: 2,
+            kind: kind.into(),
+            bytes: 512 << 10,
+            shared_by: None,
+        };
+        let roster = Backend::roster();
+        let backends: Vec<&Backend> = roster.iter().collect();
+        let ends = cache_ends(
+            &backends,
+            &counts,
+            &[cache("instruction"), cache("unified")],
+        );
+        assert_eq!(ends.len(), backends.len(), "instructions are no data");
+        for (end, backend) in ends.iter().zip(&backends) {
+            let bytes = |faces: usize| {
+                let counts = scaled(&counts, faces as f64 / counts.faces as f64);
+                (backend.layout_bytes)(&counts)
+            };
+            assert!(bytes(end.faces) > 512 << 10, "{end:?}");
+            assert!(bytes(end.faces - 1) <= 512 << 10, "{end:?}");
+        }
+        // 24 words a vertex, two faces each: 48 bytes a face.
+        let half_edge = ends
+            .iter()
+            .find(|end| end.backend == "half-edge")
+            .expect("one of six");
+        assert!(
+            half_edge.faces.abs_diff((512 << 10) / 48) < 20,
+            "{half_edge:?}"
+        );
+    }
+}

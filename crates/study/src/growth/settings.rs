@@ -1,0 +1,245 @@
+//! What to sweep over, and what is refused before anything is made.
+
+use std::time::Duration;
+
+use sixfold::Facts;
+use sixfold::shapes::{Order, ShapeError};
+
+use super::shapes::{GROWING, Growing};
+use crate::orders::{chosen_operations, draw_bytes, on_the_bench_bytes};
+use crate::study::{Settings, StudyError};
+use workload::{Backend, Operation};
+
+/// The fewest faces: below, a clock tells little.
+const LEAST: usize = 100;
+/// The most: about as many triangles as handles can name corners of.
+const MOST: usize = 500_000_000;
+/// What each size takes at the least.
+const SHORTEST: Duration = Duration::from_millis(100);
+/// No sweep needs more sizes.
+const MOST_STEPS: usize = 1000;
+
+/// What to sweep over, and for how long.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GrowthSettings {
+    /// Backends, operations, seed, and the budget for everything. No operations mean the few that
+    /// show most.
+    pub study: Settings,
+    /// The name of a shape of [`GROWING`].
+    pub shape: String,
+    /// The order of its elements in memory.
+    pub order: Order,
+    /// About how many faces the smallest has.
+    pub from: usize,
+    /// About how many faces the largest has.
+    pub to: usize,
+    /// How many sizes, each as many times larger than the one before.
+    pub steps: usize,
+}
+
+impl Default for GrowthSettings {
+    fn default() -> Self {
+        Self {
+            study: Settings {
+                budget: Duration::from_secs(60),
+                ..Settings::default()
+            },
+            shape: GROWING[0].name.into(),
+            order: Order::Given,
+            from: 1000,
+            to: 1_000_000,
+            steps: 13,
+        }
+    }
+}
+
+/// Why there is no sweep.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum GrowthError {
+    /// There is nothing to study.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// What the shape refuses.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// A name that no growing shape has.
+    #[error("no shape that grows is called `{name}`: choose from {}", GROWING.iter().map(|shape| shape.name).collect::<Vec<_>>().join(", "))]
+    UnknownShape { name: String },
+    /// The largest is not larger than the smallest.
+    #[error("sizes from {from} to {to} faces do not grow: give the smaller first")]
+    SizesReversed { from: usize, to: usize },
+    /// Sizes that tell nothing, or that no structure can number.
+    #[error("{faces} faces: choose from {LEAST} to {MOST}")]
+    SizeOutOfRange { faces: usize },
+    /// Growth needs two sizes.
+    #[error("{steps} sizes: choose from 2 to {MOST_STEPS}")]
+    StepsOutOfRange { steps: usize },
+    /// Different numbers of faces that are the same mesh.
+    #[error("from {from} to {to} faces the shape has one size only: take sizes further apart")]
+    OneSize { from: usize, to: usize },
+    /// There is no time to measure.
+    #[error("a budget of {} ms is too short for {steps} sizes: take {} ms or more, or fewer --steps", .budget.as_millis(), .least.as_millis())]
+    BudgetTooSmall {
+        budget: Duration,
+        least: Duration,
+        steps: usize,
+    },
+}
+
+/// Settings that make sense.
+pub(super) struct Plan {
+    pub(super) shape: &'static Growing,
+    /// About how many faces, the fewest first.
+    pub(super) sizes: Vec<usize>,
+    pub(super) backends: Vec<Backend>,
+    pub(super) operations: Vec<Operation>,
+}
+
+impl GrowthSettings {
+    /// Refuses what cannot be done, before anything is made.
+    pub(super) fn plan(&self) -> Result<Plan, GrowthError> {
+        let Self {
+            study,
+            from,
+            to,
+            steps,
+            ..
+        } = self;
+        let (from, to, steps) = (*from, *to, *steps);
+        let name = || self.shape.clone();
+        let shape = Growing::named(&self.shape);
+        let shape = shape.ok_or_else(|| GrowthError::UnknownShape { name: name() })?;
+        for faces in [from, to] {
+            if !(LEAST..=MOST).contains(&faces) {
+                return Err(GrowthError::SizeOutOfRange { faces });
+            }
+        }
+        if from >= to {
+            return Err(GrowthError::SizesReversed { from, to });
+        }
+        if !(2..=MOST_STEPS).contains(&steps) {
+            return Err(GrowthError::StepsOutOfRange { steps });
+        }
+        let least = SHORTEST * steps as u32;
+        if study.budget < least {
+            return Err(GrowthError::BudgetTooSmall {
+                budget: study.budget,
+                least,
+                steps,
+            });
+        }
+        // The shape does not come in every size.
+        let mut sizes = sizes(from, to, steps);
+        sizes.dedup_by_key(|faces| shape.parameters(*faces));
+        if sizes.len() < 2 {
+            return Err(GrowthError::OneSize { from, to });
+        }
+        Ok(Plan {
+            shape,
+            sizes,
+            backends: study.chosen_backends()?,
+            operations: chosen_operations(study),
+        })
+    }
+}
+
+/// Sizes that grow by one factor, both ends included.
+fn sizes(from: usize, to: usize, steps: usize) -> Vec<usize> {
+    let factor = to as f64 / from as f64;
+    let size = |step: usize| from as f64 * factor.powf(step as f64 / (steps - 1) as f64);
+    let mut sizes: Vec<usize> = (0..steps).map(|s| size(s).round() as usize).collect();
+    sizes.dedup();
+    sizes
+}
+
+/// About how many bytes the sweep holds at its worst moment: at the largest size.
+///
+/// # Errors
+///
+/// What [`growth`](super::growth) refuses before it measures.
+pub fn growth_bytes(settings: &GrowthSettings) -> Result<u64, GrowthError> {
+    let plan = settings.plan()?;
+    // A small one has the proportions of a large one.
+    let small = plan.shape.make(plan.sizes[0])?;
+    let counts = small.counts(Facts::of(&small).edges);
+    let counts = scaled(&counts, settings.to as f64 / counts.faces as f64);
+    let weights = plan.backends.iter().map(|b| on_the_bench_bytes(b, &counts));
+    let (all, most) = weights.fold((0, 0), |(all, most): (u64, u64), one| {
+        (all + one, most.max(one))
+    });
+    // The control, and what building one takes besides.
+    Ok(all + 3 * most + 2 * draw_bytes(&counts))
+}
+
+/// The counts of a mesh so many times larger.
+pub(super) fn scaled(counts: &sixfold::Counts, factor: f64) -> sixfold::Counts {
+    let scaled = |count: usize| (count as f64 * factor).round() as usize;
+    sixfold::Counts {
+        vertices: scaled(counts.vertices),
+        edges: scaled(counts.edges),
+        faces: scaled(counts.faces),
+        corners: scaled(counts.corners),
+        uniform: counts.uniform,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_grow_by_one_factor() {
+        assert_eq!(
+            sizes(1000, 1_000_000, 4),
+            [1000, 10_000, 100_000, 1_000_000]
+        );
+        assert_eq!(sizes(100, 200, 2), [100, 200]);
+        assert_eq!(sizes(100, 102, 9), [100, 101, 102]);
+        assert_eq!(
+            GrowthSettings::default().plan().expect("sound").sizes.len(),
+            13
+        );
+    }
+
+    #[test]
+    fn what_makes_no_sense_is_refused_by_name() {
+        let refused = |change: fn(&mut GrowthSettings)| {
+            let mut settings = GrowthSettings::default();
+            change(&mut settings);
+            let refusal = settings.plan().err().expect("refused");
+            assert_eq!(growth_bytes(&settings), Err(refusal.clone()), "both say it");
+            refusal.to_string()
+        };
+        type Case = (fn(&mut GrowthSettings), &'static str);
+        let cases: [Case; 9] = [
+            (|s| s.to = 1001, "further apart"),
+            (|s| s.shape = "teapot".into(), "geodesic"),
+            (|s| (s.from, s.to) = (5000, 1000), "the smaller first"),
+            (|s| (s.from, s.to) = (5000, 5000), "the smaller first"),
+            (|s| s.from = 3, "choose from 100"),
+            (|s| s.to = usize::MAX, "to 500000000"),
+            (|s| s.steps = 1, "from 2"),
+            (|s| s.study.budget = Duration::from_millis(1299), "1300 ms"),
+            (|s| s.study.backends = vec!["abacus".into()], "half-edge"),
+        ];
+        for (change, says) in cases {
+            let said = refused(change);
+            assert!(said.contains(says), "{said}");
+        }
+    }
+
+    #[test]
+    fn the_forecast_grows_with_the_mesh_and_the_structures() {
+        let mut settings = GrowthSettings::default();
+        let all = growth_bytes(&settings).expect("sound");
+        // Six structures and a control of a million triangles, some 50 bytes a face each.
+        assert!((200 << 20..2 << 30).contains(&all), "{all}");
+        settings.to = 10_000_000;
+        let tenfold = growth_bytes(&settings).expect("sound") as f64 / all as f64;
+        assert!((tenfold - 10.0).abs() < 0.01, "{tenfold}");
+        settings.study.backends = vec!["corner-table".into()];
+        assert!(growth_bytes(&settings).expect("sound") < 6 * all);
+    }
+}

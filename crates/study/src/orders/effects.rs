@@ -1,0 +1,311 @@
+//! What matters more, the order or the structure: ratios within rounds, and their intervals.
+
+use serde::Serialize;
+use sixfold::shapes::Order;
+
+use super::name;
+use crate::standing::ratio;
+use crate::statistics::Median;
+use workload::{Operation, Time};
+
+/// How far a ratio may be off that has no interval.
+const UNSURE: f64 = 1.5;
+
+/// The samples of one structure in one order.
+pub(super) struct Timed {
+    pub(super) backend: &'static str,
+    pub(super) order: Order,
+    /// It looks at all faces for each element.
+    pub(super) scans: bool,
+    pub(super) samples: Vec<(u32, Time)>,
+}
+
+impl Timed {
+    fn median(&self) -> Option<f64> {
+        Median::of(self.samples.iter().map(|(_, time)| time.ns())).map(|median| median.value)
+    }
+}
+
+/// How many times one time another is: the median over rounds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Factor {
+    /// The median.
+    pub ratio: f64,
+    /// The lower end of its 95 % interval; `None` below three rounds.
+    pub ci_low: Option<f64>,
+    /// Its upper end.
+    pub ci_high: Option<f64>,
+}
+
+impl Factor {
+    fn of(slow: &Timed, fast: &Timed) -> Option<Self> {
+        let ratio = ratio(&slow.samples, &fast.samples)?;
+        Some(Self {
+            ratio: ratio.value,
+            ci_low: ratio.interval.map(|[low, _]| low),
+            ci_high: ratio.interval.map(|[_, high]| high),
+        })
+    }
+
+    /// Whether it is more than what the control shows for nothing.
+    fn beyond(&self, noise: f64) -> bool {
+        self.ratio > noise && self.low() > 1.0
+    }
+
+    fn low(&self) -> f64 {
+        self.ci_low.unwrap_or(self.ratio / UNSURE)
+    }
+
+    fn high(&self) -> f64 {
+        self.ci_high.unwrap_or(self.ratio * UNSURE)
+    }
+}
+
+/// How much the order matters for one structure.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OrderEffect {
+    /// The structure.
+    pub backend: String,
+    /// It looks at all faces for each element of this operation.
+    pub scans: bool,
+    /// The order with the smallest median.
+    #[serde(serialize_with = "name")]
+    pub best: Order,
+    /// The order with the largest.
+    #[serde(serialize_with = "name")]
+    pub worst: Order,
+    /// The worst by the best.
+    pub worst_to_best: Factor,
+    /// The order given by the best.
+    pub given_to_best: Option<Factor>,
+    /// The worst is slower than the best beyond the noise.
+    pub matters: bool,
+}
+
+/// How much the structure matters where each is in its own best order; of those that do not scan.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StructureEffect {
+    /// The structure with the smallest median.
+    pub fastest: String,
+    /// Its best order.
+    #[serde(serialize_with = "name")]
+    pub fastest_order: Order,
+    /// The structure with the largest.
+    pub slowest: String,
+    /// Its best order.
+    #[serde(serialize_with = "name")]
+    pub slowest_order: Order,
+    /// The slowest by the fastest.
+    pub slowest_to_fastest: Factor,
+    /// The slowest is slower than the fastest beyond the noise.
+    pub matters: bool,
+}
+
+/// Which of the two is larger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Larger {
+    /// On every structure that does not scan, the order makes more of a difference.
+    Order,
+    /// On none of them.
+    Structure,
+    /// On some it does, or the intervals overlap.
+    Depends,
+}
+
+/// One operation: how much the order matters, and how much the structure.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// The operation.
+    pub operation: Operation,
+    /// Ratios up to this are noise.
+    pub noise: f64,
+    /// By structure; those with samples of two orders or more.
+    pub orders: Vec<OrderEffect>,
+    /// Between structures; `None` with fewer than two that do not scan.
+    pub structures: Option<StructureEffect>,
+    /// Which is larger; `None` where one of the two is not known.
+    pub larger: Option<Larger>,
+}
+
+impl Comparison {
+    pub(super) fn of(operation: Operation, timed: &[Timed], noise: f64) -> Self {
+        let of_one = |a: &Timed, b: &Timed| a.backend == b.backend;
+        let by_backend = || timed.chunk_by(of_one);
+        let orders: Vec<OrderEffect> = by_backend()
+            .filter_map(|orders| effect(orders, noise))
+            .collect();
+        let local = by_backend().filter(|orders| !orders[0].scans);
+        let best: Vec<&Timed> = local
+            .filter_map(|orders| Some(extremes(orders)?.0))
+            .collect();
+        let structures = between(&best, noise);
+        let larger = structures.as_ref().and_then(|between| {
+            let local = orders.iter().filter(|effect| !effect.scans);
+            let factors: Vec<Factor> = local.map(|effect| effect.worst_to_best).collect();
+            larger(&factors, &between.slowest_to_fastest)
+        });
+        Self {
+            operation,
+            noise,
+            orders,
+            structures,
+            larger,
+        }
+    }
+}
+
+/// The entries with the smallest and the largest median.
+fn extremes<'t>(timed: impl IntoIterator<Item = &'t Timed>) -> Option<(&'t Timed, &'t Timed)> {
+    let there = timed.into_iter().filter_map(|t| Some((t.median()?, t)));
+    let mut sorted: Vec<(f64, &Timed)> = there.collect();
+    sorted.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    Some((sorted.first()?.1, sorted.last()?.1))
+}
+
+fn effect(orders: &[Timed], noise: f64) -> Option<OrderEffect> {
+    let (best, worst) = extremes(orders)?;
+    if orders.iter().filter(|t| !t.samples.is_empty()).count() < 2 {
+        return None;
+    }
+    let worst_to_best = Factor::of(worst, best)?;
+    let given = orders.iter().find(|t| t.order == Order::Given);
+    Some(OrderEffect {
+        backend: best.backend.into(),
+        scans: best.scans,
+        best: best.order,
+        worst: worst.order,
+        worst_to_best,
+        given_to_best: given.and_then(|given| Factor::of(given, best)),
+        matters: worst_to_best.beyond(noise),
+    })
+}
+
+fn between(best: &[&Timed], noise: f64) -> Option<StructureEffect> {
+    let (fastest, slowest) = extremes(best.iter().copied())?;
+    if best.len() < 2 {
+        return None;
+    }
+    let slowest_to_fastest = Factor::of(slowest, fastest)?;
+    Some(StructureEffect {
+        fastest: fastest.backend.into(),
+        fastest_order: fastest.order,
+        slowest: slowest.backend.into(),
+        slowest_order: slowest.order,
+        slowest_to_fastest,
+        matters: slowest_to_fastest.beyond(noise),
+    })
+}
+
+/// Which is larger, if the intervals tell.
+fn larger(orders: &[Factor], structures: &Factor) -> Option<Larger> {
+    if orders.is_empty() {
+        return None;
+    }
+    let above = |order: &Factor| order.low() > structures.high();
+    let below = |order: &Factor| order.high() < structures.low();
+    Some(if orders.iter().all(above) {
+        Larger::Order
+    } else if orders.iter().all(below) {
+        Larger::Structure
+    } else {
+        Larger::Depends
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A structure at `ns`, in seven rounds of a machine that drifts.
+    fn timed(backend: &'static str, order: Order, ns: f64, scans: bool) -> Timed {
+        let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
+        let time = |drift: f64| Time {
+            cpu_ns: Some(ns * drift),
+            wall_ns: ns * drift,
+        };
+        Timed {
+            backend,
+            order,
+            scans,
+            samples: (0..).zip(drift.map(time)).collect(),
+        }
+    }
+
+    fn compared(times: &[(&'static str, [f64; 2], bool)]) -> Comparison {
+        let timed = times
+            .iter()
+            .flat_map(|&(backend, [given, shuffled], scans)| {
+                [
+                    timed(backend, Order::Given, given, scans),
+                    timed(backend, Order::Shuffled, shuffled, scans),
+                ]
+            });
+        let timed: Vec<Timed> = timed.collect();
+        Comparison::of(Operation::Boundary, &timed, 1.02)
+    }
+
+    #[test]
+    fn orders_are_compared_within_a_structure_and_structures_in_their_best_order() {
+        let all = compared(&[
+            ("scan", [500.0, 505.0], true),
+            ("a", [10.0, 40.0], false),
+            ("b", [30.0, 15.0], false),
+        ]);
+        let ratios: Vec<f64> = all.orders.iter().map(|o| o.worst_to_best.ratio).collect();
+        for (ratio, expected) in ratios.iter().zip([1.01, 4.0, 2.0]) {
+            assert!((ratio - expected).abs() < 1e-9, "{ratios:?}");
+        }
+        let given: Vec<f64> = all
+            .orders
+            .iter()
+            .filter_map(|o| Some(o.given_to_best?.ratio))
+            .collect();
+        assert!(
+            (given[2] - 2.0).abs() < 1e-9 && given[1] == 1.0,
+            "{given:?}"
+        );
+        let matters: Vec<bool> = all.orders.iter().map(|o| o.matters).collect();
+        assert_eq!(matters, [false, true, true]);
+        assert_eq!(
+            (all.orders[2].best, all.orders[2].worst),
+            (Order::Shuffled, Order::Given)
+        );
+        let between = all.structures.expect("two that do not scan");
+        assert_eq!(
+            (between.fastest.as_str(), between.slowest.as_str()),
+            ("a", "b")
+        );
+        assert_eq!(between.slowest_order, Order::Shuffled);
+        assert!((between.slowest_to_fastest.ratio - 1.5).abs() < 1e-9);
+        assert_eq!(all.larger, Some(Larger::Order));
+    }
+
+    #[test]
+    fn no_larger_is_named_where_it_depends() {
+        let larger =
+            |a: [f64; 2], b: [f64; 2]| compared(&[("a", a, false), ("b", b, false)]).larger;
+        assert_eq!(larger([10.0, 11.0], [30.0, 31.0]), Some(Larger::Structure));
+        assert_eq!(larger([10.0, 50.0], [30.0, 31.0]), Some(Larger::Depends));
+        assert_eq!(larger([10.0, 50.0], [11.0, 44.0]), Some(Larger::Order));
+        // One structure, or one that has nothing else to be compared with.
+        assert_eq!(compared(&[("a", [1.0, 2.0], false)]).larger, None);
+        let beside_scan = compared(&[("a", [1.0, 2.0], false), ("s", [9.0, 9.0], true)]);
+        assert_eq!((beside_scan.structures, beside_scan.larger), (None, None));
+        assert_eq!(beside_scan.orders.len(), 2);
+    }
+
+    #[test]
+    fn few_samples_tell_no_difference() {
+        let mut a = [
+            timed("a", Order::Given, 10.0, false),
+            timed("a", Order::Morton, 14.0, false),
+        ];
+        a.iter_mut().for_each(|t| t.samples.truncate(2));
+        let effect = effect(&a, 1.02).expect("two orders");
+        assert_eq!(effect.worst_to_best.ci_low, None);
+        assert!(!effect.matters, "{effect:?}");
+        a[1].samples.clear();
+        assert_eq!(super::effect(&a, 1.02), None);
+    }
+}

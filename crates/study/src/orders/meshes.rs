@@ -1,0 +1,49 @@
+//! One mesh in every order, with the same elements drawn from each.
+
+use sixfold::PolygonMesh;
+use sixfold::shapes::{Order, Reordered};
+
+use workload::{Draw, Side};
+
+/// The mesh in every order, each with the same draw in its own names.
+pub(super) struct Meshes(Vec<(Order, PolygonMesh, Option<Draw>)>);
+
+impl Meshes {
+    pub(super) fn of(polygons: &PolygonMesh, seed: u64, drawn: bool) -> Self {
+        // Another stream than the shuffle, or the first drawn might be the first in memory.
+        let draw = drawn.then(|| Draw::of(polygons, !seed));
+        let meshes = Order::ALL.map(|order| {
+            let reordered = order.with_names(polygons, seed);
+            let draw = draw.as_ref().map(|draw| renamed(draw, &reordered));
+            (order, reordered.mesh, draw)
+        });
+        Self(meshes.into())
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = (Order, &PolygonMesh, Option<&Draw>)> {
+        self.0
+            .iter()
+            .map(|(order, mesh, draw)| (*order, mesh, draw.as_ref()))
+    }
+}
+
+/// The same elements under the names that they have after reordering.
+fn renamed(draw: &Draw, to: &Reordered) -> Draw {
+    let side = |side: &Side| {
+        let mut ends = side.ends.map(|v| to.vertices[v.index()]);
+        ends.sort_unstable();
+        Side {
+            face: to.faces[side.face.index()],
+            ends,
+        }
+    };
+    Draw {
+        vertices: draw
+            .vertices
+            .iter()
+            .map(|v| to.vertices[v.index()])
+            .collect(),
+        edges: draw.edges.iter().map(side).collect(),
+        faces: draw.faces.iter().map(|f| to.faces[f.index()]).collect(),
+    }
+}

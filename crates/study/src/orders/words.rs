@@ -1,0 +1,180 @@
+//! What the tables of orders show, in a few plain sentences.
+
+use sixfold::shapes::Order;
+
+use super::{Comparison, Larger, OrderEffect, OrderRow};
+use crate::report::{Agreement, Control, Standing};
+use crate::words::times;
+
+/// Sentences on the best order, on the order given, and on what matters more.
+pub(super) fn words(
+    rows: &[OrderRow],
+    comparisons: &[Comparison],
+    control: Option<&Control>,
+) -> Vec<String> {
+    let mut words = Vec::new();
+    words.extend(best_orders(rows));
+    words.extend(as_given(comparisons));
+    words.extend(comparisons.iter().filter_map(compared));
+    words.extend(on_scans(comparisons));
+    words.extend(verdict(comparisons));
+    words.extend(control.map(|control| {
+        let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
+        format!(
+            "Noise: {} in the order given was entered twice, and its two columns differ by {}, at most {}; what differs by no more than that within an operation is a tie.",
+            control.backend,
+            percent(control.typical),
+            percent(control.worst),
+        )
+    }));
+    words.extend(doubts(rows));
+    for OrderRow { order, row } in rows {
+        if row.agreement == Agreement::Mismatch {
+            let (backend, operation) = (&row.backend, row.operation);
+            words.push(format!(
+                "{backend} finds something else for {operation} in the order {order}: a fault in Sixfold; please report it."
+            ));
+        }
+    }
+    words
+}
+
+/// How often each order is best, or as good as the best.
+fn best_orders(rows: &[OrderRow]) -> Option<String> {
+    let pairs =
+        rows.chunk_by(|a, b| a.row.operation == b.row.operation && a.row.backend == b.row.backend);
+    let pairs: Vec<&[OrderRow]> = pairs
+        .filter(|pair| pair.iter().filter(|r| r.row.standing.is_some()).count() > 1)
+        .collect();
+    if pairs.is_empty() {
+        return None;
+    }
+    let counts = Order::ALL.map(|order| {
+        let with = |wanted: Standing| {
+            let there = |row: &OrderRow| row.order == order && row.row.standing == Some(wanted);
+            pairs.iter().filter(|pair| pair.iter().any(there)).count()
+        };
+        (order, with(Standing::Best), with(Standing::Tied))
+    });
+    let mut sorted = counts.to_vec();
+    sorted.sort_by_key(|&(_, best, tied)| std::cmp::Reverse((best + tied, best)));
+    let parts: Vec<String> = sorted
+        .iter()
+        .map(|(order, best, tied)| format!("{order} {best} and {tied}"))
+        .collect();
+    Some(format!(
+        "Of {} pairs of a structure and an operation, so often an order is best alone and tied for best: {}.",
+        pairs.len(),
+        parts.join(", ")
+    ))
+}
+
+/// What reordering would gain.
+fn as_given(comparisons: &[Comparison]) -> Option<String> {
+    let effects = comparisons
+        .iter()
+        .flat_map(|comparison| comparison.orders.iter().map(move |o| (comparison, o)));
+    let given: Vec<(f64, &Comparison, &OrderEffect)> = effects
+        .filter_map(|(comparison, effect)| Some((effect.given_to_best?.ratio, comparison, effect)))
+        .collect();
+    let (most, comparison, effect) = given.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let near = given
+        .iter()
+        .filter(|(ratio, c, _)| *ratio <= c.noise)
+        .count();
+    let all = given.len();
+    if near == all {
+        return Some(
+            "The order given is as good as the best everywhere, as far as anybody can tell.".into(),
+        );
+    }
+    Some(format!(
+        "The order given is within the noise of the best in {near} of {all} pairs; at worst it takes {} as long ({} on {}, best {}).",
+        times(*most),
+        comparison.operation,
+        effect.backend,
+        effect.best,
+    ))
+}
+
+/// One operation: the reach of the order, that of the structure, and which is larger.
+fn compared(comparison: &Comparison) -> Option<String> {
+    let local = || comparison.orders.iter().filter(|effect| !effect.scans);
+    let ratio = |effect: &&OrderEffect| effect.worst_to_best.ratio;
+    let least = local().min_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
+    let most = local().max_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
+    let said = |effect: &OrderEffect| match effect.matters {
+        true => format!("{} ({})", times(effect.worst_to_best.ratio), effect.backend),
+        false => format!("nothing ({})", effect.backend),
+    };
+    let operation = comparison.operation;
+    let orders = match local().count() {
+        1 => format!("{operation}: the order makes {}", said(most)),
+        _ => format!(
+            "{operation}: the order makes {} to {}",
+            said(least),
+            said(most)
+        ),
+    };
+    let Some(structures) = &comparison.structures else {
+        return Some(format!("{orders}."));
+    };
+    let between = match structures.matters {
+        true => format!(
+            "the structure {} ({} to {}, each in its best order)",
+            times(structures.slowest_to_fastest.ratio),
+            structures.fastest,
+            structures.slowest
+        ),
+        false => "the structures do not differ in their best orders".into(),
+    };
+    let larger = match comparison.larger? {
+        Larger::Order => "the order matters more",
+        Larger::Structure => "the structure matters more",
+        Larger::Depends => "which matters more depends on the structure",
+    };
+    Some(format!("{orders}, {between}: {larger}."))
+}
+
+/// What looks at all faces goes through memory from end to end.
+fn on_scans(comparisons: &[Comparison]) -> Option<String> {
+    let scans = comparisons.iter().flat_map(|comparison| {
+        let scans = comparison.orders.iter().filter(|effect| effect.scans);
+        scans.map(move |effect| (comparison.operation, effect))
+    });
+    let (operation, most) = scans.max_by(|(_, a), (_, b)| {
+        let (a, b) = (a.worst_to_best.ratio, b.worst_to_best.ratio);
+        a.total_cmp(&b)
+    })?;
+    Some(match most.matters {
+        true => format!(
+            "Where a structure looks at all faces for each element, the order changes that by {} at most ({operation} on {}).",
+            times(most.worst_to_best.ratio),
+            most.backend
+        ),
+        false => "Where a structure looks at all faces for each element, the order makes no difference beyond the noise.".into(),
+    })
+}
+
+fn verdict(comparisons: &[Comparison]) -> Option<String> {
+    let known: Vec<Larger> = comparisons.iter().filter_map(|c| c.larger).collect();
+    let count = |larger: Larger| known.iter().filter(|&&l| l == larger).count();
+    let (order, structure) = (count(Larger::Order), count(Larger::Structure));
+    (known.len() > 1).then(|| {
+        format!(
+            "In all: the order matters more in {order} of {} operations, the structure in {structure}; in {} it depends on the structure.",
+            known.len(),
+            count(Larger::Depends)
+        )
+    })
+}
+
+/// Where the budget was too small for an answer.
+fn doubts(rows: &[OrderRow]) -> Option<String> {
+    let measured = rows.iter().filter(|r| r.row.median_ns.is_some());
+    let fewest = measured.map(|r| r.row.samples).min()?;
+    (fewest < 5).then(|| {
+        let samples = if fewest == 1 { "sample" } else { "samples" };
+        format!("Some figures rest on {fewest} {samples} only: a longer --budget makes them surer.")
+    })
+}
