@@ -133,7 +133,7 @@ fn ranking(answer: &Answer) -> String {
         "/ best",
         "95 %",
         "to build",
-        "bytes a vertex",
+        "B/vertex",
         "pays after",
     ];
     let mut rows = table(header.iter().map(|name| right((*name).into())).collect());

@@ -60,11 +60,11 @@ pub enum PickError {
     Impossible { mesh: String, reason: NoPlace },
     /// Not even three rounds fit.
     #[error(
-        "{mesh}: a budget of {budget_s} s is too small to measure anything: three rounds take about {needed_s} s; give at least --budget {needed_s}s"
+        "{mesh}: a budget of {budget:?} is too small to measure anything: three rounds take about {needed_s} s; give at least --budget {needed_s}s"
     )]
     BudgetTooSmall {
         mesh: String,
-        budget_s: u64,
+        budget: Duration,
         needed_s: u64,
     },
     /// There is no mesh to ask about.
@@ -172,7 +172,8 @@ fn on_one(
     let polygons = &specimen.polygons;
     let counts = polygons.counts(specimen.facts.edges);
     let workload = &question.workload;
-    let script = Script::of(workload, &counts);
+    let mut script = Script::of(workload, &counts);
+    script.editable |= question.needs.contains(&Need::Edit);
     let route = Route::of(workload.access, polygons, question.seed);
     let draw = Draw::of(polygons, question.seed);
     let impossible = |reason: NoPlace| PickError::Impossible {

@@ -9,6 +9,7 @@ use crate::environment::Environment;
 use crate::pick::needs::Need;
 use crate::report::write_json;
 use crate::timer::Timer;
+use crate::words::grouped;
 
 /// Which backend, how sure, and why.
 #[derive(Clone, Debug, Serialize)]
@@ -158,6 +159,7 @@ impl Excluded {
 
 /// That so many bytes are too many.
 pub(crate) fn too_heavy(bytes: u64, most: u64) -> String {
+    let [bytes, most] = [bytes, most].map(|bytes| grouped(bytes as usize));
     format!("it takes {bytes} bytes, and --max-memory allows {most}")
 }
 

@@ -117,7 +117,7 @@ impl Contest<'_> {
             let needed = (preparing + f64::from(FEWEST_ROUNDS) * cost) / (1.0 - FOR_PARTS);
             return Err(PickError::BudgetTooSmall {
                 mesh: self.specimen.name.clone(),
-                budget_s: self.budget.as_secs(),
+                budget: self.budget,
                 needed_s: (1.5 * needed / 1e9).ceil() as u64,
             });
         }

@@ -43,7 +43,7 @@ pub enum MixRefusal {
 }
 
 /// Builds the structure called `backend` from `polygons` for `script` along `route`; `None` where there
-/// is no such structure. Where the script writes, it is built as a mesh that can be edited.
+/// is no such structure. Where the script says so, as a mesh that can be edited.
 pub fn set_up<'a>(
     backend: &str,
     polygons: &'a PolygonMesh,
@@ -57,7 +57,7 @@ pub fn set_up<'a>(
         script,
         route,
     };
-    match script.writes() {
+    match script.editable {
         true => visit_editable(backend, &mut start),
         false => visit(backend, &mut start),
     }

@@ -18,6 +18,8 @@ pub struct Script {
     pub shares: Vec<f64>,
     /// What part of all operations are done to elements; the rest are passes.
     pub on_elements: f64,
+    /// Whether a mesh that can be edited is needed, if only for what the mix does not tell.
+    pub editable: bool,
 }
 
 impl Script {
@@ -28,6 +30,7 @@ impl Script {
         let on_elements = on_elements.filter(|(_, part)| !part.action.is_a_pass());
         Self {
             on_elements: on_elements.map(|(share, _)| share).sum(),
+            editable: workload.mix.iter().any(|part| writes(part.action)),
             parts: workload.mix.clone(),
             shares,
         }
@@ -67,11 +70,11 @@ impl Script {
     pub fn elements(&self) -> impl Iterator<Item = usize> {
         (0..self.parts.len()).filter(|&part| !self.parts[part].action.is_a_pass())
     }
+}
 
-    /// Whether a mesh that can be edited is needed.
-    pub fn writes(&self) -> bool {
-        { self.parts.iter() }.any(|p| matches!(p.action, Action::Edit(_) | Action::SetPosition))
-    }
+/// Whether an action on elements changes the mesh.
+fn writes(action: Action) -> bool {
+    matches!(action, Action::Edit(_) | Action::SetPosition)
 }
 
 #[cfg(test)]
