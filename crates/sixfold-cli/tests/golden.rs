@@ -38,6 +38,8 @@ fn help() {
         ("help_why.txt", &["why", "--help"]),
         ("help_orders.txt", &["orders", "--help"]),
         ("help_growth.txt", &["growth", "--help"]),
+        ("help_pick.txt", &["pick", "--help"]),
+        ("help_workloads.txt", &["workloads", "--help"]),
         ("help_inspect.txt", &["inspect", "--help"]),
         ("help_memory.txt", &["memory", "--help"]),
         ("help_generate.txt", &["generate", "--help"]),
@@ -63,6 +65,16 @@ fn schemes() {
 #[test]
 fn edits() {
     golden("edits.txt", &printed(&Sixfold::new(), &["edits"]));
+}
+
+#[test]
+fn workloads() {
+    let sixfold = Sixfold::new();
+    golden("workloads.txt", &printed(&sixfold, &["workloads"]));
+    golden(
+        "workload_operations.txt",
+        &printed(&sixfold, &["workloads", "--operations"]),
+    );
 }
 
 /// The bytes that building takes are the same each time: nothing here has to be left out.

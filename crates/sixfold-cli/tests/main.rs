@@ -8,6 +8,7 @@ mod machine;
 mod memory;
 mod obj;
 mod outputs;
+mod picking;
 mod places;
 mod remeshing;
 mod render;

@@ -1,0 +1,200 @@
+//! `pick` and `workloads`: the answer, its data, its exit codes, and every wrong question.
+
+use serde_json::Value;
+
+use crate::bad_input::refused;
+use crate::run::{Sixfold, done, text};
+
+const MINE: &str = "summary = 'Mine.'\naccess = 'random'\noperations = '20 per face'\n\
+    [mix]\nvertex_faces = 2\ncorner_positions = 1\n";
+
+#[test]
+fn an_answer_ranks_and_says_why() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 30);
+    sixfold.file("mine.toml", MINE);
+    let arguments = [
+        "pick",
+        "grid.obj",
+        "--workload",
+        "mine.toml",
+        "--budget",
+        "2s",
+        "--json",
+        "answer.json",
+    ];
+    let run = done(&sixfold, &arguments);
+    for part in [
+        "Workload: mine. Mine.",
+        "2 vertex_faces, 1 corner_positions; random; 33,640 operations",
+        "pays after",
+        "relation-tables: flat tables of just what is asked, made of ",
+        "For mine, ",
+        "To use it, depend on `",
+    ] {
+        assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
+    }
+    assert!(
+        run.stdout.lines().all(|line| line.chars().count() <= 100),
+        "{}",
+        run.stdout
+    );
+    let answer: Value = serde_json::from_str(&text(&sixfold, "answer.json")).expect("JSON");
+    let ranking = answer["ranking"].as_array().expect("a list");
+    assert_eq!(ranking.len(), 7);
+    for row in ranking {
+        assert!(
+            row["ns_per_operation"].as_f64().is_some_and(|ns| ns > 0.0),
+            "{row}"
+        );
+        assert!(row["build_ns"].as_f64().is_some_and(|ns| ns > 0.0), "{row}");
+        assert!(
+            row["tied_with_best"].is_boolean() && row["bytes"].is_u64(),
+            "{row}"
+        );
+    }
+    assert_eq!(ranking[0]["ratio_to_best"], 1.0);
+    assert_eq!(answer["break_even"].as_array().map(Vec::len), Some(6));
+}
+
+#[test]
+fn json_on_standard_output_stands_alone() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("a.obj", 12);
+    sixfold.grid("b.obj", 14);
+    let run = done(
+        &sixfold,
+        &[
+            "pick",
+            "a.obj",
+            "b.obj",
+            "--workload",
+            "geodesic-dijkstra",
+            "--needs",
+            "edit",
+            "--budget",
+            "2s",
+            "--json",
+            "-",
+        ],
+    );
+    let answer: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    assert_eq!(answer["by_mesh"].as_array().map(Vec::len), Some(2));
+    let why = answer["excluded"]["relation-tables"].as_str();
+    assert!(
+        why.is_some_and(|why| why.contains("edited")),
+        "{}",
+        answer["excluded"]
+    );
+}
+
+#[test]
+fn no_answer_is_an_answer_with_a_code_of_its_own() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let run = sixfold.run(&[
+        "pick",
+        "grid.obj",
+        "--max-memory",
+        "10",
+        "--json",
+        "none.json",
+    ]);
+    assert_eq!(run.code, Some(1), "{run:?}");
+    assert!(
+        run.stderr.contains("no backend qualifies"),
+        "{}",
+        run.stderr
+    );
+    let answer: Value = serde_json::from_str(&text(&sixfold, "none.json")).expect("JSON");
+    assert_eq!(answer["ranking"].as_array().map(Vec::len), Some(0));
+    assert_eq!(
+        answer["excluded"].as_object().map(serde_json::Map::len),
+        Some(6)
+    );
+}
+
+#[test]
+fn wrong_questions_are_refused() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    sixfold.file(
+        "quads.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
+    );
+    sixfold.file("name.toml", "operations = 5\n[mix]\nvertex_face = 1\n");
+    sixfold.file(
+        "key.toml",
+        "operations = 5\nspeed = 1\n[mix]\nposition = 1\n",
+    );
+    sixfold.file("broken.toml", "operations = 5\n[mix\n");
+    sixfold.file("empty.toml", "");
+    std::fs::write(sixfold.folder().join("bytes.toml"), b"\xff\xfe").expect("a scratch file");
+    let pick = |workload| ["pick", "grid.obj", "--workload", workload];
+    for (workload, says) in [
+        ("abacus", "choose from rendering-upload, "),
+        ("missing.toml", "missing.toml: No such file"),
+        (
+            "name.toml",
+            "name.toml:3: no operation is called `vertex_face`: choose from",
+        ),
+        ("key.toml", "key.toml:2: unknown field `speed`"),
+        ("broken.toml", "broken.toml:2: "),
+        ("empty.toml", "empty.toml:1: missing field"),
+        ("bytes.toml", "bytes.toml: "),
+    ] {
+        refused(&sixfold, &pick(workload), 2, says);
+    }
+    for (arguments, says) in [
+        (
+            &["pick", "quads.obj", "--workload", "remeshing"][..],
+            "needs triangles",
+        ),
+        (
+            &["pick", "grid.obj", "--workload", "remeshing"],
+            "no room for 3 kinds of edits",
+        ),
+        (
+            &["pick", "grid.obj", "--budget", "1ms"],
+            "too small to measure anything",
+        ),
+        (&["pick", "grid.obj", "missing.obj"], "missing.obj"),
+        (
+            &["pick", "grid.obj", "--needs", "wings"],
+            "choose from edit, non-manifold",
+        ),
+        (
+            &["pick", "grid.obj", "--max-memory", "much"],
+            "2GiB, 500MB or 1000000",
+        ),
+        (
+            &["workloads", "--show", "abacus"],
+            "choose from rendering-upload, ",
+        ),
+    ] {
+        refused(&sixfold, arguments, 2, says);
+    }
+}
+
+#[test]
+fn what_is_shown_can_be_run() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 20);
+    let shown = done(&sixfold, &["workloads", "--show", "region-growing"]);
+    sixfold.file("mine.toml", &shown.stdout);
+    let run = done(
+        &sixfold,
+        &[
+            "pick",
+            "grid.obj",
+            "--workload",
+            "mine.toml",
+            "--budget",
+            "2s",
+        ],
+    );
+    assert!(run.stdout.contains("For mine, "), "{}", run.stdout);
+    let run = done(&sixfold, &["workloads", "--json", "-"]);
+    let all: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    assert_eq!(all.as_array().map(Vec::len), Some(12));
+}
