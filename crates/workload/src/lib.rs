@@ -22,7 +22,7 @@ pub use backend::{Backend, OnTheBench};
 pub use candidate::{Job, Outcome, Run, Sample, Subject};
 pub use clock::{Clock, MachineClock, Time, timed};
 pub use editing::{Editing, Editor, Edits};
-pub use ledger::{CACHE_LINES, LINE_BYTES};
+pub use ledger::{CACHE_LINES, LINE_BYTES, REACH};
 pub use memory_speed::{MemorySpeed, Rung};
 pub use operation::{Kind, Operation, UnknownOperation};
 pub use reads::{Counted, MOST_READS, Reads, SAMPLE, TableReads};
