@@ -9,7 +9,7 @@ use crate::tables::table;
 use crate::text::{hanging, wrapped};
 
 /// Columns for the names of tables: what is left beside the figures.
-const TABLES: usize = 38;
+const TABLES: usize = 36;
 /// A blank at which no line ends, while lines are broken.
 const NO_BREAK: char = '\u{a0}';
 
@@ -208,6 +208,7 @@ pub(crate) fn legend(why: &Why) -> String {
     let Model {
         line_bytes,
         cache_lines,
+        reach,
         sample,
         ..
     } = why.model;
@@ -231,7 +232,7 @@ pub(crate) fn legend(why: &Why) -> String {
             "jumps",
             &format!(
                 "in a sweep over all elements in their order, the lines for each element that are not \
-                 among the last {} fetched, nor is a line beside them: no prefetcher foresees them",
+                 among the last {} fetched, nor are the {reach} on either side: no prefetcher foresees them",
                 grouped(cache_lines as usize)
             ),
         ),

@@ -11,7 +11,7 @@ use std::time::Duration;
 use serde::Serialize;
 use sixfold::Relation;
 use workload::{Backend, CACHE_LINES, Counted, Kind, LINE_BYTES, MOST_READS, MemorySpeed};
-use workload::{Operation, Reads, Rung, SAMPLE};
+use workload::{Operation, REACH, Reads, Rung, SAMPLE};
 
 use crate::environment::Environment;
 use crate::inspect::{Specimen, unbuilt};
@@ -70,6 +70,8 @@ pub struct Model {
     pub line_bytes: usize,
     /// Lines of the small cache, first in, first out.
     pub cache_lines: u64,
+    /// How many lines beside one that is there count as foreseen, on either side.
+    pub reach: usize,
     /// Elements that stand for all.
     pub sample: usize,
     /// They do so where a query reads more rows than this on average.
@@ -81,6 +83,7 @@ impl Model {
     pub const HERE: Self = Self {
         line_bytes: LINE_BYTES,
         cache_lines: CACHE_LINES,
+        reach: REACH,
         sample: SAMPLE,
         most_reads: MOST_READS,
     };

@@ -16,7 +16,7 @@ use crate::sample::Draw;
 /// A representation, with what is known of it and how it is built and put to the test.
 ///
 /// [`Backend::roster`] has those of Sixfold; [`Backend::of`] makes one of any other, which a study
-/// then measures beside them (`extra` of its settings).
+/// then measures beside them (`Settings::extra` there).
 #[derive(Clone, Copy)]
 pub struct Backend {
     /// What is known of it without building it.

@@ -12,9 +12,9 @@
 //! ```
 //!
 //! Beside it runs a model of a small cache, [`CACHE_LINES`] lines of any table, the first to come the
-//! first to go. A line that is touched and not there is *fetched*; it is a *jump* if neither line beside
-//! it is there either. A stream is fetched and hardly ever jumps, and the prefetchers of a processor
-//! see it coming; what jumps, they do not.
+//! first to go. A line that is touched and not there is *fetched*; it is a *jump* if none of the
+//! [`REACH`] lines on either side is there either. A stream is fetched and hardly ever jumps, even if it
+//! leaves lines out, and the prefetchers of a processor see it coming; what jumps, they do not.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -26,6 +26,8 @@ pub const LINE_BYTES: usize = 64;
 /// Lines that the small cache of the model holds: 256 KiB, what a core has to itself at the least on most
 /// processors. What comes back from there is near, and a walk hardly waits for it.
 pub const CACHE_LINES: u64 = 4096;
+/// How many lines beside one that is there can be foreseen, on either side.
+pub const REACH: usize = 4;
 
 /// A number that clones of a probe share. Whoever counts asks from one thread: of two threads that
 /// count at once, one may be lost.
@@ -86,7 +88,7 @@ pub(crate) struct Sum {
     pub(crate) lines: u64,
     /// Lines that the small cache did not have.
     pub(crate) fetched: u64,
-    /// Those of them that lie beside nothing it had.
+    /// Those of them that lie beside none it had.
     pub(crate) jumps: u64,
 }
 
@@ -236,9 +238,8 @@ impl Book {
         if is_there(line) {
             return;
         }
-        let after = lines.get(at + 1);
-        let before = at.checked_sub(1).map(|before| &lines[before]);
-        let beside = [before, after].into_iter().flatten().any(is_there);
+        let around = at.saturating_sub(REACH)..lines.len().min(at + REACH + 1);
+        let beside = lines[around].iter().any(is_there);
         total.jumps.add(u64::from(!beside));
         total.fetched.add(1);
         self.touched.add(u64::from(line.fetch.get() == 0));
@@ -366,19 +367,35 @@ mod tests {
 
     #[test]
     fn the_small_cache_holds_what_came_last() {
-        let ledger = ledger(&[("spread", 4 * CACHE_LINES as usize, 64)]);
-        let every_third: Vec<usize> = (0..CACHE_LINES as usize).map(|i| 3 * i).collect();
-        ask(&ledger, "spread", 64, &every_third);
+        let far = REACH + 1;
+        let lines = CACHE_LINES as usize;
+        let ledger = ledger(&[("spread", far * (lines + 2), 64)]);
+        let spread: Vec<usize> = (0..lines).map(|i| far * i).collect();
+        ask(&ledger, "spread", 64, &spread);
         let full = ledger.sum(Step::Asking);
         assert_eq!((full.fetched, full.jumps), (CACHE_LINES, CACHE_LINES));
-        ask(&ledger, "spread", 64, &every_third);
+        ask(&ledger, "spread", 64, &spread);
         assert_eq!(ledger.sum(Step::Asking).fetched, CACHE_LINES, "all there");
         // One more drives the first out, and no other.
-        let other = 3 * CACHE_LINES as usize + 5;
-        ask(&ledger, "spread", 64, &[other, 3]);
+        ask(&ledger, "spread", 64, &[far * lines, far]);
         assert_eq!(ledger.sum(Step::Asking).fetched, CACHE_LINES + 1);
         ask(&ledger, "spread", 64, &[0]);
         assert_eq!(ledger.sum(Step::Asking).fetched, CACHE_LINES + 2);
+    }
+
+    #[test]
+    fn a_stream_may_leave_lines_out_and_go_either_way() {
+        for (stride, jumps) in [(1, 1), (REACH, 1), (REACH + 1, 20)] {
+            let ledger = ledger(&[("records", 20 * stride, 64)]);
+            let up: Vec<usize> = (0..20).map(|i| i * stride).collect();
+            let down: Vec<usize> = up.iter().rev().copied().collect();
+            for way in [up, down] {
+                ledger.clear();
+                ask(&ledger, "records", 64, &way);
+                let sum = ledger.sum(Step::Asking);
+                assert_eq!((sum.fetched, sum.jumps), (20, jumps), "{stride}: {way:?}");
+            }
+        }
     }
 
     #[test]

@@ -30,7 +30,7 @@ pub use candidate::{Job, Outcome, Run, Sample, Subject};
 pub use clock::{Clock, MachineClock, Time, timed};
 pub use editing::{Editing, Editor, Edits};
 pub use heap::{Heap, Weighed};
-pub use ledger::{CACHE_LINES, LINE_BYTES};
+pub use ledger::{CACHE_LINES, LINE_BYTES, REACH};
 pub use memory_speed::{MemorySpeed, Rung};
 pub use mix::{MixOutcome, MixRefusal, MixRun, Mixer, NoPlace, Route, Script, set_up, tabulate};
 pub use operation::{Kind, Operation, UnknownOperation};

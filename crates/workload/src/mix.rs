@@ -1,6 +1,6 @@
 //! A workload run as a mix: all its operations in one loop, in its order of elements.
 //!
-//! Operations on elements go in turns of 256: a turn asks each part of the mix in proportion to its
+//! Operations on elements go in turns of 256, of 64 where there are edits: a turn asks each part of the mix in proportion to its
 //! weight, of elements one after the other along a route that is the same for all structures. So the
 //! parts share caches as they do in a program, and what chooses between them costs next to nothing.
 //! Passes over the whole mesh take their place between turns.

@@ -36,7 +36,7 @@ pub struct Reads {
     pub listing_reads: f64,
     /// Lines that a small cache has to fetch, listing included, for each element.
     pub fetched: f64,
-    /// Those of them that lie beside no line it has.
+    /// Those of them that lie near none it has.
     pub jumps: f64,
     /// Lines that the whole sweep touches, listing included, each once; of the sample if there is one.
     pub sweep_lines: u64,

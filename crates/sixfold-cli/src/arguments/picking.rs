@@ -40,7 +40,7 @@ pub(crate) struct Pick {
     /// The meshes, OBJ files; without any a built-in mesh of about 20,000 triangles
     #[arg(value_name = "FILE.obj")]
     pub(crate) meshes: Vec<PathBuf>,
-    /// What the program does: a built-in workload by name, or a file that ends in .toml
+    /// What the program does: a built-in workload, or a file
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "smoothing")]
     pub(crate) workload: String,
     /// How much memory the structure may hold: 2GiB, 500MB, 1000000

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sixfold::subdivision::{Method, Scheme};
 use sixfold::{Counts, support};
-use workload::{Action, Clock, Kind, Operation, Run, Sample, Script, Time};
+use workload::{Action, Clock, Kind, NoPlace, Operation, Run, Sample, Script, Time};
 
 use crate::inspect::Specimen;
 use crate::pick::answer::{BreakEven, Excluded, PartCost, Ranked};
@@ -84,7 +84,12 @@ impl Contest<'_> {
         let deadline = start + budget;
         let rounds_end = deadline - FOR_PARTS * budget;
         (self.progress)(0.08, "warming up");
-        let slices = self.plan_slices(&mut entrants);
+        let slices = self
+            .plan_slices(&mut entrants)
+            .map_err(|reason| PickError::Impossible {
+                mesh: self.specimen.name.clone(),
+                reason,
+            })?;
         let share = (rounds_end - self.now()).max(0.0) / 10.0 / entrants.len().max(1) as f64;
         for entrant in &mut entrants {
             self.plan_passes(entrant, share);
@@ -139,13 +144,13 @@ impl Contest<'_> {
 
     /// How many turns make a sample: enough for the clock on the fastest, not too many on the slowest,
     /// and no more than there are places for edits.
-    fn plan_slices(&self, entrants: &mut [Entrant<'_>]) -> Slices {
+    fn plan_slices(&self, entrants: &mut [Entrant<'_>]) -> Result<Slices, NoPlace> {
         let nothing = Slices {
             turns: 0,
             copies: 1,
         };
         if self.script.elements().next().is_none() {
-            return nothing;
+            return Ok(nothing);
         }
         let (mut least, mut most) = (f64::INFINITY, 1.0_f64);
         let mut bytes = 1;
@@ -156,7 +161,7 @@ impl Contest<'_> {
             bytes = bytes.max(entrant.mixer.bytes());
         }
         if !least.is_finite() {
-            return nothing; // all scan
+            return Ok(nothing); // all scan
         }
         let turns = (SHORTEST_SAMPLE_NS / least).ceil();
         let turns = turns.min(LONGEST_SAMPLE_NS / most).max(1.0) as u64;
@@ -166,17 +171,16 @@ impl Contest<'_> {
             let fits = |turns: &u64| self.script.within(part, *turns) <= places;
             (1..=turns).take_while(fits).last().or(Some(0))
         });
+        let edits = self.script.edits().count();
         match room.min() {
-            None => Slices { turns, copies: 1 },
-            // A place for each edit of a single turn there may not be: then some are left out.
-            Some(room) => {
-                let in_a_copy = room.max(1);
+            None => Ok(Slices { turns, copies: 1 }),
+            Some(0) => Err(NoPlace::TooSmall { edits }),
+            Some(in_a_copy) => {
                 let copies = turns.div_ceil(in_a_copy) as usize;
-                let copies = copies.min(MOST_BYTES / bytes).max(1);
-                Slices {
-                    turns: in_a_copy,
-                    copies,
-                }
+                Ok(Slices {
+                    turns: in_a_copy.min(turns),
+                    copies: copies.min(MOST_BYTES / bytes).max(1),
+                })
             }
         }
     }
@@ -522,7 +526,8 @@ fn shortest(entrant: &Entrant<'_>, slices: Slices, script: &Script) -> Option<f6
     if entrant.scans() || script.on_elements <= 0.0 {
         return None;
     }
-    let operations = 256.0 * slices.turns as f64 * slices.copies as f64 / script.on_elements;
+    let turns = slices.turns as f64 * slices.copies as f64;
+    let operations = script.turn_operations * turns / script.on_elements;
     let times = entrant
         .samples
         .iter()

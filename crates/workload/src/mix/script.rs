@@ -6,8 +6,10 @@ use sixfold::Counts;
 
 use crate::workload::{Action, Part, Workload};
 
-/// So many operations on elements make a turn.
+/// So many operations on elements make a turn: what chooses between the parts is lost in them.
 const TURN: f64 = 256.0;
+/// So many where there are edits: a turn has to find places for all of its own, and they are long.
+const EDITING_TURN: f64 = 64.0;
 
 /// The mix of a workload on a mesh, unrolled.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +20,8 @@ pub struct Script {
     pub shares: Vec<f64>,
     /// What part of all operations are done to elements; the rest are passes.
     pub on_elements: f64,
+    /// So many operations on elements make a turn.
+    pub turn_operations: f64,
     /// Whether a mesh that can be edited is needed, if only for what the mix does not tell.
     pub editable: bool,
 }
@@ -30,6 +34,10 @@ impl Script {
         let on_elements = on_elements.filter(|(_, part)| !part.action.is_a_pass());
         Self {
             on_elements: on_elements.map(|(share, _)| share).sum(),
+            turn_operations: match workload.mix.iter().any(|part| is_edit(part.action)) {
+                true => EDITING_TURN,
+                false => TURN,
+            },
             editable: workload.mix.iter().any(|part| writes(part.action)),
             parts: workload.mix.clone(),
             shares,
@@ -42,7 +50,7 @@ impl Script {
             return 0..0;
         }
         // So that what is owed is neither lost nor paid twice: one in a thousand has every fourth turn.
-        let each = TURN * self.shares[part] / self.on_elements;
+        let each = self.turn_operations * self.shares[part] / self.on_elements;
         let done = |turns: u64| (each * turns as f64) as u64;
         done(turn)..done(turn + 1)
     }
@@ -57,8 +65,7 @@ impl Script {
 
     /// The parts that are edits.
     pub fn edits(&self) -> impl Iterator<Item = usize> + Clone {
-        let is_edit = |part: &usize| matches!(self.parts[*part].action, Action::Edit(_));
-        (0..self.parts.len()).filter(is_edit)
+        (0..self.parts.len()).filter(|&part| is_edit(self.parts[part].action))
     }
 
     /// The parts that are passes.
@@ -72,9 +79,13 @@ impl Script {
     }
 }
 
+fn is_edit(action: Action) -> bool {
+    matches!(action, Action::Edit(_))
+}
+
 /// Whether an action on elements changes the mesh.
 fn writes(action: Action) -> bool {
-    matches!(action, Action::Edit(_) | Action::SetPosition)
+    is_edit(action) || action == Action::SetPosition
 }
 
 #[cfg(test)]

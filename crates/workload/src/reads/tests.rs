@@ -139,6 +139,20 @@ fn a_scan_is_sampled_and_reads_every_corner() {
 }
 
 #[test]
+fn a_sample_is_evenly_spaced() {
+    let sweep = |elements, asked| Sweep {
+        relation: Relation::VertexFaces,
+        elements,
+        asked,
+    };
+    let places = |sweep: Sweep| (0..sweep.asked).map(|i| sweep.next(i)).collect::<Vec<_>>();
+    assert_eq!(places(sweep(10, 4)), [0, 2, 5, 7]);
+    assert_eq!(places(sweep(3, 3)), [0, 1, 2]);
+    let last = sweep(u32::MAX as usize, SAMPLE).next(SAMPLE - 1);
+    assert!(last < u32::MAX as usize && last > u32::MAX as usize / 16 * 14);
+}
+
+#[test]
 fn a_walk_around_very_many_faces_is_sampled_too() {
     let rim = 2000_u32;
     let fan: Vec<[u32; 3]> = (0..rim).map(|i| [rim, i, (i + 1) % rim]).collect();
