@@ -20,6 +20,9 @@ relations that it asks are one more candidate. Building is not in the ranking; t
 says from when on it pays, if an indexed face set is there already. Over several meshes backends are
 compared by geometric means.
 
+Needs: edit, non-manifold, polygons, mixed-orientation, isolated-vertices, coincident-vertices,
+refine.
+
 Exit codes: 0 done; 1 no backend qualifies; 2 wrong usage, unusable input, or a budget too small to
 measure anything; 4 interrupted, finished part kept.";
 
@@ -40,20 +43,19 @@ pub(crate) struct Pick {
     /// The meshes, OBJ files; without any a built-in mesh of about 20,000 triangles
     #[arg(value_name = "FILE.obj")]
     pub(crate) meshes: Vec<PathBuf>,
-    /// What the program does: a built-in workload, or a file
+    /// A built-in workload, or a file of one's own
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "smoothing")]
     pub(crate) workload: String,
     /// How much memory the structure may hold: 2GiB, 500MB, 1000000
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     pub(crate) max_memory: Option<u64>,
-    /// What it has to be able to do: edit, non-manifold, polygons, mixed-orientation,
-    /// isolated-vertices, coincident-vertices, refine
+    /// What it has to be able to do or to hold: see below
     #[arg(long, value_name = "NEED,…", value_delimiter = ',', value_parser = need)]
     pub(crate) needs: Vec<Need>,
     /// Only these backends, by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
-    /// How long to measure, all meshes together: 20s, 500ms, 2m
+    /// How long to measure, in all: 20s, 500ms, 2m
     #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
     /// What decides random orders
