@@ -11,13 +11,14 @@ use comfy_table::{Attribute, Cell, CellAlignment};
 use crate::arguments::{GROWTH_EXAMPLES, Growth};
 use crate::failure::Failure;
 use crate::free_memory::check_room;
+use crate::measured::{ended, tell_of_debug_build};
 use crate::numbers::{counted, grouped};
 use crate::orders::{few, short};
 use crate::output::{Output, check_places, is_stdout};
-use crate::progress::{Bar, INTERRUPTED, interrupt_flag};
-use crate::study::{MISMATCH, names, setting};
+use crate::progress::{Bar, interrupt_flag};
+use crate::study::{names, setting};
 use crate::tables::styled;
-use crate::text::{Text, complain, hanging};
+use crate::text::{Text, hanging};
 
 /// Sweeps over the sizes; text first, so that no file that fails can take it along.
 pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
@@ -45,9 +46,7 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     )?;
     let stop = interrupt_flag();
     let json = Output::open_if(arguments.json.as_ref())?;
-    if cfg!(debug_assertions) {
-        complain("note: this is a debug build, and its times mean nothing: build with --release");
-    }
+    tell_of_debug_build();
     let bar = Bar::new();
     let report = ::study::growth(&settings, &stop, &mut |at| bar.show(at));
     bar.clear();
@@ -62,21 +61,7 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     if let Some(output) = json {
         done = done.and(output.finish(|writer| report.write_json(writer)));
     }
-    let mismatches = report.mismatches();
-    if mismatches > 0 {
-        let results = counted(mismatches, "result differs", "results differ");
-        complain(&format!(
-            "error: {results} from those of other backends for the same work: a fault in Sixfold, please report it"
-        ));
-        done?;
-        return Ok(ExitCode::from(MISMATCH));
-    }
-    done?;
-    if report.interrupted {
-        complain("interrupted: the sizes that were finished are kept");
-        return Ok(ExitCode::from(INTERRUPTED));
-    }
-    Ok(ExitCode::SUCCESS)
+    ended(done, report.mismatches(), report.interrupted)
 }
 
 /// What help says after the options: examples, how it measures, and the names that there are.

@@ -20,6 +20,7 @@ mod growth;
 mod heap;
 mod inspect;
 mod load;
+mod measured;
 mod memory;
 mod numbers;
 mod orders;

@@ -14,12 +14,13 @@ use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::free_memory::check_room;
 use crate::load;
-use crate::numbers::{counted, figure};
+use crate::measured::{ended, tell_of_debug_build};
+use crate::numbers::figure;
 use crate::output::{Output, check_places, is_stdout};
-use crate::progress::{Bar, INTERRUPTED, interrupt_flag};
-use crate::study::{MISMATCH, names, setting};
+use crate::progress::{Bar, interrupt_flag};
+use crate::study::{names, setting};
 use crate::tables::styled;
-use crate::text::{Text, complain, hanging};
+use crate::text::{Text, hanging};
 
 /// Measures the mesh in all orders; text first, so that no file that fails can take it along.
 pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
@@ -46,9 +47,7 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
         needed,
         "name fewer --backends, or take a smaller mesh",
     )?;
-    if cfg!(debug_assertions) {
-        complain("note: this is a debug build, and its times mean nothing: build with --release");
-    }
+    tell_of_debug_build();
     let bar = Bar::new();
     let report = ::study::orders(&specimen, &settings, &stop, &mut |at| bar.show(at));
     bar.clear();
@@ -63,21 +62,7 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     if let Some(output) = json {
         done = done.and(output.finish(|writer| report.write_json(writer)));
     }
-    let mismatches = report.mismatches();
-    if mismatches > 0 {
-        let results = counted(mismatches, "result differs", "results differ");
-        complain(&format!(
-            "error: {results} from those of other backends or orders for the same work: a fault in Sixfold, please report it"
-        ));
-        done?;
-        return Ok(ExitCode::from(MISMATCH));
-    }
-    done?;
-    if report.interrupted {
-        complain("interrupted: what was finished is kept");
-        return Ok(ExitCode::from(INTERRUPTED));
-    }
-    Ok(ExitCode::SUCCESS)
+    ended(done, report.mismatches(), report.interrupted)
 }
 
 /// What help says after the options: examples, how it measures, and the names that there are.

@@ -9,9 +9,10 @@ use comfy_table::{Cell, CellAlignment};
 use crate::arguments::Pick;
 use crate::failure::Failure;
 use crate::load;
+use crate::measured::{ended, tell_of_debug_build};
 use crate::numbers::{counted, duration, figure, grouped};
 use crate::output::{Output, check_places, is_stdout};
-use crate::progress::{Bar, INTERRUPTED, interrupt_flag};
+use crate::progress::{Bar, interrupt_flag};
 use crate::tables::table;
 use crate::text::{Text, complain, hanging};
 use crate::workloads::workload;
@@ -37,9 +38,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         budget: arguments.budget,
         seed: arguments.seed,
     };
-    if cfg!(debug_assertions) {
-        complain("note: this is a debug build, and its times mean nothing: build with --release");
-    }
+    tell_of_debug_build();
     let bar = Bar::new();
     let answer = ::study::pick(&specimens, &question, &stop, &mut |done, what| {
         bar.at(done, what)
@@ -53,18 +52,14 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     if let Some(output) = json {
         done = done.and(output.finish(|writer| answer.write_json(writer)));
     }
-    done?;
-    if answer.interrupted {
-        complain("interrupted: what was finished is kept");
-        return Ok(ExitCode::from(INTERRUPTED));
-    }
-    if answer.ranking.is_empty() {
+    let code = ended(done, answer.mismatches.len(), answer.interrupted)?;
+    if answer.ranking.is_empty() && !answer.interrupted {
         complain(
             "error: no backend qualifies: loosen --needs, --max-memory or --backends, or mend the mesh (`sixfold inspect`)",
         );
         return Ok(ExitCode::from(NONE));
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(code)
 }
 
 fn specimens(arguments: &Pick) -> Result<Vec<Specimen>, Failure> {

@@ -8,14 +8,12 @@ use crate::arguments::{STUDY_EXAMPLES, Study};
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::load;
+use crate::measured::{ended, tell_of_debug_build};
 use crate::numbers::counted;
 use crate::output::{Output, check_places, is_stdout};
-use crate::progress::{Bar, INTERRUPTED, interrupt_flag};
+use crate::progress::{Bar, interrupt_flag};
 use crate::results_table::results_table;
-use crate::text::{Text, complain, hanging};
-
-/// The study found that backends disagree.
-pub(crate) const MISMATCH: u8 = 1;
+use crate::text::{Text, hanging};
 
 /// Measures what was asked for; text first, so that no file that fails can take it along.
 pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
@@ -41,9 +39,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         budget: arguments.budget,
         seed: arguments.seed,
     };
-    if cfg!(debug_assertions) {
-        complain("note: this is a debug build, and its times mean nothing: build with --release");
-    }
+    tell_of_debug_build();
     let bar = Bar::new();
     let report = ::study::study(&specimen, &settings, &stop, &mut |at| bar.show(at));
     bar.clear();
@@ -64,21 +60,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     print(&report, &mut text);
     let done = text.finish().and(write_files(&report, json, csv));
 
-    let mismatches = report.mismatches().count();
-    if mismatches > 0 {
-        let results = counted(mismatches, "result differs", "results differ");
-        complain(&format!(
-            "error: {results} from those of other backends for the same work: a fault in Sixfold, please report it"
-        ));
-        done?;
-        return Ok(ExitCode::from(MISMATCH));
-    }
-    done?;
-    if report.interrupted {
-        complain("interrupted: what was finished is kept");
-        return Ok(ExitCode::from(INTERRUPTED));
-    }
-    Ok(ExitCode::SUCCESS)
+    ended(done, report.mismatches().count(), report.interrupted)
 }
 
 /// What help says after the options: examples, how it measures, and the names that there are.

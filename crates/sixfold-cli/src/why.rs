@@ -9,14 +9,11 @@ use crate::arguments::Why;
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::load;
-use crate::numbers::counted;
+use crate::measured::{ended, tell_of_debug_build};
 use crate::output::{Output, check_places, is_stdout};
-use crate::progress::{Bar, INTERRUPTED, Waiting, interrupt_flag};
-use crate::text::{Text, complain, hanging};
+use crate::progress::{Bar, Waiting, interrupt_flag};
+use crate::text::{Text, hanging};
 use crate::why_text::{legend, memory_text, relation_text, sentence};
-
-/// The study found that backends disagree.
-const MISMATCH: u8 = 1;
 
 /// Counts, measures if asked to, and shows; text first, so that no file that fails can take it along.
 pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
@@ -55,28 +52,12 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     if let Some(output) = json {
         done = done.and(output.finish(|writer| why.write_json(writer)));
     }
-    let mismatches = why.mismatches();
-    if mismatches > 0 {
-        let results = counted(mismatches, "result differs", "results differ");
-        complain(&format!(
-            "error: {results} from those of other backends for the same work: a fault in Sixfold, please report it"
-        ));
-        done?;
-        return Ok(ExitCode::from(MISMATCH));
-    }
-    done?;
-    if why.interrupted {
-        complain("interrupted: what was finished is kept");
-        return Ok(ExitCode::from(INTERRUPTED));
-    }
-    Ok(ExitCode::SUCCESS)
+    ended(done, why.mismatches(), why.interrupted)
 }
 
 /// Measures the memory; `None` if interrupted meanwhile.
 fn timing(arguments: &Why, stop: &AtomicBool) -> Option<Timing> {
-    if cfg!(debug_assertions) {
-        complain("note: this is a debug build, and its times mean nothing: build with --release");
-    }
+    tell_of_debug_build();
     let waiting = Waiting::shown("measuring how fast memory is read".into());
     let memory = MemorySpeed::measure(&MachineClock::start(), stop);
     waiting.clear();

@@ -253,28 +253,10 @@ fn what_makes_no_sense_is_refused() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_sweep_keeps_the_sizes_that_are_finished() {
-    use std::process::{Command, Stdio};
-    use std::thread::sleep;
-    use std::time::{Duration, Instant};
     let sixfold = Sixfold::new();
     let arguments = ["growth", "--budget", "40s", "--json", "kept.json"];
-    let mut command = sixfold.command(&arguments);
-    command.stdout(Stdio::piped()).stderr(Stdio::piped());
-    let child = command.spawn().expect("the binary runs");
-    let start = Instant::now();
-    while sixfold.names().is_empty() && start.elapsed() < Duration::from_secs(60) {
-        sleep(Duration::from_millis(20));
-    }
     // The first size has half a second of the budget.
-    sleep(Duration::from_secs(4));
-    let sent = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
-    assert!(sent.expect("kill runs").success());
-    let output = child.wait_with_output().expect("it ends");
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(4), "{stderr}");
-    assert!(stderr.contains("finished are kept"), "{stderr}");
+    sixfold.interrupted(&arguments, "INT", std::time::Duration::from_secs(4));
     let report = parsed(&crate::run::text(&sixfold, "kept.json"));
     assert_eq!(report["interrupted"], true);
     let sizes = list(&report, "sizes").len();

@@ -1,14 +1,12 @@
-//! Ctrl-C: the study ends between two samples, keeps what it has, and says so.
+//! Ctrl-C: a command ends between two steps, keeps what it has, and says so.
 #![cfg(unix)]
 
-use std::fs;
-use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use crate::run::Sixfold;
+use crate::run::{Sixfold, send, text};
 
 #[test]
 fn an_interrupted_study_keeps_what_is_finished() {
@@ -22,29 +20,13 @@ fn an_interrupted_study_keeps_what_is_finished() {
         "--json",
         "kept.json",
     ];
-    let mut command = sixfold.command(&arguments);
-    command.stdout(Stdio::piped()).stderr(Stdio::piped());
-    let child = command.spawn().expect("the binary runs");
-    // The draft appears before the study begins; the handler is set soon after.
     let start = Instant::now();
-    while sixfold.names().len() < 2 && start.elapsed() < Duration::from_secs(60) {
-        sleep(Duration::from_millis(20));
-    }
-    sleep(Duration::from_secs(2));
-    let sent = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
-    assert!(sent.expect("kill runs").success());
-    let output = child.wait_with_output().expect("it ends");
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(4), "{stderr}");
-    assert!(stderr.contains("interrupted"), "{stderr}");
+    sixfold.interrupted(&arguments, "INT", Duration::from_secs(2));
     assert!(
         start.elapsed() < Duration::from_secs(120),
         "it did not wait for the budget"
     );
-    let text = fs::read_to_string(sixfold.folder().join("kept.json")).expect("the file");
-    let report: Value = serde_json::from_str(&text).expect("JSON");
+    let report: Value = serde_json::from_str(&text(&sixfold, "kept.json")).expect("JSON");
     assert_eq!(report["interrupted"], true);
     assert!(
         report["results"]
@@ -55,25 +37,27 @@ fn an_interrupted_study_keeps_what_is_finished() {
 }
 
 #[test]
+fn an_interrupted_explanation_keeps_what_is_finished() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 40);
+    let arguments = ["why", "grid.obj", "--budget", "10m", "--json", "kept.json"];
+    let start = Instant::now();
+    sixfold.interrupted(&arguments, "INT", Duration::from_secs(4));
+    assert!(
+        start.elapsed() < Duration::from_secs(120),
+        "it did not wait for the budget"
+    );
+    let report: Value = serde_json::from_str(&text(&sixfold, "kept.json")).expect("JSON");
+    assert_eq!(report["interrupted"], true);
+    assert_eq!(sixfold.names(), ["grid.obj", "kept.json"]);
+}
+
+#[test]
 fn no_draft_outlives_an_interrupt() {
     let sixfold = Sixfold::new();
-    for signal in ["-INT", "-TERM"] {
+    for signal in ["INT", "TERM"] {
         let arguments = ["generate", "grid", "m=1500", "n=1500", "-o", "big.obj"];
-        let mut command = sixfold.command(&arguments);
-        command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        let child = command.spawn().expect("the binary runs");
-        let start = Instant::now();
-        while sixfold.names().is_empty() && start.elapsed() < Duration::from_secs(60) {
-            sleep(Duration::from_millis(5));
-        }
-        let sent = Command::new("kill")
-            .args([signal, child.id().to_string().as_str()])
-            .status();
-        assert!(sent.expect("kill runs").success());
-        let output = child.wait_with_output().expect("it ends");
-        let stderr = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(4), "{stderr}");
-        assert!(stderr.contains("interrupted"), "{stderr}");
+        sixfold.interrupted(&arguments, signal, Duration::ZERO);
         assert!(sixfold.names().is_empty(), "{:?}", sixfold.names());
     }
 }
@@ -94,26 +78,10 @@ fn an_interrupted_decimation_writes_nothing() {
         "-o",
         "out.obj",
     ];
-    let mut command = sixfold.command(&arguments);
-    command.stdout(Stdio::piped()).stderr(Stdio::piped());
-    let child = command.spawn().expect("the binary runs");
-    let start = Instant::now();
-    while sixfold.names().len() < 3 && start.elapsed() < Duration::from_secs(60) {
-        sleep(Duration::from_millis(5));
-    }
-    sleep(Duration::from_millis(200));
-    let sent = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
-    assert!(sent.expect("kill runs").success());
-    let output = child.wait_with_output().expect("it ends");
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(4), "{stderr}");
-    assert!(stderr.contains("interrupted"), "{stderr}");
-    assert_eq!(output.stdout, b"");
+    let run = sixfold.interrupted(&arguments, "INT", Duration::from_millis(200));
+    assert_eq!(run.stdout, "");
     assert_eq!(sixfold.names(), ["grid.obj", "out.obj"]);
-    let kept = fs::read_to_string(sixfold.folder().join("out.obj")).expect("the file");
-    assert_eq!(kept, "precious");
+    assert_eq!(text(&sixfold, "out.obj"), "precious");
 }
 
 #[test]
@@ -123,22 +91,14 @@ fn no_draft_outlives_two_interrupts_of_a_study() {
     let arguments = [
         "study", "grid.obj", "--budget", "10m", "--json", "x.json", "--csv", "x.csv",
     ];
-    let mut command = sixfold.command(&arguments);
-    command.stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().expect("the binary runs");
     let start = Instant::now();
-    while sixfold.names().len() < 3 && start.elapsed() < Duration::from_secs(60) {
-        sleep(Duration::from_millis(5));
-    }
+    let mut child = sixfold.begun(&arguments, 2);
     // Two that come as one are one: until it ends, another follows.
     let status = loop {
         if let Some(status) = child.try_wait().expect("our child") {
             break status;
         }
-        let sent = Command::new("kill")
-            .args(["-INT", &child.id().to_string()])
-            .status();
-        assert!(sent.expect("kill runs").success());
+        send("INT", &child);
         assert!(start.elapsed() < Duration::from_secs(120), "it goes on");
         sleep(Duration::from_millis(1));
     };

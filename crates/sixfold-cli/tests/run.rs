@@ -2,7 +2,9 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
@@ -80,6 +82,30 @@ impl Sixfold {
         Run::of(self.command(arguments).output().expect("the binary runs"))
     }
 
+    /// Starts the binary, and waits until it has opened `drafts` files to write.
+    pub(crate) fn begun(&self, arguments: &[&str], drafts: usize) -> Child {
+        let before = self.names().len();
+        let mut command = self.command(arguments);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let child = command.spawn().expect("the binary runs");
+        let start = Instant::now();
+        while self.names().len() < before + drafts && start.elapsed() < Duration::from_secs(60) {
+            sleep(Duration::from_millis(5));
+        }
+        child
+    }
+
+    /// Runs the binary, and sends it a signal so long after it has opened its one file to write.
+    pub(crate) fn interrupted(&self, arguments: &[&str], signal: &str, after: Duration) -> Run {
+        let child = self.begun(arguments, 1);
+        sleep(after);
+        send(signal, &child);
+        let run = Run::of(child.wait_with_output().expect("it ends"));
+        assert_eq!(run.code, Some(4), "{run:?}");
+        assert!(run.stderr.contains("interrupted"), "{run:?}");
+        run
+    }
+
     /// The names in the folder, sorted.
     pub(crate) fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(self.folder.path()).expect("the folder");
@@ -88,6 +114,14 @@ impl Sixfold {
         names.sort();
         names
     }
+}
+
+/// Sends a signal, by its name, to a program that we have started.
+pub(crate) fn send(signal: &str, child: &Child) {
+    let sent = Command::new("kill")
+        .args(["-s", signal, &child.id().to_string()])
+        .status();
+    assert!(sent.expect("kill runs").success());
 }
 
 /// What is in a file of the folder.

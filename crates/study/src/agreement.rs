@@ -84,7 +84,7 @@ fn rerun(subject: &mut Box<dyn Subject + '_>, job: &Job, clock: &dyn Clock) -> O
 }
 
 /// Whether two checksums tell of the same work.
-fn agree(operation: Operation, a: f64, b: f64, polygons: &PolygonMesh) -> bool {
+pub(crate) fn agree(operation: Operation, a: f64, b: f64, polygons: &PolygonMesh) -> bool {
     if operation.counts() {
         return a == b;
     }

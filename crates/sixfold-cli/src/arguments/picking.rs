@@ -23,8 +23,9 @@ compared by geometric means.
 Needs: edit, non-manifold, polygons, mixed-orientation, isolated-vertices, coincident-vertices,
 refine.
 
-Exit codes: 0 done; 1 no backend qualifies; 2 wrong usage, unusable input, or a budget too small to
-measure anything; 4 interrupted, finished part kept.";
+Exit codes: 0 done; 1 no backend qualifies, or backends found different results, a fault in Sixfold;
+2 wrong usage, unusable input, or a budget too small to measure anything; 4 interrupted, finished
+part kept.";
 
 const WORKLOADS_EXAMPLES: &str = "Examples:
   sixfold workloads

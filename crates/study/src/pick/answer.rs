@@ -36,6 +36,8 @@ pub struct Answer {
     pub break_even: Vec<BreakEven>,
     /// The difference between two entries of one backend, as a ratio of 1 or more: the noise.
     pub noise: Option<f64>,
+    /// Backends that found something else than the others for the same work: a fault in Sixfold.
+    pub mismatches: Vec<String>,
     /// The answer and its reasons, in words.
     pub words: Vec<String>,
     /// What may be wrong with it, and what helps, in words.

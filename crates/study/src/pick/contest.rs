@@ -10,6 +10,7 @@ use sixfold::subdivision::{Method, Scheme};
 use sixfold::{Counts, support};
 use workload::{Action, Clock, Kind, NoPlace, Operation, Run, Sample, Script, Time};
 
+use crate::agreement::agree;
 use crate::inspect::Specimen;
 use crate::pick::answer::{BreakEven, Excluded, PartCost, Ranked};
 use crate::pick::break_even::break_even;
@@ -109,7 +110,7 @@ impl Contest<'_> {
                 if self.stopped() {
                     break;
                 }
-                let label = entrants[i].label();
+                let label = entrants[i].mixer.name();
                 let done = ((now - start) / budget).clamp(0.1, 1.0);
                 (self.progress)(done, &format!("round {}, {label}", round + 1));
                 self.sample(&mut entrants[i], round, slices);
@@ -204,9 +205,8 @@ impl Contest<'_> {
             if scans || scanned.contains(&true) {
                 self.plan_search(entrant, operation, scanned, share, &mut plan);
             } else {
-                let run = entrant
-                    .mixer
-                    .run_pass(operation, None, 1, self.clock, false);
+                let run = entrant.mixer.run_pass(operation, None, 1, self.clock, true);
+                entrant.found[part] = run.outcome.map(|outcome| outcome.checksum);
                 let ns = run.time.ns().max(1.0);
                 plan.runs = (SHORTEST_SAMPLE_NS / ns).ceil().clamp(1.0, 1000.0) as u32;
             }
@@ -318,7 +318,7 @@ impl Contest<'_> {
             entrant.part_operations[part] = operations;
             if !scans[part] && !is_edit {
                 let all = entrant.mixer.run_part(part, 0, cycle, self.clock);
-                entrant.yielded[part] = Some(all.yielded as f64);
+                entrant.found[part] = Some(all.yielded as f64);
             }
         }
     }
@@ -432,9 +432,15 @@ impl Contest<'_> {
         let faithful = |e: &&Entrant<'_>| e.mixer.merged_vertices() == 0;
         let differs = |entrant: &&Entrant<'_>| {
             (0..self.script.parts.len()).any(|part| {
-                let found = |e: &Entrant<'_>| e.yielded[part];
+                let found = |e: &Entrant<'_>| e.found[part];
                 let reference = entrants.iter().filter(faithful).find_map(found);
-                found(entrant).zip(reference).is_some_and(|(a, b)| a != b)
+                let same = |(a, b): (f64, f64)| match entrant.passes[part].operation {
+                    Some(operation) => agree(operation, a, b, &self.specimen.polygons),
+                    None => a == b,
+                };
+                found(entrant)
+                    .zip(reference)
+                    .is_some_and(|both| !same(both))
             })
         };
         let names = entrants.iter().filter(faithful).filter(differs);

@@ -20,8 +20,9 @@ pub(crate) struct Entrant<'a> {
     pub(crate) builds: Vec<Time>,
     /// By part: the times of one operation by itself.
     pub(crate) parts: Vec<Vec<f64>>,
-    /// By part: how much its operations yielded on all elements; `None` where not all were asked.
-    pub(crate) yielded: Vec<Option<f64>>,
+    /// By part: how much its operations yielded on all elements, or the checksum of a pass; `None` where
+    /// not all were asked.
+    pub(crate) found: Vec<Option<f64>>,
 }
 
 /// How a pass is timed on one entrant.
@@ -49,7 +50,7 @@ impl<'a> Entrant<'a> {
             samples: Vec::new(),
             builds: Vec::new(),
             parts: vec![Vec::new(); parts],
-            yielded: vec![None; parts],
+            found: vec![None; parts],
         }
     }
 
@@ -63,11 +64,6 @@ impl<'a> Entrant<'a> {
     /// Whether some part looks at all faces: its parts are timed one by one then, on a few elements.
     pub(crate) fn scans(&self) -> bool {
         self.mixer.scans().contains(&true)
-    }
-
-    /// What to call it in a bar.
-    pub(crate) fn label(&self) -> &'static str {
-        self.mixer.name()
     }
 }
 

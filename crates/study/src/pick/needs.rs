@@ -4,6 +4,8 @@ use std::fmt;
 use std::str::FromStr;
 
 use serde::{Serialize, Serializer};
+use sixfold::subdivision::{Method, Scheme};
+use sixfold::support;
 use workload::Backend;
 
 /// Something that a structure has to be able to do, or to hold.
@@ -82,17 +84,12 @@ fn edits(name: &str) -> bool {
 }
 
 fn refines(name: &str) -> bool {
-    struct Yes;
-
-    impl sixfold::RefineVisitor for Yes {
-        type Output = bool;
-
-        fn visit<M: sixfold::Refine + 'static>(&mut self) -> bool {
-            true
-        }
-    }
-
-    sixfold::visit_refinable(name, &mut Yes).unwrap_or(false)
+    let splits = |scheme| {
+        support(scheme)
+            .iter()
+            .any(|row| row.backend == name && row.best() == Some(Method::Native))
+    };
+    [Scheme::Loop, Scheme::CatmullClark].into_iter().any(splits)
 }
 
 impl fmt::Display for Need {

@@ -70,6 +70,7 @@ pub(crate) fn pooled(
         excluded,
         break_even,
         noise,
+        mismatches: disagreeing,
         words: Vec::new(),
         warnings: Vec::new(),
         interrupted,
@@ -87,7 +88,7 @@ pub(crate) fn pooled(
         answer.by_mesh = each.collect();
     }
     answer.words = reasons::words(&answer);
-    answer.warnings = reasons::warnings(&answer, &disagreeing);
+    answer.warnings = reasons::warnings(&answer);
     answer
 }
 

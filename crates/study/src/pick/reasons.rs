@@ -18,7 +18,7 @@ pub(crate) fn words(answer: &Answer) -> Vec<String> {
 }
 
 /// Doubts: noise, few rounds, a busy machine, backends that found something else.
-pub(crate) fn warnings(answer: &Answer, disagreeing: &[String]) -> Vec<String> {
+pub(crate) fn warnings(answer: &Answer) -> Vec<String> {
     let mut warnings = crate::warnings::of_machine(&answer.environment);
     if let Some(noise) = answer.noise.filter(|&noise| noise > 1.05) {
         warnings.push(format!(
@@ -32,7 +32,7 @@ pub(crate) fn warnings(answer: &Answer, disagreeing: &[String]) -> Vec<String> {
             "Some figures rest on {fewest} rounds, too few for a 95 % interval: a longer --budget makes them surer."
         ));
     }
-    for backend in disagreeing {
+    for backend in &answer.mismatches {
         warnings.push(format!(
             "{backend} finds something else than the others: a fault in Sixfold; please report it."
         ));

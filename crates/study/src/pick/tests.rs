@@ -14,6 +14,8 @@ struct Known {
     operation_ns: f64,
     build_ns: f64,
     parts: usize,
+    /// What it yields for each operation: 1, if it does as the others do.
+    yields: u64,
 }
 
 impl Known {
@@ -56,7 +58,7 @@ impl Mixer for Known {
         MixRun {
             time: self.time(self.operation_ns * operations as f64, clock),
             operations,
-            yielded: operations,
+            yielded: operations * self.yields,
             refused: 0,
         }
     }
@@ -93,6 +95,9 @@ fn question(budget: Duration) -> Question {
     }
 }
 
+/// Finds something else than the others.
+const FAULTY: &str = "face-vertex";
+
 /// The contest of an indexed face set, which takes 50 ns, with mixers of these costs.
 fn contest(costs_ns: &[f64], seed: u64) -> Outcome {
     let specimen = Specimen::new("ball", shapes::icosahedron());
@@ -113,6 +118,7 @@ fn contest(costs_ns: &[f64], seed: u64) -> Outcome {
             operation_ns,
             build_ns: 40e3,
             parts: script.parts.len(),
+            yields: if name == FAULTY { 2 } else { 1 },
         })
     };
     let mut entrants: Vec<Entrant<'_>> = vec![Entrant::of(known("indexed-face-set", 50.0))];
@@ -166,6 +172,7 @@ fn known_ratios_are_found_on_a_drifting_machine() {
     assert!(of("half-edge").tied_with_best && of("face-vertex").tied_with_best);
     assert!(!of("corner-table").tied_with_best && !of("indexed-face-set").tied_with_best);
     assert!(outcome.noise.expect("a control") < 1.02);
+    assert_eq!(outcome.disagreeing, [FAULTY]);
 }
 
 #[test]

@@ -155,10 +155,10 @@ impl<M: Representation, W: Writing<M>> Doing<'_, M, W> {
     /// [`prime`](Self::prime).
     fn edit(&self, part: usize) -> Option<(Edit, &[Place<M>])> {
         let (edit, places) = self.all_places(part)?;
-        Some((
-            edit,
-            &places[..places.len().saturating_sub(1).max(1).min(places.len())],
-        ))
+        match places {
+            [asked @ .., _] if !asked.is_empty() => Some((edit, asked)),
+            few => Some((edit, few)),
+        }
     }
 
     fn all_places(&self, part: usize) -> Option<(Edit, &[Place<M>])> {

@@ -1,0 +1,60 @@
+//! What all commands that measure say, and how they end.
+
+use std::process::ExitCode;
+
+use crate::failure::Failure;
+use crate::numbers::counted;
+use crate::progress::INTERRUPTED;
+use crate::text::complain;
+
+/// Backends found different results for the same work.
+const MISMATCH: u8 = 1;
+
+/// Says so where the program was built without optimisation.
+pub(crate) fn tell_of_debug_build() {
+    if cfg!(debug_assertions) {
+        complain("note: this is a debug build, and its times mean nothing: build with --release");
+    }
+}
+
+/// The end of a command whose text and files are `written`: a fault of ours comes before what could not
+/// be written, and that before an interruption.
+pub(crate) fn ended(
+    written: Result<(), Failure>,
+    mismatches: usize,
+    interrupted: bool,
+) -> Result<ExitCode, Failure> {
+    if mismatches > 0 {
+        let results = counted(mismatches, "result differs", "results differ");
+        complain(&format!(
+            "error: {results} from the others for the same work: a fault in Sixfold, please report it"
+        ));
+    }
+    written?;
+    if mismatches > 0 {
+        return Ok(ExitCode::from(MISMATCH));
+    }
+    if interrupted {
+        complain("interrupted: what was finished is kept");
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fault_comes_before_an_interruption() {
+        let code = |mismatches, interrupted| {
+            let ended = ended(Ok(()), mismatches, interrupted).expect("all is written");
+            format!("{ended:?}")
+        };
+        let known = |code: u8| format!("{:?}", ExitCode::from(code));
+        assert_eq!(code(0, false), known(0));
+        assert_eq!(code(0, true), known(INTERRUPTED));
+        assert_eq!(code(2, true), known(MISMATCH));
+        assert!(ended(Err(Failure::usage("full disk")), 1, true).is_err());
+    }
+}
