@@ -1,7 +1,7 @@
 //! What a structure can hold, as data, and the one place that says why not.
 
 use rustc_hash::FxHashMap;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::Point;
 use crate::error::BuildError;
@@ -13,7 +13,7 @@ use crate::polygon_mesh::PolygonMesh;
 ///
 /// The table is data: the command line prints it, constructors answer by it, and the conformance
 /// suite holds every structure to its row. All six hold boundaries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Capabilities {
     /// Faces of any degree, not only triangles.
     pub polygons: bool,

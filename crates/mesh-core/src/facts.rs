@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use rustc_hash::FxHashSet;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::error::PolygonError;
 use crate::face_list::FaceList;
@@ -19,7 +19,7 @@ use crate::polygon_mesh::{PolygonMesh, repeated};
 ///
 /// With vertices cut apart where fans meet, v − e + f = 2(c − g) − h for c components, h boundary
 /// loops and genus g (Euler–Poincaré); `genus` is solved from it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Facts {
     /// Vertices, isolated ones included.
     pub vertices: usize,
@@ -62,7 +62,7 @@ pub struct Facts {
 }
 
 /// How a count is spread: its extremes, its mean, and how often each value occurs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Spread {
     /// The smallest value.
     pub min: usize,

@@ -1,12 +1,14 @@
 //! What a structure weighs, table by table.
 
-use serde::Serialize;
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
 
 /// The bytes that one table holds.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct TableBytes {
     /// The name of the table.
-    pub table: &'static str,
+    pub table: Cow<'static, str>,
     /// How many rows it has.
     pub rows: usize,
     /// Bytes allocated for them, capacity included.
@@ -17,7 +19,7 @@ pub struct TableBytes {
 }
 
 /// The bytes that a structure really holds on the heap, table by table, positions included.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub struct MemoryFootprint {
     /// Each table.
     pub tables: Vec<TableBytes>,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::Point;
 use crate::capability::Capabilities;
@@ -14,7 +14,7 @@ use crate::query::{MeshQuery, VertexMap};
 use crate::row_id::{FaceId, VertexId};
 
 /// One of the nine relations.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[expect(
     missing_docs,
@@ -69,7 +69,7 @@ impl fmt::Display for Relation {
 }
 
 /// How much of a mesh one query looks at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum QueryCost {
     /// O(1) for each element it yields.

@@ -211,7 +211,7 @@ impl<T, P: Probe> Table<T, P> {
     /// The name and the bytes really held, capacity included.
     pub fn bytes(&self) -> TableBytes {
         TableBytes {
-            table: self.name,
+            table: self.name.into(),
             rows: self.rows.len(),
             bytes: self.rows.capacity() * size_of::<T>(),
             row_bytes: size_of::<T>(),

@@ -6,9 +6,12 @@ use std::str::FromStr;
 use mesh_core::{FaceId, FaceList, Point, PolygonMesh, VertexId, row};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
+use serde_with::{DeserializeFromStr, SerializeDisplay};
 
 /// An order of the vertices and faces of a mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, DeserializeFromStr, SerializeDisplay,
+)]
 pub enum Order {
     /// As it is.
     #[default]

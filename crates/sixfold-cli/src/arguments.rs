@@ -12,7 +12,7 @@ mod why;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use ::study::Operation;
+use ::study::{External, Operation};
 use clap::{Args, Parser, Subcommand};
 use sixfold::shapes::Order;
 
@@ -43,6 +43,7 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study bunny.obj --backends half-edge,face-vertex --operations vv_smooth,build
   sixfold study quads.obj --triangulate --budget 2m
   sixfold study bunny.obj --json - --csv bunny.csv
+  sixfold study bunny.obj --external mine='./mine {mesh}'
 
 How it measures: every round runs each operation on each backend, one after the other, in random
 order, on the processor time of the thread; the table shows medians. The seed decides that order
@@ -132,6 +133,12 @@ pub(crate) struct Study {
     /// What decides the order, and which elements are sampled
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
+    /// Another program as one more column, told the mesh as {mesh}; may be given again
+    #[arg(long = "external", value_name = "NAME=COMMAND")]
+    pub(crate) externals: Vec<External>,
+    /// How long such a program may take for one answer
+    #[arg(long, value_name = "TIME", default_value = "60s", value_parser = duration, allow_hyphen_values = true)]
+    pub(crate) patience: Duration,
     /// Cut every polygon into a fan of triangles first
     #[arg(long)]
     pub(crate) triangulate: bool,
@@ -155,6 +162,8 @@ impl Default for Study {
             operations: Vec::new(),
             budget: settings.budget,
             seed: settings.seed,
+            externals: Vec::new(),
+            patience: settings.patience,
             triangulate: false,
             strict: false,
             json: None,

@@ -8,7 +8,7 @@ use crate::progress::INTERRUPTED;
 use crate::text::complain;
 
 /// Backends found different results for the same work.
-const MISMATCH: u8 = 1;
+pub(crate) const MISMATCH: u8 = 1;
 
 /// Says so where the program was built without optimisation.
 pub(crate) fn tell_of_debug_build() {

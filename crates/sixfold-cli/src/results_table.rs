@@ -276,7 +276,8 @@ mod tests {
             layout_bytes_per_vertex: Some(bytes as f64 / 100.0),
             tables: Vec::new(),
             merged_vertices: Some(0),
-            capabilities: roster()[0].capabilities,
+            capabilities: Some(roster()[0].capabilities),
+            external: None,
         }
     }
 

@@ -2,18 +2,21 @@
 
 use std::process::ExitCode;
 
-use ::study::{Environment, Operation, Report, SCHEMA, Settings, Specimen, StudyError, Timer};
+use ::study::{
+    Agreement, Environment, Operation, Report, ResultRow, SCHEMA, Settings, Specimen, StudyError,
+    Timer,
+};
 
 use crate::arguments::{STUDY_EXAMPLES, Study};
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::load;
-use crate::measured::{ended, tell_of_debug_build};
+use crate::measured::{MISMATCH, ended, tell_of_debug_build};
 use crate::numbers::counted;
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
 use crate::results_table::results_table;
-use crate::text::{Text, hanging};
+use crate::text::{Text, complain, hanging};
 
 /// Measures what was asked for; text first, so that no file that fails can take it along.
 pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
@@ -34,10 +37,12 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     };
     let settings = Settings {
         backends: arguments.backends.clone(),
-        extra: Vec::new(),
+        externals: arguments.externals.clone(),
+        patience: arguments.patience,
         operations: arguments.operations.clone(),
         budget: arguments.budget,
         seed: arguments.seed,
+        ..Settings::default()
     };
     tell_of_debug_build();
     let bar = Bar::new();
@@ -60,7 +65,37 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     print(&report, &mut text);
     let done = text.finish().and(write_files(&report, json, csv));
 
-    ended(done, report.mismatches().count(), report.interrupted)
+    let (foreign, ours): (Vec<&ResultRow>, Vec<&ResultRow>) = report
+        .mismatches()
+        .partition(|row| is_external(&report, row));
+    for row in &foreign {
+        tell_of_other_work(&report, row);
+    }
+    let code = ended(done, ours.len(), report.interrupted)?;
+    Ok(match foreign.is_empty() {
+        true => code,
+        false => ExitCode::from(MISMATCH),
+    })
+}
+
+fn is_external(report: &Report, row: &ResultRow) -> bool {
+    let mut columns = report.backends.iter();
+    columns.any(|column| column.name == row.backend && column.external.is_some())
+}
+
+/// Says by how much a program of somebody else differs.
+fn tell_of_other_work(report: &Report, row: &ResultRow) {
+    let ours = report.rows(row.operation);
+    let mut ours = ours.filter(|other| other.agreement == Agreement::Same);
+    let ours = ours.find_map(|other| other.checksum);
+    let [theirs, ours] = [row.checksum, ours].map(|checksum| match checksum {
+        Some(checksum) => checksum.to_string(),
+        None => "not a number".into(),
+    });
+    let (name, operation) = (&row.backend, row.operation);
+    complain(&format!(
+        "error: {name}: {operation} comes to {theirs}, and to {ours} on our backends: other work, so its times compare nothing"
+    ));
 }
 
 /// What help says after the options: examples, how it measures, and the names that there are.

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod comparing;
+mod external;
 mod golden;
 mod interrupt;
 mod machine;

@@ -14,7 +14,7 @@ use workload::{Job, Outcome, Subject};
 /// How far sums of `f32` may differ by the order of adding, relative to their size.
 const TOLERANCE: f64 = 1e-4;
 
-/// Compares the checksum of every entry with that of a backend which keeps the mesh as it is.
+/// Compares the checksum of every entry with that of a backend of ours which keeps the mesh as it is.
 ///
 /// Where one of the two has a sample, the other runs the same, untimed: the smaller of two samples,
 /// and never the whole of what is sampled for its cost. Nothing more is run after `stop`.
@@ -27,6 +27,9 @@ pub(crate) fn judge(
 ) -> Vec<Agreement> {
     let faithful =
         |subjects: &[Box<dyn Subject + '_>], s: usize| subjects[s].merged_vertices() == 0;
+    let judges = |subjects: &[Box<dyn Subject + '_>], s: usize| {
+        faithful(subjects, s) && !subjects[s].is_external()
+    };
     let verdict = |entry: &Entry| {
         let Some(outcome) = entry.outcome else {
             return Agreement::Unchecked;
@@ -35,7 +38,7 @@ pub(crate) fn judge(
             other.job.operation == entry.job.operation
                 && other.subject != entry.subject
                 && other.outcome.is_some()
-                && faithful(subjects, other.subject)
+                && judges(subjects, other.subject)
         });
         // Whoever went through all of it comes first, for a sample costs it little.
         let mut others: Vec<&Entry> = others.collect();
@@ -163,7 +166,7 @@ mod tests {
     }
 
     impl Subject for Fixed {
-        fn name(&self) -> &'static str {
+        fn name(&self) -> &str {
             "fixed"
         }
         fn costs(&self) -> [QueryCost; 9] {

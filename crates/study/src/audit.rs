@@ -7,7 +7,8 @@
 
 use std::io;
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
+use serde_with::{KeyValueMap, serde_as};
 use sixfold::{BuildError, Counts, PolygonMesh};
 use workload::{Backend, Heap, Weighed};
 
@@ -22,6 +23,7 @@ const WORD: f64 = 4.0;
 const MOST_WEIGHINGS: usize = 8;
 
 /// The memory of each backend, counted in three ways.
+#[serde_as]
 #[derive(Clone, Debug, Serialize)]
 pub struct Audit {
     /// The version of the shape.
@@ -29,7 +31,7 @@ pub struct Audit {
     /// What the mesh is.
     pub mesh: MeshReport,
     /// By name, in the order in which they were asked for.
-    #[serde(serialize_with = "as_map")]
+    #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<Audited>,
 }
 
@@ -192,11 +194,6 @@ fn closed_triangles_words(backend: &Backend) -> f64 {
         uniform: true,
     };
     (backend.layout_bytes)(&counts) as f64 / WORD / VERTICES as f64
-}
-
-/// A map by name that keeps the order.
-fn as_map<S: Serializer>(backends: &[Audited], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(backends.iter().map(|one| (&one.backend.name, one)))
 }
 
 #[cfg(test)]

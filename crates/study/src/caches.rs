@@ -6,13 +6,13 @@
 use std::fs;
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Where Linux describes the caches that the first processor sees.
 const FOLDER: &str = "/sys/devices/system/cpu/cpu0/cache";
 
 /// One cache, as one processor sees it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Cache {
     /// 1 is the nearest.
     pub level: u8,

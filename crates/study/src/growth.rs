@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use sixfold::shapes::Order;
 use sixfold::{Counts, Facts, PolygonMesh};
 
@@ -40,14 +40,13 @@ use shares::Shares;
 use workload::{Backend, Draw, MachineClock, Subject};
 
 /// What a sweep over sizes finds.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct GrowthReport {
     /// The version of the shape of the data.
     pub schema: u32,
     /// The shape that grows.
     pub shape: String,
     /// The order of its elements.
-    #[serde(serialize_with = "crate::orders::name")]
     pub order: Order,
     /// The backends that were measured, in the order of tables.
     pub backends: Vec<String>,
@@ -72,7 +71,7 @@ pub struct GrowthReport {
 }
 
 /// A backend that cannot hold the shape.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Unheld {
     /// Its name.
     pub backend: String,
@@ -81,7 +80,7 @@ pub struct Unheld {
 }
 
 /// One size, measured as a study is.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct SizeReport {
     /// How many vertices.
     pub vertices: usize,
@@ -100,7 +99,7 @@ pub struct SizeReport {
 }
 
 /// What a backend weighs at one size.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Weight {
     /// The backend.
     pub backend: String,

@@ -71,7 +71,8 @@ pub(crate) fn unbuilt(
         layout_bytes_per_vertex: layout_bytes.and_then(|bytes| per_vertex(bytes, counts)),
         tables: Vec::new(),
         merged_vertices: None,
-        capabilities: backend.info.capabilities,
+        capabilities: Some(backend.info.capabilities),
+        external: None,
     }
 }
 

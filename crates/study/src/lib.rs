@@ -17,6 +17,7 @@ mod control;
 #[cfg(test)]
 mod disturbed;
 mod environment;
+mod external;
 mod growth;
 mod inspect;
 mod measure;
@@ -38,6 +39,7 @@ mod words;
 pub use audit::{Audit, Audited, audit};
 pub use caches::{Cache, caches};
 pub use environment::Environment;
+pub use external::{External, ExternalError, ExternalReport, PATIENCE};
 pub use growth::{
     CacheEnd, Fit, GROWING, Growing, GrowthError, GrowthReport, GrowthSettings, SizeReport, Unheld,
     Weight, growth, growth_bytes,

@@ -187,7 +187,11 @@ impl Bench<'_, '_> {
             }
         }
         let run = self.run(entry.subject, &entry.job, entry.runs, false);
-        entry.samples.push((round, run.time));
+        // A program of somebody else may fail at any time.
+        match run.refusal {
+            None => entry.samples.push((round, run.time)),
+            refusal => entry.refusal = refusal,
+        }
     }
 
     pub(crate) fn report(&mut self, done: f64, stage: &str, entry: &Entry) {
@@ -202,7 +206,8 @@ impl Bench<'_, '_> {
 
 fn takes_part(entry: &Entry, round: u32) -> bool {
     let wanted = entry.every > 0 && round.is_multiple_of(entry.every);
-    wanted && entry.warm_up.is_some() && entry.estimate.is_none()
+    let can = entry.warm_up.is_some() && entry.refusal.is_none();
+    wanted && can && entry.estimate.is_none()
 }
 
 /// The numbers of the entries, those of one operation together.

@@ -15,7 +15,8 @@ use std::time::Duration;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize};
+use serde_with::{KeyValueMap, serde_as};
 use sixfold::shapes::Order;
 use sixfold::{Counts, PolygonMesh};
 
@@ -62,17 +63,17 @@ pub enum OrdersError {
 }
 
 /// What a comparison of orders finds.
-#[derive(Clone, Debug, Serialize)]
+#[serde_as]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct OrdersReport {
     /// The version of the shape.
     pub schema: u32,
     /// What the mesh is, as given.
     pub mesh: MeshReport,
     /// The orders, as tables show them.
-    #[serde(serialize_with = "names")]
     pub orders: Vec<Order>,
     /// Those asked for, in the order of the roster, built from the mesh as given.
-    #[serde(serialize_with = "crate::report::as_map")]
+    #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
     /// Operation by operation, then structure by structure, then order by order.
     pub results: Vec<OrderRow>,
@@ -91,10 +92,9 @@ pub struct OrdersReport {
 }
 
 /// One operation on one structure in one order.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct OrderRow {
     /// The order.
-    #[serde(serialize_with = "name")]
     pub order: Order,
     /// Its time; `standing` and the ratio to the best are among the orders of this structure.
     #[serde(flatten)]
@@ -122,15 +122,6 @@ impl OrdersReport {
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
-}
-
-/// Serializes an order by its name.
-pub(crate) fn name<S: Serializer>(order: &Order, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(order.name())
-}
-
-fn names<S: Serializer>(orders: &[Order], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(orders.iter().map(|order| order.name()))
 }
 
 /// The operations asked for, or those few, in the order in which tables show them.

@@ -11,6 +11,9 @@ const ROUNDS: u32 = 20;
 const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
 /// Longer samples are no better; more of them are.
 const LONGEST_SAMPLE_NS: f64 = 2_000_000.0;
+/// What those that scan get of the time left, beside others: they are hundreds of times slower, and no
+/// interval need be narrow to show it.
+const SCANS: f64 = 0.25;
 /// A run this slow takes part in every fourth round only.
 const SELDOM: u32 = 4;
 /// A sample stands on at least so many elements, whatever the budget says.
@@ -44,11 +47,15 @@ impl Bench<'_, '_> {
                 }
                 self.report(done / count * 0.1, "warming up", entry);
                 done += 1.0;
-                // Half of what is left goes to those that scan and half to the rest.
-                let part = if others < count { 2.0 } else { 1.0 };
-                let left = (deadline - self.clock.now().wall_ns).max(0.0) / part;
+                let part = match (others < count, scanning) {
+                    (false, _) => 1.0,
+                    (true, true) => SCANS,
+                    (true, false) => 1.0 - SCANS,
+                };
+                let left = (deadline - self.clock.now().wall_ns).max(0.0) * part;
                 let share = left / (f64::from(ROUNDS) * others);
-                if entry.job.operation.makes_a_mesh() {
+                let external = self.subjects[entry.subject].is_external();
+                if entry.job.operation.makes_a_mesh() && !external {
                     self.plan_maker(entry, *scans, share, left);
                 } else if scanning {
                     self.plan_scan(entry, *scans, share, left);
@@ -93,6 +100,9 @@ impl Bench<'_, '_> {
 
     /// By kind: whether a query may cost far more than what it yields.
     fn scans(&self, entry: &Entry) -> [bool; 3] {
+        if self.subjects[entry.subject].is_external() {
+            return [false; 3];
+        }
         let operation = entry.job.operation;
         let scanned = operation.scans(&self.subjects[entry.subject].costs());
         let walked = operation.walks_around();

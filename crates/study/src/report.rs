@@ -2,12 +2,14 @@
 
 use std::io;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Serializer;
 use serde_json::ser::{Formatter, PrettyFormatter};
+use serde_with::{KeyValueMap, serde_as};
 use sixfold::{Capabilities, Facts, TableBytes};
 
 use crate::environment::Environment;
+use crate::external::ExternalReport;
 use crate::timer::Timer;
 use workload::Operation;
 
@@ -15,26 +17,28 @@ use workload::Operation;
 pub const SCHEMA: u32 = 1;
 
 /// What an inspection finds: the mesh, and what each backend says to it.
-#[derive(Clone, Debug, Serialize)]
+#[serde_as]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Inspection {
     /// The version of the shape.
     pub schema: u32,
     /// What the mesh is.
     pub mesh: MeshReport,
     /// By name, in the order of the roster.
-    #[serde(serialize_with = "as_map")]
+    #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
 }
 
 /// What a study finds.
-#[derive(Clone, Debug, Serialize)]
+#[serde_as]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Report {
     /// The version of the shape.
     pub schema: u32,
     /// What the mesh is.
     pub mesh: MeshReport,
     /// By name, in the order of the roster.
-    #[serde(serialize_with = "as_map")]
+    #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
     /// Operation by operation, and within each in the order of the roster.
     pub results: Vec<ResultRow>,
@@ -57,7 +61,7 @@ pub struct Report {
 }
 
 /// The samples of one operation on one backend, as three columns of one length.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct RawSamples {
     /// The backend.
     pub backend: String,
@@ -74,7 +78,7 @@ pub struct RawSamples {
 }
 
 /// A mesh, as its file has it.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct MeshReport {
     /// Where it comes from.
     pub name: String,
@@ -86,10 +90,10 @@ pub struct MeshReport {
 }
 
 /// What a backend says to the mesh.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct BackendReport {
     /// What users call it: the key of the map.
-    #[serde(skip)]
+    #[serde(rename = "$key$")]
     pub name: String,
     /// Whether it can hold the mesh.
     pub holds: bool,
@@ -107,12 +111,14 @@ pub struct BackendReport {
     pub tables: Vec<TableBytes>,
     /// Vertices of the mesh that are no vertices of their own here: they share coordinates.
     pub merged_vertices: Option<usize>,
-    /// What it can hold at all.
-    pub capabilities: Capabilities,
+    /// What it can hold at all; `None` for a program of somebody else.
+    pub capabilities: Option<Capabilities>,
+    /// The program, where it is one of somebody else.
+    pub external: Option<ExternalReport>,
 }
 
 /// One operation on one backend. Times are of one whole run, in nanoseconds.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ResultRow {
     /// The backend.
     pub backend: String,
@@ -129,7 +135,7 @@ pub struct ResultRow {
     /// How many elements a whole run visits.
     pub elements: Option<u64>,
     /// What one of them is: `vertex`, `edge`, `face`, `new face`, or `visit`.
-    pub per: &'static str,
+    pub per: String,
     /// `median_ns` for each of them.
     pub ns_per_element: Option<f64>,
     /// The median on the wall clock.
@@ -167,7 +173,7 @@ pub struct ResultRow {
 
 /// One backend, entered twice (an A/A control): by how much its two columns differ, the machine and
 /// the clock alone are to blame.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Control {
     /// The backend.
     pub backend: String,
@@ -180,7 +186,7 @@ pub struct Control {
 }
 
 /// What the second column of a control says of one operation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ControlRow {
     /// The operation.
     pub operation: Operation,
@@ -200,7 +206,7 @@ impl ControlRow {
 }
 
 /// An operation that a backend cannot do on this mesh: it has no row among the results.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Refusal {
     /// The backend.
     pub backend: String,
@@ -239,7 +245,7 @@ const COLUMNS: [&str; 24] = [
 ];
 
 /// What the checksums of one operation say.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Agreement {
     /// All did the same work.
@@ -253,7 +259,7 @@ pub enum Agreement {
 }
 
 /// How a result stands beside those of other backends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Standing {
     /// Faster than all others.
@@ -361,12 +367,4 @@ impl Formatter for Rows<'_> {
     fn end_object_value<W: ?Sized + io::Write>(&mut self, w: &mut W) -> io::Result<()> {
         self.0.end_object_value(w)
     }
-}
-
-/// A map by name that keeps the order.
-pub(crate) fn as_map<S: serde::Serializer>(
-    backends: &[BackendReport],
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(backends.iter().map(|backend| (&backend.name, backend)))
 }

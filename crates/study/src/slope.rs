@@ -1,9 +1,9 @@
 //! How a time grows with the size of the mesh: the straight line through their logarithms.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A power: the time goes with the size to this exponent.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Slope {
     /// The exponent.
     pub exponent: f64,

@@ -8,8 +8,9 @@ use rand_chacha::rand_core::SeedableRng;
 use sixfold::{Counts, Facts, PolygonMesh, QueryCost, Relation, Spread, roster};
 
 use crate::agreement::judge;
-use crate::control::{control, entered_twice, noise};
+use crate::control::{entered_twice, noise};
 use crate::environment::Environment;
+use crate::external::{self, External, MeshFile, PATIENCE};
 use crate::inspect::{Specimen, per_vertex, unbuilt};
 use crate::measure::{Bench, Entry, Progress};
 use crate::report::{
@@ -36,6 +37,10 @@ pub struct Settings {
     pub backends: Vec<String>,
     /// Representations that take part besides those of the roster.
     pub extra: Vec<Backend>,
+    /// Programs of others that take part in a study.
+    pub externals: Vec<External>,
+    /// How long one of them may take for an answer.
+    pub patience: Duration,
     /// Operations; empty for all. A subdivision that takes a good part of the budget is run where it
     /// is named here, and only estimated where it is not.
     pub operations: Vec<Operation>,
@@ -52,6 +57,8 @@ impl Default for Settings {
         Self {
             backends: Vec::new(),
             extra: Vec::new(),
+            externals: Vec::new(),
+            patience: PATIENCE,
             operations: Vec::new(),
             budget: Duration::from_secs(20),
             seed: 1,
@@ -73,6 +80,12 @@ pub enum StudyError {
     /// The mesh has vertices at most.
     #[error("the mesh has no faces, so there is nothing to study: `inspect` shows its facts")]
     NoFaces,
+    /// Two columns of one name.
+    #[error("two columns are called `{name}`: give each program a name of its own")]
+    RepeatedExternal { name: String },
+    /// The mesh cannot be handed to other programs.
+    #[error("the mesh cannot be written for other programs to read: {cause}")]
+    NoMeshFile { cause: String },
     /// None of the backends asked for can hold the mesh.
     #[error("none of the backends asked for can hold the mesh ({}): {}", .refusals.len(), reasons(.refusals))]
     NoneHolds { refusals: Vec<(String, String)> },
@@ -117,6 +130,21 @@ impl Settings {
         Ok(all.into_iter().filter(asked).collect())
     }
 
+    /// Refuses two columns of one name.
+    fn check_externals(&self) -> Result<(), StudyError> {
+        let ours = Backend::roster()
+            .into_iter()
+            .chain(self.extra.iter().copied());
+        let mut taken: Vec<String> = ours.map(|backend| backend.name().to_owned()).collect();
+        for External { name, .. } in &self.externals {
+            if taken.contains(name) {
+                return Err(StudyError::RepeatedExternal { name: name.clone() });
+            }
+            taken.push(name.clone());
+        }
+        Ok(())
+    }
+
     /// The operations asked for, each once, in the order in which tables show them.
     fn chosen_operations(&self) -> Vec<Operation> {
         let asked = |operation: &Operation| {
@@ -141,6 +169,7 @@ pub fn study(
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<Report, StudyError> {
     let chosen = settings.chosen_backends()?;
+    settings.check_externals()?;
     let operations = settings.chosen_operations();
     let polygons = &specimen.polygons;
     if polygons.face_count() == 0 {
@@ -161,6 +190,22 @@ pub fn study(
         backends.push(report);
         subjects.extend(subject);
     }
+    let mesh_file = match settings.externals.is_empty() {
+        true => None,
+        false => Some(
+            MeshFile::of(polygons).map_err(|cause| StudyError::NoMeshFile {
+                cause: cause.to_string(),
+            })?,
+        ),
+    };
+    let mut programs = Vec::new();
+    for (external, mesh) in settings.externals.iter().zip(mesh_file.iter().cycle()) {
+        let patience = settings.patience;
+        let (report, subject) =
+            external::put_on_the_bench(external, mesh, counts.vertices, patience, stop);
+        backends.push(report);
+        programs.extend(subject);
+    }
     if subjects.is_empty() {
         let refusals = backends
             .into_iter()
@@ -177,11 +222,13 @@ pub fn study(
     let again = again.and_then(|backend| backend.put_on_the_bench(polygons, draw.as_ref()).ok());
     let second = subjects.len();
     subjects.extend(again.map(|(subject, _)| subject));
+    let control = (subjects.len() > second).then_some(second);
+    subjects.extend(programs);
 
     let clock = MachineClock::start();
     let timer = Timer::of(&clock);
     let mut bench = Bench {
-        control: (subjects.len() > second).then_some(second),
+        control,
         subjects: &mut subjects,
         population: [counts.vertices, counts.edges, counts.faces],
         skewed,
@@ -194,9 +241,12 @@ pub fn study(
     };
     let mut entries = bench.measure(&operations);
     let timer = timer.beside(&entries);
-    let control = control(&entries, first, second, subjects[first].name());
-    let raw = raw(&entries, &subjects, second);
-    entries.retain(|entry| entry.subject != second);
+    let again = control;
+    let control = again.and_then(|second| {
+        crate::control::control(&entries, first, second, subjects[first].name())
+    });
+    let raw = raw(&entries, &subjects, again);
+    entries.retain(|entry| Some(entry.subject) != again);
     let interrupted = stop.load(Ordering::Relaxed);
     let agreements = judge(&entries, &mut subjects, polygons, &clock, stop);
     let results = results(&entries, agreements, &subjects, polygons, control.as_ref());
@@ -275,14 +325,23 @@ pub(crate) fn results(
     for group in entries.chunk_by(|a, b| a.job.operation == b.job.operation) {
         let times: Vec<Vec<(u32, Time)>> = group.iter().map(Entry::times).collect();
         let noise = noise(control, group[0].job.operation);
-        let places = places(&times, noise);
+        let verdicts: Vec<Agreement> = agreements.by_ref().take(group.len()).collect();
+        // A program of somebody else that does other work is in no ranking.
+        let mut ranked = times.clone();
+        for ((entry, verdict), times) in group.iter().zip(&verdicts).zip(&mut ranked) {
+            if *verdict == Agreement::Mismatch && subjects[entry.subject].is_external() {
+                times.clear();
+            }
+        }
+        let places = places(&ranked, noise);
         // What a whole run visits is known where somebody made one.
         let counted = group
             .iter()
             .filter(|e| e.job.sample.is_none() && subjects[e.subject].merged_vertices() == 0)
             .find_map(|e| e.outcome);
-        for ((entry, times), place) in group.iter().zip(&times).zip(places) {
-            let agreement = agreements.next().unwrap_or(Agreement::Unchecked);
+        for (((entry, times), place), agreement) in
+            group.iter().zip(&times).zip(places).zip(verdicts)
+        {
             if times.is_empty() && entry.estimate.is_none() {
                 continue; // refused, or the study was told to stop before
             }
@@ -309,7 +368,7 @@ pub(crate) fn results(
                 ci_low_ns: interval.map(|[low, _]| low),
                 ci_high_ns: interval.map(|[_, high]| high),
                 elements,
-                per: entry.job.operation.per(),
+                per: entry.job.operation.per().into(),
                 ns_per_element: median.and_then(|m| per_element(m.value)),
                 wall_median_ns: wall.map(|m| m.value),
                 wall_min_ns: wall.map(|m| m.least),
@@ -336,12 +395,16 @@ pub(crate) fn results(
 }
 
 /// The samples of all entries; those of the subject `control` are a backend's second.
-fn raw(entries: &[Entry], subjects: &[Box<dyn Subject + '_>], control: usize) -> Vec<RawSamples> {
+fn raw(
+    entries: &[Entry],
+    subjects: &[Box<dyn Subject + '_>],
+    control: Option<usize>,
+) -> Vec<RawSamples> {
     let taken = entries.iter().filter(|entry| !entry.samples.is_empty());
     let columns = taken.map(|entry| RawSamples {
         backend: subjects[entry.subject].name().into(),
         operation: entry.job.operation,
-        control: entry.subject == control,
+        control: Some(entry.subject) == control,
         rounds: entry.samples.iter().map(|(round, _)| *round).collect(),
         cpu_ns: entry.samples.iter().map(|(_, time)| time.cpu_ns).collect(),
         wall_ns: entry.samples.iter().map(|(_, time)| time.wall_ns).collect(),

@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use workload::{Clock, timed};
 
 use crate::measure::Entry;
@@ -12,7 +12,7 @@ use crate::statistics::Median;
 const TRIALS: usize = 1001;
 
 /// The clock and the engine, timed by themselves at the start of a study.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Timer {
     /// The smallest step that the clock was seen to make, in nanoseconds.
     pub resolution_ns: f64,

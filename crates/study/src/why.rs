@@ -8,7 +8,8 @@ use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use serde_with::{KeyValueMap, serde_as};
 use sixfold::Relation;
 use workload::{Backend, CACHE_LINES, Counted, Kind, LINE_BYTES, MOST_READS, MemorySpeed};
 use workload::{Operation, REACH, Reads, Rung, SAMPLE};
@@ -16,7 +17,7 @@ use workload::{Operation, REACH, Reads, Rung, SAMPLE};
 use crate::environment::Environment;
 use crate::inspect::{Specimen, unbuilt};
 use crate::measure::Progress;
-use crate::report::{Agreement, BackendReport, MeshReport, Report, SCHEMA, as_map, write_json};
+use crate::report::{Agreement, BackendReport, MeshReport, Report, SCHEMA, write_json};
 use crate::study::{Settings, StudyError, study};
 
 /// What to explain.
@@ -42,14 +43,15 @@ pub struct Timing {
 }
 
 /// What a mesh's structures read, and what that has to do with their times.
-#[derive(Clone, Debug, Serialize)]
+#[serde_as]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Why {
     /// The version of the shape.
     pub schema: u32,
     /// What the mesh is.
     pub mesh: MeshReport,
     /// By name, in the order of the roster.
-    #[serde(serialize_with = "as_map")]
+    #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
     /// What the counts take memory to be.
     pub model: Model,
@@ -64,7 +66,7 @@ pub struct Why {
 }
 
 /// What the counts take memory to be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Model {
     /// Bytes of a cache line.
     pub line_bytes: usize,
@@ -90,12 +92,12 @@ impl Model {
 }
 
 /// One relation on one backend.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct WhyRow {
     /// The backend.
     pub backend: String,
     /// What one element is: `vertex`, `edge` or `face`.
-    pub per: &'static str,
+    pub per: String,
     /// What it reads.
     #[serde(flatten)]
     pub reads: Reads,
@@ -104,7 +106,7 @@ pub struct WhyRow {
 }
 
 /// The time of a sweep, for each element, and what explains it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Timed {
     /// The median of the study, in nanoseconds.
     pub ns_per_element: f64,
@@ -123,7 +125,7 @@ pub struct Timed {
 }
 
 /// What takes the time of a sweep.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
     /// Moving its bytes.
@@ -294,7 +296,7 @@ impl Counted for Rows<'_> {
     fn ends(&mut self, reads: Reads) {
         self.rows.push(WhyRow {
             backend: self.backend.to_owned(),
-            per: Kind::asked(reads.relation).name(),
+            per: Kind::asked(reads.relation).name().into(),
             reads,
             timed: None,
         });
@@ -356,7 +358,13 @@ mod tests {
         let rows: Vec<_> = why
             .rows
             .iter()
-            .map(|row| (row.reads.relation.name(), row.backend.as_str(), row.per))
+            .map(|row| {
+                (
+                    row.reads.relation.name(),
+                    row.backend.as_str(),
+                    row.per.as_str(),
+                )
+            })
             .collect();
         let expected = [
             ("vertex_faces", "polygon-soup", "vertex"),

@@ -214,7 +214,7 @@ pub(crate) fn row(
         ci_low_ns: None,
         ci_high_ns: None,
         elements: Some(1),
-        per: operation.per(),
+        per: operation.per().into(),
         ns_per_element: Some(100.0 * ratio),
         wall_median_ns: None,
         wall_min_ns: None,

@@ -56,7 +56,7 @@ fn every_order_does_the_same_work_on_every_structure() {
             None => assert_eq!(row.row.agreement, Agreement::Same, "{context}: {row:?}"),
         }
         sampled += usize::from(row.row.sampled);
-        let elements = match row.row.per {
+        let elements = match row.row.per.as_str() {
             "vertex" => facts.vertices,
             "edge" => facts.edges,
             _ => facts.faces,

@@ -37,7 +37,7 @@ fn scans_are_sampled_alike_and_what_takes_too_long_is_estimated() {
             }
             _ => assert_eq!(row.agreement, Agreement::Same, "{context}: {row:?}"),
         }
-        let elements = match row.per {
+        let elements = match row.per.as_str() {
             "vertex" => facts.vertices,
             "edge" => facts.edges,
             "face" => facts.faces,

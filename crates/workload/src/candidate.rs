@@ -65,7 +65,12 @@ pub struct Outcome {
 /// Something that can be timed; a test can bring its own.
 pub trait Subject {
     /// What users call it.
-    fn name(&self) -> &'static str;
+    fn name(&self) -> &str;
+    /// It is a program of somebody else, which runs operations as a whole or not at all, and by whose
+    /// results nothing is judged.
+    fn is_external(&self) -> bool {
+        false
+    }
     /// How much of the mesh each relation looks at.
     fn costs(&self) -> [QueryCost; 9];
     /// How many vertices of the input are no vertices of their own here.
@@ -275,7 +280,7 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
 }
 
 impl<M: Representation + 'static> Subject for Candidate<'_, M> {
-    fn name(&self) -> &'static str {
+    fn name(&self) -> &str {
         M::NAME
     }
 

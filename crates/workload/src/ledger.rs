@@ -16,6 +16,7 @@
 //! [`REACH`] lines on either side is there either. A stream is fetched and hardly ever jumps, even if it
 //! leaves lines out, and the prefetchers of a processor see it coming; what jumps, they do not.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -71,7 +72,7 @@ struct Line {
 /// One table, and all its lines.
 #[derive(Debug)]
 struct Page {
-    name: &'static str,
+    name: Cow<'static, str>,
     row_bytes: usize,
     reads: Shared,
     lines: Vec<Line>,
@@ -134,7 +135,7 @@ impl Ledger {
         let page = |table: &TableBytes| {
             let lines = (table.rows * table.row_bytes).div_ceil(LINE_BYTES);
             Page {
-                name: table.table,
+                name: table.table.clone(),
                 row_bytes: table.row_bytes,
                 reads: Shared::default(),
                 lines: std::iter::repeat_with(Line::default).take(lines).collect(),
@@ -204,9 +205,9 @@ impl Ledger {
     }
 
     /// The tables that questions (and no listing) have read, with the bytes of a row and how many rows.
-    pub(crate) fn tables(&self) -> impl Iterator<Item = (&'static str, usize, u64)> {
+    pub(crate) fn tables(&self) -> impl Iterator<Item = (&str, usize, u64)> {
         let pages = self.0.pages.iter();
-        let read = pages.map(|page| (page.name, page.row_bytes, page.reads.get()));
+        let read = pages.map(|page| (&*page.name, page.row_bytes, page.reads.get()));
         read.filter(|&(.., reads)| reads > 0)
     }
 }
@@ -254,7 +255,7 @@ impl Probe for Ledger {
         let book = &*self.0;
         let total = &book.totals[book.step.get() as usize];
         total.reads.add(1);
-        let is_it = |page: &&Page| std::ptr::eq(page.name, table) || page.name == table;
+        let is_it = |page: &&Page| std::ptr::eq(&*page.name, table) || page.name == table;
         let Some(page) = book.pages.iter().find(is_it) else {
             return;
         };
@@ -286,7 +287,7 @@ mod tests {
 
     fn ledger(tables: &[(&'static str, usize, usize)]) -> Ledger {
         let table = |&(table, rows, row_bytes): &(&'static str, usize, usize)| TableBytes {
-            table,
+            table: table.into(),
             rows,
             bytes: rows * row_bytes,
             row_bytes,

@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::clock::{Clock, timed};
 use crate::ledger::LINE_BYTES;
@@ -41,7 +41,7 @@ const CHASED: usize = 1 << 16;
 const WORDS: usize = LINE_BYTES / size_of::<u64>();
 
 /// How fast a buffer of one size is read.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Rung {
     /// The size of the buffer.
     pub bytes: usize,
@@ -52,7 +52,7 @@ pub struct Rung {
 }
 
 /// How fast this machine reads buffers of growing size.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct MemorySpeed {
     /// By size, the smallest first; there is one at least.
     rungs: Vec<Rung>,

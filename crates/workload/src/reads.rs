@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use sixfold::{MeshQuery, QueryCost, Relation, Representation};
 
 use crate::ledger::{LINE_BYTES, Ledger, Step, Sum};
@@ -14,7 +14,7 @@ pub const SAMPLE: usize = 16;
 pub const MOST_READS: u64 = 256;
 
 /// What one relation reads, asked of every element in the order of the structure, or of a sample.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Reads {
     /// The relation.
     pub relation: Relation,
@@ -55,10 +55,10 @@ impl Reads {
 }
 
 /// What a query reads of one table.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct TableReads {
     /// The table.
-    pub table: &'static str,
+    pub table: String,
     /// Bytes of a row.
     pub row_bytes: usize,
     /// Rows that a query reads, one as often as it is read.
@@ -204,7 +204,7 @@ impl Sweep {
             false => an_element(ledger.touched()),
         };
         let tables = ledger.tables().map(|(table, row_bytes, reads)| TableReads {
-            table,
+            table: table.into(),
             row_bytes,
             reads: a_query(reads),
         });

@@ -1,6 +1,6 @@
 //! The lines through the times, and where the caches end.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use sixfold::Counts;
 
 use super::SizeReport;
@@ -10,7 +10,7 @@ use crate::slope::Slope;
 use workload::{Backend, Operation};
 
 /// How the time of one operation on one backend goes with the number of faces.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Fit {
     /// The backend.
     pub backend: String,
@@ -29,7 +29,7 @@ pub struct Fit {
 }
 
 /// Where a structure outgrows a cache.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct CacheEnd {
     /// The backend.
     pub backend: String,
@@ -140,7 +140,7 @@ mod tests {
             ci_low_ns: None,
             ci_high_ns: None,
             elements: None,
-            per: operation.per(),
+            per: operation.per().into(),
             ns_per_element: None,
             wall_median_ns: None,
             wall_min_ns: None,

@@ -23,7 +23,7 @@ struct Synthetic {
 }
 
 impl Subject for Synthetic {
-    fn name(&self) -> &'static str {
+    fn name(&self) -> &str {
         "synthetic"
     }
     fn costs(&self) -> [QueryCost; 9] {

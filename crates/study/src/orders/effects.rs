@@ -1,9 +1,8 @@
 //! What matters more, the order or the structure: ratios within rounds, and their intervals.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use sixfold::shapes::Order;
 
-use super::name;
 use crate::standing::ratio;
 use crate::statistics::Median;
 use workload::{Operation, Time};
@@ -27,7 +26,7 @@ impl Timed {
 }
 
 /// How many times one time another is: the median over rounds.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Factor {
     /// The median.
     pub ratio: f64,
@@ -62,17 +61,15 @@ impl Factor {
 }
 
 /// How much the order matters for one structure.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct OrderEffect {
     /// The structure.
     pub backend: String,
     /// It looks at all faces for each element of this operation.
     pub scans: bool,
     /// The order with the smallest median.
-    #[serde(serialize_with = "name")]
     pub best: Order,
     /// The order with the largest.
-    #[serde(serialize_with = "name")]
     pub worst: Order,
     /// The worst by the best.
     pub worst_to_best: Factor,
@@ -83,17 +80,15 @@ pub struct OrderEffect {
 }
 
 /// How much the structure matters where each is in its own best order; of those that do not scan.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct StructureEffect {
     /// The structure with the smallest median.
     pub fastest: String,
     /// Its best order.
-    #[serde(serialize_with = "name")]
     pub fastest_order: Order,
     /// The structure with the largest.
     pub slowest: String,
     /// Its best order.
-    #[serde(serialize_with = "name")]
     pub slowest_order: Order,
     /// The slowest by the fastest.
     pub slowest_to_fastest: Factor,
@@ -102,7 +97,7 @@ pub struct StructureEffect {
 }
 
 /// Which of the two is larger.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Larger {
     /// On every structure that does not scan, the order makes more of a difference.
@@ -114,7 +109,7 @@ pub enum Larger {
 }
 
 /// One operation: how much the order matters, and how much the structure.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Comparison {
     /// The operation.
     pub operation: Operation,

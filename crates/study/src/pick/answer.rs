@@ -2,7 +2,8 @@
 
 use std::io;
 
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize};
+use serde_with::{KeyValueMap, serde_as};
 use workload::{Action, Workload};
 
 use crate::environment::Environment;
@@ -12,7 +13,8 @@ use crate::timer::Timer;
 use crate::words::grouped;
 
 /// Which backend, how sure, and why.
-#[derive(Clone, Debug, Serialize)]
+#[serde_as]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Answer {
     /// The version of the shape.
     pub schema: u32,
@@ -29,7 +31,7 @@ pub struct Answer {
     /// The backends that qualify, the fastest first; empty where none does.
     pub ranking: Vec<Ranked>,
     /// The others, and why.
-    #[serde(serialize_with = "by_name")]
+    #[serde_as(as = "KeyValueMap<_>")]
     pub excluded: Vec<Excluded>,
     /// After how many operations each pays for being built, beside an indexed face set that is there
     /// already; empty where that did not take part.
@@ -53,7 +55,7 @@ pub struct Answer {
 }
 
 /// The answer for one of several meshes.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct OnMesh {
     /// The mesh.
     pub mesh: String,
@@ -66,7 +68,7 @@ pub struct OnMesh {
 }
 
 /// One backend that qualifies.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Ranked {
     /// The backend; `relation-tables` for flat tables of just the relations that the workload asks.
     pub backend: String,
@@ -105,7 +107,7 @@ pub struct Ranked {
 }
 
 /// One part of the mix on one backend.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct PartCost {
     /// What is done.
     pub operation: Action,
@@ -123,7 +125,7 @@ impl PartCost {
 }
 
 /// From when on a backend pays.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct BreakEven {
     /// The backend.
     pub backend: String,
@@ -142,9 +144,10 @@ pub struct BreakEven {
 }
 
 /// A backend that does not qualify.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Excluded {
     /// The backend.
+    #[serde(rename = "$key$")]
     pub backend: String,
     /// Why.
     pub reason: String,
@@ -174,8 +177,4 @@ impl Answer {
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
-}
-
-fn by_name<S: Serializer>(excluded: &[Excluded], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(excluded.iter().map(|e| (&e.backend, &e.reason)))
 }

@@ -1,0 +1,230 @@
+//! Other programs as columns: what they measure, and what happens when they go wrong.
+
+use std::path::Path;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use crate::run::{Run, Sixfold, TETRAHEDRON};
+
+/// The programs are in Python; where that is not installed they cannot be tried.
+fn python() -> bool {
+    let found = Command::new("python3").arg("--version").output();
+    let there = found.is_ok_and(|output| output.status.success());
+    assert!(
+        there || std::env::var_os("SIXFOLD_MESHES").is_none(),
+        "developers have python3"
+    );
+    there
+}
+
+fn repository() -> &'static Path {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.parent().and_then(Path::parent).expect("two floors up")
+}
+
+/// A study of a tetrahedron beside a program that goes wrong like that.
+fn beside(mode: &str, more: &[&str]) -> (Sixfold, Run) {
+    let sixfold = Sixfold::new();
+    sixfold.file("t.obj", TETRAHEDRON);
+    let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/external/misbehaving.py");
+    let external = format!(
+        "other=python3 '{}' {{mesh}} '{mode}' pid.txt",
+        program.display()
+    );
+    let mut arguments = vec![
+        "study",
+        "t.obj",
+        "--budget",
+        "300ms",
+        "--operations",
+        "boundary,edge_length",
+        "--json",
+        "s.json",
+        "--external",
+        &external,
+    ];
+    arguments.extend(more);
+    let run = sixfold.run(&arguments);
+    (sixfold, run)
+}
+
+fn report(sixfold: &Sixfold) -> Value {
+    serde_json::from_str(&crate::run::text(sixfold, "s.json")).expect("JSON")
+}
+
+fn row<'v>(report: &'v Value, backend: &str, operation: &str) -> Option<&'v Value> {
+    let mut rows = report["results"].as_array().expect("rows").iter();
+    rows.find(|row| row["backend"] == backend && row["operation"] == operation)
+}
+
+fn refusal(report: &Value, operation: &str) -> String {
+    let mut rows = report["refusals"].as_array().expect("refusals").iter();
+    let row = rows.find(|row| row["backend"] == "other" && row["operation"] == operation);
+    let row = row.unwrap_or_else(|| panic!("no refusal of {operation}: {report}"));
+    row["reason"].as_str().expect("a reason").to_owned()
+}
+
+#[test]
+fn the_example_of_the_documents_does_the_same_work() {
+    if !python() {
+        return;
+    }
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let program = repository().join("benches/external/corner_lists.py");
+    let external = format!("lists=python3 '{}' {{mesh}}", program.display());
+    let arguments = [
+        "study",
+        "grid.obj",
+        "--budget",
+        "2s",
+        "--json",
+        "s.json",
+        "--external",
+        &external,
+    ];
+    let run = sixfold.run(&arguments);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let report = report(&sixfold);
+    for operation in [
+        "build",
+        "vertex_faces",
+        "face_vertices",
+        "circulate",
+        "face_barycenter",
+        "vertex_normal",
+    ] {
+        let row = row(&report, "lists", operation);
+        let row = row.unwrap_or_else(|| panic!("no row of {operation}"));
+        assert_eq!(row["agreement"], "same", "{row}");
+        assert_eq!(row["standing"], "slower", "{row}");
+        let ours = self::row(&report, "half-edge", operation).expect("ours");
+        assert_eq!(row["elements"], ours["elements"], "{operation}");
+    }
+    assert_eq!(row(&report, "lists", "vv_smooth"), None);
+    let column = &report["backends"]["lists"];
+    assert_eq!(column["external"]["library"], "lists of Python", "{column}");
+    assert_eq!(column["external"]["command"][2], "{mesh}");
+    assert!(column["bytes"].is_null() && column["capabilities"].is_null());
+    assert!(run.stdout.contains("lists"), "{}", run.stdout);
+}
+
+#[test]
+fn what_a_program_refuses_is_shown_as_refused() {
+    if !python() {
+        return;
+    }
+    let (sixfold, run) = beside("well", &[]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let report = report(&sixfold);
+    assert_eq!(refusal(&report, "edge_length"), "it measures no lengths");
+    assert_eq!(row(&report, "other", "edge_length"), None);
+    let row = row(&report, "other", "boundary").expect("a row");
+    assert_eq!(row["agreement"], "same");
+    assert!(row["samples"].as_u64() > Some(2), "{row}");
+    assert!(run.stdout.contains("it measures no lengths"), "{run:?}");
+}
+
+#[test]
+fn a_program_that_goes_wrong_is_told_of_and_the_study_goes_on() {
+    if !python() {
+        return;
+    }
+    for (mode, more, says) in [
+        ("refuses", &[][..], "it is Tuesday"),
+        ("other version", &[], "version 7 of the protocol"),
+        ("rubbish", &[], "Segmentation fault (not really)"),
+        ("crashes at once", &[], "no licence found"),
+        ("endless line", &[], "without end"),
+        ("wrong unit", &[], "and was waited for"),
+        ("no time", &[], "without `wall_ns`"),
+        ("hangs", &["--patience", "300ms"], "within 0.3 s"),
+        ("crashes later", &[], "out of luck"),
+    ] {
+        let start = Instant::now();
+        let (sixfold, run) = beside(mode, more);
+        assert!(start.elapsed() < Duration::from_secs(60), "{mode}");
+        assert_eq!(run.code, Some(0), "{mode}: {run:?}");
+        assert!(!run.stderr.contains("panicked"), "{mode}: {run:?}");
+        let unbroken = run.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(unbroken.contains(says), "{mode}: {run:?}");
+        let report = report(&sixfold);
+        let ours = row(&report, "half-edge", "boundary").expect("ours");
+        assert_eq!(ours["agreement"], "same", "{mode}");
+        let before = row(&report, "other", "boundary");
+        assert_eq!(
+            before.is_some(),
+            mode == "crashes later",
+            "{mode}: {before:?}"
+        );
+        assert_eq!(sixfold.names(), ["s.json", "t.obj"], "{mode}");
+    }
+}
+
+#[test]
+fn other_work_is_in_no_ranking() {
+    if !python() {
+        return;
+    }
+    let (sixfold, run) = beside("other checksum", &[]);
+    assert_eq!(run.code, Some(1), "{run:?}");
+    assert!(
+        run.stderr.contains("other: boundary comes to 3, and to 0"),
+        "{}",
+        run.stderr
+    );
+    assert!(!run.stderr.contains("fault in Sixfold"), "{}", run.stderr);
+    let report = report(&sixfold);
+    let theirs = row(&report, "other", "boundary").expect("theirs");
+    assert_eq!(theirs["agreement"], "mismatch");
+    assert!(theirs["standing"].is_null() && theirs["ratio_to_best"].is_null());
+    let ours = row(&report, "half-edge", "boundary").expect("ours");
+    assert_eq!(ours["agreement"], "same");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn nothing_that_a_program_started_outlives_the_study() {
+    if !python() {
+        return;
+    }
+    let (sixfold, run) = beside("child that hangs", &["--patience", "2s"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let child = crate::run::text(&sixfold, "pid.txt");
+    let stat = std::fs::read_to_string(format!("/proc/{child}/stat"));
+    // Gone, or a zombie that nobody has fetched yet.
+    assert!(
+        stat.as_ref().map_or(true, |stat| stat.contains(") Z ")),
+        "{stat:?}"
+    );
+}
+
+#[test]
+fn commands_that_cannot_be_are_refused_before_anything_is_measured() {
+    let sixfold = Sixfold::new();
+    for (given, says) in [
+        ("run {mesh}", "has no name"),
+        ("a b=run {mesh}", "no name for a column"),
+        ("a=run", "no {mesh}"),
+        ("half-edge=run {mesh}", "two columns are called `half-edge`"),
+    ] {
+        let run = sixfold.run(&["study", "--external", given]);
+        assert_eq!(run.code, Some(2), "{given}: {run:?}");
+        assert!(run.stderr.contains(says), "{given}: {run:?}");
+        assert_eq!(run.stdout, "", "{given}");
+    }
+    sixfold.file("t.obj", TETRAHEDRON);
+    let no_program = "a=/no/such {mesh}";
+    let run = sixfold.run(&[
+        "study",
+        "t.obj",
+        "--budget",
+        "100ms",
+        "--external",
+        no_program,
+    ]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(run.stdout.contains("cannot be started"), "{run:?}");
+}

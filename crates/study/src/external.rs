@@ -1,0 +1,208 @@
+//! Other programs as columns of a study: whoever speaks the line protocol takes part.
+//!
+//! ```text
+//! sixfold                                     the program, started with the path of the mesh
+//!    │                                           │
+//!    │ ◀── {"protocol":1,"holds":true, …} ────── │   what it made of the mesh
+//!    │ ─── {"run":"vertex_normal","times":3} ──▶ │
+//!    │ ◀── {"wall_ns":…,"checksum":…, …} ─────── │   what all three runs took; what one found
+//!    │ ─── end of input ───────────────────────▶ │   it ends
+//! ```
+//!
+//! The program reads one JSON object a line and answers each with one line; it times its own runs, so
+//! that the pipe is in no figure. `benches/external/README.md` has the protocol in full.
+
+mod program;
+mod subject;
+
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+use sixfold::PolygonMesh;
+use sixfold::mesh_io::write_obj;
+use tempfile::TempDir;
+
+use crate::report::BackendReport;
+use program::{Greeting, Program};
+use subject::ExternalSubject;
+use workload::Subject;
+
+/// Where the path of the mesh goes.
+const MESH: &str = "{mesh}";
+
+/// How long an answer may take unless said otherwise.
+pub const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A program that takes part in a study as one more column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct External {
+    /// The name of the column.
+    pub name: String,
+    /// The program and its arguments; `{mesh}` stands for the path of an OBJ file.
+    pub command: Vec<String>,
+}
+
+/// What a study knows of a program beside its figures.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct ExternalReport {
+    /// The program and its arguments, with `{mesh}` for the mesh.
+    pub command: Vec<String>,
+    /// What it says that it measures: a library and its version.
+    pub library: Option<String>,
+}
+
+/// Why that is no program for a study.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum ExternalError {
+    /// No equals sign.
+    #[error("`{given}` has no name: write NAME='COMMAND {{mesh}}'")]
+    NoName { given: String },
+    /// A name that tables and files cannot show.
+    #[error(
+        "`{name}` is no name for a column: take up to 32 letters, digits, dots, hyphens and underscores"
+    )]
+    BadName { name: String },
+    /// Quotes that do not close.
+    #[error("the command of {name} has a quote that does not close: {command}")]
+    OpenQuote { name: String, command: String },
+    /// Nothing to start, or the mesh has no place in it.
+    #[error("the command of {name} has no {{mesh}}, where the path of the mesh goes: {command}")]
+    NoMesh { name: String, command: String },
+}
+
+impl FromStr for External {
+    type Err = ExternalError;
+
+    /// `NAME=COMMAND`: the command as a shell would cut it into words, which no shell sees.
+    fn from_str(given: &str) -> Result<Self, ExternalError> {
+        let no_name = || ExternalError::NoName {
+            given: given.into(),
+        };
+        let (name, command) = given.split_once('=').ok_or_else(no_name)?;
+        let (name, command) = (name.trim().to_owned(), command.trim().to_owned());
+        let fine = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
+        if name.is_empty() || name.len() > 32 || !name.chars().all(fine) {
+            return Err(ExternalError::BadName { name });
+        }
+        let Some(words) = shlex::split(&command) else {
+            return Err(ExternalError::OpenQuote { name, command });
+        };
+        if !words.iter().skip(1).any(|word| word.contains(MESH)) {
+            return Err(ExternalError::NoMesh { name, command });
+        }
+        Ok(Self {
+            name,
+            command: words,
+        })
+    }
+}
+
+impl External {
+    /// The words to start, for a mesh at `path`.
+    fn words(&self, path: &Path) -> Vec<String> {
+        let path = path.to_string_lossy();
+        let word = |word: &String| word.replace(MESH, &path);
+        self.command.iter().map(word).collect()
+    }
+
+    fn report(&self, library: Option<String>) -> ExternalReport {
+        ExternalReport {
+            command: self.command.clone(),
+            library,
+        }
+    }
+}
+
+/// The mesh of a study as a file that programs can read; it goes away with this.
+pub(crate) struct MeshFile {
+    folder: TempDir,
+}
+
+impl MeshFile {
+    /// Writes `polygons`, coordinates to the last bit.
+    pub(crate) fn of(polygons: &PolygonMesh) -> io::Result<Self> {
+        let folder = tempfile::tempdir()?;
+        let file = Self { folder };
+        write_obj(polygons, io::BufWriter::new(File::create(file.path())?))?;
+        Ok(file)
+    }
+
+    fn path(&self) -> PathBuf {
+        self.folder.path().join("mesh.obj")
+    }
+}
+
+/// Starts `external` on the mesh, and hears what it makes of it.
+pub(crate) fn put_on_the_bench<'a>(
+    external: &External,
+    mesh: &MeshFile,
+    vertices: usize,
+    patience: Duration,
+    stop: &'a AtomicBool,
+) -> (BackendReport, Option<Box<dyn Subject + 'a>>) {
+    let started = Program::start(&external.words(&mesh.path()), patience, stop);
+    let greeted = started.and_then(|mut program| Ok((program.greeting()?, program)));
+    let (greeting, program) = match greeted {
+        Ok((greeting, program)) => (greeting, Some(program)),
+        Err(reason) => (Greeting::refusing(reason), None),
+    };
+    let refusal = match greeting.holds {
+        true => None,
+        false => Some(
+            greeting
+                .reason
+                .unwrap_or_else(|| "it does not say why".into()),
+        ),
+    };
+    let bytes = greeting.bytes.filter(|_| refusal.is_none());
+    let per_vertex = |bytes: usize| bytes as f64 / vertices as f64;
+    let report = BackendReport {
+        name: external.name.clone(),
+        holds: refusal.is_none(),
+        reason: refusal,
+        bytes,
+        bytes_per_vertex: bytes.filter(|_| vertices > 0).map(per_vertex),
+        layout_bytes: None,
+        layout_bytes_per_vertex: None,
+        tables: Vec::new(),
+        merged_vertices: None,
+        capabilities: None,
+        external: Some(external.report(greeting.library)),
+    };
+    let program = program.filter(|_| report.holds);
+    let name = external.name.clone();
+    let subject = program.map(|program| ExternalSubject::new(name, bytes.unwrap_or(0), program));
+    (report, subject.map(|s| Box::new(s) as Box<dyn Subject>))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_is_cut_into_words_and_has_a_place_for_the_mesh() {
+        let external: External = "lox=run 'a b' --mesh={mesh}".parse().expect("a command");
+        assert_eq!(external.name, "lox");
+        let words = external.words(Path::new("/tmp/a c.obj"));
+        assert_eq!(words, ["run", "a b", "--mesh=/tmp/a c.obj"]);
+        for (given, says) in [
+            ("run {mesh}", "has no name"),
+            ("a b=run {mesh}", "no name for a column"),
+            ("=run {mesh}", "no name for a column"),
+            ("a=run 'x {mesh}", "does not close"),
+            ("a=run", "has no {mesh}"),
+            ("a={mesh}", "has no {mesh}"),
+            ("a=", "has no {mesh}"),
+        ] {
+            let error = given.parse::<External>().expect_err(given).to_string();
+            assert!(error.contains(says), "{given}: {error}");
+        }
+    }
+}
