@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let each = start.elapsed().as_secs_f64() / runs as f64;
     let text = told(&reports, &environment, seconds, each);
     fs::create_dir_all(&folder)?;
-    fs::write(format!("{folder}/repeatability.md"), &text)?;
+    fs::write(format!("{folder}/README.md"), &text)?;
     print!("{text}");
     Ok(())
 }
@@ -84,6 +84,7 @@ fn told(reports: &[Report], environment: &Environment, seconds: u64, each: f64) 
     text += &winners(reports);
     text += &orders(reports);
     text += &coverage(reports);
+    text += &drift(reports);
     text
 }
 
@@ -250,6 +251,54 @@ fn coverage(reports: &[Report]) -> String {
         );
     }
     text
+}
+
+/// How far a figure is from study to study, which no interval within a study can know.
+fn drift(reports: &[Report]) -> String {
+    let ratios = |operation: Operation, backend: &str| -> Vec<f64> {
+        let rows = reports.iter().filter_map(|report| {
+            let row = report.rows(operation).find(|row| row.backend == backend)?;
+            row.ratio_to_best
+        });
+        rows.collect()
+    };
+    let mut text = String::from(
+        "\n## From study to study\n\nHow far the figures of one backend in one operation are spread over the studies: standard deviation by mean.\n\n\
+         | figure | median of all | nine of ten are below | the widest |\n|---|---|---|---|\n",
+    );
+    type Of<'a> = &'a dyn Fn(Operation, &str) -> Vec<f64>;
+    let times = |operation: Operation, backend: &str| series(reports, operation, backend);
+    let kinds: [(&str, Of<'_>); 2] = [("time", &times), ("ratio to the best", &ratios)];
+    for (name, of) in kinds {
+        let mut spreads: Vec<f64> = Vec::new();
+        for operation in Relation::ALL.map(Operation::Relation) {
+            for backend in &reports[0].backends {
+                let values = of(operation, &backend.name);
+                if values.len() == reports.len() && values.iter().any(|&value| value != 1.0) {
+                    spreads.push(spread(&values));
+                }
+            }
+        }
+        spreads.sort_by(f64::total_cmp);
+        let most = spreads.last().copied().unwrap_or(f64::NAN);
+        let ninth = spreads.get(spreads.len() * 9 / 10).copied().unwrap_or(most);
+        let _ = writeln!(
+            text,
+            "| {name} | {:.1} % | {:.1} % | {:.1} % |",
+            100.0 * median(&spreads),
+            100.0 * ninth,
+            100.0 * most
+        );
+    }
+    text
+}
+
+/// The standard deviation by the mean.
+fn spread(values: &[f64]) -> f64 {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (squares / (count - 1.0)).sqrt() / mean
 }
 
 fn median(values: &[f64]) -> f64 {
