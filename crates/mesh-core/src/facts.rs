@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashSet;
 use serde::{Deserialize, Serialize};
+use serde_with::{DisplayFromStr, serde_as};
 
 use crate::error::PolygonError;
 use crate::face_list::FaceList;
@@ -62,6 +63,7 @@ pub struct Facts {
 }
 
 /// How a count is spread: its extremes, its mean, and how often each value occurs.
+#[serde_as]
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Spread {
     /// The smallest value.
@@ -71,6 +73,7 @@ pub struct Spread {
     /// The arithmetic mean.
     pub mean: f64,
     /// How often each value occurs; `None` where there are more than 64 values.
+    #[serde_as(as = "Option<BTreeMap<DisplayFromStr, _>>")]
     pub hist: Option<BTreeMap<usize, usize>>,
 }
 

@@ -16,7 +16,7 @@ use ::study::{External, Operation};
 use clap::{Args, Parser, Subcommand};
 use sixfold::shapes::Order;
 
-pub(crate) use comparing::{GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
+pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
 pub(crate) use memory::Memory;
 pub(crate) use picking::{Pick, Workloads};
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
@@ -24,6 +24,8 @@ pub(crate) use render::Render;
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
 pub(crate) use why::Why;
+
+use crate::many::Shard;
 
 const EXAMPLES: &str = "Examples:
   sixfold                                    study the built-in mesh
@@ -44,6 +46,7 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study quads.obj --triangulate --budget 2m
   sixfold study bunny.obj --json - --csv bunny.csv
   sixfold study bunny.obj --external mine='./mine {mesh}'
+  sixfold study scans --report results              all OBJ files in a folder; --resume goes on
 
 How it measures: every round runs each operation on each backend, one after the other, in random
 order, on the processor time of the thread; the table shows medians. The seed decides that order
@@ -53,6 +56,17 @@ samples and keeps what is finished. A second Ctrl-C ends it at once, with code 1
 
 Exit codes: 0 done; 1 backends found different results, a fault in Sixfold; 2 wrong usage or
 unusable input; 3 no backend asked for can hold the mesh; 4 interrupted, finished part kept.";
+
+const MERGE_EXAMPLES: &str = "Examples:
+  sixfold study scans --shard 1/2 --report one      on one machine
+  sixfold study scans --shard 2/2 --report two      on another
+  sixfold merge one two --report all
+
+Shards are of the same meshes, by name, and were made with the same settings; a mesh that several
+have is taken from the first.
+
+Exit codes: 0 done; 1 backends found different results, a fault in Sixfold; 2 wrong usage, or
+shards that do not belong together.";
 
 const INSPECT_EXAMPLES: &str = "Examples:
   sixfold inspect bunny.obj
@@ -85,6 +99,10 @@ pub(crate) enum Command {
     Orders(Orders),
     /// Measure how the cost of each backend grows with the mesh
     Growth(Growth),
+    /// Put the shards of a study of many meshes together
+    Merge(Merge),
+    /// Say what changed between two studies, beyond noise
+    Compare(Compare),
     /// Say what a mesh is, and which backends can hold it
     Inspect(Inspect),
     /// Say what each backend takes in memory, counted in three ways that must agree
@@ -118,22 +136,22 @@ pub(crate) enum Command {
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Study {
-    /// The mesh, an OBJ file; without it a built-in mesh of about 20,000 triangles
-    #[arg(value_name = "FILE.obj")]
-    pub(crate) mesh: Option<PathBuf>,
+    /// The mesh, an OBJ file; or several, or folders; without any a built-in one
+    #[arg(value_name = "FILE.obj|DIR")]
+    pub(crate) meshes: Vec<PathBuf>,
     /// Only these backends, by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
     /// Only these operations, by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
     pub(crate) operations: Vec<Operation>,
-    /// How long to measure: 20s, 500ms, 2m
+    /// How long to measure each mesh: 20s, 500ms, 2m
     #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
     /// What decides the order, and which elements are sampled
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
-    /// Another program as one more column, told the mesh as {mesh}; may be given again
+    /// Another program as one more column; may be given again
     #[arg(long = "external", value_name = "NAME=COMMAND")]
     pub(crate) externals: Vec<External>,
     /// How long such a program may take for one answer
@@ -151,13 +169,37 @@ pub(crate) struct Study {
     /// Write one line for each result as CSV (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,
+    /// Write results.json and results.csv there, each mesh when it is done
+    #[arg(long, value_name = "DIR")]
+    pub(crate) report: Option<PathBuf>,
+    /// Go on with what --report has in its folder
+    #[arg(long, requires = "report")]
+    pub(crate) resume: bool,
+    /// Only every n-th mesh, from the i-th on: for `sixfold merge`
+    #[arg(long, value_name = "i/n", requires = "report")]
+    pub(crate) shard: Option<Shard>,
+}
+
+/// Put the shards of a study of many meshes together.
+#[derive(Debug, Args)]
+#[command(after_help = MERGE_EXAMPLES)]
+pub(crate) struct Merge {
+    /// What `sixfold study --shard i/n --report DIR` wrote
+    #[arg(value_name = "DIR|FILE.json", required = true)]
+    pub(crate) shards: Vec<PathBuf>,
+    /// Write results.json and results.csv there
+    #[arg(long, value_name = "DIR")]
+    pub(crate) report: Option<PathBuf>,
+    /// Write results.json as this file (- for standard output)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
 }
 
 impl Default for Study {
     fn default() -> Self {
         let settings = ::study::Settings::default();
         Self {
-            mesh: None,
+            meshes: Vec::new(),
             backends: Vec::new(),
             operations: Vec::new(),
             budget: settings.budget,
@@ -168,6 +210,9 @@ impl Default for Study {
             strict: false,
             json: None,
             csv: None,
+            report: None,
+            resume: false,
+            shard: None,
         }
     }
 }

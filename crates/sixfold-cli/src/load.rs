@@ -1,8 +1,9 @@
 //! From a file to a mesh that can be looked into.
 
+use std::fs;
 use std::path::Path;
 
-use ::study::Specimen;
+use ::study::{ReadError, Specimen};
 use sixfold::mesh_io::{LeftOut, ObjMesh, read_obj};
 use sixfold::{Creases, PolygonMesh, shapes};
 
@@ -90,6 +91,17 @@ pub(crate) fn without_creases(path: &Path) -> Result<PolygonMesh, Failure> {
         ));
     }
     Ok(polygons)
+}
+
+/// The results in the file at `path`, which `parse` makes sense of.
+pub(crate) fn results<T>(
+    path: &Path,
+    parse: impl Fn(&str) -> Result<T, ReadError>,
+) -> Result<T, Failure> {
+    let file = path.display();
+    let text = fs::read_to_string(path)
+        .map_err(|cause| Failure::usage(format!("{file}: cannot be read: {cause}")))?;
+    parse(&text).map_err(|error| Failure::usage(format!("{file}: {error}")))
 }
 
 /// The built-in mesh.

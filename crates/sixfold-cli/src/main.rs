@@ -5,12 +5,13 @@
 //! | code | means |
 //! |---|---|
 //! | 0 | done |
-//! | 1 | done, and the answer is no: no backend qualifies; backends found different results, a fault in Sixfold |
+//! | 1 | done, and the answer is no: no backend qualifies; something is slower; results differ |
 //! | 2 | wrong usage, or unusable input |
 //! | 3 | not supported: no backend asked for can hold the mesh |
 //! | 4 | interrupted; the finished part is kept |
 
 mod arguments;
+mod compare;
 mod edits;
 mod facts_text;
 mod failure;
@@ -20,6 +21,7 @@ mod growth;
 mod heap;
 mod inspect;
 mod load;
+mod many;
 mod measured;
 mod memory;
 mod numbers;
@@ -70,6 +72,8 @@ fn main() -> ExitCode {
         Ok(Some(Command::Why(arguments))) => why::run(&arguments),
         Ok(Some(Command::Orders(arguments))) => orders::run(&arguments),
         Ok(Some(Command::Growth(arguments))) => growth::run(&arguments),
+        Ok(Some(Command::Merge(arguments))) => many::merge(&arguments),
+        Ok(Some(Command::Compare(arguments))) => compare::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
         Ok(Some(Command::Memory(arguments))) => memory::run(&arguments),
         Ok(Some(Command::Generate(arguments))) => generate::run(&arguments),

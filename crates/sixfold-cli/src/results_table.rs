@@ -291,7 +291,7 @@ mod tests {
             ci_low_ns: Some(median_ns * 0.995),
             ci_high_ns: Some(median_ns * 1.03),
             elements: Some(100),
-            per: operation.per(),
+            per: operation.per().into(),
             ns_per_element: Some(median_ns / 100.0),
             wall_median_ns: Some(median_ns),
             wall_min_ns: Some(median_ns),

@@ -1,5 +1,6 @@
 //! `sixfold study`: measure and show.
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use ::study::{
@@ -11,6 +12,7 @@ use crate::arguments::{STUDY_EXAMPLES, Study};
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::load;
+use crate::many;
 use crate::measured::{MISMATCH, ended, tell_of_debug_build};
 use crate::numbers::counted;
 use crate::output::{Output, check_places, is_stdout};
@@ -20,8 +22,22 @@ use crate::text::{Text, complain, hanging};
 
 /// Measures what was asked for; text first, so that no file that fails can take it along.
 pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
+    let settings = Settings {
+        backends: arguments.backends.clone(),
+        externals: arguments.externals.clone(),
+        patience: arguments.patience,
+        operations: arguments.operations.clone(),
+        budget: arguments.budget,
+        seed: arguments.seed,
+        ..Settings::default()
+    };
+    let several = arguments.meshes.len() > 1 || arguments.meshes.iter().any(|path| path.is_dir());
+    if several || arguments.report.is_some() {
+        return many::run(arguments, &settings);
+    }
+    let mesh = arguments.meshes.first();
     check_places(
-        arguments.mesh.as_deref(),
+        mesh.map(PathBuf::as_path),
         &[
             ("--json", arguments.json.as_ref()),
             ("--csv", arguments.csv.as_ref()),
@@ -31,18 +47,9 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     let stop = interrupt_flag();
     let json = Output::open_if(arguments.json.as_ref())?;
     let csv = Output::open_if(arguments.csv.as_ref())?;
-    let specimen = match &arguments.mesh {
+    let specimen = match mesh {
         Some(path) => load::for_study(path, arguments.strict, arguments.triangulate)?,
         None => load::built_in(),
-    };
-    let settings = Settings {
-        backends: arguments.backends.clone(),
-        externals: arguments.externals.clone(),
-        patience: arguments.patience,
-        operations: arguments.operations.clone(),
-        budget: arguments.budget,
-        seed: arguments.seed,
-        ..Settings::default()
     };
     tell_of_debug_build();
     let bar = Bar::new();

@@ -305,8 +305,8 @@ mod tests {
 
     #[test]
     fn the_most_read_table_comes_first() {
-        let read = |table, reads| TableReads {
-            table,
+        let read = |table: &str, reads| TableReads {
+            table: table.into(),
             row_bytes: 4,
             reads,
         };

@@ -63,10 +63,8 @@ pub(crate) fn workload(word: &str) -> Result<Workload, Failure> {
 
 fn unknown(name: &str) -> Failure {
     let names: Vec<&str> = built_ins().map(|(name, _)| name).collect();
-    Failure::usage(format!(
-        "no workload is called `{name}`: choose from {}, or name a file that ends in .toml",
-        names.join(", ")
-    ))
+    let message = ::study::unknown("workload", name, &names);
+    Failure::usage(format!("{message}, or name a file that ends in .toml"))
 }
 
 fn list() -> String {

@@ -1,11 +1,13 @@
 //! The command line as users meet it: one binary, run for real.
 
 mod bad_input;
+mod changes;
 mod comparing;
 mod external;
 mod golden;
 mod interrupt;
 mod machine;
+mod many;
 mod memory;
 mod obj;
 mod outputs;

@@ -136,7 +136,7 @@ fn wrong_questions_are_refused() {
         ("missing.toml", "missing.toml: No such file"),
         (
             "name.toml",
-            "name.toml:3: no operation is called `vertex_face`: choose from",
+            "name.toml:3: no operation is called `vertex_face` (did you mean `vertex_faces`?)",
         ),
         ("key.toml", "key.toml:2: unknown field `speed`"),
         ("broken.toml", "broken.toml:2: "),

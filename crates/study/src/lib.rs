@@ -4,7 +4,7 @@
 //! until the budget is spent, proves by checksum that all did the same work, and gives a [`Report`].
 //! [`orders`] does so for one mesh in several orders, and [`growth`] for one shape in many sizes.
 //! [`inspect`] says what a mesh is and which backends can hold it, and measures nothing. [`pick`]
-//! answers for a workload. [`audit`] counts the bytes of each in three ways, which must agree. [`why`]
+//! answers for a workload. [`compare`] holds two studies against each other. [`audit`] counts the bytes of each in three ways, which must agree. [`why`]
 //! counts what the relations read, and holds their times against the speed of memory.
 //!
 //! What a reader of the figures should know is in `reports/SCHEMA.md`. This crate knows no
@@ -13,6 +13,8 @@
 mod agreement;
 mod audit;
 mod caches;
+mod collection;
+mod compare;
 mod control;
 #[cfg(test)]
 mod disturbed;
@@ -25,6 +27,7 @@ mod methods;
 mod orders;
 mod pick;
 mod plan;
+mod read;
 mod report;
 mod slope;
 mod solo;
@@ -38,6 +41,8 @@ mod words;
 
 pub use audit::{Audit, Audited, audit};
 pub use caches::{Cache, caches};
+pub use collection::{Asked, Collection, Failed, MergeError, Pooled};
+pub use compare::{Change, Changes, Comparing, DRIFT, NewWinner, Setting, Verdict, compare};
 pub use environment::Environment;
 pub use external::{External, ExternalError, ExternalReport, PATIENCE};
 pub use growth::{
@@ -54,6 +59,7 @@ pub use pick::{
     Answer, BreakEven, Excluded, Need, OnMesh, PartCost, PickError, Question, Ranked, UnknownNeed,
     pick,
 };
+pub use read::ReadError;
 pub use report::{
     Agreement, BackendReport, Control, ControlRow, Inspection, MeshReport, RawSamples, Refusal,
     Report, ResultRow, SCHEMA, Standing,
@@ -67,4 +73,5 @@ pub use workload::{Access, Action, Amount, NoPlace, Workload, WorkloadError, bui
 pub use workload::{
     Backend, Clock, Editing, Editor, Edits, Heap, Kind, MachineClock, MemorySpeed, Operation,
     Reads, Refiner, Refining, Rung, SingleEdit, TableReads, Time, UnknownOperation, Way, Weighed,
+    unknown,
 };

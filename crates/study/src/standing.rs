@@ -8,7 +8,7 @@ use workload::Time;
 pub(crate) const NO_DIFFERENCE: f64 = 1.02;
 
 /// Too few samples for an interval still tell apart what differs by this much.
-const BEYOND_DOUBT: f64 = 2.0;
+pub(crate) const BEYOND_DOUBT: f64 = 2.0;
 
 /// How the samples of one backend stand beside those of the fastest.
 #[derive(Clone, Copy, Debug, PartialEq)]

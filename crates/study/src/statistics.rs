@@ -49,29 +49,100 @@ fn middle(sorted: &[f64]) -> f64 {
     f64::midpoint(sorted[(count - 1) / 2], sorted[count / 2])
 }
 
+/// The geometric mean, and its 95 % interval by drawing the values anew; `None` without values, no
+/// interval below three.
+pub(crate) fn geometric_mean(values: &[f64]) -> Option<(f64, Option<[f64; 2]>)> {
+    let logs: Vec<f64> = values.iter().map(|value| value.ln()).collect();
+    let count = logs.len();
+    let mean = logs.iter().sum::<f64>() / count as f64;
+    if !mean.is_finite() {
+        return None;
+    }
+    let interval = (count >= 3).then(|| {
+        let mut random = ChaCha8Rng::seed_from_u64(count as u64);
+        middle_of(count.max(6), || {
+            let sum: f64 = (0..count).map(|_| logs[drawn(&mut random, count)]).sum();
+            sum / count as f64
+        })
+    });
+    Some((mean.exp(), interval.map(|ends| ends.map(f64::exp))))
+}
+
+/// One of `count`, all alike.
+fn drawn(random: &mut ChaCha8Rng, count: usize) -> usize {
+    // The high half of a product is a fair pick, but for 1 in 2³² / count.
+    ((u64::from(random.next_u32()) * count as u64) >> 32) as usize
+}
+
+/// The median of `samples` by that of `others`, which have nothing in common with them, and the 95 %
+/// interval of that, by drawing both anew; `None` without samples, no interval below three of either.
+pub(crate) fn quotient(samples: &[f64], others: &[f64]) -> Option<(f64, Option<[f64; 2]>)> {
+    let sorted = [samples, others].map(|samples| {
+        let mut sorted = samples.to_vec();
+        sorted.sort_unstable_by(f64::total_cmp);
+        sorted
+    });
+    let fewest = samples.len().min(others.len());
+    if fewest == 0 {
+        return None;
+    }
+    let [a, b] = [0, 1].map(|i| middle(&sorted[i]));
+    if !(a / b).is_finite() {
+        return None;
+    }
+    let interval = (fewest >= 3).then(|| {
+        let [mut a, mut b] = [0, 1].map(|i| Resampling::of(&sorted[i], i as u64));
+        middle_of(fewest.max(6), || a.median() / b.median())
+    });
+    Some((a / b, interval))
+}
+
 /// The middle of the medians of resampled `sorted`; O(resamples · samples).
 fn bootstrapped(sorted: &[f64]) -> [f64; 2] {
-    let count = sorted.len();
-    let mut random = ChaCha8Rng::seed_from_u64(count as u64);
-    // How often each of the samples was drawn: that spares sorting every resample.
-    let mut drawn = vec![0_u32; count];
-    let mut medians: Vec<f64> = (0..RESAMPLES)
-        .map(|_| {
-            drawn.fill(0);
-            for _ in 0..count {
-                // The high half of a product is a fair pick, but for 1 in 2³² / count.
-                let pick = (u64::from(random.next_u32()) * count as u64) >> 32;
-                drawn[pick as usize] += 1;
-            }
-            f64::midpoint(
-                sorted[ranked(&drawn, (count - 1) / 2)],
-                sorted[ranked(&drawn, count / 2)],
-            )
-        })
-        .collect();
-    medians.sort_unstable_by(f64::total_cmp);
+    let mut resampling = Resampling::of(sorted, 0);
+    middle_of(sorted.len(), || resampling.median())
+}
+
+/// Some figure of resamples of `count` samples, without the ends of its spread.
+fn middle_of(count: usize, mut figure: impl FnMut() -> f64) -> [f64; 2] {
+    let mut figures: Vec<f64> = (0..RESAMPLES).map(|_| figure()).collect();
+    figures.sort_unstable_by(f64::total_cmp);
     let skipped = (left_out(count) * RESAMPLES as f64) as usize;
-    [medians[skipped], medians[RESAMPLES - 1 - skipped]]
+    [figures[skipped], figures[RESAMPLES - 1 - skipped]]
+}
+
+/// Draws sorted samples anew, with replacement, from a fixed seed.
+struct Resampling<'s> {
+    sorted: &'s [f64],
+    random: ChaCha8Rng,
+    /// How often each of the samples was drawn: that spares sorting every resample.
+    drawn: Vec<u32>,
+}
+
+impl<'s> Resampling<'s> {
+    /// `stream` tells apart what is drawn side by side.
+    fn of(sorted: &'s [f64], stream: u64) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(sorted.len() as u64);
+        random.set_stream(stream);
+        Self {
+            sorted,
+            random,
+            drawn: vec![0; sorted.len()],
+        }
+    }
+
+    /// The median of the next resample.
+    fn median(&mut self) -> f64 {
+        let count = self.sorted.len();
+        self.drawn.fill(0);
+        for _ in 0..count {
+            self.drawn[drawn(&mut self.random, count)] += 1;
+        }
+        f64::midpoint(
+            self.sorted[ranked(&self.drawn, (count - 1) / 2)],
+            self.sorted[ranked(&self.drawn, count / 2)],
+        )
+    }
 }
 
 /// What part of the medians is left out at each end: 2.5 % of very many samples, less of few, for the
@@ -173,6 +244,28 @@ mod tests {
         assert_eq!((two.value, two.least, two.interval), (3.0, 2.0, None));
         let five = Median::of([5.0, 1.0, 4.0, 2.0, 3.0]).expect("five samples");
         assert_eq!((five.value, five.interval), (3.0, Some([1.0, 5.0])));
+    }
+
+    #[test]
+    fn the_interval_of_a_quotient_holds_it_about_19_times_in_20() {
+        let mut random = ChaCha8Rng::seed_from_u64(2);
+        let mut covered = 0;
+        for _ in 0..1000 {
+            let mut draw = |count: usize| -> Vec<f64> {
+                let uniform = |_| 1.0 + random.next_u32() as f64 / 2_f64.powi(32);
+                (0..count).map(uniform).collect()
+            };
+            let (a, b) = (draw(25), draw(15));
+            let doubled: Vec<f64> = a.iter().map(|a| 2.0 * a).collect();
+            let (ratio, interval) = quotient(&doubled, &b).expect("samples");
+            let [low, high] = interval.expect("many");
+            assert!(low <= ratio && ratio <= high);
+            covered += usize::from(low <= 2.0 && 2.0 <= high);
+        }
+        assert!((930..=995).contains(&covered), "{covered} of 1000");
+        assert_eq!(quotient(&[], &[1.0]), None);
+        assert_eq!(quotient(&[4.0, 4.0], &[2.0]), Some((2.0, None)));
+        assert_eq!(quotient(&[1.0; 5], &[0.0; 5]), None);
     }
 
     #[test]

@@ -25,6 +25,7 @@ use workload::Backend;
 use workload::Draw;
 use workload::Operation;
 use workload::Subject;
+use workload::unknown;
 use workload::{MachineClock, Time};
 
 /// Beyond this a valence or a degree makes a mesh skewed: its square is a millisecond's work.
@@ -72,7 +73,7 @@ impl Default for Settings {
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum StudyError {
     /// A name that no backend has.
-    #[error("no backend is called `{name}`: choose from {}", all_names())]
+    #[error("{}", unknown("backend", .name, &all_names()))]
     UnknownBackend { name: String },
     /// Two representations of one name.
     #[error("two backends are called `{name}`: give each a name of its own")]
@@ -91,9 +92,8 @@ pub enum StudyError {
     NoneHolds { refusals: Vec<(String, String)> },
 }
 
-fn all_names() -> String {
-    let names: Vec<&str> = roster().iter().map(|backend| backend.name).collect();
-    names.join(", ")
+fn all_names() -> Vec<&'static str> {
+    roster().iter().map(|backend| backend.name).collect()
 }
 
 fn reasons(refusals: &[(String, String)]) -> String {

@@ -21,6 +21,7 @@ mod sample;
 mod single_edit;
 mod subdividing;
 mod sweeps;
+mod unknown;
 mod workload;
 mod workload_file;
 
@@ -39,5 +40,6 @@ pub use refining::{Refiner, Refining, Way};
 pub use sample::{Draw, Side};
 pub use single_edit::SingleEdit;
 pub use sweeps::field_sum;
-pub use workload::{Access, Action, Amount, NoAmount, Part, Workload};
+pub use unknown::unknown;
+pub use workload::{Access, Action, Amount, NoAmount, Part, UnknownAction, Workload};
 pub use workload_file::WorkloadError;

@@ -9,6 +9,7 @@ use sixfold::{PolygonMesh, QueryCost, Relation};
 
 use crate::editing::Editing;
 use crate::refining::{Refining, Way};
+use crate::unknown::unknown;
 
 /// One kind of element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -306,7 +307,7 @@ impl fmt::Display for Operation {
 
 /// A name that no operation has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no operation is called `{name}`: choose from {}", Operation::ALL.map(Operation::name).join(", "))]
+#[error("{}", unknown("operation", .name, &Operation::ALL.map(Operation::name)))]
 pub struct UnknownOperation {
     /// The name.
     pub name: String,

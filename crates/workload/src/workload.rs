@@ -9,6 +9,7 @@ use serde_with::{DeserializeFromStr, SerializeDisplay};
 use sixfold::{Counts, Edit, Relation};
 
 use crate::operation::{Kind, Operation};
+use crate::unknown::unknown;
 
 /// What a program does to a mesh.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
@@ -277,9 +278,9 @@ impl Action {
     }
 }
 
-/// A name that nothing has that a workload may do.
+/// A name of nothing that a workload may do.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("nothing is called `{name}` that a workload may do")]
+#[error("{}", unknown("operation", .name, &Action::all().iter().map(|a| a.name()).collect::<Vec<_>>()))]
 pub struct UnknownAction {
     /// The name.
     pub name: String,

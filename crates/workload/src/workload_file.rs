@@ -6,6 +6,7 @@ use std::ops::Range;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use toml::Spanned;
 
+use crate::unknown::unknown;
 use crate::workload::{Access, Action, Amount, Part, Workload};
 
 /// What is wrong with a workload file, and where.
@@ -98,10 +99,8 @@ impl Workload {
             Some(word) => { Access::ALL.into_iter() }
                 .find(|access| access.name() == word.get_ref())
                 .ok_or_else(|| {
-                    let allowed = Access::ALL.map(Access::name).join(", ");
-                    let word = word.get_ref();
-                    let message =
-                        format!("no access pattern is called `{word}`: choose from {allowed}");
+                    let allowed = Access::ALL.map(Access::name);
+                    let message = unknown("access pattern", word.get_ref(), &allowed);
                     at(parsed.access.as_ref().map_or(0..0, Spanned::span), message)
                 })?,
         };
@@ -124,7 +123,8 @@ impl Workload {
 
         let mut mix: Vec<Part> = Vec::new();
         for (key, value) in &parsed.mix.get_ref().0 {
-            let action = action(key.get_ref()).map_err(|message| at(key.span(), message))?;
+            let action: Result<Action, _> = key.get_ref().parse();
+            let action = action.map_err(|error| at(key.span(), error.to_string()))?;
             let weight = amount(value.get_ref()).and_then(|weight| {
                 let fine = weight.number() == 0.0 || positive(weight);
                 let wrong = || format!("a weight is from 0 to {MOST:e}, not {weight}");
@@ -158,18 +158,6 @@ fn amount(loose: &Loose) -> Result<Amount, String> {
         Loose::Number(number) => Ok(Amount::Number(*number)),
         Loose::Text(text) => text.parse().map_err(|error| format!("{error}")),
     }
-}
-
-fn action(name: &str) -> Result<Action, String> {
-    let all = Action::all();
-    let found = all.iter().copied().find(|action| action.name() == name);
-    found.ok_or_else(|| {
-        let names: Vec<&str> = all.iter().map(|action| action.name()).collect();
-        format!(
-            "no operation is called `{name}`: choose from {}",
-            names.join(", ")
-        )
-    })
 }
 
 /// What the parser says, in our words where it speaks of Rust's types.
@@ -310,7 +298,7 @@ mod tests {
     #[test]
     fn every_action_is_found_by_its_name_alone() {
         for each in Action::all() {
-            assert_eq!(action(each.name()), Ok(each));
+            assert_eq!(each.name().parse(), Ok(each));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What `sixfold orders` and `growth` can be asked for.
+//! What `sixfold orders`, `growth` and `compare` can be asked for.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -51,6 +51,50 @@ pub(crate) struct Orders {
     /// Cut every polygon into a fan of triangles first
     #[arg(long)]
     pub(crate) triangulate: bool,
+    /// Write everything as JSON (- for standard output)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
+}
+
+const COMPARE_EXAMPLES: &str = "Examples:
+  sixfold compare before.json after.json
+  sixfold compare before.json after.json --fail-if-slower      for CI: exit code 1
+  sixfold compare laptop.json server.json --relative
+
+Both are what `sixfold study --json` wrote. A figure is faster or slower if the 95 % interval of the
+ratio of the medians leaves 1 out, and the ratio is beyond --noise and beyond what the control of
+either study shows for that operation. With fewer than three samples it takes a factor of 2. The
+default of --noise is for virtual machines with neighbours, which drift from study to study; a
+machine of your own allows less (compare two studies of one program to see).
+
+Exit codes: 0 done; 1 something is slower, with --fail-if-slower; 2 wrong usage, or a file that
+is no study, was cut off, or has another schema.";
+
+/// Say what changed between two studies, beyond noise.
+///
+/// Studies of one mesh on two machines, by two compilers or of two commits: which figures are faster
+/// or slower, who wins now, and in what machines and programs differ.
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment, after_help = COMPARE_EXAMPLES)]
+pub(crate) struct Compare {
+    /// The first study, as JSON
+    #[arg(value_name = "BEFORE.json")]
+    pub(crate) before: PathBuf,
+    /// The second
+    #[arg(value_name = "AFTER.json")]
+    pub(crate) after: PathBuf,
+    /// Judge each figure by what is left when the median change of all is taken out
+    #[arg(long)]
+    pub(crate) relative: bool,
+    /// Ratios up to this are none, whatever the samples say
+    #[arg(long, value_name = "RATIO", default_value_t = ::study::DRIFT, value_parser = noise)]
+    pub(crate) noise: f64,
+    /// Show all figures, not only those that changed
+    #[arg(long)]
+    pub(crate) all: bool,
+    /// End with exit code 1 if some figure is slower
+    #[arg(long)]
+    pub(crate) fail_if_slower: bool,
     /// Write everything as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
@@ -114,4 +158,10 @@ pub(crate) struct Growth {
 fn count(text: &str) -> Result<usize, String> {
     let parsed = text.trim().parse();
     parsed.map_err(|_| "a whole number is wanted, such as 100000".into())
+}
+
+fn noise(text: &str) -> Result<f64, String> {
+    let parsed: Option<f64> = text.trim().parse().ok();
+    let fine = parsed.filter(|ratio| (1.0..=100.0).contains(ratio));
+    fine.ok_or_else(|| "write a ratio from 1 to 100, as in 1.05".into())
 }

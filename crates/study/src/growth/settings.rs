@@ -8,7 +8,7 @@ use sixfold::shapes::{Order, ShapeError};
 use super::shapes::{GROWING, Growing};
 use crate::orders::{chosen_operations, draw_bytes, on_the_bench_bytes};
 use crate::study::{Settings, StudyError};
-use workload::{Backend, Operation};
+use workload::{Backend, Operation, unknown};
 
 /// The fewest faces: below, a clock tells little.
 const LEAST: usize = 100;
@@ -65,7 +65,7 @@ pub enum GrowthError {
     #[error(transparent)]
     Shape(#[from] ShapeError),
     /// A name that no growing shape has.
-    #[error("no shape that grows is called `{name}`: choose from {}", GROWING.iter().map(|shape| shape.name).collect::<Vec<_>>().join(", "))]
+    #[error("{}", unknown("shape that grows", .name, &GROWING.iter().map(|shape| shape.name).collect::<Vec<_>>()))]
     UnknownShape { name: String },
     /// The largest is not larger than the smallest.
     #[error("sizes from {from} to {to} faces do not grow: give the smaller first")]

@@ -2,8 +2,8 @@
 
 use std::io;
 
-use serde::{Deserialize, Serialize};
-use serde_with::{KeyValueMap, serde_as};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_with::{DeserializeAs, Map, Same};
 use workload::{Action, Workload};
 
 use crate::environment::Environment;
@@ -13,7 +13,6 @@ use crate::timer::Timer;
 use crate::words::grouped;
 
 /// Which backend, how sure, and why.
-#[serde_as]
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Answer {
     /// The version of the shape.
@@ -31,7 +30,7 @@ pub struct Answer {
     /// The backends that qualify, the fastest first; empty where none does.
     pub ranking: Vec<Ranked>,
     /// The others, and why.
-    #[serde_as(as = "KeyValueMap<_>")]
+    #[serde(serialize_with = "by_name", deserialize_with = "from_names")]
     pub excluded: Vec<Excluded>,
     /// After how many operations each pays for being built, beside an indexed face set that is there
     /// already; empty where that did not take part.
@@ -144,10 +143,9 @@ pub struct BreakEven {
 }
 
 /// A backend that does not qualify.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Excluded {
     /// The backend.
-    #[serde(rename = "$key$")]
     pub backend: String,
     /// Why.
     pub reason: String,
@@ -177,4 +175,17 @@ impl Answer {
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
+}
+
+/// As a map from names to reasons that keeps the order.
+fn by_name<S: Serializer>(excluded: &[Excluded], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(excluded.iter().map(|e| (&e.backend, &e.reason)))
+}
+
+fn from_names<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Excluded>, D::Error> {
+    let pairs: Vec<(String, String)> = Map::<Same, Same>::deserialize_as(deserializer)?;
+    let excluded = pairs
+        .into_iter()
+        .map(|(backend, reason)| Excluded { backend, reason });
+    Ok(excluded.collect())
 }

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use serde_with::{DeserializeFromStr, SerializeDisplay};
 use sixfold::subdivision::{Method, Scheme};
 use sixfold::support;
-use workload::Backend;
+use workload::{Backend, unknown};
 
 /// Something that a structure has to be able to do, or to hold.
 #[derive(
@@ -102,7 +102,7 @@ impl fmt::Display for Need {
 
 /// A need that nobody has heard of.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no need is called `{name}`: choose from {}", Need::ALL.map(Need::name).join(", "))]
+#[error("{}", unknown("need", .name, &Need::ALL.map(Need::name)))]
 pub struct UnknownNeed {
     /// The name.
     pub name: String,

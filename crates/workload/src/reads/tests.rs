@@ -37,7 +37,9 @@ fn polygons(vertices: usize, faces: &[&[u32]]) -> PolygonMesh {
 
 fn tables(reads: &Reads) -> Vec<(&str, usize, f64)> {
     let tables = reads.tables.iter();
-    tables.map(|t| (t.table.as_str(), t.row_bytes, t.reads)).collect()
+    tables
+        .map(|t| (t.table.as_str(), t.row_bytes, t.reads))
+        .collect()
 }
 
 #[test]

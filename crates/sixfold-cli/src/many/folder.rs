@@ -1,0 +1,190 @@
+//! The folder of a report: each finished study a file of its own, and at the end all in one.
+//!
+//! ```text
+//! DIR/studies/00003-bunny.json   one mesh, written as soon as it is finished; what --resume goes by
+//! DIR/results.json               all of them
+//! DIR/results.csv                every sample
+//! ```
+
+use std::fs;
+use std::hash::Hasher;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use ::study::{Asked, Collection, Report};
+use serde::{Deserialize, Serialize};
+
+use super::meshes::Mesh;
+use crate::failure::Failure;
+use crate::numbers::counted;
+use crate::output::{Output, cannot_write};
+use crate::text::complain;
+
+/// A place for results.
+pub(super) struct Folder {
+    path: PathBuf,
+}
+
+/// The study of one mesh as it is kept, or why there is none.
+#[derive(Debug, Deserialize, Serialize)]
+pub(super) struct Piece {
+    schema: u32,
+    mesh: String,
+    /// What the file of the mesh was like, so that another under its name is seen.
+    content: Option<String>,
+    settings: Asked,
+    study: Option<Report>,
+    failure: Option<String>,
+}
+
+impl Piece {
+    pub(super) fn new(mesh: &Mesh, settings: &Asked, result: Result<Report, String>) -> Self {
+        let (study, failure) = match result {
+            Ok(study) => (Some(study), None),
+            Err(reason) => (None, Some(reason)),
+        };
+        Self {
+            schema: ::study::SCHEMA,
+            mesh: mesh.name.clone(),
+            content: content(&mesh.path),
+            settings: settings.clone(),
+            study,
+            failure,
+        }
+    }
+
+    /// Takes it into the results.
+    pub(super) fn settle(self, collection: &mut Collection) {
+        match self.study {
+            Some(study) => collection.finish(study),
+            None => collection.fail(&self.mesh, self.failure.unwrap_or_default()),
+        }
+    }
+}
+
+/// The bytes of a file, told in short; `None` if it cannot be read.
+fn content(path: &Path) -> Option<String> {
+    let mut file = fs::File::open(path).ok()?;
+    let mut hasher = crc32fast::Hasher::new();
+    let mut buffer = vec![0; 1 << 16];
+    let mut bytes = 0_u64;
+    loop {
+        match file.read(&mut buffer).ok()? {
+            0 => break,
+            count => {
+                hasher.write(&buffer[..count]);
+                bytes += count as u64;
+            }
+        }
+    }
+    Some(format!("{bytes} bytes, crc32 {:08x}", hasher.finalize()))
+}
+
+impl Folder {
+    /// Opens `path`, which is made if it is not there, and takes in what is finished in it if that is
+    /// to be gone on with.
+    pub(super) fn open(
+        path: &Path,
+        resume: bool,
+        collection: &mut Collection,
+        meshes: &[Mesh],
+    ) -> Result<Self, Failure> {
+        let shown = path.display();
+        let folder = Self { path: path.into() };
+        let studies = folder.studies();
+        fs::create_dir_all(&studies).map_err(|cause| cannot_write(&shown.to_string(), &cause))?;
+        let pieces = folder.pieces()?;
+        if !resume {
+            return match pieces.len() {
+                0 => Ok(folder),
+                finished => {
+                    let finished = counted(finished, "study that is", "studies that are");
+                    Err(Failure::usage(format!(
+                        "{shown} has {finished} finished: go on with --resume, or name another folder"
+                    )))
+                }
+            };
+        }
+        for (file, text) in pieces {
+            let Ok(piece) = serde_json::from_str::<Piece>(&text) else {
+                let file = file.display();
+                complain(&format!(
+                    "note: {file}: no study that this program wrote, so it is made again"
+                ));
+                continue;
+            };
+            if piece.settings != collection.settings {
+                return Err(Failure::usage(format!(
+                    "{} was made with other settings: name another folder, or ask for the same",
+                    file.display()
+                )));
+            }
+            let Some(mesh) = meshes.iter().find(|mesh| mesh.name == piece.mesh) else {
+                continue; // no longer asked for
+            };
+            match content(&mesh.path) == piece.content {
+                true => piece.settle(collection),
+                false => complain(&format!(
+                    "note: {}: another file than when it was studied, so it is studied again",
+                    mesh.name
+                )),
+            }
+        }
+        Ok(folder)
+    }
+
+    /// The folder at `path`, for results that are complete.
+    pub(super) fn made(path: &Path) -> Result<Self, Failure> {
+        let shown = path.display().to_string();
+        fs::create_dir_all(path).map_err(|cause| cannot_write(&shown, &cause))?;
+        Ok(Self { path: path.into() })
+    }
+
+    fn studies(&self) -> PathBuf {
+        self.path.join("studies")
+    }
+
+    /// The files of finished studies, and what is in them.
+    fn pieces(&self) -> Result<Vec<(PathBuf, String)>, Failure> {
+        let failed = |path: &Path, cause: io::Error| {
+            Failure::usage(format!("{}: cannot be read: {cause}", path.display()))
+        };
+        let studies = self.studies();
+        let entries = fs::read_dir(&studies).map_err(|cause| failed(&studies, cause))?;
+        let mut pieces = Vec::new();
+        for entry in entries {
+            let path = entry.map_err(|cause| failed(&studies, cause))?.path();
+            if path.extension().is_some_and(|ending| ending == "json") {
+                let text = fs::read_to_string(&path).map_err(|cause| failed(&path, cause))?;
+                pieces.push((path, text));
+            }
+        }
+        pieces.sort();
+        Ok(pieces)
+    }
+
+    /// Keeps the study of mesh `number`: the file has its name when it is complete.
+    pub(super) fn keep(&self, number: usize, piece: &Piece) -> Result<(), Failure> {
+        let stem = Path::new(&piece.mesh).file_stem().unwrap_or_default();
+        let fine = |c: char| {
+            if c.is_ascii_alphanumeric() || "._-".contains(c) {
+                c
+            } else {
+                '_'
+            }
+        };
+        let stem: String = stem.to_string_lossy().chars().map(fine).take(40).collect();
+        let path = self.studies().join(format!("{number:05}-{stem}.json"));
+        Output::open(&path)?.finish(|writer| {
+            serde_json::to_writer(&mut *writer, piece)?;
+            writeln!(writer)
+        })
+    }
+
+    /// Writes all of it in one.
+    pub(super) fn finish(&self, collection: &Collection) -> Result<(), Failure> {
+        let output = |name: &str| Output::open(&self.path.join(name));
+        output("results.json")?.finish(|writer| collection.write_json(writer))?;
+        output("results.csv")?.finish(|writer| collection.write_csv(writer))
+    }
+}

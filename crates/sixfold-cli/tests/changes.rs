@@ -1,0 +1,138 @@
+//! `sixfold compare` as users meet it.
+
+use serde_json::Value;
+
+use crate::bad_input::refused;
+use crate::run::{Sixfold, TETRAHEDRON, done, text};
+
+/// A study of a tetrahedron in `a.json`, and in `b.json` the same with every time of half-edge doubled.
+fn two_studies() -> Sixfold {
+    let sixfold = Sixfold::new();
+    sixfold.file("t.obj", TETRAHEDRON);
+    let arguments = [
+        "study",
+        "t.obj",
+        "--budget",
+        "500ms",
+        "--operations",
+        "boundary,edge_length",
+        "--json",
+        "a.json",
+    ];
+    done(&sixfold, &arguments);
+    let mut study: Value = serde_json::from_str(&text(&sixfold, "a.json")).expect("JSON");
+    let doubled = |number: &mut Value| {
+        if let Some(ns) = number.as_f64() {
+            *number = (2.0 * ns).into();
+        }
+    };
+    for row in study["results"].as_array_mut().expect("rows") {
+        if row["backend"] == "half-edge" {
+            doubled(&mut row["median_ns"]);
+        }
+    }
+    for raw in study["raw"].as_array_mut().expect("raw") {
+        if raw["backend"] == "half-edge" {
+            for column in ["cpu_ns", "wall_ns"] {
+                raw[column]
+                    .as_array_mut()
+                    .into_iter()
+                    .flatten()
+                    .for_each(doubled);
+            }
+        }
+    }
+    study["environment"]["commit"] = "0123456".into();
+    study["control"] = Value::Null;
+    sixfold.file("b.json", &study.to_string());
+    sixfold
+}
+
+#[test]
+fn a_change_is_shown_and_can_end_a_build() {
+    let sixfold = two_studies();
+    let run = done(
+        &sixfold,
+        &["compare", "a.json", "b.json", "--json", "c.json"],
+    );
+    for part in [
+        "half-edge",
+        "2.00",
+        "slower",
+        "commit",
+        "0123456",
+        "2 slower",
+    ] {
+        assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
+    }
+    assert!(!run.stdout.contains("corner-table"), "{}", run.stdout);
+    let changes: Value = serde_json::from_str(&text(&sixfold, "c.json")).expect("JSON");
+    let rows = changes["rows"].as_array().expect("rows");
+    assert_eq!(rows.len(), 12);
+    let slower = rows.iter().filter(|row| row["verdict"] == "slower");
+    assert!(slower.clone().all(|row| row["backend"] == "half-edge"));
+    assert_eq!(slower.count(), 2);
+
+    let all = done(&sixfold, &["compare", "a.json", "b.json", "--all"]);
+    assert!(all.stdout.contains("corner-table"), "{}", all.stdout);
+    let failing = ["compare", "a.json", "b.json", "--fail-if-slower"];
+    assert_eq!(sixfold.run(&failing).code, Some(1));
+    // Nothing is slower than itself, or than twice itself.
+    done(
+        &sixfold,
+        &["compare", "a.json", "a.json", "--fail-if-slower"],
+    );
+    done(
+        &sixfold,
+        &["compare", "b.json", "a.json", "--fail-if-slower"],
+    );
+    let piped = done(&sixfold, &["compare", "a.json", "b.json", "--json", "-"]);
+    serde_json::from_str::<Value>(&piped.stdout).expect("JSON alone");
+}
+
+#[test]
+fn what_is_no_study_is_refused_in_one_message() {
+    let sixfold = two_studies();
+    let whole = text(&sixfold, "a.json");
+    sixfold.file("half.json", &whole[..whole.len() / 2]);
+    sixfold.file("old.json", "{\"schema\": 7}");
+    sixfold.file("foreign.json", "{\"name\": \"package\"}");
+    sixfold.file("words.json", "not JSON\n");
+    let pick = [
+        "pick",
+        "t.obj",
+        "--budget",
+        "200ms",
+        "--json",
+        "pick.json",
+        "--workload",
+        "smoothing",
+    ];
+    done(&sixfold, &pick);
+    let fewer = [
+        "study",
+        "t.obj",
+        "--budget",
+        "100ms",
+        "--operations",
+        "build",
+        "--json",
+        "build.json",
+    ];
+    done(&sixfold, &fewer);
+    for (file, says) in [
+        ("half.json", "ends too soon"),
+        ("old.json", "schema 7"),
+        ("foreign.json", "no `schema`"),
+        ("words.json", "is no JSON, line 1"),
+        ("pick.json", "`sixfold pick`"),
+        ("none.json", "cannot be read"),
+        (".", "cannot be read"),
+        ("build.json", "nothing to compare"),
+    ] {
+        refused(&sixfold, &["compare", "a.json", file], 2, says);
+        refused(&sixfold, &["compare", file, "a.json"], 2, says);
+    }
+    let over = ["compare", "a.json", "b.json", "--json", "b.json"];
+    refused(&sixfold, &over, 2, "would overwrite");
+}

@@ -1,0 +1,362 @@
+//! Studies of many meshes: what fails is listed, what is finished is kept, shards are put together.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+use crate::bad_input::refused;
+use crate::run::{Run, Sixfold, TETRAHEDRON, done, text};
+
+const QUICKLY: [&str; 4] = ["--budget", "60ms", "--operations", "boundary,edge_length"];
+
+/// Three meshes, one of them in a folder of its own, and one that is broken.
+fn scans() -> Sixfold {
+    let sixfold = Sixfold::new();
+    fs::create_dir_all(sixfold.folder().join("scans/deep")).expect("a folder");
+    sixfold.grid("scans/b grid.obj", 8);
+    sixfold.file("scans/a.OBJ", TETRAHEDRON);
+    sixfold.file("scans/deep/c.obj", TETRAHEDRON);
+    sixfold.file("scans/broken.obj", "v 0 0 0\nf 1 2 3\n");
+    sixfold.file("scans/notes.txt", "no mesh");
+    sixfold
+}
+
+fn study(sixfold: &Sixfold, more: &[&str]) -> Run {
+    let mut arguments = vec!["study", "scans"];
+    arguments.extend(QUICKLY);
+    arguments.extend(more);
+    sixfold.run(&arguments)
+}
+
+fn results(sixfold: &Sixfold, folder: &str) -> Value {
+    serde_json::from_str(&text(sixfold, &format!("{folder}/results.json"))).expect("JSON")
+}
+
+/// The meshes in a list of names, of studies or of failures.
+fn names(list: &Value) -> Vec<String> {
+    let name = |entry: &Value| {
+        let places = [entry, &entry["mesh"], &entry["mesh"]["name"]];
+        let name = places.into_iter().find_map(Value::as_str);
+        name.expect("a name").to_owned()
+    };
+    list.as_array().expect("a list").iter().map(name).collect()
+}
+
+fn pieces(sixfold: &Sixfold, folder: &str) -> Vec<PathBuf> {
+    let folder = sixfold.folder().join(folder).join("studies");
+    let entries = fs::read_dir(folder).expect("the folder");
+    let mut pieces: Vec<PathBuf> = entries.map(|e| e.expect("an entry").path()).collect();
+    pieces.sort();
+    pieces
+}
+
+#[test]
+fn a_folder_is_studied_mesh_by_mesh_and_what_fails_is_listed() {
+    let sixfold = scans();
+    let run = study(&sixfold, &["--report", "out", "--json", "-"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let report = results(&sixfold, "out");
+    let piped: Value = serde_json::from_str(&run.stdout).expect("JSON alone");
+    assert_eq!(report, piped);
+    let all = [
+        "scans/a.OBJ",
+        "scans/b grid.obj",
+        "scans/broken.obj",
+        "scans/deep/c.obj",
+    ];
+    assert_eq!(names(&report["meshes"]), all);
+    assert_eq!(names(&report["studies"]), [all[0], all[1], all[3]]);
+    assert_eq!(names(&report["failures"]), [all[2]]);
+    let reason = report["failures"][0]["reason"].as_str().expect("a reason");
+    assert!(reason.contains("line 2"), "{reason}");
+    assert_eq!(report["missing"], Value::Array(Vec::new()));
+    assert!(run.stderr.contains("broken.obj"), "{}", run.stderr);
+    // Every row that all three have is pooled over all three; the grid has a boundary.
+    let pooled = report["pooled"].as_array().expect("rows");
+    assert_eq!(pooled.len(), 12);
+    for row in pooled {
+        assert_eq!(row["meshes"], 3, "{row}");
+        let [low, mean, high] =
+            ["ci_low", "ratio_to_best", "ci_high"].map(|name| row[name].as_f64());
+        assert!(mean >= Some(0.99) && low <= mean && mean <= high, "{row}");
+    }
+    // One line for each sample, the control's too.
+    let studies = report["studies"].as_array().expect("studies");
+    let raw = studies
+        .iter()
+        .flat_map(|s| s["raw"].as_array().expect("raw"));
+    let samples: usize = raw
+        .map(|raw| raw["rounds"].as_array().map_or(0, Vec::len))
+        .sum();
+    let csv = text(&sixfold, "out/results.csv");
+    assert_eq!(csv.lines().count(), samples + 1);
+    assert_eq!(
+        csv.lines().next(),
+        Some("mesh,backend,operation,control,round,cpu_ns,wall_ns")
+    );
+    assert!(
+        csv.contains("scans/b grid.obj,half-edge,boundary,false,"),
+        "{csv:.400}"
+    );
+    assert_eq!(pieces(&sixfold, "out").len(), 4);
+
+    let shown = study(&sixfold, &[]);
+    assert_eq!(shown.code, Some(0), "{shown:?}");
+    for part in [
+        "3 meshes of 4 studied",
+        "1 of 4: scans/a.OBJ",
+        "× the best",
+        "half\nedge",
+    ] {
+        let part = part.split('\n').next().expect("a part");
+        assert!(shown.stdout.contains(part), "{part}: {}", shown.stdout);
+    }
+}
+
+#[test]
+fn what_is_finished_is_not_done_again() {
+    let sixfold = scans();
+    assert_eq!(study(&sixfold, &["--report", "out"]).code, Some(0));
+    let before = text(&sixfold, "out/results.json");
+    refused(
+        &sixfold,
+        &["study", "scans", "--report", "out"],
+        2,
+        "go on with --resume",
+    );
+    let again = study(&sixfold, &["--report", "out", "--resume"]);
+    assert_eq!(again.code, Some(0), "{again:?}");
+    assert_eq!(text(&sixfold, "out/results.json"), before);
+
+    // One is gone, one was cut off, and one is of a mesh that has changed since.
+    let paths = pieces(&sixfold, "out");
+    let name = |path: &Path| {
+        path.file_name()
+            .map(|name| name.to_string_lossy().into_owned())
+    };
+    assert_eq!(name(&paths[1]).as_deref(), Some("00001-b_grid.json"));
+    fs::remove_file(&paths[0]).expect("removed");
+    let whole = fs::read(&paths[1]).expect("a piece");
+    fs::write(&paths[1], &whole[..whole.len() / 2]).expect("cut off");
+    sixfold.grid("scans/deep/c.obj", 5);
+    let rest = study(&sixfold, &["--report", "out", "--resume"]);
+    assert_eq!(rest.code, Some(0), "{rest:?}");
+    assert!(
+        rest.stderr.contains("no study that this program wrote"),
+        "{}",
+        rest.stderr
+    );
+    assert!(
+        rest.stderr
+            .contains("another file than when it was studied"),
+        "{}",
+        rest.stderr
+    );
+    assert!(
+        rest.stdout.contains("3 of 3: scans/deep/c.obj, 32 faces"),
+        "{}",
+        rest.stdout
+    );
+    let report = results(&sixfold, "out");
+    assert_eq!(names(&report["studies"]).len(), 3);
+    assert_eq!(report["studies"][2]["mesh"]["faces"], 32);
+    let other = [
+        "study", "scans", "--report", "out", "--resume", "--seed", "7",
+    ];
+    refused(&sixfold, &other, 2, "other settings");
+}
+
+#[test]
+fn shards_are_merged_into_what_one_run_would_be() {
+    let sixfold = scans();
+    for shard in ["1/2", "2/2"] {
+        let folder = format!("shard-{}", &shard[..1]);
+        let run = study(&sixfold, &["--shard", shard, "--report", &folder]);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let report = results(&sixfold, &folder);
+        assert_eq!(
+            report["missing"].as_array().map(Vec::len),
+            Some(2),
+            "{shard}"
+        );
+    }
+    let alone = done(&sixfold, &["merge", "shard-1", "--json", "half.json"]);
+    assert!(
+        alone.stdout.contains("2 meshes are still to be done"),
+        "{}",
+        alone.stdout
+    );
+    done(
+        &sixfold,
+        &[
+            "merge",
+            "shard-1",
+            "shard-2/results.json",
+            "--report",
+            "all",
+        ],
+    );
+    assert_eq!(study(&sixfold, &["--report", "one"]).code, Some(0));
+    let [merged, single] = ["all", "one"].map(|folder| results(&sixfold, folder));
+    let form = |value: &Value| -> Vec<String> {
+        value
+            .as_object()
+            .expect("an object")
+            .keys()
+            .cloned()
+            .collect()
+    };
+    assert_eq!(form(&merged), form(&single));
+    for list in ["meshes", "failures", "missing", "settings"] {
+        assert_eq!(merged[list], single[list], "{list}");
+    }
+    assert_eq!(names(&merged["studies"]), names(&single["studies"]));
+    let keys = |report: &Value| -> Vec<(Value, Value)> {
+        let rows = report["pooled"].as_array().expect("rows").iter();
+        rows.map(|row| (row["backend"].clone(), row["operation"].clone()))
+            .collect()
+    };
+    assert_eq!(keys(&merged), keys(&single));
+}
+
+#[test]
+fn what_does_not_belong_together_is_not_merged() {
+    let sixfold = scans();
+    assert_eq!(study(&sixfold, &["--report", "one"]).code, Some(0));
+    let mut other: Value = results(&sixfold, "one");
+    other["settings"]["budget_s"] = 60.into();
+    sixfold.file("slow.json", &other.to_string());
+    let mut other: Value = results(&sixfold, "one");
+    other["meshes"][0] = "elsewhere.obj".into();
+    sixfold.file("elsewhere.json", &other.to_string());
+    let whole = text(&sixfold, "one/results.json");
+    sixfold.file("half.json", &whole[..whole.len() / 2]);
+    sixfold.file("foreign.json", "{}");
+    sixfold.file("later.json", "{\"schema\": 9}");
+    for (shard, says) in [
+        ("slow.json", "--budget: 60 s"),
+        ("elsewhere.json", "other meshes: elsewhere.obj"),
+        ("half.json", "ends too soon"),
+        ("foreign.json", "no `schema`"),
+        ("later.json", "schema 9"),
+        ("none", "cannot be read"),
+        ("scans", "cannot be read"),
+    ] {
+        refused(&sixfold, &["merge", "one", shard, "--json", "-"], 2, says);
+    }
+    refused(&sixfold, &["merge", "one"], 2, "--report DIR");
+    let over = ["merge", "one", "slow.json", "--json", "slow.json"];
+    refused(&sixfold, &over, 2, "would overwrite");
+}
+
+#[test]
+fn places_that_cannot_be_are_refused_before_anything_is_measured() {
+    let sixfold = scans();
+    fs::create_dir(sixfold.folder().join("empty")).expect("a folder");
+    for (arguments, says) in [
+        (&["study", "empty"][..], "no .obj file"),
+        (
+            &["study", "scans", "--csv", "x.csv"],
+            "--csv is for one mesh",
+        ),
+        (
+            &["study", "scans", "--report", "scans/a.OBJ/x"],
+            "cannot be written",
+        ),
+        (
+            &["study", "scans", "--shard", "3/2", "--report", "x"],
+            "from 1/n to n/n",
+        ),
+        (&["study", "scans", "--shard", "1/2"], "--report"),
+        (&["study", "scans", "--resume"], "--report"),
+    ] {
+        refused(&sixfold, arguments, 2, says);
+    }
+    sixfold.file("only.obj", "v 0 0 0\n");
+    let run = sixfold.run(&["study", "only.obj", "none.obj", "--budget", "50ms"]);
+    assert_eq!(run.code, Some(2), "{run:?}");
+    assert!(
+        run.stderr.contains("none of the meshes could be studied"),
+        "{run:?}"
+    );
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_keeps_what_was_there() {
+    let sixfold = scans();
+    let run = study(&sixfold, &["--json", "/dev/full"]);
+    assert_eq!(run.code, Some(2), "{run:?}");
+    assert!(run.stderr.contains("cannot be written"), "{}", run.stderr);
+    assert!(
+        run.stdout.contains("3 meshes of 4 studied"),
+        "{}",
+        run.stdout
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_study_goes_on_where_it_left_off() {
+    use std::time::Duration;
+    let sixfold = scans();
+    let arguments = [
+        "study",
+        "scans",
+        "--budget",
+        "2s",
+        "--operations",
+        "boundary",
+        "--report",
+        "out",
+    ];
+    // The first has its two seconds, the second is in the midst of them.
+    let run = sixfold.interrupted(&arguments, "INT", Duration::from_millis(3500));
+    assert!(run.stdout.contains("still to be done"), "{}", run.stdout);
+    let kept = results(&sixfold, "out");
+    let finished = names(&kept["studies"]).len();
+    assert!((1..3).contains(&finished), "{finished}");
+    assert_eq!(pieces(&sixfold, "out").len(), finished);
+    let mut go_on = arguments.to_vec();
+    go_on.push("--resume");
+    done(&sixfold, &go_on);
+    let whole = results(&sixfold, "out");
+    assert_eq!(names(&whole["studies"]).len(), 3);
+    assert_eq!(whole["studies"][0], kept["studies"][0]);
+}
+
+/// The script of the documents, run as Slurm runs it: once for each job of the array.
+#[cfg(unix)]
+#[test]
+fn the_script_for_a_cluster_does_what_it_says() {
+    let sixfold = scans();
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let script = here.join("../../reports/cluster/study.sbatch");
+    let program = Path::new(env!("CARGO_BIN_EXE_sixfold"));
+    let path = std::env::var("PATH").unwrap_or_default();
+    let path = format!("{}:{path}", program.parent().expect("a folder").display());
+    for job in 1..=3 {
+        let mut command = Command::new("bash");
+        command.arg(&script).current_dir(sixfold.folder());
+        command
+            .env("PATH", &path)
+            .env("MESHES", "scans")
+            .env("RESULTS", "results");
+        command.env("SLURM_ARRAY_TASK_ID", job.to_string());
+        command
+            .env("SLURM_ARRAY_TASK_COUNT", "3")
+            .env("BUDGET", "100ms");
+        let output = command.output().expect("bash runs");
+        assert!(output.status.success(), "{output:?}");
+    }
+    let shards = ["results/shard-1", "results/shard-2", "results/shard-3"];
+    let mut merge = vec!["merge"];
+    merge.extend(shards);
+    merge.extend(["--report", "results/all"]);
+    done(&sixfold, &merge);
+    let report = results(&sixfold, "results/all");
+    assert_eq!(names(&report["studies"]).len(), 3);
+    assert_eq!(report["missing"].as_array().map(Vec::len), Some(0));
+}

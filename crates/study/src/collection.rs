@@ -1,0 +1,473 @@
+//! Studies of many meshes: one by one, and pooled.
+//!
+//! Meshes differ far more than rounds do, so what is said of all of them rests on meshes: geometric
+//! means of the ratios to the best of each mesh, and intervals by drawing the meshes anew.
+
+use std::io;
+
+use serde::{Deserialize, Serialize};
+use workload::Operation;
+
+use crate::read::{ReadError, check_schema, parsed};
+use crate::report::{Agreement, Report, SCHEMA, Standing, write_json};
+use crate::statistics::geometric_mean;
+
+/// Studies of several meshes, with the same settings.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Collection {
+    /// The version of the shape.
+    pub schema: u32,
+    /// All meshes that it is of, in order.
+    pub meshes: Vec<String>,
+    /// What is the same for all of them.
+    pub settings: Asked,
+    /// Those that are finished, in that order.
+    pub studies: Vec<Report>,
+    /// Those that could not be studied, and why, in that order.
+    pub failures: Vec<Failed>,
+    /// Those that are still to be done, in that order: of another shard, or it was interrupted.
+    pub missing: Vec<String>,
+    /// Operation by operation, and within each backend by backend.
+    pub pooled: Vec<Pooled>,
+    /// What the pooled figures show, in words.
+    pub words: Vec<String>,
+}
+
+/// What has to be the same for studies to be put together.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Asked {
+    /// The backends; empty for all.
+    pub backends: Vec<String>,
+    /// Programs of others, by the names of their columns.
+    pub externals: Vec<String>,
+    /// The operations; empty for all.
+    pub operations: Vec<Operation>,
+    /// How long each study might take, in seconds.
+    pub budget_s: f64,
+    /// What decided samples and orders.
+    pub seed: u64,
+    /// Polygons were cut into triangles first.
+    pub triangulate: bool,
+    /// Files with degenerate faces were refused.
+    pub strict: bool,
+}
+
+/// A mesh that could not be studied.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct Failed {
+    /// Its name.
+    pub mesh: String,
+    /// Why not.
+    pub reason: String,
+}
+
+/// One operation on one backend, over all meshes that it was measured on.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Pooled {
+    /// The backend.
+    pub backend: String,
+    /// The operation.
+    pub operation: Operation,
+    /// On how many meshes it was measured.
+    pub meshes: usize,
+    /// On how many it is the fastest alone.
+    pub best: usize,
+    /// On how many it ties for that.
+    pub tied: usize,
+    /// The geometric mean of its ratio to the best of each mesh.
+    pub ratio_to_best: f64,
+    /// The lower end of its 95 % interval, by drawing the meshes anew; `None` below three.
+    pub ci_low: Option<f64>,
+    /// Its upper end.
+    pub ci_high: Option<f64>,
+    /// The geometric mean of its time for each element, in nanoseconds.
+    pub ns_per_element: Option<f64>,
+}
+
+/// Why collections cannot be put together.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum MergeError {
+    /// Other meshes.
+    #[error("it is of other meshes: {which}")]
+    OtherMeshes { which: String },
+    /// Other settings.
+    #[error("it was made with another {what}: {theirs}, and not {ours}")]
+    OtherSettings {
+        what: &'static str,
+        ours: String,
+        theirs: String,
+    },
+}
+
+impl Collection {
+    /// Of these meshes, none of which is done.
+    pub fn new(meshes: Vec<String>, settings: Asked) -> Self {
+        Self {
+            schema: SCHEMA,
+            missing: meshes.clone(),
+            meshes,
+            settings,
+            studies: Vec::new(),
+            failures: Vec::new(),
+            pooled: Vec::new(),
+            words: Vec::new(),
+        }
+    }
+
+    /// Takes in the study of one of the meshes, in the place of an older one.
+    pub fn finish(&mut self, study: Report) {
+        let mesh = study.mesh.name.clone();
+        self.forget(&mesh);
+        self.studies.push(study);
+        self.settle();
+    }
+
+    /// Takes in that one of the meshes could not be studied.
+    pub fn fail(&mut self, mesh: &str, reason: String) {
+        self.forget(mesh);
+        self.failures.push(Failed {
+            mesh: mesh.into(),
+            reason,
+        });
+        self.settle();
+    }
+
+    fn forget(&mut self, mesh: &str) {
+        self.studies.retain(|study| study.mesh.name != mesh);
+        self.failures.retain(|failed| failed.mesh != mesh);
+    }
+
+    /// Takes in what `other` has that this one misses.
+    ///
+    /// # Errors
+    ///
+    /// Other meshes, or other settings: then figures would stand side by side that cannot be compared.
+    pub fn merge(&mut self, other: Self) -> Result<(), MergeError> {
+        if other.meshes != self.meshes {
+            let strange = |mesh: &&String| !self.meshes.contains(mesh);
+            let which = match other.meshes.iter().find(strange) {
+                Some(mesh) => mesh.clone(),
+                None => format!("{} of {}", other.meshes.len(), self.meshes.len()),
+            };
+            return Err(MergeError::OtherMeshes { which });
+        }
+        self.settings.check(&other.settings)?;
+        for study in other.studies {
+            if self.missing.contains(&study.mesh.name) {
+                self.studies.push(study);
+            }
+        }
+        for failed in other.failures {
+            if self.missing.contains(&failed.mesh) {
+                self.failures.push(failed);
+            }
+        }
+        self.settle();
+        Ok(())
+    }
+
+    /// Puts everything into the order of the meshes, and pools it.
+    fn settle(&mut self) {
+        let place = |mesh: &str| self.meshes.iter().position(|other| other == mesh);
+        self.studies.sort_by_key(|study| place(&study.mesh.name));
+        self.failures.sort_by_key(|failed| place(&failed.mesh));
+        let done = |mesh: &&String| {
+            self.studies.iter().any(|study| study.mesh.name == **mesh)
+                || self.failures.iter().any(|failed| failed.mesh == **mesh)
+        };
+        let missing = self.meshes.iter().filter(|mesh| !done(mesh));
+        self.missing = missing.cloned().collect();
+        self.pooled = pooled(&self.studies);
+        self.words = words(&self.pooled);
+    }
+
+    /// Results that no difference between the backends explains.
+    pub fn mismatches(&self) -> usize {
+        let each = self.studies.iter().map(|study| study.mismatches().count());
+        each.sum()
+    }
+
+    /// Writes it as JSON.
+    ///
+    /// # Errors
+    ///
+    /// What `writer` reports.
+    pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
+        write_json(self, writer)
+    }
+
+    /// Writes one line for each sample, under a line with the names of the fields: `mesh`, `backend`,
+    /// `operation`, `control`, `round`, `cpu_ns`, `wall_ns`.
+    ///
+    /// # Errors
+    ///
+    /// What `writer` reports.
+    pub fn write_csv(&self, writer: impl io::Write) -> io::Result<()> {
+        let mut lines = csv::Writer::from_writer(writer);
+        let names = [
+            "mesh",
+            "backend",
+            "operation",
+            "control",
+            "round",
+            "cpu_ns",
+            "wall_ns",
+        ];
+        lines.write_record(names).map_err(io::Error::from)?;
+        for study in &self.studies {
+            for raw in &study.raw {
+                for (i, (round, wall_ns)) in raw.rounds.iter().zip(&raw.wall_ns).enumerate() {
+                    let cpu_ns = raw.cpu_ns.as_ref().and_then(|column| column.get(i));
+                    let start = (&study.mesh.name, &raw.backend, raw.operation, raw.control);
+                    let line = (start, round, cpu_ns, wall_ns);
+                    lines.serialize(line).map_err(io::Error::from)?;
+                }
+            }
+        }
+        lines.flush()
+    }
+
+    /// Reads what [`write_json`](Self::write_json) wrote.
+    ///
+    /// # Errors
+    ///
+    /// Text that ends too soon or is no JSON, results of another program, schema or command.
+    pub fn read_json(text: &str) -> Result<Self, ReadError> {
+        check_schema(text)?;
+        parsed(text)
+    }
+}
+
+impl Asked {
+    fn check(&self, other: &Self) -> Result<(), MergeError> {
+        let names = |operations: &[Operation]| {
+            let names: Vec<&str> = operations.iter().map(|o| o.name()).collect();
+            names.join(",")
+        };
+        let of = |asked: &Self| -> [(&'static str, String); 7] {
+            [
+                ("--backends", asked.backends.join(",")),
+                ("--external", asked.externals.join(",")),
+                ("--operations", names(&asked.operations)),
+                ("--budget", format!("{} s", asked.budget_s)),
+                ("--seed", asked.seed.to_string()),
+                ("--triangulate", asked.triangulate.to_string()),
+                ("--strict", asked.strict.to_string()),
+            ]
+        };
+        for ((what, ours), (_, theirs)) in of(self).into_iter().zip(of(other)) {
+            if ours != theirs {
+                let [ours, theirs] = [ours, theirs].map(|text| match text.is_empty() {
+                    true => "all".into(),
+                    false => text,
+                });
+                return Err(MergeError::OtherSettings { what, ours, theirs });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Every operation and backend that was measured on some mesh.
+fn pooled(studies: &[Report]) -> Vec<Pooled> {
+    let mut backends: Vec<&str> = Vec::new();
+    for study in studies {
+        for backend in &study.backends {
+            if !backends.contains(&backend.name.as_str()) {
+                backends.push(&backend.name);
+            }
+        }
+    }
+    let mut pooled = Vec::new();
+    for operation in Operation::ALL {
+        for &backend in &backends {
+            let rows = studies.iter().filter_map(|study| {
+                let mut rows = study.rows(operation);
+                rows.find(|row| row.backend == backend && row.agreement != Agreement::Mismatch)
+            });
+            let (mut best, mut tied) = (0, 0);
+            let (mut ratios, mut times) = (Vec::new(), Vec::new());
+            for row in rows {
+                let Some(ratio) = row.ratio_to_best else {
+                    continue;
+                };
+                ratios.push(ratio);
+                times.extend(row.ns_per_element);
+                best += usize::from(row.standing == Some(Standing::Best));
+                tied += usize::from(row.standing == Some(Standing::Tied));
+            }
+            let Some((ratio_to_best, interval)) = geometric_mean(&ratios) else {
+                continue;
+            };
+            pooled.push(Pooled {
+                backend: backend.into(),
+                operation,
+                meshes: ratios.len(),
+                best,
+                tied,
+                ratio_to_best,
+                ci_low: interval.map(|[low, _]| low),
+                ci_high: interval.map(|[_, high]| high),
+                ns_per_element: geometric_mean(&times).map(|(mean, _)| mean),
+            });
+        }
+    }
+    pooled
+}
+
+/// Who is ahead in how many operations over all meshes.
+fn words(pooled: &[Pooled]) -> Vec<String> {
+    let mut words = Vec::new();
+    for rows in pooled.chunk_by(|a, b| a.operation == b.operation) {
+        let most = rows.iter().map(|row| row.meshes).max().unwrap_or(0);
+        let leader = rows
+            .iter()
+            .filter(|row| row.meshes == most)
+            .min_by(|a, b| a.ratio_to_best.total_cmp(&b.ratio_to_best));
+        let Some(leader) = leader.filter(|_| rows.len() > 1) else {
+            continue;
+        };
+        let Pooled {
+            backend,
+            operation,
+            meshes,
+            best,
+            tied,
+            ratio_to_best,
+            ..
+        } = leader;
+        let ties = match tied {
+            0 => String::new(),
+            _ => format!(" and ties on {tied}"),
+        };
+        words.push(format!(
+            "{operation}: {backend} is ahead, the fastest on {best} of {meshes} meshes{ties}; {ratio_to_best:.2} × the best on average."
+        ));
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::AtomicBool;
+    use std::time::Duration;
+
+    use sixfold::shapes;
+
+    use super::*;
+    use crate::{Settings, Specimen, study};
+
+    fn asked() -> Asked {
+        Asked {
+            backends: Vec::new(),
+            externals: Vec::new(),
+            operations: vec![Operation::Boundary],
+            budget_s: 0.02,
+            seed: 1,
+            triangulate: false,
+            strict: false,
+        }
+    }
+
+    /// A study in which half-edge is so many times as slow as the fastest, corner-table.
+    fn report(mesh: &str, ratio: f64) -> Report {
+        let specimen = Specimen::new(mesh, shapes::icosahedron());
+        let settings = Settings {
+            operations: vec![Operation::Boundary],
+            budget: Duration::from_millis(20),
+            ..Settings::default()
+        };
+        let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ());
+        let mut report = report.expect("a study");
+        report
+            .results
+            .retain(|row| row.backend == "half-edge" || row.backend == "corner-table");
+        for row in &mut report.results {
+            let best = row.backend == "corner-table";
+            row.ratio_to_best = Some(if best { 1.0 } else { ratio });
+            row.standing = Some(if best {
+                Standing::Best
+            } else {
+                Standing::Slower
+            });
+        }
+        report
+    }
+
+    fn names(list: &[&str]) -> Vec<String> {
+        list.iter().map(|&name| name.to_owned()).collect()
+    }
+
+    #[test]
+    fn ratios_are_pooled_by_geometric_means_over_meshes() {
+        let mut all = Collection::new(names(&["a", "b", "c", "d"]), asked());
+        all.finish(report("c", 8.0));
+        all.finish(report("a", 2.0));
+        all.fail("d", "no faces".into());
+        assert_eq!(all.missing, ["b"]);
+        all.finish(report("b", 4.0));
+        let order: Vec<&str> = all.studies.iter().map(|s| s.mesh.name.as_str()).collect();
+        assert_eq!((order, all.missing.len()), (vec!["a", "b", "c"], 0));
+        let half_edge = all.pooled.iter().find(|row| row.backend == "half-edge");
+        let half_edge = half_edge.expect("measured");
+        assert!(
+            (half_edge.ratio_to_best - 4.0).abs() < 1e-9,
+            "{half_edge:?}"
+        );
+        let (low, high) = half_edge.ci_low.zip(half_edge.ci_high).expect("three");
+        assert!(
+            (2.0..4.0).contains(&low) && high > 4.0 && high <= 8.0,
+            "{half_edge:?}"
+        );
+        let corner_table = all.pooled.iter().find(|row| row.backend == "corner-table");
+        assert_eq!(corner_table.map(|row| (row.best, row.meshes)), Some((3, 3)));
+        assert_eq!(all.words.len(), 1);
+        assert!(
+            all.words[0].contains("corner-table is ahead"),
+            "{:?}",
+            all.words
+        );
+        // Done once more: the newer one counts.
+        all.finish(report("b", 1.0));
+        assert_eq!(all.studies.len(), 3);
+    }
+
+    #[test]
+    fn shards_merge_into_what_one_run_would_be() {
+        let meshes = names(&["a", "b", "c"]);
+        let mut whole = Collection::new(meshes.clone(), asked());
+        let studies = [report("a", 2.0), report("b", 3.0)];
+        let [mut one, mut two] = [0, 1].map(|_| Collection::new(meshes.clone(), asked()));
+        for (study, shard) in studies.into_iter().zip([&mut one, &mut two]) {
+            whole.finish(study.clone());
+            shard.finish(study);
+        }
+        whole.fail("c", "broken".into());
+        one.fail("c", "broken".into());
+        let written = |collection: &Collection| {
+            let mut text = Vec::new();
+            collection.write_json(&mut text).expect("memory");
+            String::from_utf8(text).expect("UTF-8")
+        };
+        let two = Collection::read_json(&written(&two)).expect("as written");
+        one.merge(two).expect("the same meshes");
+        assert_eq!(written(&one), written(&whole));
+    }
+
+    #[test]
+    fn what_cannot_be_compared_is_not_merged() {
+        let mut one = Collection::new(names(&["a", "b"]), asked());
+        let other = Collection::new(names(&["a", "z"]), asked());
+        let error = one.merge(other).expect_err("another mesh").to_string();
+        assert!(error.contains("other meshes: z"), "{error}");
+        let slower = Asked {
+            budget_s: 60.0,
+            ..asked()
+        };
+        let other = Collection::new(names(&["a", "b"]), slower);
+        let error = one.merge(other).expect_err("another budget").to_string();
+        assert!(error.contains("--budget: 60 s, and not 0.02 s"), "{error}");
+    }
+}

@@ -1,0 +1,168 @@
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use sixfold::shapes;
+
+use super::*;
+use crate::{Settings, Specimen, study};
+
+/// A study whose samples are replaced by known ones: what was measured, times `factor`.
+fn report(factor: impl Fn(&str, Operation) -> f64) -> Report {
+    let specimen = Specimen::new("ball", shapes::icosahedron());
+    let settings = Settings {
+        operations: vec![Operation::Boundary, Operation::EdgeLength, Operation::Build],
+        budget: Duration::from_millis(30),
+        ..Settings::default()
+    };
+    let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ());
+    let mut report = report.expect("a study");
+    report.control = None;
+    for raw in &mut report.raw {
+        let base = 1000.0 * factor(&raw.backend, raw.operation);
+        // Nine samples, two per cent apart.
+        let known: Vec<f64> = (0..9)
+            .map(|i| base * (1.0 + 0.005 * f64::from(i - 4)))
+            .collect();
+        raw.rounds = (0..9).collect();
+        raw.wall_ns = known.clone();
+        raw.cpu_ns = Some(known);
+    }
+    for row in &mut report.results {
+        row.median_ns = Some(1000.0 * factor(&row.backend, row.operation));
+        let fastest = row.backend == "half-edge";
+        row.standing = Some(if fastest {
+            Standing::Best
+        } else {
+            Standing::Slower
+        });
+    }
+    report
+}
+
+#[test]
+fn a_known_change_is_found_and_nothing_else() {
+    let before = report(|_, _| 1.0);
+    let after = report(|backend, operation| match (backend, operation) {
+        ("half-edge", Operation::EdgeLength) => 1.5,
+        ("corner-table", Operation::Build) => 0.5,
+        // Within the drift of a machine, however narrow the intervals are.
+        ("winged-edge", Operation::Boundary) => 1.06,
+        _ => 1.0,
+    });
+    let quiet = Comparing {
+        drift: 1.05,
+        ..Comparing::default()
+    };
+    assert_eq!(compare(&before, &after, quiet).changed().count(), 3);
+    let changes = compare(&before, &after, Comparing::default());
+    assert_eq!(changes.rows.len(), before.results.len());
+    let found: Vec<_> = { changes.changed() }
+        .map(|row| (row.backend.as_str(), row.operation, row.verdict))
+        .collect();
+    assert_eq!(
+        found,
+        [
+            ("corner-table", Operation::Build, Verdict::Faster),
+            ("half-edge", Operation::EdgeLength, Verdict::Slower),
+        ]
+    );
+    let row = changes.changed().last().expect("two");
+    assert!((row.ratio - 1.5).abs() < 1e-9, "{row:?}");
+    let (low, high) = row.ci_low.zip(row.ci_high).expect("nine samples each");
+    assert!(
+        low > 1.4 && low < 1.5 && high > 1.5 && high < 1.6,
+        "{row:?}"
+    );
+    assert_eq!(changes.overall, Some(1.0));
+    assert!(changes.environment.is_empty() && changes.meshes.is_none());
+    assert!(
+        changes.words[0].contains("1 are faster, 1 slower"),
+        "{:?}",
+        changes.words
+    );
+}
+
+#[test]
+fn a_slower_machine_is_one_factor_and_what_is_left_is_told() {
+    let before = report(|_, _| 1.0);
+    let mut after = report(|backend, operation| match (backend, operation) {
+        ("half-edge", Operation::EdgeLength) => 2.0,
+        _ => 3.0,
+    });
+    after.environment.cpu_model = Some("an old one".into());
+    let absolute = compare(&before, &after, Comparing::default());
+    assert_eq!(absolute.count(Verdict::Slower), absolute.rows.len());
+    assert!(
+        absolute.words[1].contains("3.00 × slower"),
+        "{:?}",
+        absolute.words
+    );
+    assert!(
+        absolute.words[1].contains("--relative"),
+        "{:?}",
+        absolute.words
+    );
+    assert_eq!(absolute.environment[0].what, "processor");
+    let relative = compare(
+        &before,
+        &after,
+        Comparing {
+            relative: true,
+            ..Comparing::default()
+        },
+    );
+    let found: Vec<_> = { relative.changed() }
+        .map(|row| (row.backend.as_str(), row.verdict))
+        .collect();
+    assert_eq!(found, [("half-edge", Verdict::Faster)]);
+}
+
+#[test]
+fn what_only_one_has_another_work_and_another_winner_are_told() {
+    let before = report(|_, _| 1.0);
+    let mut after = report(|_, _| 1.0);
+    after
+        .results
+        .retain(|row| row.operation != Operation::Build);
+    for row in &mut after.results {
+        let now = row.backend == "corner-table";
+        row.standing = Some(if now {
+            Standing::Best
+        } else {
+            Standing::Slower
+        });
+    }
+    let edge_length = |row: &&mut ResultRow| row.operation == Operation::EdgeLength;
+    let row = after.results.iter_mut().find(edge_length).expect("a row");
+    row.checksum = row.checksum.map(|sum| sum * 1.01);
+    let name = row.backend.clone();
+    after.backends[3].bytes = Some(7);
+    let changes = compare(&before, &after, Comparing::default());
+    assert_eq!(changes.only_before.len(), 6);
+    assert!(
+        changes.only_before[0].starts_with("build on "),
+        "{changes:?}"
+    );
+    let other: Vec<_> = changes.changed().map(|row| &row.backend).collect();
+    assert_eq!(other, [&name]);
+    assert_eq!(changes.bytes[0].0, "winged-edge");
+    assert_eq!(changes.bytes[0].2, 7);
+    assert_eq!(changes.winners.len(), 2);
+    assert_eq!(changes.winners[0].after, "corner-table");
+    assert!(
+        changes.words.last().expect("words").contains(&name),
+        "{:?}",
+        changes.words
+    );
+}
+
+#[test]
+fn without_samples_only_what_is_beyond_doubt_counts() {
+    let before = report(|_, _| 1.0);
+    let mut after = report(|backend, _| if backend == "half-edge" { 2.5 } else { 1.5 });
+    after.raw.clear();
+    let changes = compare(&before, &after, Comparing::default());
+    let found: Vec<_> = changes.changed().map(|row| row.backend.as_str()).collect();
+    assert_eq!(found, ["half-edge"; 3]);
+    assert!(changes.rows.iter().all(|row| row.ci_low.is_none()));
+}

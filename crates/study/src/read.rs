@@ -1,0 +1,179 @@
+//! Results read back: what a program wrote that may have been another version, or no Sixfold at all.
+
+use std::io;
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::error::Category;
+
+use crate::report::{Report, SCHEMA};
+
+/// Why that is no result to go on with.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum ReadError {
+    /// The file cannot be read.
+    #[error("cannot be read: {cause}")]
+    Io { cause: io::Error },
+    /// It ends too soon, or was never JSON.
+    #[error("{what}, line {line}, column {column}: {cause}")]
+    NoJson {
+        what: &'static str,
+        line: usize,
+        column: usize,
+        cause: String,
+    },
+    /// JSON of somebody else.
+    #[error("is JSON, but nothing that sixfold wrote: it has no `schema`")]
+    Foreign,
+    /// Of another version.
+    #[error("has schema {found}, and this program reads {SCHEMA}: use the sixfold that wrote it")]
+    OtherSchema { found: u64 },
+    /// Of another command.
+    #[error("is {found}, and not the result of `sixfold study`")]
+    OtherKind { found: &'static str },
+    /// A field that is missing, or is not what it should be.
+    #[error("is not as sixfold writes it: {cause}")]
+    Malformed { cause: String },
+}
+
+impl Report {
+    /// Reads what [`write_json`](Self::write_json) wrote.
+    ///
+    /// # Errors
+    ///
+    /// Text that ends too soon or is no JSON, results of another program, schema or command.
+    pub fn read_json(text: &str) -> Result<Self, ReadError> {
+        check_schema(text)?;
+        if let Some(found) = other_kind(text)? {
+            return Err(ReadError::OtherKind { found });
+        }
+        parsed(text)
+    }
+}
+
+/// Refuses what this version of Sixfold cannot have written.
+pub(crate) fn check_schema(text: &str) -> Result<(), ReadError> {
+    #[derive(Deserialize)]
+    struct Head {
+        schema: Option<u64>,
+    }
+
+    let head: Head = parsed(text)?;
+    match head.schema {
+        None => Err(ReadError::Foreign),
+        Some(found) if found != u64::from(SCHEMA) => Err(ReadError::OtherSchema { found }),
+        Some(_) => Ok(()),
+    }
+}
+
+/// Which other command wrote it, if any did.
+fn other_kind(text: &str) -> Result<Option<&'static str>, ReadError> {
+    /// Some field of each.
+    #[derive(Deserialize)]
+    struct Fields {
+        ranking: Option<serde::de::IgnoredAny>,
+        sizes: Option<serde::de::IgnoredAny>,
+        comparisons: Option<serde::de::IgnoredAny>,
+        rows: Option<serde::de::IgnoredAny>,
+        studies: Option<serde::de::IgnoredAny>,
+        results: Option<serde::de::IgnoredAny>,
+    }
+
+    let fields: Fields = parsed(text)?;
+    Ok(match fields {
+        Fields {
+            ranking: Some(_), ..
+        } => Some("the answer of `sixfold pick`"),
+        Fields { sizes: Some(_), .. } => Some("the result of `sixfold growth`"),
+        Fields {
+            comparisons: Some(_),
+            ..
+        } => Some("the result of `sixfold orders`"),
+        Fields { rows: Some(_), .. } => Some("the result of `sixfold why`"),
+        Fields {
+            studies: Some(_), ..
+        } => Some("of several meshes"),
+        Fields { results: None, .. } => Some("the result of another command"),
+        _ => None,
+    })
+}
+
+pub(crate) fn parsed<T: DeserializeOwned>(text: &str) -> Result<T, ReadError> {
+    serde_json::from_str(text).map_err(|error| {
+        let what = match error.classify() {
+            Category::Eof => "ends too soon, as if it had been cut off",
+            Category::Syntax => "is no JSON",
+            Category::Data | Category::Io => {
+                return ReadError::Malformed {
+                    cause: error.to_string(),
+                };
+            }
+        };
+        ReadError::NoJson {
+            what,
+            line: error.line(),
+            column: error.column(),
+            cause: error.to_string(),
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::AtomicBool;
+    use std::time::Duration;
+
+    use sixfold::shapes;
+
+    use super::*;
+    use crate::{Settings, Specimen, study};
+    use workload::Operation;
+
+    fn written() -> String {
+        let specimen = Specimen::new("ball", shapes::icosahedron());
+        let settings = Settings {
+            operations: vec![Operation::Boundary, Operation::EdgeLength],
+            budget: Duration::from_millis(30),
+            ..Settings::default()
+        };
+        let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ());
+        let mut text = Vec::new();
+        let report = report.expect("a study");
+        report.write_json(&mut text).expect("memory");
+        String::from_utf8(text).expect("UTF-8")
+    }
+
+    #[test]
+    fn what_is_written_is_read_back_to_the_last_digit() {
+        let text = written();
+        let report = Report::read_json(&text).expect("as written");
+        let mut again = Vec::new();
+        report.write_json(&mut again).expect("memory");
+        assert_eq!(String::from_utf8_lossy(&again), text);
+        assert_eq!(report.backends[4].name, "half-edge");
+    }
+
+    #[test]
+    fn what_is_none_of_ours_is_refused() {
+        let text = written();
+        let half = &text[..text.len() / 2];
+        for (given, says) in [
+            ("", "ends too soon"),
+            (half, "ends too soon"),
+            ("no JSON", "is no JSON, line 1, column 2"),
+            ("{}", "no `schema`"),
+            ("{\"schema\": \"three\"}", "is not as sixfold writes it"),
+            ("[1]", "is not as sixfold writes it"),
+            ("{\"schema\": 99}", "schema 99"),
+            ("{\"schema\": 1, \"ranking\": []}", "`sixfold pick`"),
+            ("{\"schema\": 1, \"sizes\": []}", "`sixfold growth`"),
+            ("{\"schema\": 1}", "another command"),
+            ("{\"schema\": 1, \"results\": []}", "missing field"),
+        ] {
+            let error = Report::read_json(given).expect_err(says).to_string();
+            assert!(error.contains(says), "{given:.40}: {error}");
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! What to say of a name that nothing has.
+
+use strsim::jaro_winkler;
+
+/// Names less alike than this are no slip of the keyboard.
+const ALIKE: f64 = 0.8;
+
+/// `no operation is called `boundry` (did you mean `boundary`?): choose from …`.
+pub fn unknown(kind: &str, name: &str, known: &[&str]) -> String {
+    let alike = |other: &&&str| jaro_winkler(name, other);
+    let nearest = known.iter().max_by(|a, b| alike(a).total_cmp(&alike(b)));
+    let meant = match nearest.filter(|other| alike(other) > ALIKE) {
+        Some(other) => format!(" (did you mean `{other}`?)"),
+        None => String::new(),
+    };
+    let known = known.join(", ");
+    format!("no {kind} is called `{name}`{meant}: choose from {known}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unknown;
+
+    #[test]
+    fn slips_are_seen_and_other_words_are_not() {
+        let known = ["vertex_faces", "boundary", "build"];
+        let said = |name: &str| unknown("operation", name, &known);
+        assert_eq!(
+            said("boundry"),
+            "no operation is called `boundry` (did you mean `boundary`?): choose from \
+             vertex_faces, boundary, build"
+        );
+        assert!(said("vertex-faces").contains("did you mean `vertex_faces`?"));
+        assert!(said("zebra").starts_with("no operation is called `zebra`: choose from"));
+    }
+}
