@@ -169,7 +169,7 @@ pub(crate) struct Study {
     /// Write one line for each result as CSV (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,
-    /// Write results.json and results.csv there, each mesh when it is done
+    /// Write report.html, report.md, results.json and results.csv there
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
     /// Go on with what --report has in its folder
@@ -187,7 +187,7 @@ pub(crate) struct Merge {
     /// What `sixfold study --shard i/n --report DIR` wrote
     #[arg(value_name = "DIR|FILE.json", required = true)]
     pub(crate) shards: Vec<PathBuf>,
-    /// Write results.json and results.csv there
+    /// Write report.html, report.md, results.json and results.csv there
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
     /// Write results.json as this file (- for standard output)

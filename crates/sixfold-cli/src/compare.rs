@@ -9,10 +9,10 @@ use comfy_table::{Cell, CellAlignment};
 use crate::arguments::Compare;
 use crate::failure::Failure;
 use crate::load;
-use crate::numbers::{duration, grouped};
 use crate::output::{Output, check_kept, is_stdout};
 use crate::tables::table;
 use crate::text::{Text, hanging};
+use ::study::numbers::{duration, grouped};
 
 /// Something is slower, and that was not to be.
 const SLOWER: u8 = 1;

@@ -3,8 +3,8 @@
 use ::study::{BackendReport, MeshReport};
 use sixfold::{Facts, Spread};
 
-use crate::numbers::{counted, grouped};
 use crate::text::{hanging, tame};
+use ::study::numbers::{counted, grouped};
 
 /// The mesh in a compact block of lines.
 pub(crate) fn facts_text(mesh: &MeshReport) -> String {

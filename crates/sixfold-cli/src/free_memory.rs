@@ -3,7 +3,7 @@
 use sysinfo::{MemoryRefreshKind, System};
 
 use crate::failure::Failure;
-use crate::numbers::bytes;
+use ::study::numbers::bytes;
 
 /// Refuses `what` if it takes more than the memory that is free; `instead` says what to do then.
 pub(crate) fn check_room(what: &str, needed: u64, instead: &str) -> Result<(), Failure> {

@@ -7,10 +7,10 @@ use sixfold::shapes::{Parameter, RECIPES, Recipe, recipe};
 
 use crate::arguments::Generate;
 use crate::failure::Failure;
-use crate::numbers::counted;
 use crate::output::{Output, is_stdout};
 use crate::progress::end_on_interrupt;
 use crate::text::{Text, hanging, tame};
+use ::study::numbers::counted;
 
 /// Writes the shape asked for.
 pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {

@@ -12,13 +12,13 @@ use crate::arguments::{GROWTH_EXAMPLES, Growth};
 use crate::failure::Failure;
 use crate::free_memory::check_room;
 use crate::measured::{ended, tell_of_debug_build};
-use crate::numbers::{counted, grouped};
 use crate::orders::{few, short};
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
 use crate::study::{names, setting};
 use crate::tables::styled;
 use crate::text::{Text, hanging};
+use ::study::numbers::{counted, grouped};
 
 /// Sweeps over the sizes; text first, so that no file that fails can take it along.
 pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {

@@ -8,10 +8,10 @@ use sixfold::mesh_io::{LeftOut, ObjMesh, read_obj};
 use sixfold::{Creases, PolygonMesh, shapes};
 
 use crate::failure::Failure;
-use crate::numbers::counted;
 use crate::output::is_stdout;
 use crate::text::complain;
 use crate::triangulate::triangulated;
+use ::study::numbers::counted;
 
 /// How many of the faces that were left out are shown with their place.
 const SHOWN: usize = 5;

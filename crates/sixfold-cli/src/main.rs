@@ -24,7 +24,6 @@ mod load;
 mod many;
 mod measured;
 mod memory;
-mod numbers;
 mod orders;
 mod output;
 mod pick;

@@ -14,11 +14,11 @@ use ::study::{Asked, Collection, Report, Settings, StudyError};
 use crate::arguments::Study;
 use crate::failure::Failure;
 use crate::load;
-use crate::measured::{ended, tell_of_debug_build};
-use crate::numbers::counted;
-use crate::output::{Output, check_kept, is_stdout};
+use crate::measured::{studies_ended, tell_of_debug_build};
+use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
 use crate::text::{Text, complain, hanging, tame};
+use ::study::numbers::counted;
 
 pub(crate) use merge::run as merge;
 pub(crate) use meshes::Shard;
@@ -26,14 +26,22 @@ pub(crate) use meshes::Shard;
 use folder::{Folder, Piece};
 use meshes::{Mesh, found};
 
+/// Why a mesh is not studied that loads well.
+const NOBODY: &str = "no backend asked for can hold it";
+
 /// Studies the meshes that are asked for, but for those that are finished; what does not load is
 /// listed, and the rest goes on.
 pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Failure> {
     let meshes = found(&arguments.meshes)?;
-    for mesh in &meshes {
-        check_kept("a mesh", &mesh.path, &[("--json", arguments.json.as_ref())])?;
+    let outputs = [
+        ("--json", arguments.json.as_ref()),
+        ("--csv", arguments.csv.as_ref()),
+    ];
+    for path in meshes.iter().filter_map(|mesh| mesh.path.as_deref()) {
+        check_places(Some(path), &outputs)?;
     }
-    if arguments.csv.is_some() {
+    let single = meshes.len() == 1;
+    if arguments.csv.is_some() && !single {
         return Err(Failure::usage(
             "--csv is for one mesh: --report DIR writes the samples of all into results.csv",
         ));
@@ -42,6 +50,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
     let mut collection = Collection::new(names, asked(arguments, settings));
     let stop = interrupt_flag();
     let json = Output::open_if(arguments.json.as_ref())?;
+    let csv = Output::open_if(arguments.csv.as_ref())?;
     let folder = match &arguments.report {
         Some(path) => Some(Folder::open(
             path,
@@ -51,15 +60,17 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         )?),
         None => None,
     };
-    let mine: Vec<(usize, &Mesh)> = { meshes.iter().enumerate() }
+    let mine: Vec<&Mesh> = { meshes.iter().enumerate() }
         .filter(|(i, _)| arguments.shard.is_none_or(|shard| shard.has(*i)))
-        .filter(|(_, mesh)| collection.missing.contains(&mesh.name))
+        .map(|(_, mesh)| mesh)
+        .filter(|mesh| collection.missing.contains(&mesh.name))
         .collect();
     tell_of_debug_build();
-    let on_stdout = arguments.json.as_deref().is_some_and(is_stdout);
+    let data = [&arguments.json, &arguments.csv];
+    let on_stdout = data.into_iter().flatten().any(|path| is_stdout(path));
     let mut text = Text::shown(!on_stdout);
     let count = mine.len();
-    for (done, (number, mesh)) in mine.into_iter().enumerate() {
+    for (done, mesh) in mine.into_iter().enumerate() {
         if stop.load(Ordering::Relaxed) {
             break;
         }
@@ -67,28 +78,45 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         let Some(result) = one(mesh, arguments, settings, &place, &stop) else {
             break; // told to stop in the midst of it
         };
-        text.say(&line(&place, mesh, &result));
+        if !single {
+            text.say(&line(&place, mesh, &result));
+        }
         let piece = Piece::new(mesh, &collection.settings, result);
         if let Some(folder) = &folder {
             // Between two studies: no writing shows in a figure.
-            folder.keep(number, &piece)?;
+            folder.keep(&piece)?;
         }
         piece.settle(&mut collection);
     }
     let interrupted = stop.load(Ordering::Relaxed);
-    print(&collection, &mut text);
-    let mut written = text.finish();
-    if let Some(output) = json {
-        written = written.and(output.finish(|writer| collection.write_json(writer)));
+    let mut written;
+    match (&collection.studies[..], single) {
+        ([study], true) => {
+            crate::study::print(study, &mut text);
+            written = text
+                .finish()
+                .and(crate::study::write_files(study, json, csv));
+        }
+        _ => {
+            print(&collection, &mut text);
+            written = text.finish();
+            if let Some(output) = json {
+                written = written.and(output.finish(|writer| collection.write_json(writer)));
+            }
+        }
     }
     if let Some(folder) = &folder {
-        written = written.and(folder.finish(&collection));
+        written = written.and(folder.finish(&collection, &command()));
     }
     if collection.studies.is_empty() && !interrupted && arguments.shard.is_none() {
         written?;
-        return Err(Failure::usage("none of the meshes could be studied"));
+        let mut reasons = collection.failures.iter().map(|failed| &failed.reason);
+        return Err(match reasons.all(|reason| reason == NOBODY) {
+            true => Failure::unsupported(format!("{NOBODY}: none of the meshes")),
+            false => Failure::usage("none of the meshes could be studied"),
+        });
     }
-    ended(written, collection.mismatches(), interrupted)
+    studies_ended(written, &collection.studies, interrupted)
 }
 
 fn asked(arguments: &Study, settings: &Settings) -> Asked {
@@ -115,9 +143,12 @@ fn one(
     place: &str,
     stop: &AtomicBool,
 ) -> Option<Result<Report, String>> {
-    let specimen = match load::for_study(&mesh.path, arguments.strict, arguments.triangulate) {
-        Ok(specimen) => specimen,
-        Err(failure) => return Some(Err(without_path(&failure.message, &mesh.path))),
+    let specimen = match &mesh.path {
+        None => load::built_in(),
+        Some(path) => match load::for_study(path, arguments.strict, arguments.triangulate) {
+            Ok(specimen) => specimen,
+            Err(failure) => return Some(Err(without_path(&failure.message, path))),
+        },
     };
     let bar = Bar::new();
     let report = ::study::study(&specimen, settings, stop, &mut |at| {
@@ -131,9 +162,17 @@ fn one(
     match report {
         Ok(report) if report.interrupted => None,
         Ok(report) => Some(Ok(report)),
-        Err(StudyError::NoneHolds { .. }) => Some(Err("no backend asked for holds it".into())),
+        Err(StudyError::NoneHolds { .. }) => Some(Err(NOBODY.into())),
         Err(error) => Some(Err(error.to_string())),
     }
+}
+
+/// What was typed, as it can be typed again.
+fn command() -> String {
+    let words = std::env::args_os().skip(1);
+    let words = words.map(|word| word.to_string_lossy().into_owned());
+    let words: Vec<String> = ["sixfold".to_owned()].into_iter().chain(words).collect();
+    shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
 }
 
 /// A message about a file without the file, which the list names anyhow.

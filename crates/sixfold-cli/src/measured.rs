@@ -3,12 +3,13 @@
 use std::process::ExitCode;
 
 use crate::failure::Failure;
-use crate::numbers::counted;
 use crate::progress::INTERRUPTED;
 use crate::text::complain;
+use ::study::numbers::counted;
+use ::study::{Agreement, Report, ResultRow};
 
 /// Backends found different results for the same work.
-pub(crate) const MISMATCH: u8 = 1;
+const MISMATCH: u8 = 1;
 
 /// Says so where the program was built without optimisation.
 pub(crate) fn tell_of_debug_build() {
@@ -39,6 +40,42 @@ pub(crate) fn ended(
         return Ok(ExitCode::from(INTERRUPTED));
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The end of a command that made `studies`: programs of others that do another work are told of.
+pub(crate) fn studies_ended<'r>(
+    written: Result<(), Failure>,
+    studies: impl IntoIterator<Item = &'r Report>,
+    interrupted: bool,
+) -> Result<ExitCode, Failure> {
+    let (mut mismatches, mut others) = (0, 0);
+    for study in studies {
+        mismatches += study.mismatches().count();
+        for row in study.other_work() {
+            others += 1;
+            tell_of_other_work(study, row);
+        }
+    }
+    let code = ended(written, mismatches, interrupted)?;
+    Ok(match others {
+        0 => code,
+        _ => ExitCode::from(MISMATCH),
+    })
+}
+
+/// Says by how much a program of somebody else differs.
+fn tell_of_other_work(study: &Report, row: &ResultRow) {
+    let ours = study.rows(row.operation);
+    let mut ours = ours.filter(|other| other.agreement == Agreement::Same);
+    let ours = ours.find_map(|other| other.checksum);
+    let [theirs, ours] = [row.checksum, ours].map(|checksum| match checksum {
+        Some(checksum) => checksum.to_string(),
+        None => "not a number".into(),
+    });
+    let (name, operation, mesh) = (&row.backend, row.operation, &study.mesh.name);
+    complain(&format!(
+        "error: {mesh}: {name}: {operation} comes to {theirs}, and to {ours} on our backends: other work, so its times compare nothing"
+    ));
 }
 
 #[cfg(test)]

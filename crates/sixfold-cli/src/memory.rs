@@ -10,11 +10,11 @@ use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::heap::Counters;
 use crate::load;
-use crate::numbers::{counted, grouped};
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Stage, end_on_interrupt};
 use crate::tables::table;
 use crate::text::{Text, complain, hanging};
+use ::study::numbers::{counted, grouped};
 
 /// Two of the three ways differ.
 const DIFFERENT: u8 = 1;

@@ -15,12 +15,12 @@ use crate::failure::Failure;
 use crate::free_memory::check_room;
 use crate::load;
 use crate::measured::{ended, tell_of_debug_build};
-use crate::numbers::figure;
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
 use crate::study::{names, setting};
 use crate::tables::styled;
 use crate::text::{Text, hanging};
+use ::study::numbers::figure;
 
 /// Measures the mesh in all orders; text first, so that no file that fails can take it along.
 pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {

@@ -10,12 +10,12 @@ use crate::arguments::Pick;
 use crate::failure::Failure;
 use crate::load;
 use crate::measured::{ended, tell_of_debug_build};
-use crate::numbers::{counted, duration, figure, grouped};
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
 use crate::tables::table;
-use crate::text::{Text, complain, hanging};
+use crate::text::{Text, complain, hanging, tame};
 use crate::workloads::workload;
+use ::study::numbers::{counted, duration, figure, grouped};
 
 /// No backend qualifies.
 const NONE: u8 = 1;
@@ -82,7 +82,7 @@ fn print(answer: &Answer, specimens: &[Specimen], text: &mut Text) {
         ));
     }
     let summary = format!("{}. {}", answer.workload.name, answer.workload.summary);
-    text.say(&hanging("Workload: ", summary.trim()));
+    text.say(&hanging("Workload: ", &tame(summary.trim())));
     let operations = counted(
         answer.operations.round() as usize,
         "operation",

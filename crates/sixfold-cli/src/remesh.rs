@@ -15,10 +15,10 @@ use sixfold::{
 use crate::arguments::{Decimate, Remesh};
 use crate::failure::Failure;
 use crate::load;
-use crate::numbers::{counted, grouped};
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Steps, end_on_interrupt};
 use crate::text::{Text, complain, tame};
+use ::study::numbers::{counted, grouped};
 
 /// From so many faces on it is said why a structure that scans takes long.
 const LONG_SCAN: usize = 1000;

@@ -10,10 +10,10 @@ use sixfold::{Creases, PolygonMesh};
 use crate::arguments::Render;
 use crate::failure::Failure;
 use crate::load;
-use crate::numbers::counted;
 use crate::output::{Output, check_kept};
 use crate::progress::{Waiting, end_on_interrupt};
 use crate::text::{Text, tame};
+use ::study::numbers::counted;
 
 /// Draws the meshes into one picture.
 pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {

@@ -10,10 +10,10 @@ use sixfold::{PolygonMesh, Representation, Visitor, visit};
 use crate::arguments::{Dual, Smooth, Triangulate};
 use crate::failure::Failure;
 use crate::load;
-use crate::numbers::counted;
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Waiting, end_on_interrupt};
 use crate::text::{Text, tame};
+use ::study::numbers::counted;
 
 /// Smooths the mesh and writes it.
 pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {

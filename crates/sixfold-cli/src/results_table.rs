@@ -5,8 +5,8 @@ use comfy_table::{
     Attribute, Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle,
 };
 
-use crate::numbers::{duration, figure};
 use crate::text::{WIDTH, wrapped};
+use ::study::numbers::{duration, figure};
 
 /// Two blanks between columns, and one line under the header.
 pub(crate) const STYLE: TableStyle =

@@ -3,22 +3,19 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use ::study::{
-    Agreement, Environment, Operation, Report, ResultRow, SCHEMA, Settings, Specimen, StudyError,
-    Timer,
-};
+use ::study::{Environment, Operation, Report, SCHEMA, Settings, Specimen, StudyError, Timer};
 
 use crate::arguments::{STUDY_EXAMPLES, Study};
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::load;
 use crate::many;
-use crate::measured::{MISMATCH, ended, tell_of_debug_build};
-use crate::numbers::counted;
+use crate::measured::{studies_ended, tell_of_debug_build};
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
 use crate::results_table::results_table;
-use crate::text::{Text, complain, hanging};
+use crate::text::{Text, hanging};
+use ::study::numbers::counted;
 
 /// Measures what was asked for; text first, so that no file that fails can take it along.
 pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
@@ -72,37 +69,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     print(&report, &mut text);
     let done = text.finish().and(write_files(&report, json, csv));
 
-    let (foreign, ours): (Vec<&ResultRow>, Vec<&ResultRow>) = report
-        .mismatches()
-        .partition(|row| is_external(&report, row));
-    for row in &foreign {
-        tell_of_other_work(&report, row);
-    }
-    let code = ended(done, ours.len(), report.interrupted)?;
-    Ok(match foreign.is_empty() {
-        true => code,
-        false => ExitCode::from(MISMATCH),
-    })
-}
-
-fn is_external(report: &Report, row: &ResultRow) -> bool {
-    let mut columns = report.backends.iter();
-    columns.any(|column| column.name == row.backend && column.external.is_some())
-}
-
-/// Says by how much a program of somebody else differs.
-fn tell_of_other_work(report: &Report, row: &ResultRow) {
-    let ours = report.rows(row.operation);
-    let mut ours = ours.filter(|other| other.agreement == Agreement::Same);
-    let ours = ours.find_map(|other| other.checksum);
-    let [theirs, ours] = [row.checksum, ours].map(|checksum| match checksum {
-        Some(checksum) => checksum.to_string(),
-        None => "not a number".into(),
-    });
-    let (name, operation) = (&row.backend, row.operation);
-    complain(&format!(
-        "error: {name}: {operation} comes to {theirs}, and to {ours} on our backends: other work, so its times compare nothing"
-    ));
+    studies_ended(done, [&report], report.interrupted)
 }
 
 /// What help says after the options: examples, how it measures, and the names that there are.
@@ -121,7 +88,11 @@ pub(crate) fn names() -> String {
 }
 
 /// Writes the files asked for; each is tried, whatever comes of the other.
-fn write_files(report: &Report, json: Option<Output>, csv: Option<Output>) -> Result<(), Failure> {
+pub(crate) fn write_files(
+    report: &Report,
+    json: Option<Output>,
+    csv: Option<Output>,
+) -> Result<(), Failure> {
     let mut done = Ok(());
     if let Some(output) = json {
         done = done.and(output.finish(|writer| report.write_json(writer)));
@@ -154,7 +125,8 @@ fn refusals(specimen: &Specimen, settings: &Settings) -> Result<Report, Failure>
     })
 }
 
-fn print(report: &Report, text: &mut Text) {
+/// Facts, verdicts, the table, and what it shows in words.
+pub(crate) fn print(report: &Report, text: &mut Text) {
     text.say(&facts_text(&report.mesh));
     text.say("");
     text.say(&verdicts_text(&report.mesh, &report.backends));

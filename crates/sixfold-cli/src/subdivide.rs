@@ -20,10 +20,10 @@ use sixfold::{
 use crate::arguments::Subdivide;
 use crate::failure::Failure;
 use crate::load;
-use crate::numbers::{counted, duration, figure, grouped};
 use crate::output::{Output, check_kept, check_places, is_stdout};
 use crate::progress::{Faces, end_on_interrupt};
 use crate::text::{Text, tame};
+use ::study::numbers::{counted, duration, figure, grouped};
 use forecast::Forecast;
 use limit::Limits;
 

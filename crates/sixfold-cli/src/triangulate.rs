@@ -4,8 +4,8 @@ use ::study::Specimen;
 use sixfold::{Facts, PolygonMesh, VertexId};
 
 use crate::failure::Failure;
-use crate::numbers::{counted, grouped};
 use crate::text::complain;
+use ::study::numbers::{counted, grouped};
 
 /// The mesh with every polygon cut into a fan; what else changes by that is on record, and said.
 pub(crate) fn triangulated(specimen: Specimen) -> Result<Specimen, Failure> {

@@ -4,9 +4,9 @@ use ::study::{Bound, Model, Rung, TableReads, Timed, Why, WhyRow};
 use comfy_table::{Cell, CellAlignment};
 use sixfold::Relation;
 
-use crate::numbers::{bytes, figure, grouped};
 use crate::tables::table;
 use crate::text::{hanging, wrapped};
+use ::study::numbers::{bytes, figure, grouped};
 
 /// Columns for the names of tables: what is left beside the figures.
 const TABLES: usize = 36;

@@ -119,12 +119,18 @@ fn what_a_program_refuses_is_shown_as_refused() {
     let (sixfold, run) = beside("well", &[]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let report = report(&sixfold);
-    assert_eq!(refusal(&report, "edge_length"), "it measures no lengths");
+    assert_eq!(
+        refusal(&report, "edge_length"),
+        "it measures [31m no lengths"
+    );
     assert_eq!(row(&report, "other", "edge_length"), None);
     let row = row(&report, "other", "boundary").expect("a row");
     assert_eq!(row["agreement"], "same");
     assert!(row["samples"].as_u64() > Some(2), "{row}");
-    assert!(run.stdout.contains("it measures no lengths"), "{run:?}");
+    assert!(
+        run.stdout.contains("it measures [31m no lengths"),
+        "{run:?}"
+    );
 }
 
 #[test]
@@ -142,6 +148,7 @@ fn a_program_that_goes_wrong_is_told_of_and_the_study_goes_on() {
         ("no time", &[], "without `wall_ns`"),
         ("hangs", &["--patience", "300ms"], "within 0.3 s"),
         ("crashes later", &[], "out of luck"),
+        ("answers twice", &[], "without being asked"),
     ] {
         let start = Instant::now();
         let (sixfold, run) = beside(mode, more);
@@ -156,11 +163,23 @@ fn a_program_that_goes_wrong_is_told_of_and_the_study_goes_on() {
         let before = row(&report, "other", "boundary");
         assert_eq!(
             before.is_some(),
-            mode == "crashes later",
+            mode == "crashes later" || mode == "answers twice",
             "{mode}: {before:?}"
         );
         assert_eq!(sixfold.names(), ["s.json", "t.obj"], "{mode}");
     }
+}
+
+#[test]
+fn as_many_elements_are_asked_for() {
+    if !python() {
+        return;
+    }
+    let (sixfold, run) = beside("other elements", &[]);
+    assert_eq!(run.code, Some(1), "{run:?}");
+    let report = report(&sixfold);
+    let theirs = row(&report, "other", "boundary").expect("theirs");
+    assert_eq!(theirs["agreement"], "mismatch");
 }
 
 #[test]

@@ -136,7 +136,8 @@ fn what_is_finished_is_not_done_again() {
         path.file_name()
             .map(|name| name.to_string_lossy().into_owned())
     };
-    assert_eq!(name(&paths[1]).as_deref(), Some("00001-b_grid.json"));
+    let second = name(&paths[1]).expect("a name");
+    assert!(second.starts_with("b_grid-"), "{second}");
     fs::remove_file(&paths[0]).expect("removed");
     let whole = fs::read(&paths[1]).expect("a piece");
     fs::write(&paths[1], &whole[..whole.len() / 2]).expect("cut off");

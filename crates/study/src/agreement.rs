@@ -62,8 +62,10 @@ pub(crate) fn judge(
         let operation = entry.job.operation;
         if agree(operation, outcome.checksum, reference.checksum, polygons) {
             // As many corners in all, maybe, but handed out by fewer vertices.
-            match outcome.elements == reference.elements || faithful(subjects, entry.subject) {
+            match outcome.elements == reference.elements {
                 true => Agreement::Same,
+                false if subjects[entry.subject].is_external() => Agreement::Mismatch,
+                false if faithful(subjects, entry.subject) => Agreement::Same,
                 false => Agreement::Merged,
             }
         } else if !faithful(subjects, entry.subject) {

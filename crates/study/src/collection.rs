@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use workload::Operation;
 
 use crate::read::{ReadError, check_schema, parsed};
-use crate::report::{Agreement, Report, SCHEMA, Standing, write_json};
+use crate::report::{Agreement, Report, SCHEMA, Standing, unwrapped, write_json};
 use crate::statistics::geometric_mean;
 
 /// Studies of several meshes, with the same settings.
@@ -155,10 +155,15 @@ impl Collection {
         }
         self.settings.check(&other.settings)?;
         for study in other.studies {
-            if self.missing.contains(&study.mesh.name) {
+            // One that was finished elsewhere is worth more than one that failed here.
+            let mesh = study.mesh.name.clone();
+            let known = self.studies.iter().any(|study| study.mesh.name == mesh);
+            if self.meshes.contains(&mesh) && !known {
+                self.forget(&mesh);
                 self.studies.push(study);
             }
         }
+        self.settle();
         for failed in other.failures {
             if self.missing.contains(&failed.mesh) {
                 self.failures.push(failed);
@@ -181,12 +186,6 @@ impl Collection {
         self.missing = missing.cloned().collect();
         self.pooled = pooled(&self.studies);
         self.words = words(&self.pooled);
-    }
-
-    /// Results that no difference between the backends explains.
-    pub fn mismatches(&self) -> usize {
-        let each = self.studies.iter().map(|study| study.mismatches().count());
-        each.sum()
     }
 
     /// Writes it as JSON.
@@ -215,14 +214,14 @@ impl Collection {
             "cpu_ns",
             "wall_ns",
         ];
-        lines.write_record(names).map_err(io::Error::from)?;
+        lines.write_record(names).map_err(unwrapped)?;
         for study in &self.studies {
             for raw in &study.raw {
                 for (i, (round, wall_ns)) in raw.rounds.iter().zip(&raw.wall_ns).enumerate() {
                     let cpu_ns = raw.cpu_ns.as_ref().and_then(|column| column.get(i));
                     let start = (&study.mesh.name, &raw.backend, raw.operation, raw.control);
                     let line = (start, round, cpu_ns, wall_ns);
-                    lines.serialize(line).map_err(io::Error::from)?;
+                    lines.serialize(line).map_err(unwrapped)?;
                 }
             }
         }
@@ -236,7 +235,11 @@ impl Collection {
     /// Text that ends too soon or is no JSON, results of another program, schema or command.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
-        parsed(text)
+        let collection: Self = parsed(text)?;
+        for study in &collection.studies {
+            study.check()?;
+        }
+        Ok(collection)
     }
 }
 
@@ -295,7 +298,8 @@ fn pooled(studies: &[Report]) -> Vec<Pooled> {
                 };
                 ratios.push(ratio);
                 times.extend(row.ns_per_element);
-                best += usize::from(row.standing == Some(Standing::Best));
+                let alone = matches!(row.standing, Some(Standing::Best | Standing::Alone));
+                best += usize::from(alone);
                 tied += usize::from(row.standing == Some(Standing::Tied));
             }
             let Some((ratio_to_best, interval)) = geometric_mean(&ratios) else {

@@ -134,11 +134,12 @@ pub fn compare(before: &Report, after: &Report, how: Comparing) -> Changes {
     let (mut only_before, mut only_after) = (Vec::new(), Vec::new());
     for row in &before.results {
         match (twin(row, after), row.median_ns) {
+            (_, None) => {} // an estimate is no measurement
             (Some(other), Some(_)) => rows.extend(change(before, row, after, other, drift)),
-            _ => only_before.push(named(row)),
+            (None, Some(_)) => only_before.push(named(row)),
         }
     }
-    let alone = |row: &&ResultRow| twin(row, before).is_none();
+    let alone = |row: &&ResultRow| row.median_ns.is_some() && twin(row, before).is_none();
     only_after.extend(after.results.iter().filter(alone).map(named));
     let overall = Median::of(rows.iter().map(|row| row.ratio)).map(|median| median.value);
     let taken_out = overall.filter(|_| relative).unwrap_or(1.0);

@@ -28,7 +28,7 @@ use sixfold::mesh_io::write_obj;
 use tempfile::TempDir;
 
 use crate::report::BackendReport;
-use program::{Greeting, Program};
+use program::{Greeting, Program, tame};
 use subject::ExternalSubject;
 use workload::Subject;
 
@@ -158,6 +158,7 @@ pub(crate) fn put_on_the_bench<'a>(
         false => Some(
             greeting
                 .reason
+                .map(|reason| tame(&reason))
                 .unwrap_or_else(|| "it does not say why".into()),
         ),
     };
@@ -174,7 +175,7 @@ pub(crate) fn put_on_the_bench<'a>(
         tables: Vec::new(),
         merged_vertices: None,
         capabilities: None,
-        external: Some(external.report(greeting.library)),
+        external: Some(external.report(greeting.library.map(|library| tame(&library)))),
     };
     let program = program.filter(|_| report.holds);
     let name = external.name.clone();

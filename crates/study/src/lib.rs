@@ -24,6 +24,7 @@ mod growth;
 mod inspect;
 mod measure;
 mod methods;
+pub mod numbers;
 mod orders;
 mod pick;
 mod plan;

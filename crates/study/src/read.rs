@@ -49,7 +49,36 @@ impl Report {
         if let Some(found) = other_kind(text)? {
             return Err(ReadError::OtherKind { found });
         }
-        parsed(text)
+        let report: Self = parsed(text)?;
+        report.check()?;
+        Ok(report)
+    }
+
+    /// Refuses figures that no study can come to, whoever wrote them.
+    pub(crate) fn check(&self) -> Result<(), ReadError> {
+        let wrong = |what: String| Err(ReadError::Malformed { cause: what });
+        let time = |ns: &f64| *ns >= 0.0 && ns.is_finite();
+        for raw in &self.raw {
+            let of = format!("the samples of {} on {}", raw.operation, raw.backend);
+            let cpu = raw.cpu_ns.as_ref().unwrap_or(&raw.wall_ns);
+            if raw.wall_ns.len() != raw.rounds.len() || cpu.len() != raw.rounds.len() {
+                return wrong(format!("{of} are columns of different lengths"));
+            }
+            if !raw.wall_ns.iter().chain(cpu).all(time) {
+                return wrong(format!("{of} are no times"));
+            }
+        }
+        for row in &self.results {
+            if !row.median_ns.iter().all(time) || row.ratio_to_best.is_some_and(|r| r <= 0.0) {
+                let (operation, backend) = (row.operation, &row.backend);
+                return wrong(format!("the time of {operation} on {backend} is none"));
+            }
+        }
+        let rows = self.control.iter().flat_map(|control| &control.operations);
+        match rows.into_iter().find(|row| row.ratio <= 0.0) {
+            Some(row) => wrong(format!("the control of {} is no ratio", row.operation)),
+            None => Ok(()),
+        }
     }
 }
 
@@ -102,7 +131,14 @@ fn other_kind(text: &str) -> Result<Option<&'static str>, ReadError> {
 
 pub(crate) fn parsed<T: DeserializeOwned>(text: &str) -> Result<T, ReadError> {
     serde_json::from_str(text).map_err(|error| {
+        // What is cut off within a number or a word is no JSON, strictly.
+        let lines = text.lines().count();
+        let last = text.lines().last().map_or(0, str::len);
+        let at_the_end = error.line() >= lines && error.column() >= last;
         let what = match error.classify() {
+            Category::Syntax if at_the_end && text.trim_start().starts_with('{') => {
+                "ends too soon, as if it had been cut off"
+            }
             Category::Eof => "ends too soon, as if it had been cut off",
             Category::Syntax => "is no JSON",
             Category::Data | Category::Io => {
@@ -162,6 +198,9 @@ mod tests {
         for (given, says) in [
             ("", "ends too soon"),
             (half, "ends too soon"),
+            ("{\"schema\": 1.", "ends too soon"),
+            ("{\"schema\": -", "ends too soon"),
+            ("{\"schema\": tr", "ends too soon"),
             ("no JSON", "is no JSON, line 1, column 2"),
             ("{}", "no `schema`"),
             ("{\"schema\": \"three\"}", "is not as sixfold writes it"),

@@ -280,11 +280,27 @@ impl Report {
             .filter(move |row| row.operation == operation)
     }
 
-    /// Results that no difference between the backends explains.
+    /// Results of ours that no difference between the backends explains.
     pub fn mismatches(&self) -> impl Iterator<Item = &ResultRow> {
+        let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
         self.results
             .iter()
-            .filter(|row| row.agreement == Agreement::Mismatch)
+            .filter(wrong)
+            .filter(|row| !self.is_external(&row.backend))
+    }
+
+    /// Results of programs of others that did another work than ours.
+    pub fn other_work(&self) -> impl Iterator<Item = &ResultRow> {
+        let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
+        self.results
+            .iter()
+            .filter(wrong)
+            .filter(|row| self.is_external(&row.backend))
+    }
+
+    fn is_external(&self, column: &str) -> bool {
+        let mut columns = self.backends.iter().filter(|other| other.name == column);
+        columns.any(|column| column.external.is_some())
     }
 
     /// Writes the report as JSON.
@@ -304,10 +320,10 @@ impl Report {
     pub fn write_csv(&self, writer: impl io::Write) -> io::Result<()> {
         let mut lines = csv::Writer::from_writer(writer);
         if self.results.is_empty() {
-            lines.write_record(COLUMNS).map_err(io::Error::from)?;
+            lines.write_record(COLUMNS).map_err(unwrapped)?;
         }
         for row in &self.results {
-            lines.serialize(row).map_err(io::Error::from)?;
+            lines.serialize(row).map_err(unwrapped)?;
         }
         lines.flush()
     }
@@ -321,6 +337,15 @@ impl Inspection {
     /// What `writer` reports.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
+    }
+}
+
+/// What went wrong with a place, as it was before it was an error of CSV: a pipe that nobody reads is known
+/// by its kind.
+pub(crate) fn unwrapped(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(cause) => cause,
+        other => io::Error::other(format!("{other:?}")),
     }
 }
 

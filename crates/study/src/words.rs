@@ -3,6 +3,7 @@
 use sixfold::{PolygonMesh, Relation};
 
 use crate::methods::methods;
+use crate::numbers::{duration, grouped, times};
 use crate::report::{Agreement, BackendReport, Control, ControlRow, ResultRow, Standing};
 use crate::statistics::Median;
 use workload::Operation;
@@ -169,33 +170,6 @@ fn merging(backend: &BackendReport, results: &[ResultRow]) -> Option<String> {
     Some(format!(
         "{name} merges {merged} {vertices} that {share} coordinates with another{then}."
     ))
-}
-
-/// `1.4 ×`, `2,100 ×`: a ratio as one says it.
-pub(crate) fn times(ratio: f64) -> String {
-    match ratio {
-        r if r < 1.095 => format!("{r:.2} ×"),
-        r if r < 9.95 => format!("{r:.1} ×"),
-        r => format!("{} ×", grouped(r.round() as usize)),
-    }
-}
-
-/// `1,234,567`.
-pub(crate) fn grouped(number: usize) -> String {
-    match number {
-        n if n < 1000 => n.to_string(),
-        n => format!("{},{:03}", grouped(n / 1000), n % 1000),
-    }
-}
-
-/// A time with the unit that suits it.
-pub(crate) fn duration(ns: f64) -> String {
-    match ns {
-        ns if ns < 1e3 => format!("{ns:.1} ns"),
-        ns if ns < 1e6 => format!("{:.1} µs", ns / 1e3),
-        ns if ns < 1e9 => format!("{:.1} ms", ns / 1e6),
-        ns => format!("{:.1} s", ns / 1e9),
-    }
 }
 
 /// A row for tests, with what they ask of it.

@@ -1,9 +1,11 @@
 //! The folder of a report: each finished study a file of its own, and at the end all in one.
 //!
 //! ```text
-//! DIR/studies/00003-bunny.json   one mesh, written as soon as it is finished; what --resume goes by
+//! DIR/studies/bunny-0e2a97c1.json  one mesh, written as soon as it is finished; what --resume goes by
 //! DIR/results.json               all of them
 //! DIR/results.csv                every sample
+//! DIR/report.html                the page, which needs nothing else
+//! DIR/report.md, DIR/figures     the same for a repository
 //! ```
 
 use std::fs;
@@ -11,14 +13,15 @@ use std::hash::Hasher;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use ::report::Page;
 use ::study::{Asked, Collection, Report};
 use serde::{Deserialize, Serialize};
 
 use super::meshes::Mesh;
 use crate::failure::Failure;
-use crate::numbers::counted;
 use crate::output::{Output, cannot_write};
 use crate::text::complain;
+use ::study::numbers::counted;
 
 /// A place for results.
 pub(super) struct Folder {
@@ -46,7 +49,7 @@ impl Piece {
         Self {
             schema: ::study::SCHEMA,
             mesh: mesh.name.clone(),
-            content: content(&mesh.path),
+            content: mesh.path.as_deref().and_then(content),
             settings: settings.clone(),
             study,
             failure,
@@ -122,7 +125,7 @@ impl Folder {
             let Some(mesh) = meshes.iter().find(|mesh| mesh.name == piece.mesh) else {
                 continue; // no longer asked for
             };
-            match content(&mesh.path) == piece.content {
+            match mesh.path.as_deref().and_then(content) == piece.content {
                 true => piece.settle(collection),
                 false => complain(&format!(
                     "note: {}: another file than when it was studied, so it is studied again",
@@ -163,8 +166,8 @@ impl Folder {
         Ok(pieces)
     }
 
-    /// Keeps the study of mesh `number`: the file has its name when it is complete.
-    pub(super) fn keep(&self, number: usize, piece: &Piece) -> Result<(), Failure> {
+    /// Keeps the study of a mesh: the file has its name when it is complete.
+    pub(super) fn keep(&self, piece: &Piece) -> Result<(), Failure> {
         let stem = Path::new(&piece.mesh).file_stem().unwrap_or_default();
         let fine = |c: char| {
             if c.is_ascii_alphanumeric() || "._-".contains(c) {
@@ -174,17 +177,30 @@ impl Folder {
             }
         };
         let stem: String = stem.to_string_lossy().chars().map(fine).take(40).collect();
-        let path = self.studies().join(format!("{number:05}-{stem}.json"));
+        // No two meshes have one file, whatever they are called and whichever were asked for before.
+        let name = crc32fast::hash(piece.mesh.as_bytes());
+        let path = self.studies().join(format!("{stem}-{name:08x}.json"));
         Output::open(&path)?.finish(|writer| {
             serde_json::to_writer(&mut *writer, piece)?;
             writeln!(writer)
         })
     }
 
-    /// Writes all of it in one.
-    pub(super) fn finish(&self, collection: &Collection) -> Result<(), Failure> {
+    /// Writes all of it in one, and draws it; `command` makes it again.
+    pub(super) fn finish(&self, collection: &Collection, command: &str) -> Result<(), Failure> {
         let output = |name: &str| Output::open(&self.path.join(name));
         output("results.json")?.finish(|writer| collection.write_json(writer))?;
-        output("results.csv")?.finish(|writer| collection.write_csv(writer))
+        output("results.csv")?.finish(|writer| collection.write_csv(writer))?;
+        let page = Page::of(collection, command);
+        output("report.html")?.finish(|writer| writer.write_all(page.html().as_bytes()))?;
+        output("report.md")?.finish(|writer| writer.write_all(page.markdown().as_bytes()))?;
+        let figures = self.path.join("figures");
+        fs::create_dir_all(&figures)
+            .map_err(|cause| cannot_write(&figures.display().to_string(), &cause))?;
+        for figure in page.all_figures() {
+            let output = Output::open(&figures.join(format!("{}.svg", figure.id)))?;
+            output.finish(|writer| writer.write_all(figure.svg.as_bytes()))?;
+        }
+        Ok(())
     }
 }

@@ -13,8 +13,8 @@ use crate::failure::Failure;
 pub(crate) struct Mesh {
     /// What it is called in results: its path as given.
     pub(crate) name: String,
-    /// Where it is.
-    pub(crate) path: PathBuf,
+    /// Where it is; `None` for the one that is built in.
+    pub(crate) path: Option<PathBuf>,
 }
 
 /// Every n-th mesh, from the i-th on: the share of one of n jobs.
@@ -49,9 +49,13 @@ impl FromStr for Shard {
 }
 
 /// The meshes that `places` name: a file is itself, a folder its OBJ files and those of its folders, by
-/// name. Each once, in that order.
+/// name. Each once, in that order; without any the one that is built in.
 pub(crate) fn found(places: &[PathBuf]) -> Result<Vec<Mesh>, Failure> {
     let mut meshes: Vec<Mesh> = Vec::new();
+    if places.is_empty() {
+        let name = crate::load::built_in().name;
+        meshes.push(Mesh { name, path: None });
+    }
     let mut seen = BTreeSet::new();
     for place in places {
         let mut files = Vec::new();
@@ -71,12 +75,19 @@ pub(crate) fn found(places: &[PathBuf]) -> Result<Vec<Mesh>, Failure> {
         }
         for path in files {
             if seen.insert(fs::canonicalize(&path).unwrap_or_else(|_| path.clone())) {
-                let name = path.display().to_string();
+                let name = name_of(&path);
+                let path = Some(path);
                 meshes.push(Mesh { name, path });
             }
         }
     }
     Ok(meshes)
+}
+
+/// A path as text; bytes that are no text are escaped, so that no two paths have one name.
+fn name_of(path: &Path) -> String {
+    path.to_str()
+        .map_or_else(|| format!("{path:?}"), ToOwned::to_owned)
 }
 
 /// All OBJ files in `folder` and below, by name. Links to folders are not followed: they may lead back.
@@ -86,7 +97,12 @@ fn list(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), (PathBuf, io::Err
     let mut paths = Vec::new();
     for entry in entries {
         let entry = entry.map_err(failed)?;
-        paths.push((entry.path(), entry.file_type().map_err(failed)?.is_dir()));
+        let path = entry.path();
+        let is_folder = entry.file_type().map_err(failed)?.is_dir();
+        // What is no file, and no link to one, may block whoever opens it.
+        if is_folder || fs::metadata(&path).is_ok_and(|there| there.is_file()) {
+            paths.push((path, is_folder));
+        }
     }
     paths.sort();
     for (path, is_folder) in paths {

@@ -5,7 +5,7 @@ use sixfold::{Counts, MAX_ROWS, Point, PolygonMesh, Representation, VertexId, Vi
 
 use crate::failure::Failure;
 use crate::free_memory::check_room;
-use crate::numbers::{bytes, counted};
+use ::study::numbers::{bytes, counted};
 
 /// What a pass over the faces adds up for each edge, in a hash map where edges have no rows.
 const SUMS_BYTES: usize = 120;

@@ -9,8 +9,8 @@ use sixfold::subdivision::{LimitPoint, NoLimit, Step, Subdivision};
 use sixfold::{FaceVertexMesh, MeshQuery, Point, PolygonMesh, Representation};
 
 use crate::failure::Failure;
-use crate::numbers::counted;
 use crate::text::tame;
+use ::study::numbers::counted;
 
 /// A result where endless levels would take it.
 pub(super) struct Limits {

@@ -11,10 +11,10 @@ use sixfold::{FaceId, Point, PolygonMesh, Representation, Visitor, visit};
 use crate::arguments::{Select, Subdivide};
 use crate::failure::Failure;
 use crate::load;
-use crate::numbers::{counted, grouped};
 use crate::output::{Output, check_kept, is_stdout};
 use crate::progress::Waiting;
 use crate::text::{Text, tame};
+use ::study::numbers::{counted, grouped};
 
 use super::check_tags;
 use super::forecast::check_memory;

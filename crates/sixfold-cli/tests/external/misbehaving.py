@@ -40,9 +40,11 @@ for line in sys.stdin:
         sys.exit("out of luck")
     right = {"boundary": 0, "edge_length": None}[json.loads(line)["run"]]
     if right is None:
-        say({"refused": "it measures no lengths"})
+        say({"refused": "it measures\u001b[31m no lengths"})
     elif mode == "other checksum":
         say({"wall_ns": 10, "checksum": 3, "elements": 6})
+    elif mode == "other elements":
+        say({"wall_ns": 10, "checksum": 0, "elements": 1})
     elif mode == "wrong unit":
         say({"wall_ns": 1e18, "checksum": 0, "elements": 6})
     elif mode == "no time":
@@ -50,3 +52,6 @@ for line in sys.stdin:
     else:
         time.sleep(0.0002)
         say({"wall_ns": 200_000, "cpu_ns": 150_000, "checksum": right, "elements": 6})
+        if mode == "answers twice":
+            say({"wall_ns": 1, "cpu_ns": 1, "checksum": right, "elements": 6})
+            time.sleep(0.05)

@@ -144,6 +144,12 @@ impl<'a> Program<'a> {
 
     /// Asks it, and waits for the answer.
     pub(super) fn ask(&mut self, question: &Question) -> Result<Answer, String> {
+        // What is there already answers nothing, and would be taken for the answer to this.
+        if let Ok(Line::Text(line)) = self.lines.try_recv() {
+            self.kill();
+            let shown = shown(&line);
+            return Err(format!("it writes `{shown}` without being asked"));
+        }
         let mut line = serde_json::to_string(question).map_err(|error| error.to_string())?;
         line.push('\n');
         let asked = self.input.as_mut().map(|input| {
@@ -183,7 +189,7 @@ impl<'a> Program<'a> {
         };
         serde_json::from_str(&line).map_err(|error| {
             self.kill();
-            let shown: String = line.chars().take(80).collect();
+            let shown = shown(&line);
             format!("it answers {to} with `{shown}`, which is none of the protocol: {error}")
         })
     }
@@ -201,7 +207,7 @@ impl<'a> Program<'a> {
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
         let words = String::from_utf8_lossy(&words);
-        match words.trim().lines().last() {
+        match words.trim().lines().last().map(tame) {
             Some(words) => format!("{how}: {words}"),
             None => how,
         }
@@ -240,6 +246,17 @@ impl Drop for Program<'_> {
             self.kill();
         }
     }
+}
+
+/// The beginning of a line that makes no sense.
+fn shown(line: &str) -> String {
+    tame(line).chars().take(80).collect()
+}
+
+/// Text of somebody else on one line, without what steers a terminal.
+pub(super) fn tame(text: &str) -> String {
+    let plain = |c: char| if c.is_control() { ' ' } else { c };
+    text.chars().map(plain).collect()
 }
 
 fn read_line(output: &mut impl BufRead) -> Line {

@@ -3,7 +3,7 @@
 use sixfold::QueryCost;
 use workload::{Clock, Job, Outcome, Run, Subject, Time};
 
-use super::program::{Answer, Program, Question};
+use super::program::{Answer, Program, Question, tame};
 
 /// How much longer than our wait a program's own figure may be: two clocks.
 const CLOCKS: f64 = 1.01;
@@ -79,7 +79,7 @@ impl Subject for ExternalSubject<'_> {
         let answer = match answer {
             Ok(Answer {
                 refused: Some(why), ..
-            }) => return refused(why),
+            }) => return refused(tame(&why)),
             Ok(answer) => answer,
             Err(why) => return refused(why),
         };

@@ -2,9 +2,9 @@
 
 use super::{CacheEnd, Fit, SizeReport};
 use crate::caches::{Cache, last_level};
+use crate::numbers::{grouped, times};
 use crate::report::{Agreement, Standing};
 use crate::slope::Slope;
-use crate::words::{grouped, times};
 
 /// Sentences on exponents, on the price of an element, on who is fastest where, and on the caches.
 pub(super) fn words(

@@ -3,8 +3,8 @@
 use sixfold::shapes::Order;
 
 use super::{Comparison, Larger, OrderEffect, OrderRow};
+use crate::numbers::times;
 use crate::report::{Agreement, Control, Standing};
-use crate::words::times;
 
 /// Sentences on the best order, on the order given, and on what matters more.
 pub(super) fn words(

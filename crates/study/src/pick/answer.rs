@@ -7,10 +7,10 @@ use serde_with::{DeserializeAs, Map, Same};
 use workload::{Action, Workload};
 
 use crate::environment::Environment;
+use crate::numbers::grouped;
 use crate::pick::needs::Need;
 use crate::report::write_json;
 use crate::timer::Timer;
-use crate::words::grouped;
 
 /// Which backend, how sure, and why.
 #[derive(Clone, Debug, Deserialize, Serialize)]

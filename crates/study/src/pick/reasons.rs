@@ -1,7 +1,7 @@
 //! The answer and its reasons, in plain words.
 
+use crate::numbers::{duration, grouped, times};
 use crate::pick::answer::{Answer, PartCost, Ranked};
-use crate::words::{duration, grouped, times};
 
 /// The answer first, then why, from when on, and what to depend on.
 pub(crate) fn words(answer: &Answer) -> Vec<String> {

@@ -1,7 +1,7 @@
 //! Numbers as people read them.
 
 /// `1,234,567`.
-pub(crate) fn grouped(number: usize) -> String {
+pub fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::with_capacity(digits.len() * 4 / 3);
     for (i, digit) in digits.chars().enumerate() {
@@ -14,7 +14,7 @@ pub(crate) fn grouped(number: usize) -> String {
 }
 
 /// Three digits that count: `0.412`, `4.12`, `41.2`, `412`, `4,120`.
-pub(crate) fn figure(number: f64) -> String {
+pub fn figure(number: f64) -> String {
     match number {
         n if !n.is_finite() => "–".into(),
         n if n < 0.9995 => format!("{n:.3}"),
@@ -25,13 +25,13 @@ pub(crate) fn figure(number: f64) -> String {
 }
 
 /// `3 edges`, `1 edge`: `plural` is the word for any other number.
-pub(crate) fn counted(number: usize, singular: &str, plural: &str) -> String {
+pub fn counted(number: usize, singular: &str, plural: &str) -> String {
     let word = if number == 1 { singular } else { plural };
     format!("{} {word}", grouped(number))
 }
 
 /// A number of bytes with the unit that suits it, a thousand of each to the next.
-pub(crate) fn bytes(number: usize) -> String {
+pub fn bytes(number: usize) -> String {
     match number as f64 {
         n if n < 1e3 => counted(number, "byte", "bytes"),
         n if n < 1e6 => format!("{} kB", figure(n / 1e3)),
@@ -41,12 +41,21 @@ pub(crate) fn bytes(number: usize) -> String {
 }
 
 /// A time with the unit that suits it.
-pub(crate) fn duration(ns: f64) -> String {
+pub fn duration(ns: f64) -> String {
     match ns {
         ns if ns < 1e3 => format!("{} ns", figure(ns)),
         ns if ns < 1e6 => format!("{} µs", figure(ns / 1e3)),
         ns if ns < 1e9 => format!("{} ms", figure(ns / 1e6)),
         ns => format!("{} s", figure(ns / 1e9)),
+    }
+}
+
+/// `1.4 ×`, `2,100 ×`: a ratio as one says it.
+pub fn times(ratio: f64) -> String {
+    match ratio {
+        r if r < 1.095 => format!("{r:.2} ×"),
+        r if r < 9.95 => format!("{r:.1} ×"),
+        r => format!("{} ×", grouped(r.round() as usize)),
     }
 }
 

@@ -1,0 +1,107 @@
+//! Structures against operations, in one picture.
+
+use kuva::TickFormat;
+use kuva::plot::{ColorMap, Heatmap};
+use kuva::render::plots::Plot;
+use study::numbers::times;
+use study::{Collection, Operation, Report};
+
+use crate::figure::{Figure, Table, drawn, laid_out};
+
+/// Ratios beyond this have one colour: the differences that matter are below.
+const DARKEST: f64 = 1000.0;
+
+/// The ratios to the best of one study.
+pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure> {
+    let columns = study.backends.iter().filter(|column| column.holds);
+    let columns: Vec<&str> = columns.map(|column| column.name.as_str()).collect();
+    let ratio = |operation: Operation, column: &str| {
+        let mut rows = study.rows(operation);
+        rows.find(|row| row.backend == column)?.ratio_to_best
+    };
+    let title = format!("Every operation on every structure: {}", study.mesh.name);
+    figure(&title, &columns, &ratio, of, command)
+}
+
+/// The mean ratios over all meshes.
+pub(super) fn pooled(collection: &Collection, command: &str) -> Option<Figure> {
+    let mut columns: Vec<&str> = Vec::new();
+    for row in &collection.pooled {
+        if !columns.contains(&row.backend.as_str()) {
+            columns.push(&row.backend);
+        }
+    }
+    let ratio = |operation: Operation, column: &str| {
+        let mut rows = collection.pooled.iter();
+        let row = rows.find(|row| row.operation == operation && row.backend == column);
+        row.map(|row| row.ratio_to_best)
+    };
+    let title = format!(
+        "Every operation on every structure, the geometric mean over {} meshes",
+        collection.studies.len()
+    );
+    figure(&title, &columns, &ratio, "", command)
+}
+
+fn figure(
+    title: &str,
+    columns: &[&str],
+    ratio: &dyn Fn(Operation, &str) -> Option<f64>,
+    of: &str,
+    command: &str,
+) -> Option<Figure> {
+    let measured = |operation: &Operation| columns.iter().any(|c| ratio(*operation, c).is_some());
+    let operations: Vec<Operation> = Operation::ALL.into_iter().filter(measured).collect();
+    if operations.is_empty() {
+        return None;
+    }
+    let mut table = Table::new([""].into_iter().chain(columns.iter().copied()));
+    let (mut cells, mut titles) = (Vec::new(), Vec::new());
+    for &operation in &operations {
+        let shown = |ratio: Option<f64>| ratio.map_or_else(|| "–".into(), times);
+        let ratios: Vec<Option<f64>> = columns.iter().map(|c| ratio(operation, c)).collect();
+        let mut line = vec![operation.name().to_owned()];
+        line.extend(ratios.iter().map(|&ratio| shown(ratio)));
+        table.row(line);
+    }
+    // Rows go upwards: the first operation belongs on top.
+    for &operation in operations.iter().rev() {
+        let mut line = Vec::new();
+        for column in columns {
+            let value = ratio(operation, column);
+            // What was not measured has the colour of what nobody waits for.
+            line.push(value.unwrap_or(DARKEST).clamp(1.0, DARKEST).log10());
+            let shown = value.map_or_else(|| "not measured".into(), times);
+            titles.push(format!("{operation} on {column}: {shown}"));
+        }
+        cells.push(line);
+    }
+    let height = 90.0 + 20.0 * operations.len() as f64;
+    let width = 240.0 + 118.0 * columns.len() as f64;
+    let plot = Heatmap::new()
+        .with_data(cells)
+        .with_color_map(ColorMap::Viridis)
+        .with_tooltip_labels(titles);
+    let plots = vec![Plot::Heatmap(plot)];
+    let power = |log: f64| times(10_f64.powf(log));
+    let names = operations
+        .iter()
+        .rev()
+        .map(|operation| operation.name().to_owned());
+    let layout = laid_out(&plots, width, height)
+        .with_x_categories(columns.iter().map(|&name| name.to_owned()).collect())
+        .with_y_categories(names.collect())
+        .with_colorbar_tick_format(TickFormat::Custom(std::sync::Arc::new(power)));
+    Some(Figure {
+        id: format!("{of}heat-map"),
+        title: title.to_owned(),
+        svg: drawn(title, plots, layout),
+        caption: format!(
+            "How many times as slow as the fastest of the row: dark is fast. {} and more have one colour, and so \
+             has what was not measured, for it would take too long or cannot be done.",
+            times(DARKEST)
+        ),
+        table,
+        command: command.into(),
+    })
+}

@@ -1,0 +1,137 @@
+//! Ranked bars: who is how many times as slow as the fastest, operation by operation.
+
+use std::sync::Arc;
+
+use kuva::TickFormat;
+use kuva::plot::BarPlot;
+use kuva::render::plots::Plot;
+use study::numbers::{duration, times};
+use study::{Collection, Operation, Report, Standing};
+
+use super::Row;
+use crate::colours::{WHISKER, of_column};
+use crate::figure::{Figure, Table, drawn, laid_out};
+
+/// A bar for the fastest, whose ratio has the logarithm 0.
+const LEAST: f64 = 0.02;
+
+/// One figure for each operation of a study.
+pub(super) fn of_study(study: &Report, command: &str) -> Vec<Figure> {
+    let figures = Operation::ALL.into_iter().filter_map(|operation| {
+        let rows = study.rows(operation).filter_map(|row| {
+            Some(Row {
+                backend: &row.backend,
+                ratio: row.ratio_to_best?,
+                interval: row.ratio_ci_low.zip(row.ratio_ci_high).map(|(a, b)| [a, b]),
+                ns: row.ns_per_element,
+                note: match row.standing {
+                    Some(Standing::Best) => "best".into(),
+                    Some(Standing::Tied) => "tied for best".into(),
+                    _ if row.sampled => "from a sample of the elements".into(),
+                    _ => String::new(),
+                },
+            })
+        });
+        let per = study
+            .rows(operation)
+            .next()
+            .map_or("element", |row| &row.per);
+        figure(operation, rows.collect(), per, command)
+    });
+    figures.collect()
+}
+
+/// One figure for each operation, over all meshes.
+pub(super) fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
+    let figures = Operation::ALL.into_iter().filter_map(|operation| {
+        let rows = collection
+            .pooled
+            .iter()
+            .filter(|row| row.operation == operation);
+        let rows = rows.map(|row| Row {
+            backend: &row.backend,
+            ratio: row.ratio_to_best,
+            interval: row.ci_low.zip(row.ci_high).map(|(a, b)| [a, b]),
+            ns: row.ns_per_element,
+            note: format!(
+                "on {} meshes, the fastest alone on {}, tied on {}",
+                row.meshes, row.best, row.tied
+            ),
+        });
+        figure(operation, rows.collect(), operation.per(), command)
+    });
+    figures.collect()
+}
+
+fn figure(
+    operation: Operation,
+    mut rows: Vec<Row<'_>>,
+    per: &str,
+    command: &str,
+) -> Option<Figure> {
+    if rows.len() < 2 {
+        return None;
+    }
+    rows.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
+    let name = operation.name();
+    let mut table = Table::new(["", "× the fastest", "95 %", &format!("a {per}"), ""]);
+    let (mut bars, mut whiskers, mut titles) = (Vec::new(), Vec::new(), Vec::new());
+    for row in &rows {
+        let interval = row
+            .interval
+            .map(|[low, high]| format!("{low:.3} to {high:.3}"));
+        let time = row.ns.map_or_else(|| "–".into(), duration);
+        let ratio = format!("{:.3}", row.ratio);
+        let shown = interval.clone().unwrap_or_else(|| "–".into());
+        let cells = [row.backend, &ratio, &shown, &time, &row.note];
+        table.row(cells.map(str::to_owned).to_vec());
+        let length = row.ratio.log10();
+        bars.push((
+            row.backend.to_owned(),
+            length.max(LEAST),
+            of_column(row.backend),
+        ));
+        let ends = row
+            .interval
+            .map_or([length; 2], |ends| ends.map(f64::log10));
+        whiskers.push(((length - ends[0]).max(0.0), (ends[1] - length).max(0.0)));
+        let between = interval.map_or_else(String::new, |interval| format!(" ({interval})"));
+        titles.push(format!(
+            "{}: {ratio}{between} × the fastest, {time} a {per}",
+            row.backend
+        ));
+    }
+    // Categories go upwards: the fastest belongs on top.
+    bars.reverse();
+    whiskers.reverse();
+    titles.reverse();
+    let most = bars
+        .iter()
+        .map(|(_, length, _)| *length)
+        .fold(0.1, f64::max);
+    let height = 70.0 + 26.0 * bars.len() as f64;
+    let plot = BarPlot::new()
+        .with_colored_bars(bars)
+        .with_horizontal(true)
+        .with_width(0.7)
+        .with_asymmetric_error(whiskers)
+        .with_error_color(WHISKER)
+        .with_tooltip_labels(titles);
+    let plots = vec![Plot::Bar(plot)];
+    let power = |log: f64| times(10_f64.powf(log));
+    let layout = laid_out(&plots, 680.0, height)
+        .with_x_axis_min(0.0)
+        .with_x_axis_max(most * 1.08)
+        .with_x_tick_format(TickFormat::Custom(Arc::new(power)));
+    let title = format!("{name}: how many times as slow as the fastest");
+    Some(Figure {
+        id: format!("ranking-{}", name.replace('_', "-")),
+        svg: drawn(&title, plots, layout),
+        title,
+        caption: "Bars on a logarithmic scale that begins at 1, the fastest; the thin lines are 95 % intervals of \
+             the ratio, formed within rounds."
+            .into(),
+        table,
+        command: command.into(),
+    })
+}

@@ -1,0 +1,129 @@
+//! The page as one file of HTML that needs nothing else.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use crate::colours::dark_rules;
+use crate::figure::{Figure, Table};
+use crate::{Page, Section};
+
+/// Letters, light and dark, paper and telephones.
+const STYLE: &str = "\
+:root{color-scheme:light dark;--ink:#17181a;--paper:#fdfdfc;--faint:#66686c;--line:#dcdcda;--link:#1f6fb0}\
+@media (prefers-color-scheme:dark){:root{--ink:#e4e4e2;--paper:#17181a;--faint:#a0a2a6;--line:#3a3b3e;--link:#5ba4e6}}\
+body{margin:0 auto;max-width:60rem;padding:1rem;background:var(--paper);color:var(--ink);\
+font:16px/1.5 system-ui,sans-serif}\
+h1{font-size:1.6rem;line-height:1.2}h2{font-size:1.25rem;margin-top:2.5rem;overflow-wrap:anywhere}\
+h3{font-size:1.05rem}a{color:var(--link)}code,pre{font:.9em/1.4 ui-monospace,monospace}\
+pre{overflow-x:auto;padding:.5rem .75rem;border:1px solid var(--line);border-radius:4px}\
+figure{margin:1.5rem 0;break-inside:avoid}figcaption{color:var(--faint);font-size:.9rem}\
+figure svg{display:block;max-width:100%;height:auto}figure svg g:hover>*{opacity:.75}\
+.scroll{overflow-x:auto}table{border-collapse:collapse;font-size:.85rem;font-variant-numeric:tabular-nums}\
+td,th{padding:.15rem .6rem;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}\
+td:first-child,th:first-child{text-align:left}summary{cursor:pointer;color:var(--faint);font-size:.9rem}\
+.warning::before{content:'! ';font-weight:bold}\
+@media print{body{max-width:none}details::details-content{content-visibility:visible}.scroll{overflow:visible}}";
+
+impl Page {
+    /// The page: it opens without a network, and asks for nothing.
+    pub fn html(&self) -> String {
+        let dark = format!("@media (prefers-color-scheme:dark){{{}}}", dark_rules());
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width,initial-scale=1";
+                    // Browsers ask for one where none is named.
+                    link rel="icon" href="data:,";
+                    title { (self.title) }
+                    style { (PreEscaped(STYLE)) (PreEscaped(dark)) }
+                }
+                body {
+                    h1 { (self.title) }
+                    pre { code { (self.command) } }
+                    @for machine in &self.machines { p { (machine) } }
+                    (sentences(&self.words))
+                    @for warning in &self.warnings { p.warning { (warning) } }
+                    @if !self.failures.is_empty() {
+                        h2 { "Not studied" }
+                        ul {
+                            @for (mesh, reason) in &self.failures {
+                                li { code { (mesh) } ": " (reason) }
+                            }
+                        }
+                    }
+                    @if !self.missing.is_empty() {
+                        h2 { "Still to be done" }
+                        ul { @for mesh in &self.missing { li { code { (mesh) } } } }
+                    }
+                    @for figure in &self.figures { (shown(figure, "h2")) }
+                    @if !self.meshes.is_empty() {
+                        h2 { "Mesh by mesh" }
+                        @for section in &self.meshes { (of_mesh(section)) }
+                    }
+                }
+            }
+        };
+        page.into_string()
+    }
+}
+
+fn sentences(words: &[String]) -> Markup {
+    html! {
+        @if !words.is_empty() {
+            ul { @for sentence in words { li { (sentence) } } }
+        }
+    }
+}
+
+/// Closed until somebody opens it, so that many of them are drawn as fast as one.
+fn of_mesh(section: &Section) -> Markup {
+    html! {
+        details {
+            summary { (section.mesh) " – " (section.facts) }
+            (sentences(&section.words))
+            @for figure in &section.figures { (shown(figure, "h3")) }
+        }
+    }
+}
+
+fn shown(figure: &Figure, heading: &str) -> Markup {
+    html! {
+        section id=(figure.id) {
+            @if heading == "h2" { h2 { (figure.title) } } @else { h3 { (figure.title) } }
+            figure data-figure=(figure.id) {
+                // Wider than a telephone: it can be pushed about there.
+                div.scroll { (PreEscaped(without_style(&figure.svg))) }
+                figcaption { (figure.caption) }
+            }
+            details {
+                summary { "The numbers, and the command" }
+                (rows(&figure.table))
+                pre { code { (figure.command) } }
+            }
+        }
+    }
+}
+
+/// A picture for a page, which has the rules that it would bring along.
+fn without_style(svg: &str) -> String {
+    match (svg.split_once("<style>"), svg.split_once("</style>")) {
+        (Some((head, _)), Some((_, body))) => format!("{head}{body}"),
+        _ => svg.to_owned(),
+    }
+}
+
+fn rows(table: &Table) -> Markup {
+    html! {
+        div.scroll {
+            table {
+                thead { tr { @for name in &table.header { th { (name) } } } }
+                tbody {
+                    @for row in &table.rows {
+                        tr { @for cell in row { td { (cell) } } }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! The page for a repository: Markdown, with its figures beside it.
+
+use std::fmt::Write as _;
+
+use crate::Page;
+use crate::figure::{Figure, Table};
+
+impl Page {
+    /// The page; its figures are expected as `figures/ID.svg` beside it.
+    pub fn markdown(&self) -> String {
+        let mut text = format!(
+            "# {}\n\n```sh\n{}\n```\n\n",
+            plain(&self.title),
+            self.command
+        );
+        for machine in &self.machines {
+            let _ = writeln!(text, "{}\n", plain(machine));
+        }
+        sentences(&mut text, &self.words);
+        for warning in &self.warnings {
+            let _ = writeln!(text, "> {}\n", plain(warning));
+        }
+        if !self.failures.is_empty() {
+            text.push_str("## Not studied\n\n");
+            for (mesh, reason) in &self.failures {
+                let _ = writeln!(text, "- {}: {}", plain(mesh), plain(reason));
+            }
+            text.push('\n');
+        }
+        if !self.missing.is_empty() {
+            text.push_str("## Still to be done\n\n");
+            sentences(&mut text, &self.missing);
+        }
+        for figure in &self.figures {
+            shown(&mut text, figure, "##");
+        }
+        for section in &self.meshes {
+            let _ = writeln!(
+                text,
+                "## {}\n\n{}\n",
+                plain(&section.mesh),
+                plain(&section.facts)
+            );
+            sentences(&mut text, &section.words);
+            for figure in &section.figures {
+                shown(&mut text, figure, "###");
+            }
+        }
+        text
+    }
+}
+
+fn sentences(text: &mut String, words: &[String]) {
+    for sentence in words {
+        let _ = writeln!(text, "- {}", plain(sentence));
+    }
+    if !words.is_empty() {
+        text.push('\n');
+    }
+}
+
+fn shown(text: &mut String, figure: &Figure, heading: &str) {
+    let (title, id) = (plain(&figure.title), &figure.id);
+    let _ = writeln!(text, "{heading} {title}\n\n![{title}](figures/{id}.svg)\n");
+    let _ = writeln!(text, "{}\n", plain(&figure.caption));
+    rows(text, &figure.table);
+}
+
+fn rows(text: &mut String, table: &Table) {
+    let line = |cells: &[String]| {
+        let cells: Vec<String> = cells.iter().map(|cell| plain(cell)).collect();
+        format!("| {} |\n", cells.join(" | "))
+    };
+    text.push_str(&line(&table.header));
+    let rules: Vec<&str> = { table.header.iter().enumerate() }
+        .map(|(i, _)| if i == 0 { "---" } else { "---:" })
+        .collect();
+    let _ = writeln!(text, "|{}|", rules.join("|"));
+    for row in &table.rows {
+        text.push_str(&line(row));
+    }
+    text.push('\n');
+}
+
+/// Text of which no letter means anything to Markdown, on one line.
+fn plain(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' | '\r' => plain.push(' '),
+            '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '|' | '#' => {
+                plain.push('\\');
+                plain.push(c);
+            }
+            c => plain.push(c),
+        }
+    }
+    plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_files_mean_nothing_to_markdown() {
+        assert_eq!(plain("a|b_[c](d).obj"), "a\\|b\\_\\[c\\](d).obj");
+        assert_eq!(plain("a\nb"), "a b");
+    }
+
+    #[test]
+    fn a_table_has_a_rule_and_as_many_lines_as_rows() {
+        let mut table = Table::new(["", "x"]);
+        table.row(vec!["a".into(), "1".into()]);
+        let mut text = String::new();
+        rows(&mut text, &table);
+        assert_eq!(text, "|  | x |\n|---|---:|\n| a | 1 |\n\n");
+    }
+}

@@ -1,0 +1,140 @@
+//! Pages of small studies: their marks are those of the data, and nothing in them comes from outside.
+
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use report::{Figure, Page};
+use sixfold::shapes;
+use study::{Asked, Collection, Operation, Report, Settings, Specimen, study};
+
+const HOSTILE: &str = "<script>alert('a|b')</script>&.obj";
+
+fn report(mesh: &str) -> Report {
+    let specimen = Specimen::new(mesh, shapes::icosahedron());
+    let settings = Settings {
+        operations: operations(),
+        budget: Duration::from_millis(80),
+        ..Settings::default()
+    };
+    let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ());
+    report.expect("a study")
+}
+
+fn operations() -> Vec<Operation> {
+    vec![
+        Operation::Build,
+        Operation::Boundary,
+        Operation::VertexNormal,
+    ]
+}
+
+fn collection(meshes: &[&str]) -> Collection {
+    let names: Vec<String> = meshes.iter().map(|&mesh| mesh.to_owned()).collect();
+    let asked = Asked {
+        backends: Vec::new(),
+        externals: Vec::new(),
+        operations: operations(),
+        budget_s: 0.08,
+        seed: 1,
+        triangulate: false,
+        strict: false,
+    };
+    let mut collection = Collection::new(names, asked);
+    for mesh in meshes {
+        collection.finish(report(mesh));
+    }
+    collection
+}
+
+fn marks(figure: &Figure) -> usize {
+    figure.svg.matches("<title>").count()
+}
+
+fn named<'p>(page: &'p Page, id: &str) -> &'p Figure {
+    let mut figures = page.all_figures();
+    figures
+        .find(|figure| figure.id == id)
+        .unwrap_or_else(|| panic!("no figure {id}"))
+}
+
+#[test]
+fn every_figure_has_as_many_marks_as_numbers() {
+    let page = Page::of(&collection(&["ball.obj"]), "sixfold study ball.obj");
+    let heat_map = named(&page, "heat-map");
+    assert_eq!(marks(heat_map), 3 * 6);
+    assert_eq!(heat_map.table.rows.len(), 3);
+    for operation in operations() {
+        let id = format!("ranking-{}", operation.name().replace('_', "-"));
+        let ranking = named(&page, &id);
+        assert_eq!(marks(ranking), 6, "{id}");
+        // The table is ranked, the fastest first.
+        let ratios = ranking.table.rows.iter().map(|row| row[1].parse::<f64>());
+        let ratios: Vec<f64> = ratios.map(|ratio| ratio.expect("a number")).collect();
+        assert_eq!(ratios[0], 1.0, "{id}");
+        assert!(ratios.is_sorted(), "{id}: {ratios:?}");
+    }
+    let memory = named(&page, "memory");
+    assert!(memory.table.rows.len() >= 12, "{:?}", memory.table);
+    let break_even = named(&page, "break-even");
+    assert_eq!(break_even.table.rows.len(), 6);
+    for figure in page.all_figures() {
+        let columns = figure.table.header.len();
+        assert!(figure.table.rows.iter().all(|row| row.len() == columns));
+        assert!(figure.svg.contains("role=\"img\""), "{}", figure.id);
+        assert!(figure.svg.contains("prefers-color-scheme:dark"));
+        assert_eq!(figure.command, "sixfold study ball.obj");
+    }
+    let mut ids: Vec<&str> = page
+        .all_figures()
+        .map(|figure| figure.id.as_str())
+        .collect();
+    let count = ids.len();
+    ids.sort_unstable();
+    ids.dedup();
+    assert_eq!(ids.len(), count);
+}
+
+#[test]
+fn a_page_of_several_meshes_has_pooled_figures_and_one_section_each() {
+    let mut both = collection(&["a.obj", HOSTILE]);
+    both.meshes.push("gone.obj".into());
+    both.fail("gone.obj", "no such file".into());
+    let page = Page::of(&both, "sixfold study a.obj");
+    assert_eq!(page.meshes.len(), 2);
+    assert!(page.figures.iter().any(|figure| figure.id == "heat-map"));
+    assert!(
+        page.figures
+            .iter()
+            .any(|figure| figure.id == "ranking-boundary")
+    );
+    let html = page.html();
+    assert_eq!(
+        html.matches("data-figure=").count(),
+        page.all_figures().count()
+    );
+    assert!(html.contains("no such file"));
+    let markdown = page.markdown();
+    for figure in page.all_figures() {
+        let link = format!("(figures/{}.svg)", figure.id);
+        assert!(markdown.contains(&link), "{link}");
+    }
+}
+
+#[test]
+fn nothing_comes_from_outside_and_names_of_files_are_no_code() {
+    let page = Page::of(&collection(&[HOSTILE]), "sixfold study '<b>'");
+    let html = page.html();
+    assert!(!html.contains("<script"), "a name became code");
+    assert!(!html.contains("<b>"), "a command became code");
+    assert!(html.contains("&lt;script&gt;"));
+    let outside = html.replace("http://www.w3.org/2000/svg", "");
+    // A clip path of the same figure is no place outside.
+    let outside = outside.replace("url(#", "");
+    for word in ["http:", "https:", "src=", "@import", "url("] {
+        assert!(!outside.contains(word), "{word}");
+    }
+    for figure in page.all_figures() {
+        assert!(!figure.svg.contains("<script"), "{}", figure.id);
+    }
+    assert!(!page.markdown().replace("\\<", "").contains("<script"));
+}
