@@ -16,7 +16,7 @@ h1{font-size:1.6rem;line-height:1.2}h2{font-size:1.25rem;margin-top:2.5rem;overf
 h3{font-size:1.05rem}a{color:var(--link)}code,pre{font:.9em/1.4 ui-monospace,monospace}\
 pre{overflow-x:auto;padding:.5rem .75rem;border:1px solid var(--line);border-radius:4px}\
 figure{margin:1.5rem 0;break-inside:avoid}figcaption{color:var(--faint);font-size:.9rem}\
-figure svg{display:block;max-width:100%;height:auto}figure svg g:hover>*{opacity:.75}\
+figure svg{display:block;max-width:100%;min-width:34rem;height:auto}figure svg g:hover>*{opacity:.75}\
 .scroll{overflow-x:auto}table{border-collapse:collapse;font-size:.85rem;font-variant-numeric:tabular-nums}\
 td,th{padding:.15rem .6rem;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}\
 td:first-child,th:first-child{text-align:left}summary{cursor:pointer;color:var(--faint);font-size:.9rem}\
