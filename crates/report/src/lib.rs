@@ -1,6 +1,6 @@
 //! Studies as something to publish: one page of HTML that stands alone, or Markdown with figures.
 //!
-//! [`Page::of`] draws the figures of a [`Collection`](study::Collection); each has its numbers in a table
+//! [`Page::of`] draws the figures of a [`Collection`]; each has its numbers in a table
 //! under it. [`Page::html`] is one file that opens without a network, in light and dark, on paper and on
 //! a telephone; [`Page::markdown`] is for a repository, with the figures beside it as SVG files. The
 //! marks of a figure carry what they stand for as their titles: people see it when they point at one,

@@ -58,14 +58,14 @@ pub enum PickError {
     /// The workload cannot be run on a mesh.
     #[error("{mesh}: {reason}")]
     Impossible { mesh: String, reason: NoPlace },
-    /// Not even three rounds fit.
+    /// Not even three rounds fit. What is needed is for all meshes, and rounded up.
     #[error(
-        "{mesh}: a budget of {budget:?} is too small to measure anything: three rounds take about {needed_s} s; give at least --budget {needed_s}s"
+        "{mesh}: a budget of {} ms is too small to measure anything: three rounds have no room in it; give --budget {needed_ms}ms or more", .budget.as_millis()
     )]
     BudgetTooSmall {
         mesh: String,
         budget: Duration,
-        needed_s: u64,
+        needed_ms: u64,
     },
     /// There is no mesh to ask about.
     #[error("there is no mesh to pick a backend for")]
@@ -102,14 +102,8 @@ pub fn pick(
         }
         let part = |done: f64| (i as f64 + done) / specimens.len() as f64;
         let mut progress = |done: f64, what: &str| progress(part(done), what);
-        answers.push(on_one(
-            specimen,
-            question,
-            budget,
-            &clock,
-            stop,
-            &mut progress,
-        )?);
+        let answer = on_one(specimen, question, budget, &clock, stop, &mut progress);
+        answers.push(answer.map_err(|error| for_all(error, question, specimens.len()))?);
     }
     let interrupted = stop.load(Ordering::Relaxed);
     Ok(pooled::pooled(
@@ -119,6 +113,20 @@ pub fn pick(
         environment,
         interrupted,
     ))
+}
+
+/// An error about the share of one mesh, in terms of what was asked for all of them.
+fn for_all(error: PickError, question: &Question, meshes: usize) -> PickError {
+    match error {
+        PickError::BudgetTooSmall {
+            mesh, needed_ms, ..
+        } => PickError::BudgetTooSmall {
+            mesh,
+            budget: question.budget,
+            needed_ms: needed_ms.saturating_mul(meshes as u64),
+        },
+        other => other,
+    }
 }
 
 /// The backends that may take part, and why the others may not.

@@ -124,7 +124,7 @@ impl Contest<'_> {
             return Err(PickError::BudgetTooSmall {
                 mesh: self.specimen.name.clone(),
                 budget: self.budget,
-                needed_s: (1.5 * needed / 1e9).ceil() as u64,
+                needed_ms: (1.5 * needed / 1e8).ceil() as u64 * 100,
             });
         }
         self.time_parts(&mut entrants, deadline);
