@@ -301,7 +301,7 @@ fn a_full_disk_keeps_what_was_there() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_study_goes_on_where_it_left_off() {
-    use std::time::Duration;
+    use std::time::{Duration, Instant};
     let sixfold = scans();
     let arguments = [
         "study",
@@ -313,13 +313,28 @@ fn an_interrupted_study_goes_on_where_it_left_off() {
         "--report",
         "out",
     ];
-    // The first has its two seconds, the second is in the midst of them.
-    let run = sixfold.interrupted(&arguments, "INT", Duration::from_millis(3500));
-    assert!(run.stdout.contains("still to be done"), "{}", run.stdout);
+    let child = sixfold.begun(&arguments, 1);
+    // Once the first is kept, the second is in the midst of its two seconds.
+    let start = Instant::now();
+    let kept = || {
+        let studies = fs::read_dir(sixfold.folder().join("out/studies"));
+        let names = studies.into_iter().flatten().flatten();
+        let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
+        names.filter(|name| !name.starts_with('.')).count()
+    };
+    while kept() == 0 && start.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    crate::run::send("INT", &child);
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(4), "{output:?}");
+    let shown = String::from_utf8_lossy(&output.stdout);
+    assert!(shown.contains("still to be done"), "{shown}");
     let kept = results(&sixfold, "out");
     let finished = names(&kept["studies"]).len();
     assert!((1..3).contains(&finished), "{finished}");
-    assert_eq!(pieces(&sixfold, "out").len(), finished);
+    let failed = names(&kept["failures"]).len();
+    assert_eq!(pieces(&sixfold, "out").len(), finished + failed);
     let mut go_on = arguments.to_vec();
     go_on.push("--resume");
     done(&sixfold, &go_on);
