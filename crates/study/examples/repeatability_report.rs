@@ -129,7 +129,7 @@ fn series(reports: &[Report], operation: Operation, backend: &str) -> Vec<f64> {
 /// Whether pairs that differ by more than a tenth are in one order in all studies.
 fn orders(reports: &[Report]) -> String {
     let (mut pairs, mut apart, mut steady) = (0, 0, 0);
-    let mut worst: Option<(usize, String)> = None;
+    let mut unsteady = String::new();
     let backends: Vec<&str> = reports[0]
         .backends
         .iter()
@@ -155,26 +155,30 @@ fn orders(reports: &[Report]) -> String {
                     .iter()
                     .filter(|&&ratio| (ratio > 1.0) == (gap > 1.0))
                     .count();
-                steady += usize::from(20 * same >= 19 * ratios.len());
-                if worst.as_ref().is_none_or(|(least, _)| same < *least) {
-                    let what = format!(
-                        "{operation}: {a} and {b}, a gap of {:.2}",
-                        gap.max(1.0 / gap)
+                if 20 * same >= 19 * ratios.len() {
+                    steady += 1;
+                } else {
+                    let apart = 100.0 * (gap.max(1.0 / gap) - 1.0);
+                    let (all, operation) = (ratios.len(), operation.to_string());
+                    let _ = writeln!(
+                        unsteady,
+                        "| {operation} | {a} and {b} | {apart:.0} % | {same} of {all} |"
                     );
-                    worst = Some((same, what));
                 }
             }
         }
     }
-    let runs = reports.len();
-    let worst = worst.map_or(String::new(), |(same, what)| {
-        format!(" The least steady is in one order in {same} of {runs} ({what}).")
-    });
-    format!(
+    let mut text = format!(
         "## Whether the order is the same\n\nOf {pairs} pairs of backends, {apart} differ by more than {:.0} % in the median of all studies; {steady} of\n\
-         these are in the same order in 19 of 20 studies or more.{worst}\n\n",
+         these are in the same order in 19 of 20 studies or more.\n\n",
         100.0 * (GAP - 1.0)
-    )
+    );
+    if !unsteady.is_empty() {
+        text += "The others:\n\n| operation | pair | apart | in one order in |\n|---|---|---|---|\n";
+        text += &unsteady;
+        text.push('\n');
+    }
+    text
 }
 
 /// How often the interval of one study holds the median of all.
