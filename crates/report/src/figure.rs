@@ -1,10 +1,13 @@
 //! One figure, and the numbers under it.
 
-use kuva::Theme;
+use std::sync::Arc;
+
 use kuva::backend::svg::SvgBackend;
 use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
-use kuva::render::render::render_multiple;
+use kuva::render::render::{Scene, render_multiple};
+use kuva::{Theme, TickFormat};
+use study::numbers::times;
 
 use crate::colours::{GRID, INK, PAPER, dark_rules};
 
@@ -47,6 +50,14 @@ impl Table {
     }
 }
 
+/// The length of a bar for the fastest, whose ratio has the logarithm 0.
+pub(crate) const LEAST: f64 = 0.02;
+
+/// Logarithms of ratios on an axis, as the ratios that they are of.
+pub(crate) fn ratios() -> TickFormat {
+    TickFormat::Custom(Arc::new(|log: f64| times(10_f64.powf(log))))
+}
+
 /// A layout in our colours and letters.
 pub(crate) fn laid_out(plots: &[Plot], width: f64, height: f64) -> Layout {
     let theme = Theme {
@@ -70,10 +81,14 @@ pub(crate) fn laid_out(plots: &[Plot], width: f64, height: f64) -> Layout {
         .with_body_size(12)
 }
 
-/// The picture of `plots`: as wide as its place, dark where the page is, with a title for who does not see
-/// it.
+/// The picture of `plots`.
 pub(crate) fn drawn(title: &str, plots: Vec<Plot>, layout: Layout) -> String {
-    let svg = SvgBackend::new().render_scene(&render_multiple(plots, layout));
+    finished(title, &render_multiple(plots, layout))
+}
+
+/// `scene` as wide as its place, dark where the page is, with a title for who does not see it.
+pub(crate) fn finished(title: &str, scene: &Scene) -> String {
+    let svg = SvgBackend::new().render_scene(scene);
     let Some((head, body)) = svg.split_once('>') else {
         return svg;
     };

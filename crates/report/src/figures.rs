@@ -1,12 +1,15 @@
 //! What is drawn of which results.
 
 mod break_even;
+mod growth;
 mod heat_map;
 mod memory;
+mod orders;
 mod ranking;
+mod roofline;
 
 use study::numbers::{counted, grouped};
-use study::{Collection, Environment, Report};
+use study::{Collection, Environment, Labs, MeshReport, Report};
 
 use crate::{Figure, Page, Section};
 
@@ -27,32 +30,35 @@ pub(crate) fn page(collection: &Collection, command: &str) -> Page {
         ([study], 1) => Some(study),
         _ => None,
     };
-    let title = match single {
-        Some(study) => format!("Mesh data structures on {}", study.mesh.name),
-        None => {
+    let labs = labs(&collection.labs, command);
+    let title = match (single, &labs[..]) {
+        (Some(study), _) => format!("Mesh data structures on {}", study.mesh.name),
+        (None, [lab]) if collection.meshes.is_empty() => lab.title.clone(),
+        (None, _) if collection.meshes.is_empty() => "Mesh data structures".into(),
+        (None, _) => {
             let meshes = counted(collection.studies.len(), "mesh", "meshes");
             format!("Mesh data structures on {meshes}")
         }
     };
     let mut machines: Vec<String> = Vec::new();
-    for study in &collection.studies {
-        let machine = machine(&study.environment);
+    for environment in environments(collection) {
+        let machine = machine(environment);
         if !machines.contains(&machine) {
             machines.push(machine);
         }
     }
-    let section = |study: &Report| Section {
-        mesh: study.mesh.name.clone(),
-        facts: facts(study),
+    let section = |(place, study): (usize, &Report)| Section {
+        title: study.mesh.name.clone(),
+        facts: facts(&study.mesh),
         words: study.words.clone(),
-        figures: of_one_of_many(study, command),
+        figures: of_one_of_many(study, place + 1, command),
     };
     Page {
         title,
         command: command.into(),
         machines,
         words: match single {
-            Some(study) => [vec![facts(study)], study.words.clone()].concat(),
+            Some(study) => [vec![facts(&study.mesh)], study.words.clone()].concat(),
             None => collection.words.clone(),
         },
         warnings: single.map_or_else(Vec::new, |study| study.warnings.clone()),
@@ -62,8 +68,9 @@ pub(crate) fn page(collection: &Collection, command: &str) -> Page {
         },
         meshes: match single {
             Some(_) => Vec::new(),
-            None => collection.studies.iter().map(section).collect(),
+            None => collection.studies.iter().enumerate().map(section).collect(),
         },
+        labs,
         failures: { collection.failures.iter() }
             .map(|failed| (failed.mesh.clone(), failed.reason.clone()))
             .collect(),
@@ -71,8 +78,106 @@ pub(crate) fn page(collection: &Collection, command: &str) -> Page {
     }
 }
 
+/// All environments that figures come from.
+fn environments(collection: &Collection) -> impl Iterator<Item = &Environment> {
+    let Labs {
+        orders,
+        growth,
+        why,
+        picks,
+    } = &collection.labs;
+    let studies = collection.studies.iter().map(|study| &study.environment);
+    studies
+        .chain(orders.iter().map(|orders| &orders.environment))
+        .chain(growth.iter().map(|growth| &growth.environment))
+        .chain(why.iter().filter_map(|why| why.environment.as_ref()))
+        .chain(picks.iter().map(|answer| &answer.environment))
+}
+
+/// What was typed for these figures, or else for the page.
+fn made_by<'a>(environment: &'a Environment, command: &'a str) -> &'a str {
+    environment.command.as_deref().unwrap_or(command)
+}
+
+/// A section for each measurement that is no study.
+fn labs(labs: &Labs, command: &str) -> Vec<Section> {
+    let Labs {
+        orders,
+        growth,
+        why,
+        picks,
+    } = labs;
+    let mut sections = Vec::new();
+    for (i, orders) in orders.iter().enumerate() {
+        sections.push(Section {
+            title: format!("What the order of {} costs", orders.mesh.name),
+            facts: facts(&orders.mesh),
+            words: orders.words.clone(),
+            figures: orders::of_orders(
+                orders,
+                &numbered("orders", i),
+                made_by(&orders.environment, command),
+            ),
+        });
+    }
+    for (i, growth) in growth.iter().enumerate() {
+        let ends = growth.sizes.first().zip(growth.sizes.last());
+        let sizes = ends.map_or_else(String::new, |(first, last)| {
+            let [first, last] = [first.faces, last.faces].map(grouped);
+            let sizes = counted(growth.sizes.len(), "size", "sizes");
+            format!(
+                "{sizes} from {first} to {last} faces, in the order {}.",
+                growth.order
+            )
+        });
+        sections.push(Section {
+            title: format!("How costs grow: {}", growth.shape),
+            facts: sizes,
+            words: growth.words.clone(),
+            figures: growth::of_growth(
+                growth,
+                &numbered("growth", i),
+                made_by(&growth.environment, command),
+            ),
+        });
+    }
+    for (i, why) in why.iter().enumerate() {
+        let environment = why.environment.as_ref();
+        let command = environment.map_or(command, |environment| made_by(environment, command));
+        let figure = roofline::of_why(why, &numbered("roofline", i), command);
+        sections.extend(figure.map(|figure| Section {
+            title: format!("What queries on {} wait for", why.mesh.name),
+            facts: facts(&why.mesh),
+            words: Vec::new(),
+            figures: vec![figure],
+        }));
+    }
+    for (i, answer) in picks.iter().enumerate() {
+        let command = made_by(&answer.environment, command);
+        let id = numbered("pick", i);
+        let ranked = ranking::of_workload(answer, &id, command);
+        let curves = break_even::of_workload(answer, &format!("{id}-break-even"), command);
+        sections.push(Section {
+            title: format!("{} on {}", answer.workload.name, answer.meshes.join(", ")),
+            facts: answer.workload.summary.trim().to_owned(),
+            words: [&answer.words[..], &answer.warnings].concat(),
+            figures: ranked.into_iter().chain(curves).collect(),
+        });
+    }
+    sections
+}
+
+/// `orders`, `orders-2`, …
+fn numbered(name: &str, place: usize) -> String {
+    match place {
+        0 => name.into(),
+        _ => format!("{name}-{}", place + 1),
+    }
+}
+
 /// Everything there is to draw of one study.
 fn of_one(study: &Report, command: &str) -> Vec<Figure> {
+    let command = made_by(&study.environment, command);
     let mut figures = Vec::new();
     figures.extend(heat_map::of_study(study, "", command));
     figures.extend(memory::of_study(study, "", command));
@@ -82,8 +187,10 @@ fn of_one(study: &Report, command: &str) -> Vec<Figure> {
 }
 
 /// What is drawn of one of many: their number is what makes a page long.
-fn of_one_of_many(study: &Report, command: &str) -> Vec<Figure> {
-    let of = format!("{}-", slug(&study.mesh.name));
+fn of_one_of_many(study: &Report, place: usize, command: &str) -> Vec<Figure> {
+    // Names that differ may come to one slug; their places do not.
+    let of = format!("mesh-{place}-{}-", slug(&study.mesh.name));
+    let command = made_by(&study.environment, command);
     let mut figures = Vec::new();
     figures.extend(heat_map::of_study(study, &of, command));
     figures.extend(memory::of_study(study, &of, command));
@@ -97,7 +204,7 @@ fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
     figures
 }
 
-/// A name that links and files can have, and no other mesh.
+/// A name as links and files can have it.
 fn slug(mesh: &str) -> String {
     let fine = |c: char| {
         if c.is_ascii_alphanumeric() {
@@ -109,8 +216,8 @@ fn slug(mesh: &str) -> String {
     mesh.chars().map(fine).collect()
 }
 
-fn facts(study: &Report) -> String {
-    let facts = &study.mesh.facts;
+fn facts(mesh: &MeshReport) -> String {
+    let facts = &mesh.facts;
     let vertices = counted(facts.vertices, "vertex", "vertices");
     let faces = counted(facts.faces, "face", "faces");
     let closed = if facts.closed {
@@ -122,9 +229,9 @@ fn facts(study: &Report) -> String {
         Some(genus) if facts.closed => format!(", genus {genus}"),
         _ => String::new(),
     };
-    let changes = match study.mesh.changes.is_empty() {
+    let changes = match mesh.changes.is_empty() {
         true => String::new(),
-        false => format!("; {}", study.mesh.changes.join(", ")),
+        false => format!("; {}", mesh.changes.join(", ")),
     };
     format!(
         "{vertices}, {} edges, {faces}; {closed}{genus}{changes}.",

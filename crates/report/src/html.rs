@@ -56,7 +56,13 @@ impl Page {
                         h2 { "Still to be done" }
                         ul { @for mesh in &self.missing { li { code { (mesh) } } } }
                     }
-                    @for figure in &self.figures { (shown(figure, "h2")) }
+                    @for figure in &self.figures { (shown(figure, "h2", None)) }
+                    @for lab in &self.labs {
+                        h2 { (lab.title) }
+                        p { (lab.facts) }
+                        (sentences(&lab.words))
+                        @for figure in &lab.figures { (shown(figure, "h3", None)) }
+                    }
                     @if !self.meshes.is_empty() {
                         h2 { "Mesh by mesh" }
                         @for section in &self.meshes { (of_mesh(section)) }
@@ -80,18 +86,19 @@ fn sentences(words: &[String]) -> Markup {
 fn of_mesh(section: &Section) -> Markup {
     html! {
         details {
-            summary { (section.mesh) " – " (section.facts) }
+            summary { (section.title) " – " (section.facts) }
             (sentences(&section.words))
-            @for figure in &section.figures { (shown(figure, "h3")) }
+            @for figure in &section.figures { (shown(figure, "h3", Some(&section.title))) }
         }
     }
 }
 
-fn shown(figure: &Figure, heading: &str) -> Markup {
+/// A figure under a heading; `mesh` is which of several it is of.
+fn shown(figure: &Figure, heading: &str, mesh: Option<&str>) -> Markup {
     html! {
         section id=(figure.id) {
             @if heading == "h2" { h2 { (figure.title) } } @else { h3 { (figure.title) } }
-            figure data-figure=(figure.id) {
+            figure data-figure=(figure.id) data-mesh=[mesh] {
                 // Wider than a telephone: it can be pushed about there.
                 div.scroll { (PreEscaped(without_style(&figure.svg))) }
                 figcaption { (figure.caption) }

@@ -1,7 +1,7 @@
 //! Studies as something to publish: one page of HTML that stands alone, or Markdown with figures.
 //!
-//! [`Page::of`] draws the figures of a [`Collection`]; each has its numbers in a table
-//! under it. [`Page::html`] is one file that opens without a network, in light and dark, on paper and on
+//! [`Page::of`] draws the figures of a [`Collection`] and of its labs; each has its numbers in a table
+//! under it, and the command that makes it again. [`Page::html`] is one file that opens without a network, in light and dark, on paper and on
 //! a telephone; [`Page::markdown`] is for a repository, with the figures beside it as SVG files. The
 //! marks of a figure carry what they stand for as their titles: people see it when they point at one,
 //! programs read it.
@@ -11,10 +11,12 @@ mod figure;
 mod figures;
 mod html;
 mod markdown;
+mod panels;
 
 use study::Collection;
 
 pub use figure::{Figure, Table};
+pub use panels::{Panel, panels};
 
 /// A report, ready to be written.
 #[derive(Clone, Debug)]
@@ -31,6 +33,8 @@ pub struct Page {
     pub warnings: Vec<String>,
     /// Over all meshes, or of the one there is.
     pub figures: Vec<Figure>,
+    /// What else was measured: orders, sizes, what queries read, workloads.
+    pub labs: Vec<Section>,
     /// Mesh by mesh, where there are several.
     pub meshes: Vec<Section>,
     /// Meshes that could not be studied, and why.
@@ -39,12 +43,12 @@ pub struct Page {
     pub missing: Vec<String>,
 }
 
-/// What a report says of one of several meshes.
+/// What a report says of one of several meshes, or of one measurement.
 #[derive(Clone, Debug)]
 pub struct Section {
-    /// The mesh.
-    pub mesh: String,
-    /// What it is, in a line.
+    /// What it is of.
+    pub title: String,
+    /// What that is, in a line.
     pub facts: String,
     /// What the figures show.
     pub words: Vec<String>,
@@ -53,14 +57,15 @@ pub struct Section {
 }
 
 impl Page {
-    /// Draws `collection`, which `command` makes.
+    /// Draws `collection`, which `command` makes where the results themselves do not say so.
     pub fn of(collection: &Collection, command: &str) -> Self {
         figures::page(collection, command)
     }
 
     /// All figures, in the order of the page.
     pub fn all_figures(&self) -> impl Iterator<Item = &Figure> {
-        let sections = self.meshes.iter().flat_map(|section| &section.figures);
-        self.figures.iter().chain(sections)
+        let sections = self.labs.iter().chain(&self.meshes);
+        let of_sections = sections.flat_map(|section| &section.figures);
+        self.figures.iter().chain(of_sections)
     }
 }

@@ -34,11 +34,11 @@ impl Page {
         for figure in &self.figures {
             shown(&mut text, figure, "##");
         }
-        for section in &self.meshes {
+        for section in self.labs.iter().chain(&self.meshes) {
             let _ = writeln!(
                 text,
                 "## {}\n\n{}\n",
-                plain(&section.mesh),
+                plain(&section.title),
                 plain(&section.facts)
             );
             sentences(&mut text, &section.words);
@@ -64,6 +64,7 @@ fn shown(text: &mut String, figure: &Figure, heading: &str) {
     let _ = writeln!(text, "{heading} {title}\n\n![{title}](figures/{id}.svg)\n");
     let _ = writeln!(text, "{}\n", plain(&figure.caption));
     rows(text, &figure.table);
+    let _ = writeln!(text, "`{}`\n", figure.command.replace('`', "'"));
 }
 
 fn rows(text: &mut String, table: &Table) {

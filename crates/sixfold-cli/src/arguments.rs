@@ -25,7 +25,7 @@ pub(crate) use reshaping::{Dual, Smooth, Triangulate};
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
 pub(crate) use why::Why;
 
-use crate::many::Shard;
+use crate::many::{Lab, Shard};
 
 const EXAMPLES: &str = "Examples:
   sixfold                                    study the built-in mesh
@@ -46,6 +46,7 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study quads.obj --triangulate --budget 2m
   sixfold study bunny.obj --json - --csv bunny.csv
   sixfold study bunny.obj --external mine='./mine {mesh}'
+  sixfold study bunny.obj --report bunny            a page with figures, and the labs
   sixfold study scans --report results              all OBJ files in a folder; --resume goes on
 
 How it measures: every round runs each operation on each backend, one after the other, in random
@@ -67,6 +68,13 @@ have is taken from the first.
 
 Exit codes: 0 done; 1 backends found different results, a fault in Sixfold; 2 wrong usage, or
 shards that do not belong together.";
+
+const REPORT_EXAMPLES: &str = "Examples:
+  sixfold growth --to 4000000 --budget 5m --json growth.json
+  sixfold report growth.json --to growth
+  sixfold report results pick.json orders.json --to all
+
+Exit codes: 0 done; 2 wrong usage, or a file that is no result, was cut off, or has another schema.";
 
 const INSPECT_EXAMPLES: &str = "Examples:
   sixfold inspect bunny.obj
@@ -101,6 +109,8 @@ pub(crate) enum Command {
     Growth(Growth),
     /// Put the shards of a study of many meshes together
     Merge(Merge),
+    /// Draw results that were written before, on one page
+    Report(Draw),
     /// Say what changed between two studies, beyond noise
     Compare(Compare),
     /// Say what a mesh is, and which backends can hold it
@@ -172,6 +182,15 @@ pub(crate) struct Study {
     /// Write report.html, report.md, results.json and results.csv there
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
+    /// Also in the report of one mesh: orders,growth,why [default: all] or none, --budget each
+    #[arg(
+        long,
+        value_name = "NAME,…",
+        value_delimiter = ',',
+        requires = "report",
+        hide_possible_values = true
+    )]
+    pub(crate) labs: Option<Vec<Lab>>,
     /// Go on with what --report has in its folder
     #[arg(long, requires = "report")]
     pub(crate) resume: bool,
@@ -195,6 +214,21 @@ pub(crate) struct Merge {
     pub(crate) json: Option<PathBuf>,
 }
 
+/// Draw results that were written before, on one page.
+///
+/// Results of `study`, `orders`, `growth`, `why` and `pick`, of one or of all of them; one study at
+/// most. Measures nothing.
+#[derive(Debug, Args)]
+#[command(after_help = REPORT_EXAMPLES, verbatim_doc_comment)]
+pub(crate) struct Draw {
+    /// What --json wrote, or the folder of --report
+    #[arg(value_name = "FILE.json|DIR", required = true)]
+    pub(crate) results: Vec<PathBuf>,
+    /// Write report.html, report.md and figures there
+    #[arg(long, value_name = "DIR")]
+    pub(crate) to: PathBuf,
+}
+
 impl Default for Study {
     fn default() -> Self {
         let settings = ::study::Settings::default();
@@ -211,6 +245,7 @@ impl Default for Study {
             json: None,
             csv: None,
             report: None,
+            labs: None,
             resume: false,
             shard: None,
         }

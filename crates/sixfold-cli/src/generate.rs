@@ -11,6 +11,7 @@ use crate::output::{Output, is_stdout};
 use crate::progress::end_on_interrupt;
 use crate::text::{Text, hanging, tame};
 use ::study::numbers::counted;
+use ::study::unknown;
 
 /// Writes the shape asked for.
 pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
@@ -18,8 +19,7 @@ pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
     let shape = &arguments.shape;
     let recipe = recipe(shape).ok_or_else(|| {
         let names: Vec<&str> = RECIPES.iter().map(|recipe| recipe.name).collect();
-        let names = names.join(", ");
-        Failure::usage(format!("no shape is called `{shape}`: choose from {names}"))
+        Failure::usage(unknown("shape", shape, &names))
     })?;
     let settings = arguments.settings.iter();
     let settings: Vec<(&str, f64)> = settings

@@ -1,6 +1,7 @@
 //! `sixfold growth`: how costs grow with the mesh, and where the caches end.
 
 use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
 
 use ::study::{
     Fit, GROWING, Growing, GrowthError, GrowthReport, GrowthSettings, Operation, ResultRow,
@@ -11,7 +12,7 @@ use comfy_table::{Attribute, Cell, CellAlignment};
 use crate::arguments::{GROWTH_EXAMPLES, Growth};
 use crate::failure::Failure;
 use crate::free_memory::check_room;
-use crate::measured::{ended, tell_of_debug_build};
+use crate::measured::{ended, tell_of_debug_build, typed};
 use crate::orders::{few, short};
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
@@ -37,23 +38,10 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
         to: arguments.to,
         steps: arguments.steps,
     };
-    let needed = ::study::growth_bytes(&settings).map_err(Failure::usage)?;
-    let largest = counted(settings.to, "face", "faces");
-    check_room(
-        &format!("a mesh of {largest} on each backend"),
-        needed,
-        "take a smaller --to, or name fewer --backends",
-    )?;
     let stop = interrupt_flag();
     let json = Output::open_if(arguments.json.as_ref())?;
     tell_of_debug_build();
-    let bar = Bar::new();
-    let report = ::study::growth(&settings, &stop, &mut |at| bar.show(at));
-    bar.clear();
-    let report = report.map_err(|error| match error {
-        GrowthError::Study(StudyError::NoneHolds { .. }) => Failure::unsupported(error),
-        error => Failure::usage(error),
-    })?;
+    let report = measured(&settings, &stop)?;
 
     let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
     print(&report, &mut text);
@@ -62,6 +50,29 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
         done = done.and(output.finish(|writer| report.write_json(writer)));
     }
     ended(done, report.mismatches(), report.interrupted)
+}
+
+/// Measures all sizes, if there is room for the largest.
+pub(crate) fn measured(
+    settings: &GrowthSettings,
+    stop: &AtomicBool,
+) -> Result<GrowthReport, Failure> {
+    let needed = ::study::growth_bytes(settings).map_err(Failure::usage)?;
+    let largest = counted(settings.to, "face", "faces");
+    check_room(
+        &format!("a mesh of {largest} on each backend"),
+        needed,
+        "take a smaller --to, or name fewer --backends",
+    )?;
+    let bar = Bar::new();
+    let report = ::study::growth(settings, stop, &mut |at| bar.show(at));
+    bar.clear();
+    let mut report = report.map_err(|error| match error {
+        GrowthError::Study(StudyError::NoneHolds { .. }) => Failure::unsupported(error),
+        error => Failure::usage(error),
+    })?;
+    report.environment.command = Some(typed());
+    Ok(report)
 }
 
 /// What help says after the options: examples, how it measures, and the names that there are.

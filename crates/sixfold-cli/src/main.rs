@@ -72,6 +72,7 @@ fn main() -> ExitCode {
         Ok(Some(Command::Orders(arguments))) => orders::run(&arguments),
         Ok(Some(Command::Growth(arguments))) => growth::run(&arguments),
         Ok(Some(Command::Merge(arguments))) => many::merge(&arguments),
+        Ok(Some(Command::Report(arguments))) => many::draw(&arguments),
         Ok(Some(Command::Compare(arguments))) => compare::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
         Ok(Some(Command::Memory(arguments))) => memory::run(&arguments),

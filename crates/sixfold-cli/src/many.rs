@@ -1,6 +1,8 @@
 //! Studies of many meshes: one after the other, each kept as soon as it is finished.
 
+mod drawn;
 mod folder;
+mod labs;
 mod merge;
 mod meshes;
 mod pooled_table;
@@ -9,17 +11,19 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use ::study::{Asked, Collection, Report, Settings, StudyError};
+use ::study::{Asked, Collection, Report, Settings, Specimen, StudyError};
 
 use crate::arguments::Study;
 use crate::failure::Failure;
 use crate::load;
-use crate::measured::{studies_ended, tell_of_debug_build};
+use crate::measured::{studies_ended, tell_of_debug_build, typed};
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
 use crate::text::{Text, complain, hanging, tame};
 use ::study::numbers::counted;
 
+pub(crate) use drawn::run as draw;
+pub(crate) use labs::Lab;
 pub(crate) use merge::run as merge;
 pub(crate) use meshes::Shard;
 
@@ -46,6 +50,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
             "--csv is for one mesh: --report DIR writes the samples of all into results.csv",
         ));
     }
+    let wanted = labs::wanted(arguments, single)?;
     let names = meshes.iter().map(|mesh| mesh.name.clone()).collect();
     let mut collection = Collection::new(names, asked(arguments, settings));
     let stop = interrupt_flag();
@@ -69,7 +74,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
     let data = [&arguments.json, &arguments.csv];
     let on_stdout = data.into_iter().flatten().any(|path| is_stdout(path));
     let mut text = Text::shown(!on_stdout);
-    let count = mine.len();
+    let (count, resumed) = (mine.len(), mine.is_empty());
     for (done, mesh) in mine.into_iter().enumerate() {
         if stop.load(Ordering::Relaxed) {
             break;
@@ -88,11 +93,23 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         }
         piece.settle(&mut collection);
     }
+    if let ([_], [mesh], Some(folder)) = (&collection.studies[..], &meshes[..], &folder) {
+        let specimen = specimen(mesh, arguments)?;
+        let measuring = labs::Measuring {
+            specimen: &specimen,
+            settings,
+            folder,
+            resumed,
+            stop: &stop,
+        };
+        collection.labs = measuring.labs(&wanted)?;
+    }
     let interrupted = stop.load(Ordering::Relaxed);
     let mut written;
     match (&collection.studies[..], single) {
         ([study], true) => {
             crate::study::print(study, &mut text);
+            labs::print(&collection.labs, &mut text);
             written = text
                 .finish()
                 .and(crate::study::write_files(study, json, csv));
@@ -106,7 +123,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         }
     }
     if let Some(folder) = &folder {
-        written = written.and(folder.finish(&collection, &command()));
+        written = written.and(folder.finish(&collection, &typed()));
     }
     if collection.studies.is_empty() && !interrupted && arguments.shard.is_none() {
         written?;
@@ -116,7 +133,8 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
             false => Failure::usage("none of the meshes could be studied"),
         });
     }
-    studies_ended(written, &collection.studies, interrupted)
+    let mismatches = collection.labs.mismatches();
+    studies_ended(written, &collection.studies, mismatches, interrupted)
 }
 
 fn asked(arguments: &Study, settings: &Settings) -> Asked {
@@ -143,12 +161,10 @@ fn one(
     place: &str,
     stop: &AtomicBool,
 ) -> Option<Result<Report, String>> {
-    let specimen = match &mesh.path {
-        None => load::built_in(),
-        Some(path) => match load::for_study(path, arguments.strict, arguments.triangulate) {
-            Ok(specimen) => specimen,
-            Err(failure) => return Some(Err(without_path(&failure.message, path))),
-        },
+    let specimen = match (specimen(mesh, arguments), &mesh.path) {
+        (Ok(specimen), _) => specimen,
+        (Err(failure), None) => return Some(Err(failure.message)),
+        (Err(failure), Some(path)) => return Some(Err(without_path(&failure.message, path))),
     };
     let bar = Bar::new();
     let report = ::study::study(&specimen, settings, stop, &mut |at| {
@@ -161,18 +177,21 @@ fn one(
     bar.clear();
     match report {
         Ok(report) if report.interrupted => None,
-        Ok(report) => Some(Ok(report)),
+        Ok(mut report) => {
+            report.environment.command = Some(typed());
+            Some(Ok(report))
+        }
         Err(StudyError::NoneHolds { .. }) => Some(Err(NOBODY.into())),
         Err(error) => Some(Err(error.to_string())),
     }
 }
 
-/// What was typed, as it can be typed again.
-fn command() -> String {
-    let words = std::env::args_os().skip(1);
-    let words = words.map(|word| word.to_string_lossy().into_owned());
-    let words: Vec<String> = ["sixfold".to_owned()].into_iter().chain(words).collect();
-    shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
+/// The mesh itself.
+fn specimen(mesh: &Mesh, arguments: &Study) -> Result<Specimen, Failure> {
+    match &mesh.path {
+        None => Ok(load::built_in()),
+        Some(path) => load::for_study(path, arguments.strict, arguments.triangulate),
+    }
 }
 
 /// A message about a file without the file, which the list names anyhow.

@@ -18,6 +18,14 @@ pub(crate) fn tell_of_debug_build() {
     }
 }
 
+/// What was typed, as it can be typed again.
+pub(crate) fn typed() -> String {
+    let words = std::env::args_os().skip(1);
+    let words = words.map(|word| word.to_string_lossy().into_owned());
+    let words: Vec<String> = ["sixfold".to_owned()].into_iter().chain(words).collect();
+    shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
+}
+
 /// The end of a command whose text and files are `written`: a fault of ours comes before what could not
 /// be written, and that before an interruption.
 pub(crate) fn ended(
@@ -42,13 +50,15 @@ pub(crate) fn ended(
     Ok(ExitCode::SUCCESS)
 }
 
-/// The end of a command that made `studies`: programs of others that do another work are told of.
+/// The end of a command that made `studies`, and found so many `mismatches` besides: programs of others
+/// that do another work are told of.
 pub(crate) fn studies_ended<'r>(
     written: Result<(), Failure>,
     studies: impl IntoIterator<Item = &'r Report>,
+    mut mismatches: usize,
     interrupted: bool,
 ) -> Result<ExitCode, Failure> {
-    let (mut mismatches, mut others) = (0, 0);
+    let mut others = 0;
     for study in studies {
         mismatches += study.mismatches().count();
         for row in study.other_work() {

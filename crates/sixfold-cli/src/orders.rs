@@ -1,10 +1,11 @@
 //! `sixfold orders`: what the order of a mesh in memory costs.
 
 use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
 
 use ::study::{
-    Agreement, Comparison, FEW_OPERATIONS, OrderRow, OrdersError, OrdersReport, Settings, Standing,
-    StudyError,
+    Agreement, Comparison, FEW_OPERATIONS, OrderRow, OrdersError, OrdersReport, Settings, Specimen,
+    Standing, StudyError,
 };
 use comfy_table::{Attribute, Cell, CellAlignment, Table};
 use sixfold::shapes::Order;
@@ -14,7 +15,7 @@ use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::free_memory::check_room;
 use crate::load;
-use crate::measured::{ended, tell_of_debug_build};
+use crate::measured::{ended, tell_of_debug_build, typed};
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
 use crate::study::{names, setting};
@@ -41,20 +42,8 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
         seed: arguments.seed,
         ..Settings::default()
     };
-    let needed = ::study::orders_bytes(&specimen, &settings).map_err(Failure::usage)?;
-    check_room(
-        "the mesh in four orders on each backend",
-        needed,
-        "name fewer --backends, or take a smaller mesh",
-    )?;
     tell_of_debug_build();
-    let bar = Bar::new();
-    let report = ::study::orders(&specimen, &settings, &stop, &mut |at| bar.show(at));
-    bar.clear();
-    let report = report.map_err(|error| match error {
-        OrdersError::Study(StudyError::NoneHolds { .. }) => Failure::unsupported(error),
-        error => Failure::usage(error),
-    })?;
+    let report = measured(&specimen, &settings, &stop)?;
 
     let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
     print(&report, &mut text);
@@ -63,6 +52,29 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
         done = done.and(output.finish(|writer| report.write_json(writer)));
     }
     ended(done, report.mismatches(), report.interrupted)
+}
+
+/// Measures the mesh in all orders, if there is room for them.
+pub(crate) fn measured(
+    specimen: &Specimen,
+    settings: &Settings,
+    stop: &AtomicBool,
+) -> Result<OrdersReport, Failure> {
+    let needed = ::study::orders_bytes(specimen, settings).map_err(Failure::usage)?;
+    check_room(
+        "the mesh in four orders on each backend",
+        needed,
+        "name fewer --backends, or take a smaller mesh",
+    )?;
+    let bar = Bar::new();
+    let report = ::study::orders(specimen, settings, stop, &mut |at| bar.show(at));
+    bar.clear();
+    let mut report = report.map_err(|error| match error {
+        OrdersError::Study(StudyError::NoneHolds { .. }) => Failure::unsupported(error),
+        error => Failure::usage(error),
+    })?;
+    report.environment.command = Some(typed());
+    Ok(report)
 }
 
 /// What help says after the options: examples, how it measures, and the names that there are.

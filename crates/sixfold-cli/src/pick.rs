@@ -9,7 +9,7 @@ use comfy_table::{Cell, CellAlignment};
 use crate::arguments::Pick;
 use crate::failure::Failure;
 use crate::load;
-use crate::measured::{ended, tell_of_debug_build};
+use crate::measured::{ended, tell_of_debug_build, typed};
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
 use crate::tables::table;
@@ -44,7 +44,8 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         bar.at(done, what)
     });
     bar.clear();
-    let answer = answer.map_err(Failure::usage)?;
+    let mut answer = answer.map_err(Failure::usage)?;
+    answer.environment.command = Some(typed());
 
     let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
     print(&answer, &specimens, &mut text);

@@ -10,7 +10,7 @@ use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::load;
 use crate::many;
-use crate::measured::{studies_ended, tell_of_debug_build};
+use crate::measured::{studies_ended, tell_of_debug_build, typed};
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
 use crate::results_table::results_table;
@@ -53,7 +53,10 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     let report = ::study::study(&specimen, &settings, &stop, &mut |at| bar.show(at));
     bar.clear();
     let report = match report {
-        Ok(report) => report,
+        Ok(mut report) => {
+            report.environment.command = Some(typed());
+            report
+        }
         // That is an answer: who was asked, and why each refuses.
         Err(error @ StudyError::NoneHolds { .. }) => {
             let refusals = refusals(&specimen, &settings)?;
@@ -69,7 +72,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     print(&report, &mut text);
     let done = text.finish().and(write_files(&report, json, csv));
 
-    studies_ended(done, [&report], report.interrupted)
+    studies_ended(done, [&report], 0, report.interrupted)
 }
 
 /// What help says after the options: examples, how it measures, and the names that there are.

@@ -5,6 +5,8 @@ use std::io::{self, IsTerminal, Write};
 use crate::failure::Failure;
 use crate::output::cannot_write;
 
+pub(crate) use ::study::tame;
+
 /// How many columns text may take.
 pub(crate) const WIDTH: usize = 100;
 
@@ -66,23 +68,6 @@ pub(crate) fn complain(line: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", tame(line));
 }
 
-/// `text` without the characters that steer a terminal or turn the direction of writing: escapes
-/// stand for them, `\u{1b}`.
-pub(crate) fn tame(text: &str) -> String {
-    let steers = |c: char| {
-        c.is_control()
-            || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-    };
-    let mut tamed = String::with_capacity(text.len());
-    for c in text.chars() {
-        match steers(c) {
-            true => tamed.extend(c.escape_default()),
-            false => tamed.push(c),
-        }
-    }
-    tamed
-}
-
 /// `text` in lines of at most `width` columns, broken at blanks; a longer word has its own line.
 pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
@@ -109,12 +94,6 @@ pub(crate) fn hanging(first: &str, text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn what_steers_a_terminal_is_escaped() {
-        assert_eq!(tame("a\u{1b}[2Jb\nc\u{202e}"), "a\\u{1b}[2Jb\\nc\\u{202e}");
-        assert_eq!(tame("Hügel – 山.obj"), "Hügel – 山.obj");
-    }
 
     #[test]
     fn lines_break_at_blanks() {

@@ -2,14 +2,15 @@
 
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
-use ::study::{MachineClock, MemorySpeed, StudyError, Timing, WhySettings};
+use ::study::{MachineClock, MemorySpeed, Specimen, StudyError, Timing, WhySettings};
 
 use crate::arguments::Why;
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::load;
-use crate::measured::{ended, tell_of_debug_build};
+use crate::measured::{ended, tell_of_debug_build, typed};
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Bar, Waiting, interrupt_flag};
 use crate::text::{Text, hanging};
@@ -28,23 +29,19 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
         Some(path) => load::for_study(path, false, arguments.triangulate)?,
         None => load::built_in(),
     };
-    let timing = match arguments.counts_only {
+    let budget = match arguments.counts_only {
         true => None,
-        false => timing(arguments, &stop),
+        false => {
+            tell_of_debug_build();
+            Some(arguments.budget)
+        }
     };
     let settings = WhySettings {
         backends: arguments.backends.clone(),
-        extra: Vec::new(),
         relations: arguments.relations.clone(),
-        timing,
+        ..WhySettings::default()
     };
-    let bar = Bar::new();
-    let why = ::study::why(&specimen, &settings, &stop, &mut |at| bar.show(at));
-    bar.clear();
-    let why = why.map_err(|error| match error {
-        StudyError::NoneHolds { .. } => Failure::unsupported(error),
-        error => Failure::usage(error),
-    })?;
+    let why = measured(&specimen, settings, budget, &stop)?;
 
     let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
     print(&why, !arguments.relations.is_empty(), &mut text);
@@ -55,14 +52,34 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     ended(done, why.mismatches(), why.interrupted)
 }
 
+/// Counts, and measures if there is a `budget`.
+pub(crate) fn measured(
+    specimen: &Specimen,
+    mut settings: WhySettings,
+    budget: Option<Duration>,
+    stop: &AtomicBool,
+) -> Result<::study::Why, Failure> {
+    settings.timing = budget.and_then(|budget| timing(budget, stop));
+    let bar = Bar::new();
+    let why = ::study::why(specimen, &settings, stop, &mut |at| bar.show(at));
+    bar.clear();
+    let mut why = why.map_err(|error| match error {
+        StudyError::NoneHolds { .. } => Failure::unsupported(error),
+        error => Failure::usage(error),
+    })?;
+    if let Some(environment) = &mut why.environment {
+        environment.command = Some(typed());
+    }
+    Ok(why)
+}
+
 /// Measures the memory; `None` if interrupted meanwhile.
-fn timing(arguments: &Why, stop: &AtomicBool) -> Option<Timing> {
-    tell_of_debug_build();
+fn timing(budget: Duration, stop: &AtomicBool) -> Option<Timing> {
     let waiting = Waiting::shown("measuring how fast memory is read".into());
     let memory = MemorySpeed::measure(&MachineClock::start(), stop);
     waiting.clear();
     Some(Timing {
-        budget: arguments.budget,
+        budget,
         memory: memory?,
     })
 }

@@ -15,6 +15,7 @@ mod picking;
 mod places;
 mod remeshing;
 mod render;
+mod reports;
 mod run;
 mod subdivision;
 mod why;

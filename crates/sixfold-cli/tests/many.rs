@@ -20,6 +20,7 @@ fn scans() -> Sixfold {
     sixfold.file("scans/deep/c.obj", TETRAHEDRON);
     sixfold.file("scans/broken.obj", "v 0 0 0\nf 1 2 3\n");
     sixfold.file("scans/notes.txt", "no mesh");
+    sixfold.file("scans/._a.obj", "what another system left behind");
     sixfold
 }
 

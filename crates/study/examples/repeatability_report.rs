@@ -174,7 +174,8 @@ fn orders(reports: &[Report]) -> String {
         100.0 * (GAP - 1.0)
     );
     if !unsteady.is_empty() {
-        text += "The others:\n\n| operation | pair | apart | in one order in |\n|---|---|---|---|\n";
+        text +=
+            "The others:\n\n| operation | pair | apart | in one order in |\n|---|---|---|---|\n";
         text += &unsteady;
         text.push('\n');
     }

@@ -8,7 +8,8 @@ use std::io;
 use serde::{Deserialize, Serialize};
 use workload::Operation;
 
-use crate::read::{ReadError, check_schema, parsed};
+use crate::labs::Labs;
+use crate::read::{ReadError, Results, check_schema, parsed};
 use crate::report::{Agreement, Report, SCHEMA, Standing, unwrapped, write_json};
 use crate::statistics::geometric_mean;
 
@@ -31,10 +32,13 @@ pub struct Collection {
     pub pooled: Vec<Pooled>,
     /// What the pooled figures show, in words.
     pub words: Vec<String>,
+    /// What else was measured.
+    #[serde(default)]
+    pub labs: Labs,
 }
 
 /// What has to be the same for studies to be put together.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct Asked {
     /// The backends; empty for all.
     pub backends: Vec<String>,
@@ -84,6 +88,11 @@ pub struct Pooled {
     pub ns_per_element: Option<f64>,
 }
 
+/// Results of more than one study were to stand on one page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("is a second study: put those of several meshes together with `sixfold merge`")]
+pub struct SecondStudy;
+
 /// Why collections cannot be put together.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -113,7 +122,40 @@ impl Collection {
             failures: Vec::new(),
             pooled: Vec::new(),
             words: Vec::new(),
+            labs: Labs::default(),
         }
+    }
+
+    /// Of nothing yet.
+    pub fn empty() -> Self {
+        Self::new(Vec::new(), Asked::default())
+    }
+
+    /// Takes in results that were written by themselves. Studies of several meshes are put together by
+    /// [`merge`](Self::merge), which knows whether they were made alike.
+    ///
+    /// # Errors
+    ///
+    /// A second study.
+    pub fn take(&mut self, results: Results) -> Result<(), SecondStudy> {
+        let study = match results {
+            Results::Study(study) => {
+                let mut one = Self::new(vec![study.mesh.name.clone()], Asked::default());
+                one.finish(*study);
+                one
+            }
+            Results::Collection(collection) => *collection,
+            lab => {
+                self.labs.take(lab);
+                return Ok(());
+            }
+        };
+        if !self.meshes.is_empty() {
+            return Err(SecondStudy);
+        }
+        let others = std::mem::replace(self, study).labs;
+        self.labs.append(others);
+        Ok(())
     }
 
     /// Takes in the study of one of the meshes, in the place of an older one.

@@ -12,6 +12,9 @@ use crate::caches::{Cache, caches};
 /// What else a figure depends on.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Environment {
+    /// What was typed, where a program tells: it makes the figures again.
+    #[serde(default)]
+    pub command: Option<String>,
     /// The version of Sixfold.
     pub sixfold: String,
     /// The commit that the program was built from, `-dirty` where files differed from it; `None` where
@@ -71,6 +74,7 @@ impl Environment {
             .map(|cpu| cpu.brand().trim().to_owned());
         let since = SystemTime::now().duration_since(UNIX_EPOCH);
         Self {
+            command: None,
             sixfold: env!("CARGO_PKG_VERSION").into(),
             commit: option_env!("STUDY_COMMIT").map(str::to_owned),
             rustc: env!("STUDY_RUSTC").into(),

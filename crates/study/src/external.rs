@@ -28,7 +28,8 @@ use sixfold::mesh_io::write_obj;
 use tempfile::TempDir;
 
 use crate::report::BackendReport;
-use program::{Greeting, Program, tame};
+use crate::tame::tame;
+use program::{Greeting, Program};
 use subject::ExternalSubject;
 use workload::Subject;
 

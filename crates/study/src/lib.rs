@@ -4,7 +4,8 @@
 //! until the budget is spent, proves by checksum that all did the same work, and gives a [`Report`].
 //! [`orders`] does so for one mesh in several orders, and [`growth`] for one shape in many sizes.
 //! [`inspect`] says what a mesh is and which backends can hold it, and measures nothing. [`pick`]
-//! answers for a workload. [`compare`] holds two studies against each other. [`audit`] counts the bytes of each in three ways, which must agree. [`why`]
+//! answers for a workload. [`compare`] holds two studies against each other, and a [`Collection`] pools
+//! those of many meshes. [`audit`] counts the bytes of each in three ways, which must agree. [`why`]
 //! counts what the relations read, and holds their times against the speed of memory.
 //!
 //! What a reader of the figures should know is in `reports/SCHEMA.md`. This crate knows no
@@ -22,6 +23,7 @@ mod environment;
 mod external;
 mod growth;
 mod inspect;
+mod labs;
 mod measure;
 mod methods;
 pub mod numbers;
@@ -35,6 +37,7 @@ mod solo;
 mod standing;
 mod statistics;
 mod study;
+mod tame;
 mod timer;
 mod warnings;
 mod why;
@@ -42,7 +45,7 @@ mod words;
 
 pub use audit::{Audit, Audited, audit};
 pub use caches::{Cache, caches};
-pub use collection::{Asked, Collection, Failed, MergeError, Pooled};
+pub use collection::{Asked, Collection, Failed, MergeError, Pooled, SecondStudy};
 pub use compare::{Change, Changes, Comparing, DRIFT, NewWinner, Setting, Verdict, compare};
 pub use environment::Environment;
 pub use external::{External, ExternalError, ExternalReport, PATIENCE};
@@ -51,6 +54,7 @@ pub use growth::{
     Weight, growth, growth_bytes,
 };
 pub use inspect::{Specimen, inspect};
+pub use labs::Labs;
 pub use measure::Progress;
 pub use orders::{
     Comparison, FEW_OPERATIONS, Factor, Larger, OrderEffect, OrderRow, OrdersError, OrdersReport,
@@ -60,7 +64,7 @@ pub use pick::{
     Answer, BreakEven, Excluded, Need, OnMesh, PartCost, PickError, Question, Ranked, UnknownNeed,
     pick,
 };
-pub use read::ReadError;
+pub use read::{ReadError, Results};
 pub use report::{
     Agreement, BackendReport, Control, ControlRow, Inspection, MeshReport, RawSamples, Refusal,
     Report, ResultRow, SCHEMA, Standing,
@@ -68,6 +72,7 @@ pub use report::{
 pub use slope::Slope;
 pub use solo::{Solo, SoloRun};
 pub use study::{Settings, StudyError, study};
+pub use tame::tame;
 pub use timer::Timer;
 pub use why::{Bound, Model, Timed, Timing, Why, WhyRow, WhySettings, why};
 pub use workload::{Access, Action, Amount, NoPlace, Workload, WorkloadError, built_in, built_ins};

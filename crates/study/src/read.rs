@@ -6,7 +6,12 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::error::Category;
 
+use crate::collection::Collection;
+use crate::growth::GrowthReport;
+use crate::orders::OrdersReport;
+use crate::pick::Answer;
 use crate::report::{Report, SCHEMA};
+use crate::why::Why;
 
 /// Why that is no result to go on with.
 #[derive(Debug, thiserror::Error)]
@@ -31,11 +36,73 @@ pub enum ReadError {
     #[error("has schema {found}, and this program reads {SCHEMA}: use the sixfold that wrote it")]
     OtherSchema { found: u64 },
     /// Of another command.
-    #[error("is {found}, and not the result of `sixfold study`")]
-    OtherKind { found: &'static str },
+    #[error("is {found}, and not {wanted}")]
+    OtherKind {
+        found: &'static str,
+        wanted: &'static str,
+    },
     /// A field that is missing, or is not what it should be.
     #[error("is not as sixfold writes it: {cause}")]
     Malformed { cause: String },
+}
+
+/// What one of the commands that measure wrote.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Results {
+    /// `sixfold study` of one mesh.
+    Study(Box<Report>),
+    /// `sixfold study --report`, or `sixfold merge`.
+    Collection(Box<Collection>),
+    /// `sixfold orders`.
+    Orders(Box<OrdersReport>),
+    /// `sixfold growth`.
+    Growth(Box<GrowthReport>),
+    /// `sixfold why`.
+    Why(Box<Why>),
+    /// `sixfold pick`.
+    Pick(Box<Answer>),
+}
+
+impl Results {
+    /// Writes what [`read_json`](Self::read_json) reads.
+    ///
+    /// # Errors
+    ///
+    /// What `writer` reports.
+    pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
+        match self {
+            Self::Study(study) => study.write_json(writer),
+            Self::Collection(collection) => collection.write_json(writer),
+            Self::Orders(orders) => orders.write_json(writer),
+            Self::Growth(growth) => growth.write_json(writer),
+            Self::Why(why) => why.write_json(writer),
+            Self::Pick(answer) => answer.write_json(writer),
+        }
+    }
+
+    /// Reads what any of them wrote.
+    ///
+    /// # Errors
+    ///
+    /// Text that ends too soon or is no JSON, results of another program, schema or command.
+    pub fn read_json(text: &str) -> Result<Self, ReadError> {
+        check_schema(text)?;
+        Ok(match kind(text)? {
+            Kind::Study => Self::Study(Report::read_json(text)?.into()),
+            Kind::Collection => Self::Collection(Collection::read_json(text)?.into()),
+            Kind::Orders => Self::Orders(parsed(text)?),
+            Kind::Growth => Self::Growth(parsed(text)?),
+            Kind::Why => Self::Why(parsed(text)?),
+            Kind::Pick => Self::Pick(parsed(text)?),
+            Kind::Other => {
+                return Err(ReadError::OtherKind {
+                    found: Kind::Other.words(),
+                    wanted: "results that a report can show",
+                });
+            }
+        })
+    }
 }
 
 impl Report {
@@ -46,8 +113,12 @@ impl Report {
     /// Text that ends too soon or is no JSON, results of another program, schema or command.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
-        if let Some(found) = other_kind(text)? {
-            return Err(ReadError::OtherKind { found });
+        let kind = kind(text)?;
+        if kind != Kind::Study {
+            return Err(ReadError::OtherKind {
+                found: kind.words(),
+                wanted: "the result of `sixfold study` for one mesh",
+            });
         }
         let report: Self = parsed(text)?;
         report.check()?;
@@ -97,9 +168,34 @@ pub(crate) fn check_schema(text: &str) -> Result<(), ReadError> {
     }
 }
 
-/// Which other command wrote it, if any did.
-fn other_kind(text: &str) -> Result<Option<&'static str>, ReadError> {
-    /// Some field of each.
+/// Which command wrote a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Study,
+    Collection,
+    Orders,
+    Growth,
+    Why,
+    Pick,
+    Other,
+}
+
+impl Kind {
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Study => "the result of `sixfold study`",
+            Self::Collection => "of several meshes",
+            Self::Orders => "the result of `sixfold orders`",
+            Self::Growth => "the result of `sixfold growth`",
+            Self::Why => "the result of `sixfold why`",
+            Self::Pick => "the answer of `sixfold pick`",
+            Self::Other => "the result of another command",
+        }
+    }
+}
+
+/// Each has a field that no other has.
+fn kind(text: &str) -> Result<Kind, ReadError> {
     #[derive(Deserialize)]
     struct Fields {
         ranking: Option<serde::de::IgnoredAny>,
@@ -111,22 +207,16 @@ fn other_kind(text: &str) -> Result<Option<&'static str>, ReadError> {
     }
 
     let fields: Fields = parsed(text)?;
-    Ok(match fields {
-        Fields {
-            ranking: Some(_), ..
-        } => Some("the answer of `sixfold pick`"),
-        Fields { sizes: Some(_), .. } => Some("the result of `sixfold growth`"),
-        Fields {
-            comparisons: Some(_),
-            ..
-        } => Some("the result of `sixfold orders`"),
-        Fields { rows: Some(_), .. } => Some("the result of `sixfold why`"),
-        Fields {
-            studies: Some(_), ..
-        } => Some("of several meshes"),
-        Fields { results: None, .. } => Some("the result of another command"),
-        _ => None,
-    })
+    let found = [
+        (fields.ranking.is_some(), Kind::Pick),
+        (fields.sizes.is_some(), Kind::Growth),
+        (fields.comparisons.is_some(), Kind::Orders),
+        (fields.rows.is_some(), Kind::Why),
+        (fields.studies.is_some(), Kind::Collection),
+        (fields.results.is_some(), Kind::Study),
+    ];
+    let found = found.into_iter().find(|(there, _)| *there);
+    Ok(found.map_or(Kind::Other, |(_, kind)| kind))
 }
 
 pub(crate) fn parsed<T: DeserializeOwned>(text: &str) -> Result<T, ReadError> {

@@ -1,12 +1,11 @@
 //! Structures against operations, in one picture.
 
-use kuva::TickFormat;
 use kuva::plot::{ColorMap, Heatmap};
 use kuva::render::plots::Plot;
 use study::numbers::times;
 use study::{Collection, Operation, Report};
 
-use crate::figure::{Figure, Table, drawn, laid_out};
+use crate::figure::{Figure, Table, drawn, laid_out, ratios};
 
 /// Ratios beyond this have one colour: the differences that matter are below.
 const DARKEST: f64 = 1000.0;
@@ -83,7 +82,6 @@ fn figure(
         .with_color_map(ColorMap::Viridis)
         .with_tooltip_labels(titles);
     let plots = vec![Plot::Heatmap(plot)];
-    let power = |log: f64| times(10_f64.powf(log));
     let names = operations
         .iter()
         .rev()
@@ -91,7 +89,7 @@ fn figure(
     let layout = laid_out(&plots, width, height)
         .with_x_categories(columns.iter().map(|&name| name.to_owned()).collect())
         .with_y_categories(names.collect())
-        .with_colorbar_tick_format(TickFormat::Custom(std::sync::Arc::new(power)));
+        .with_colorbar_tick_format(ratios());
     Some(Figure {
         id: format!("{of}heat-map"),
         title: title.to_owned(),

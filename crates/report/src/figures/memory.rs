@@ -50,7 +50,9 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
         }
         plot = plot.with_group(column.name.clone(), parts);
     }
-    let plot = plot.with_stacked().with_tooltip_labels(titles);
+    // Without the first, the groups of the marks would stay open.
+    let plot = plot.with_tooltips().with_tooltip_labels(titles);
+    let plot = plot.with_stacked();
     let plots = vec![Plot::Bar(plot)];
     let title = format!("Bytes for each vertex, table by table: {}", study.mesh.name);
     let layout = laid_out(&plots, 820.0, 420.0)

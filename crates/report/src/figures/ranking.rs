@@ -1,19 +1,13 @@
 //! Ranked bars: who is how many times as slow as the fastest, operation by operation.
 
-use std::sync::Arc;
-
-use kuva::TickFormat;
 use kuva::plot::BarPlot;
 use kuva::render::plots::Plot;
-use study::numbers::{duration, times};
-use study::{Collection, Operation, Report, Standing};
+use study::numbers::duration;
+use study::{Answer, Collection, Operation, Report, Standing};
 
 use super::Row;
 use crate::colours::{WHISKER, of_column};
-use crate::figure::{Figure, Table, drawn, laid_out};
-
-/// A bar for the fastest, whose ratio has the logarithm 0.
-const LEAST: f64 = 0.02;
+use crate::figure::{Figure, LEAST, Table, drawn, laid_out, ratios};
 
 /// One figure for each operation of a study.
 pub(super) fn of_study(study: &Report, command: &str) -> Vec<Figure> {
@@ -36,7 +30,7 @@ pub(super) fn of_study(study: &Report, command: &str) -> Vec<Figure> {
             .rows(operation)
             .next()
             .map_or("element", |row| &row.per);
-        figure(operation, rows.collect(), per, command)
+        of_operation(operation, rows.collect(), per, command)
     });
     figures.collect()
 }
@@ -58,13 +52,48 @@ pub(super) fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
                 row.meshes, row.best, row.tied
             ),
         });
-        figure(operation, rows.collect(), operation.per(), command)
+        of_operation(operation, rows.collect(), operation.per(), command)
     });
     figures.collect()
 }
 
-fn figure(
+/// Those that qualify for a workload.
+pub(super) fn of_workload(answer: &Answer, id: &str, command: &str) -> Option<Figure> {
+    let rows = answer.ranking.iter().map(|ranked| Row {
+        backend: &ranked.backend,
+        ratio: ranked.ratio_to_best,
+        interval: ranked.ci_low.zip(ranked.ci_high).map(|(a, b)| [a, b]),
+        ns: Some(ranked.ns_per_operation),
+        note: match (ranked.tied_with_best, ranked.ratio_to_best) {
+            (_, 1.0) => "best".into(),
+            (true, _) => "tied for best".into(),
+            _ if ranked.estimated => "an estimate: in full it would outlast the budget".into(),
+            _ if ranked.sampled => "from a sample of the elements".into(),
+            _ => String::new(),
+        },
+    });
+    let title = format!(
+        "{}: how many times as slow as the fastest",
+        answer.workload.name
+    );
+    figure(title, id.into(), rows.collect(), "operation", command)
+}
+
+fn of_operation(
     operation: Operation,
+    rows: Vec<Row<'_>>,
+    per: &str,
+    command: &str,
+) -> Option<Figure> {
+    let name = operation.name();
+    let title = format!("{name}: how many times as slow as the fastest");
+    let id = format!("ranking-{}", name.replace('_', "-"));
+    figure(title, id, rows, per, command)
+}
+
+fn figure(
+    title: String,
+    id: String,
     mut rows: Vec<Row<'_>>,
     per: &str,
     command: &str,
@@ -73,7 +102,6 @@ fn figure(
         return None;
     }
     rows.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
-    let name = operation.name();
     let mut table = Table::new(["", "× the fastest", "95 %", &format!("a {per}"), ""]);
     let (mut bars, mut whiskers, mut titles) = (Vec::new(), Vec::new(), Vec::new());
     for row in &rows {
@@ -118,14 +146,12 @@ fn figure(
         .with_error_color(WHISKER)
         .with_tooltip_labels(titles);
     let plots = vec![Plot::Bar(plot)];
-    let power = |log: f64| times(10_f64.powf(log));
     let layout = laid_out(&plots, 680.0, height)
         .with_x_axis_min(0.0)
         .with_x_axis_max(most * 1.08)
-        .with_x_tick_format(TickFormat::Custom(Arc::new(power)));
-    let title = format!("{name}: how many times as slow as the fastest");
+        .with_x_tick_format(ratios());
     Some(Figure {
-        id: format!("ranking-{}", name.replace('_', "-")),
+        id,
         svg: drawn(&title, plots, layout),
         title,
         caption: "Bars on a logarithmic scale that begins at 1, the fastest; the thin lines are 95 % intervals of \

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! DIR/studies/bunny-0e2a97c1.json  one mesh, written as soon as it is finished; what --resume goes by
-//! DIR/results.json               all of them
+//! DIR/labs/orders.json           what else was measured
+//! DIR/results.json               all of it
 //! DIR/results.csv                every sample
 //! DIR/report.html                the page, which needs nothing else
 //! DIR/report.md, DIR/figures     the same for a repository
@@ -14,7 +15,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use ::report::Page;
-use ::study::{Asked, Collection, Report};
+use ::study::{Asked, Collection, Report, Results};
 use serde::{Deserialize, Serialize};
 
 use super::meshes::Mesh;
@@ -186,11 +187,36 @@ impl Folder {
         })
     }
 
+    /// What was measured besides, and kept as `name`; `None` if there is nothing that can be read.
+    pub(super) fn lab(&self, name: &str) -> Option<Results> {
+        let text = fs::read_to_string(self.lab_path(name)).ok()?;
+        Results::read_json(&text).ok()
+    }
+
+    /// Keeps it.
+    pub(super) fn keep_lab(&self, name: &str, results: &Results) -> Result<(), Failure> {
+        let path = self.lab_path(name);
+        let folder = self.path.join("labs");
+        fs::create_dir_all(&folder)
+            .map_err(|cause| cannot_write(&folder.display().to_string(), &cause))?;
+        Output::open(&path)?.finish(|writer| results.write_json(writer))
+    }
+
+    fn lab_path(&self, name: &str) -> PathBuf {
+        self.path.join("labs").join(format!("{name}.json"))
+    }
+
     /// Writes all of it in one, and draws it; `command` makes it again.
     pub(super) fn finish(&self, collection: &Collection, command: &str) -> Result<(), Failure> {
         let output = |name: &str| Output::open(&self.path.join(name));
         output("results.json")?.finish(|writer| collection.write_json(writer))?;
         output("results.csv")?.finish(|writer| collection.write_csv(writer))?;
+        self.draw(collection, command)
+    }
+
+    /// The page alone.
+    pub(super) fn draw(&self, collection: &Collection, command: &str) -> Result<(), Failure> {
+        let output = |name: &str| Output::open(&self.path.join(name));
         let page = Page::of(collection, command);
         output("report.html")?.finish(|writer| writer.write_all(page.html().as_bytes()))?;
         output("report.md")?.finish(|writer| writer.write_all(page.markdown().as_bytes()))?;

@@ -8,7 +8,7 @@ use super::folder::Folder;
 use crate::arguments::Merge;
 use crate::failure::Failure;
 use crate::load;
-use crate::measured::studies_ended;
+use crate::measured::{studies_ended, typed};
 use crate::output::{Output, check_kept, is_stdout};
 use crate::text::Text;
 
@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
         written = written.and(output.finish(|writer| merged.write_json(writer)));
     }
     if let Some(path) = &arguments.report {
-        written = written.and(Folder::made(path)?.finish(&merged, &super::command()));
+        written = written.and(Folder::made(path)?.finish(&merged, &typed()));
     }
-    studies_ended(written, &merged.studies, false)
+    studies_ended(written, &merged.studies, merged.labs.mismatches(), false)
 }

@@ -90,13 +90,17 @@ fn name_of(path: &Path) -> String {
         .map_or_else(|| format!("{path:?}"), ToOwned::to_owned)
 }
 
-/// All OBJ files in `folder` and below, by name. Links to folders are not followed: they may lead back.
+/// All OBJ files in `folder` and below, by name, but for hidden ones: other programs leave these behind.
+/// Links to folders are not followed: they may lead back.
 fn list(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), (PathBuf, io::Error)> {
     let failed = |cause| (folder.to_owned(), cause);
     let entries = fs::read_dir(folder).map_err(failed)?;
     let mut paths = Vec::new();
     for entry in entries {
         let entry = entry.map_err(failed)?;
+        if entry.file_name().to_string_lossy().starts_with('.') {
+            continue;
+        }
         let path = entry.path();
         let is_folder = entry.file_type().map_err(failed)?.is_dir();
         // What is no file, and no link to one, may block whoever opens it.

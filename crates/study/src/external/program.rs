@@ -11,6 +11,8 @@ use std::time::{Duration, Instant};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
+use crate::tame::tame;
+
 /// The version of the protocol.
 const PROTOCOL: u32 = 1;
 /// No line is longer, or it is none of the protocol: nothing grows with what a program writes.
@@ -251,12 +253,6 @@ impl Drop for Program<'_> {
 /// The beginning of a line that makes no sense.
 fn shown(line: &str) -> String {
     tame(line).chars().take(80).collect()
-}
-
-/// Text of somebody else on one line, without what steers a terminal.
-pub(super) fn tame(text: &str) -> String {
-    let plain = |c: char| if c.is_control() { ' ' } else { c };
-    text.chars().map(plain).collect()
 }
 
 fn read_line(output: &mut impl BufRead) -> Line {

@@ -3,7 +3,8 @@
 use sixfold::QueryCost;
 use workload::{Clock, Job, Outcome, Run, Subject, Time};
 
-use super::program::{Answer, Program, Question, tame};
+use super::program::{Answer, Program, Question};
+use crate::tame::tame;
 
 /// How much longer than our wait a program's own figure may be: two clocks.
 const CLOCKS: f64 = 1.01;
@@ -24,17 +25,27 @@ impl<'a> ExternalSubject<'a> {
         }
     }
 
-    /// Asks, and does without the program from then on if that fails.
-    fn ask(&mut self, question: &Question) -> Result<Answer, String> {
-        let answer = self
-            .program
-            .as_mut()
-            .map_err(|why| why.clone())?
-            .ask(question);
-        if let Err(why) = &answer {
+    /// Asks, and does without the program from then on if that fails, or if its time cannot be; no time
+    /// where it refuses.
+    fn ask(
+        &mut self,
+        question: &Question,
+        clock: &dyn Clock,
+    ) -> Result<(Answer, Option<Time>), String> {
+        let program = self.program.as_mut().map_err(|why| why.clone())?;
+        let before = clock.now();
+        let answered = program.ask(question).and_then(|answer| {
+            let waited = clock.now().wall_ns - before.wall_ns;
+            let time = match answer.refused {
+                Some(_) => None,
+                None => Some(time(&answer, waited, before.cpu_ns.is_some())?),
+            };
+            Ok((answer, time))
+        });
+        if let Err(why) = &answered {
             self.program = Err(format!("it had failed before: {why}"));
         }
-        answer
+        answered
     }
 }
 
@@ -70,29 +81,18 @@ impl Subject for ExternalSubject<'_> {
         if job.sample.is_some() {
             return refused("it cannot be asked about a sample".into());
         }
-        let before = clock.now();
-        let answer = self.ask(&Question {
+        let question = Question {
             run: job.operation.name(),
             times: runs,
-        });
-        let waited = clock.now().wall_ns - before.wall_ns;
-        let answer = match answer {
-            Ok(Answer {
-                refused: Some(why), ..
-            }) => return refused(tame(&why)),
-            Ok(answer) => answer,
-            Err(why) => return refused(why),
         };
-        match time(&answer, waited, none.cpu_ns.is_some()) {
-            Ok(time) => {
+        match self.ask(&question, clock) {
+            Ok((answer, Some(time))) => {
                 let found = answer.checksum.zip(answer.elements);
                 let outcome = found.map(|(checksum, elements)| Outcome { checksum, elements });
                 Run::done(time.scaled(1.0 / f64::from(runs)), outcome)
             }
-            Err(why) => {
-                self.program = Err(format!("it had failed before: {why}"));
-                refused(why)
-            }
+            Ok((answer, None)) => refused(tame(&answer.refused.unwrap_or_default())),
+            Err(why) => refused(why),
         }
     }
 }

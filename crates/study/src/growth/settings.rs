@@ -98,6 +98,18 @@ pub(super) struct Plan {
 }
 
 impl GrowthSettings {
+    /// The usual sizes, or as many between their ends as the budget of `study` has time for.
+    pub fn within(study: Settings) -> Self {
+        let usual = Self::default();
+        let time_for = study.budget.as_millis() / SHORTEST.as_millis();
+        let steps = usize::try_from(time_for).unwrap_or(usize::MAX);
+        Self {
+            study,
+            steps: steps.clamp(2, usual.steps),
+            ..usual
+        }
+    }
+
     /// Refuses what cannot be done, before anything is made.
     pub(super) fn plan(&self) -> Result<Plan, GrowthError> {
         let Self {
@@ -228,6 +240,20 @@ mod tests {
             let said = refused(change);
             assert!(said.contains(says), "{said}");
         }
+    }
+
+    #[test]
+    fn a_short_budget_has_fewer_sizes_and_none_too_few() {
+        let steps = |milliseconds| {
+            let within = GrowthSettings::within(Settings {
+                budget: Duration::from_millis(milliseconds),
+                ..Settings::default()
+            });
+            (within.steps, within.plan().is_ok())
+        };
+        assert_eq!(steps(60_000), (GrowthSettings::default().steps, true));
+        assert_eq!(steps(550), (5, true));
+        assert_eq!(steps(100), (2, false));
     }
 
     #[test]

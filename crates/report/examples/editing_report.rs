@@ -1,11 +1,11 @@
 //! Makes `reports/editing`: what edits cost on each structure, as the mesh grows.
 //!
-//! `cargo run --release -p study --example editing_report -- reports/editing [ROUNDS]`
+//! `cargo run --release -p report --example editing_report -- reports/editing [ROUNDS]`
 //!
 //! Every round runs each edit at spread places of each mesh, and each workload, once on each structure,
 //! on a fresh copy; the tables have the medians of thread-CPU time over the rounds.
 
-mod report;
+mod opening;
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -13,8 +13,8 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use plotters::prelude::*;
-use report::{Chart, median};
+use opening::median;
+use report::{Panel, panels};
 use serde_json::json;
 use sixfold::{Edit, PolygonMesh, QueryCost, roster, shapes};
 use study::{Clock, Editing, Editor, Environment, MachineClock, SingleEdit};
@@ -36,7 +36,7 @@ const MOST_SCANNED: usize = 5_000;
 const IN_CACHE: usize = 20_000;
 
 /// What the figures say wherever they were made.
-const READING: &str = include_str!("report/editing.md");
+const READING: &str = include_str!("opening/editing.md");
 
 /// One line of a figure: an edit or a workload, on a structure.
 type Line = (&'static str, &'static str);
@@ -173,7 +173,7 @@ fn text(
     samples: &Samples,
 ) -> Result<String, std::fmt::Error> {
     let mut text = String::from("# What edits cost on each structure, as the mesh grows\n\n");
-    text += &report::opening(machine, "editing_report", "reports/editing", rounds);
+    text += &opening::opening(machine, "editing_report", "reports/editing", rounds);
     writeln!(
         text,
         " Tori of triangles, 1,058 to 1,036,800 of them. Each edit is done at up to {PLACES} places spread over a fresh copy of the mesh, in no order ({PLACES_SCANNED} where the structure scans), after one that nobody times (a table that is exactly full moves when a row is added), and is checked for legality as always; nobody listens to its record.\n\n![Time of an edit against the faces of the mesh](growth.svg)\n"
@@ -248,7 +248,7 @@ fn table<const N: usize>(
     Ok(())
 }
 
-fn figure(path: &Path, samples: &Samples) -> Result<(), Box<dyn Error>> {
+fn figure(path: &Path, samples: &Samples) -> std::io::Result<()> {
     let shown = [
         Edit::FlipEdge,
         Edit::CollapseEdge,
@@ -257,23 +257,18 @@ fn figure(path: &Path, samples: &Samples) -> Result<(), Box<dyn Error>> {
         Edit::SetPosition,
         Edit::Compact,
     ];
-    let root = SVGBackend::new(path, (1200, 760)).into_drawing_area();
-    root.fill(&WHITE)?;
-    for (panel, edit) in root.split_evenly((2, 3)).iter().zip(shown) {
-        let chart = Chart {
-            caption: edit.name().into(),
-            x: ("faces of the mesh", 1e3..1.2e6),
-            y: ("ns an edit", 1.0..3e8),
-            legend: SeriesLabelPosition::UpperLeft,
-        };
-        chart.draw(panel, |backend| {
-            let mut lines = samples
-                .keys()
-                .filter(|((what, b), _)| (*what, *b) == (edit.name(), backend));
-            let line = lines.next().map(|&(line, _)| line);
-            line.map_or_else(Vec::new, |line| points(samples, line))
-        })?;
-    }
-    root.present()?;
-    Ok(())
+    let panel = |edit: Edit| Panel {
+        title: edit.name().into(),
+        x_label: "faces of the mesh".into(),
+        y_label: "ns an edit".into(),
+        lines: { roster().into_iter() }
+            .map(|backend| (backend.name, points(samples, (edit.name(), backend.name))))
+            .collect(),
+    };
+    let panels = panels(
+        "Time of an edit against the faces of the mesh",
+        3,
+        &shown.map(panel),
+    );
+    fs::write(path, panels)
 }

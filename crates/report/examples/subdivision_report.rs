@@ -1,11 +1,11 @@
 //! Makes `reports/subdivision`: what a subdivision costs on each structure, by each method.
 //!
-//! `cargo run --release -p study --example subdivision_report -- reports/subdivision [ROUNDS]`
+//! `cargo run --release -p report --example subdivision_report -- reports/subdivision [ROUNDS]`
 //!
 //! Every round runs each scheme, way and structure once at each level, one after the other, on one
 //! thread; the table has the medians of thread-CPU time over the rounds, and its figure shows them.
 
-mod report;
+mod opening;
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -13,8 +13,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use plotters::prelude::*;
-use report::Chart;
+use report::{Panel, panels};
 use serde_json::json;
 use sixfold::subdivision::{Scheme, SubdivisionError};
 use sixfold::{Creases, PolygonMesh, roster, shapes};
@@ -80,7 +79,7 @@ struct Sample {
 impl Sample {
     /// Nanoseconds for each face of the last level: the median.
     fn ns_per_face(&self) -> f64 {
-        report::median(&self.ns) / self.faces as f64
+        opening::median(&self.ns) / self.faces as f64
     }
 }
 
@@ -130,7 +129,7 @@ fn text(
     samples: &Samples,
 ) -> Result<String, std::fmt::Error> {
     let mut text = String::from("# What subdivision costs on each structure\n\n");
-    text += &report::opening(machine, "subdivision_report", "reports/subdivision", rounds);
+    text += &opening::opening(machine, "subdivision_report", "reports/subdivision", rounds);
     text += " Control mesh: a geodesic sphere of 5,120 triangles. Nanoseconds for each face of the last level, all levels made.\n\n";
     text += "`gather` asks for the neighbourhood of each new point, `scatter` makes one pass over the faces; after both the structure is built anew from polygons. `native_fresh` splits the structure's own tables into tables that are allocated for it, `native` into those of the run before.\n\n![Nanoseconds for each new face, by size](growth.svg)\n";
     for scheme in SCHEMES {
@@ -167,35 +166,26 @@ fn text(
 }
 
 /// Time for each new face against the faces of the last level, both logarithmic.
-fn figure(path: &Path, samples: &Samples) -> Result<(), Box<dyn Error>> {
+fn figure(path: &Path, samples: &Samples) -> std::io::Result<()> {
     let ways = [Way::Gather, Way::Scatter, Way::Native];
-    let root = SVGBackend::new(path, (1200, 760)).into_drawing_area();
-    root.fill(&WHITE)?;
-    let panels = root.split_evenly((SCHEMES.len(), ways.len()));
-    for (panel, (scheme, way)) in panels
-        .iter()
-        .zip(SCHEMES.into_iter().flat_map(|s| ways.map(|w| (s, w))))
-    {
-        let chart = Chart {
-            caption: format!("{scheme}, {way}"),
-            x: ("faces of the last level", 1e4..2e6),
-            y: ("ns a face", 5.0..3e5),
-            legend: match way {
-                Way::Gather => SeriesLabelPosition::MiddleRight,
-                _ => SeriesLabelPosition::UpperRight,
-            },
-        };
-        chart.draw(panel, |backend| {
-            let line = (1..=LEVELS).filter_map(|level| {
-                let mut lines = samples.iter();
-                lines.find(|&(&((s, w, b), l), _)| {
-                    (s, w, b, l) == (scheme.name(), way.name(), backend, level)
-                })
-            });
-            line.map(|(_, sample)| (sample.faces as f64, sample.ns_per_face()))
-                .collect()
-        })?;
-    }
-    root.present()?;
-    Ok(())
+    let line = |scheme: Scheme, way: Way, backend: &'static str| {
+        let levels = (1..=LEVELS).filter_map(|level| {
+            let name = (scheme.name(), way.name(), backend);
+            samples.get(&(name, level))
+        });
+        let points = levels.map(|sample| (sample.faces as f64, sample.ns_per_face()));
+        (backend, points.collect())
+    };
+    let panel = |(scheme, way): (Scheme, Way)| Panel {
+        title: format!("{scheme}, {way}"),
+        x_label: "faces of the last level".into(),
+        y_label: "ns a face".into(),
+        lines: { roster().into_iter() }
+            .map(|backend| line(scheme, way, backend.name))
+            .collect(),
+    };
+    let all = SCHEMES.into_iter().flat_map(|s| ways.map(|w| (s, w)));
+    let all: Vec<Panel> = all.map(panel).collect();
+    let panels = panels("Nanoseconds for each new face, by size", ways.len(), &all);
+    fs::write(path, panels)
 }

@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Builds the columns that can be built here, and runs `sixfold study` with each of them beside ours:
+#
+#   benches/external/beside.sh bunny.obj --budget 60s --report beside
+#
+# COLUMNS="lox cgal" takes only these. What is built goes to target/columns. SIXFOLD is the program to run;
+# without it, the release build of this repository.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+out=$here/../../target/columns
+mkdir -p "$out"
+out=$(cd "$out" && pwd)
+columns=${COLUMNS:-lox alum parry3d tri-mesh openmesh cgal opensubdiv}
+
+wanted() { [[ " $columns " == *" $1 "* ]]; }
+externals=()
+for name in lox alum parry3d tri-mesh; do
+    wanted "$name" || continue
+    cargo build --release --locked --manifest-path "$here/rust/Cargo.toml" --target-dir "$out/rust" -p "$name-column"
+    externals+=(--external "$name='$out/rust/release/$name-column' {mesh}")
+done
+if wanted openmesh || wanted cgal || wanted opensubdiv; then
+    if ! { cmake -S "$here/cpp" -B "$out/cpp" && cmake --build "$out/cpp"; } >"$out/cpp.log" 2>&1; then
+        echo "no C++ columns: they need g++, cmake, nlohmann-json3-dev and the libraries; see $out/cpp.log" >&2
+    fi
+    for name in openmesh cgal opensubdiv; do
+        if wanted "$name" && [ -x "$out/cpp/$name" ]; then
+            externals+=(--external "$name='$out/cpp/$name' {mesh}")
+        fi
+    done
+fi
+if [ -z "${SIXFOLD:-}" ]; then
+    cargo build --release --locked --manifest-path "$here/../../Cargo.toml" -p sixfold-cli
+    SIXFOLD=$here/../../target/release/sixfold
+fi
+exec "$SIXFOLD" study "$@" "${externals[@]}"

@@ -1,0 +1,305 @@
+// A library as a column of `sixfold study`: an adapter says how the library answers, and this header
+// speaks the protocol and runs the operations. ../README.md has both; ../rust/column is the same in Rust.
+//
+// An adapter has
+//   Vertex, Edge, Face                    handles, cheap to copy
+//   library()                             its name and version
+//   Adapter(const Input&)                 builds, or throws std::runtime_error with the reason
+//   each_vertex(f), each_edge(f), each_face(f)
+//   index(v), index(e), index(f)          numbers; of vertices and faces those of the input
+//   face(i)                               the face of that number
+//   vertex_vertices(v, f) … face_faces(x, f), but edge_edges, which is made of the others
+//   edge_ends(e)                          a pair of vertices
+//   position(v), set_position(v, p)
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <ctime>
+#include <deque>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace column {
+
+struct Vector {
+    float x = 0, y = 0, z = 0;
+};
+inline Vector operator+(Vector a, Vector b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vector operator-(Vector a, Vector b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vector operator*(Vector a, float s) { return {a.x * s, a.y * s, a.z * s}; }
+inline float length(Vector a) { return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z); }
+inline Vector cross(Vector a, Vector b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// The mesh as flat arrays, as Sixfold writes it for its columns.
+struct Input {
+    std::vector<Vector> positions;
+    std::vector<int> corners;
+    std::vector<int> starts{0};
+
+    int faces() const { return int(starts.size()) - 1; }
+
+    explicit Input(const std::string& path) {
+        std::ifstream file(path);
+        if (!file) throw std::runtime_error(path + " cannot be read");
+        std::string line, kind;
+        while (std::getline(file, line)) {
+            std::istringstream words(line);
+            words >> kind;
+            if (kind == "v") {
+                Vector p;
+                if (!(words >> p.x >> p.y >> p.z)) throw std::runtime_error("no vertex: " + line);
+                positions.push_back(p);
+            } else if (kind == "f") {
+                for (int corner; words >> corner;) {
+                    if (corner < 1 || corner > int(positions.size())) throw std::runtime_error("no face: " + line);
+                    corners.push_back(corner - 1);
+                }
+                starts.push_back(int(corners.size()));
+            }
+        }
+    }
+};
+
+struct Found {
+    double checksum;
+    uint64_t elements;
+};
+
+// What is added up here is looked at by nobody, and no compiler may leave it out.
+inline volatile uint64_t sink;
+
+inline uint64_t nanoseconds(clockid_t clock) {
+    timespec now;
+    clock_gettime(clock, &now);
+    return uint64_t(now.tv_sec) * 1000000000 + uint64_t(now.tv_nsec);
+}
+
+template <class Adapter>
+class Running {
+  public:
+    Running(const Input& input)
+        : input(input), adapter(std::make_unique<Adapter>(input)), of_faces(input.faces()), of_vertices(input.positions) {}
+
+    // The time of so many runs, and what one found; nothing for an operation that is not known.
+    nlohmann::json run(const std::string& name, uint64_t times) {
+        uint64_t wall = 0, cpu = 0;
+        std::optional<Found> found;
+        for (uint64_t i = 0; i < times; ++i) {
+            const uint64_t start[] = {nanoseconds(CLOCK_MONOTONIC), nanoseconds(CLOCK_THREAD_CPUTIME_ID)};
+            found = once(name);
+            cpu += nanoseconds(CLOCK_THREAD_CPUTIME_ID) - start[1];
+            wall += nanoseconds(CLOCK_MONOTONIC) - start[0];
+            if (!found) return {{"refused", "the adapter does not do it"}};
+            if (name == "vv_smooth") put(input.positions);  // a fresh copy for the next, outside the timing
+        }
+        if (!found) return {{"refused", "asked for no run"}};
+        return {{"wall_ns", wall}, {"cpu_ns", cpu}, {"checksum", found->checksum}, {"elements", found->elements}};
+    }
+
+  private:
+    using Vertex = typename Adapter::Vertex;
+    using Edge = typename Adapter::Edge;
+    using Face = typename Adapter::Face;
+
+    const Input& input;
+    std::unique_ptr<Adapter> adapter;
+    std::vector<Vector> of_faces, of_vertices;
+
+    std::optional<Found> once(const std::string& name) {
+        if (name == "build") {
+            Adapter built(input);
+            return Found{double(input.positions.size() + input.faces()), uint64_t(input.faces())};
+        }
+        if (name == "circulate") {
+            const uint64_t all = ask("vertex_faces")->first + ask("face_vertices")->first;
+            return Found{double(all), all};
+        }
+        if (name == "all_queries") {
+            uint64_t all = 0;
+            for (const char* relation : {"vertex_vertices", "vertex_edges", "vertex_faces", "edge_vertices", "edge_edges",
+                                         "edge_faces", "face_vertices", "face_edges", "face_faces"})
+                all += ask(relation)->first;
+            return Found{double(all), all};
+        }
+        if (name == "face_barycenter") return face_barycenter();
+        if (name == "vertex_normal") return vertex_normal();
+        if (name == "vv_smooth") return vv_smooth();
+        if (name == "edge_length") return edge_length();
+        if (name == "boundary") return boundary();
+        if (name == "ff_bfs") return ff_bfs();
+        const auto asked = ask(name);
+        if (!asked) return std::nullopt;
+        return Found{double(asked->first), asked->second};
+    }
+
+    // How many neighbours one relation hands out, and of how many elements.
+    std::optional<std::pair<uint64_t, uint64_t>> ask(const std::string& relation) {
+        const Adapter& a = *adapter;
+        uint64_t count = 0, sum = 0, elements = 0;
+        auto take = [&](auto handle) {
+            ++count;
+            sum += a.index(handle);
+        };
+        auto vertices = [&](auto query) { a.each_vertex([&](Vertex v) { ++elements; query(v); }); };
+        auto edges = [&](auto query) { a.each_edge([&](Edge e) { ++elements; query(e); }); };
+        auto faces = [&](auto query) { a.each_face([&](Face f) { ++elements; query(f); }); };
+        if (relation == "vertex_vertices") vertices([&](Vertex v) { a.vertex_vertices(v, take); });
+        else if (relation == "vertex_edges") vertices([&](Vertex v) { a.vertex_edges(v, take); });
+        else if (relation == "vertex_faces") vertices([&](Vertex v) { a.vertex_faces(v, take); });
+        else if (relation == "edge_vertices") edges([&](Edge e) { const auto ends = a.edge_ends(e); take(ends.first); take(ends.second); });
+        else if (relation == "edge_edges") edges([&](Edge e) {
+            const auto ends = a.edge_ends(e);
+            auto other = [&](Edge x) { if (a.index(x) != a.index(e)) take(x); };
+            a.vertex_edges(ends.first, other);
+            a.vertex_edges(ends.second, other);
+        });
+        else if (relation == "edge_faces") edges([&](Edge e) { a.edge_faces(e, take); });
+        else if (relation == "face_vertices") faces([&](Face f) { a.face_vertices(f, take); });
+        else if (relation == "face_edges") faces([&](Face f) { a.face_edges(f, take); });
+        else if (relation == "face_faces") faces([&](Face f) { a.face_faces(f, take); });
+        else return std::nullopt;
+        sink = sum;
+        return std::make_pair(count, elements);
+    }
+
+    static double field_sum(const std::vector<Vector>& points) {
+        double sum = 0;
+        for (const Vector& p : points) sum += std::fabs(double(p.x)) + 2 * std::fabs(double(p.y)) + 3 * std::fabs(double(p.z));
+        return sum;
+    }
+
+    Found face_barycenter() {
+        adapter->each_face([&](Face f) {
+            Vector sum;
+            int corners = 0;
+            adapter->face_vertices(f, [&](Vertex v) { sum = sum + adapter->position(v); ++corners; });
+            of_faces[adapter->index(f)] = sum * (1.0f / float(corners));
+        });
+        return {field_sum(of_faces), of_faces.size()};
+    }
+
+    Found vertex_normal() {
+        adapter->each_face([&](Face f) {
+            Vector first, last, normal;
+            int seen = 0;
+            adapter->face_vertices(f, [&](Vertex v) {
+                const Vector here = adapter->position(v);
+                if (seen == 0) first = here;
+                if (seen > 1) normal = normal + cross(last - first, here - first);
+                last = here;
+                ++seen;
+            });
+            of_faces[adapter->index(f)] = normal;
+        });
+        adapter->each_vertex([&](Vertex v) {
+            Vector sum;
+            adapter->vertex_faces(v, [&](Face f) { sum = sum + of_faces[adapter->index(f)]; });
+            const float size = length(sum);
+            of_vertices[adapter->index(v)] = size > 0 ? sum * (1.0f / size) : sum;
+        });
+        return {field_sum(of_vertices), of_vertices.size()};
+    }
+
+    Found vv_smooth() {
+        adapter->each_vertex([&](Vertex v) {
+            Vector sum;
+            int valence = 0;
+            adapter->vertex_vertices(v, [&](Vertex w) { sum = sum + adapter->position(w); ++valence; });
+            of_vertices[adapter->index(v)] = valence > 0 ? sum * (1.0f / float(valence)) : adapter->position(v);
+        });
+        put(of_vertices);
+        return {field_sum(of_vertices), of_vertices.size()};
+    }
+
+    void put(const std::vector<Vector>& positions) {
+        adapter->each_vertex([&](Vertex v) { adapter->set_position(v, positions[adapter->index(v)]); });
+    }
+
+    Found edge_length() {
+        double sum = 0;
+        uint64_t edges = 0;
+        adapter->each_edge([&](Edge e) {
+            const auto ends = adapter->edge_ends(e);
+            sum += length(adapter->position(ends.first) - adapter->position(ends.second));
+            ++edges;
+        });
+        return {sum, edges};
+    }
+
+    Found boundary() {
+        uint64_t boundary = 0, edges = 0;
+        adapter->each_edge([&](Edge e) {
+            int faces = 0;
+            adapter->edge_faces(e, [&](Face) { ++faces; });
+            boundary += faces == 1;
+            ++edges;
+        });
+        return {double(boundary), edges};
+    }
+
+    // Breadth first over faces, from the lowest that is not yet seen.
+    Found ff_bfs() {
+        std::vector<uint32_t> depths(of_faces.size(), UINT32_MAX);
+        std::deque<Face> queue;
+        uint64_t sum = 0;
+        for (size_t seed = 0; seed < depths.size(); ++seed) {
+            if (depths[seed] != UINT32_MAX) continue;
+            depths[seed] = 0;
+            queue.push_back(adapter->face(seed));
+            while (!queue.empty()) {
+                const Face f = queue.front();
+                queue.pop_front();
+                const uint32_t depth = depths[adapter->index(f)];
+                sum += depth;
+                adapter->face_faces(f, [&](Face g) {
+                    uint32_t& place = depths[adapter->index(g)];
+                    if (place != UINT32_MAX) return;
+                    place = depth + 1;
+                    queue.push_back(g);
+                });
+            }
+        }
+        return {double(sum), depths.size()};
+    }
+};
+
+inline void say(const nlohmann::json& what) { std::cout << what.dump() << std::endl; }
+
+// The whole program: reads the mesh that it is called with, and answers until its input ends.
+template <class Adapter>
+int serve(int argc, char** argv) {
+    try {
+        if (argc < 2) throw std::runtime_error("say which mesh");
+        const Input input(argv[1]);
+        std::unique_ptr<Running<Adapter>> running;
+        try {
+            running = std::make_unique<Running<Adapter>>(input);
+        } catch (const std::runtime_error& refusal) {
+            say({{"protocol", 1}, {"holds", false}, {"library", Adapter::library()}, {"reason", refusal.what()}});
+            return 0;
+        }
+        say({{"protocol", 1}, {"holds", true}, {"library", Adapter::library()}});
+        for (std::string line; std::getline(std::cin, line);) {
+            const auto question = nlohmann::json::parse(line);
+            say(running->run(question.at("run"), question.at("times")));
+        }
+        return 0;
+    } catch (const std::exception& error) {
+        std::cerr << error.what() << std::endl;
+        return 2;
+    }
+}
+
+}  // namespace column

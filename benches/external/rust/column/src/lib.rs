@@ -1,0 +1,138 @@
+//! A library as a column of `sixfold study`: an adapter says how the library answers, and this crate
+//! speaks the protocol and runs the operations. `../README.md` has both.
+
+mod input;
+mod operations;
+
+use std::error::Error;
+use std::io::{self, BufRead, Write};
+
+use serde::{Deserialize, Serialize};
+
+pub use input::Input;
+
+/// A structure of a library, holding one mesh. Sinks are called for each neighbour.
+pub trait Column: Sized {
+    /// A vertex.
+    type Vertex: Copy + PartialEq;
+    /// An edge.
+    type Edge: Copy + PartialEq;
+    /// A face.
+    type Face: Copy;
+
+    /// The library and its version.
+    const LIBRARY: &'static str;
+
+    /// From flat arrays, or why not.
+    fn build(input: &Input) -> Result<Self, String>;
+
+    /// All vertices.
+    fn vertices(&self) -> impl Iterator<Item = Self::Vertex>;
+    /// All edges.
+    fn edges(&self) -> impl Iterator<Item = Self::Edge>;
+    /// All faces, in the order of the input.
+    fn faces(&self) -> impl Iterator<Item = Self::Face>;
+
+    /// The number of a vertex, below that of all.
+    fn vertex_index(&self, v: Self::Vertex) -> usize;
+    /// Some number of an edge.
+    fn edge_index(&self, e: Self::Edge) -> usize;
+    /// The number of a face, in the order of the input.
+    fn face_index(&self, f: Self::Face) -> usize;
+
+    /// The vertices beside `v`.
+    fn vertex_vertices(&self, v: Self::Vertex, sink: impl FnMut(Self::Vertex));
+    /// The edges that end in `v`.
+    fn vertex_edges(&self, v: Self::Vertex, sink: impl FnMut(Self::Edge));
+    /// The faces that have `v`.
+    fn vertex_faces(&self, v: Self::Vertex, sink: impl FnMut(Self::Face));
+    /// The ends of `e`.
+    fn edge_vertices(&self, e: Self::Edge) -> [Self::Vertex; 2];
+    /// The faces along `e`.
+    fn edge_faces(&self, e: Self::Edge, sink: impl FnMut(Self::Face));
+    /// The corners of `f`, in order.
+    fn face_vertices(&self, f: Self::Face, sink: impl FnMut(Self::Vertex));
+    /// The edges of `f`.
+    fn face_edges(&self, f: Self::Face, sink: impl FnMut(Self::Edge));
+    /// The faces across the edges of `f`.
+    fn face_faces(&self, f: Self::Face, sink: impl FnMut(Self::Face));
+    /// The edges that share a vertex with `e`.
+    fn edge_edges(&self, e: Self::Edge, mut sink: impl FnMut(Self::Edge)) {
+        for v in self.edge_vertices(e) {
+            self.vertex_edges(v, |other| {
+                if other != e {
+                    sink(other);
+                }
+            });
+        }
+    }
+
+    /// Where `v` is.
+    fn position(&self, v: Self::Vertex) -> [f32; 3];
+    /// Moves all vertices, by their numbers.
+    fn set_positions(&mut self, positions: &[[f32; 3]]);
+}
+
+#[derive(Serialize)]
+struct Greeting<'a> {
+    protocol: u32,
+    holds: bool,
+    library: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<String>,
+}
+
+#[derive(Deserialize)]
+struct Question {
+    run: String,
+    times: u64,
+}
+
+#[derive(Serialize)]
+struct Answer {
+    wall_ns: u128,
+    cpu_ns: u128,
+    checksum: f64,
+    elements: u64,
+}
+
+#[derive(Serialize)]
+struct Refused<'a> {
+    refused: &'a str,
+}
+
+/// The whole program: reads the mesh that it is called with, and answers until its input ends.
+///
+/// # Errors
+///
+/// No mesh, one that cannot be read, or a question that is none.
+pub fn serve<C: Column>() -> Result<(), Box<dyn Error>> {
+    let path = std::env::args().nth(1).ok_or("say which mesh")?;
+    let input = Input::read(&path)?;
+    let built = C::build(&input);
+    say(&Greeting {
+        protocol: 1,
+        holds: built.is_ok(),
+        library: C::LIBRARY,
+        reason: built.as_ref().err().cloned(),
+    })?;
+    let Ok(structure) = built else { return Ok(()) };
+    let mut running = operations::Running::new(input, structure);
+    for line in io::stdin().lock().lines() {
+        let question: Question = serde_json::from_str(&line?)?;
+        match running.run(&question.run, question.times) {
+            Some(answer) => say(&answer)?,
+            None => say(&Refused {
+                refused: "the adapter does not do it",
+            })?,
+        }
+    }
+    Ok(())
+}
+
+fn say(what: &impl Serialize) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    serde_json::to_writer(&mut out, what)?;
+    writeln!(out)?;
+    out.flush()
+}

@@ -1,0 +1,297 @@
+//! The operations, written once for all libraries as Sixfold defines them.
+
+use std::collections::VecDeque;
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use cpu_time::ThreadTime;
+
+use crate::{Answer, Column, Input};
+
+type Vector = [f32; 3];
+
+/// A structure, and room for what operations store.
+pub(crate) struct Running<C> {
+    input: Input,
+    structure: C,
+    of_faces: Vec<Vector>,
+    of_vertices: Vec<Vector>,
+}
+
+/// What one run found, and how many elements it went through.
+type Found = (f64, u64);
+
+/// Counts what it is handed, and adds the numbers up, so that nothing can be counted without being
+/// looked at.
+#[derive(Default)]
+struct Sink {
+    count: u64,
+    sum: usize,
+}
+
+impl Sink {
+    fn take(&mut self, index: usize) {
+        self.count += 1;
+        self.sum = self.sum.wrapping_add(index);
+    }
+
+    fn count(self) -> u64 {
+        black_box(self.sum);
+        self.count
+    }
+}
+
+/// A loop over elements, with a relation asked of each.
+macro_rules! asked {
+    ($structure:expr, $elements:ident, $relation:ident, $index:ident) => {{
+        let (mut sink, mut elements) = (Sink::default(), 0);
+        for element in $structure.$elements() {
+            elements += 1;
+            $structure.$relation(element, |other| sink.take($structure.$index(other)));
+        }
+        (sink.count(), elements)
+    }};
+}
+
+impl<C: Column> Running<C> {
+    pub(crate) fn new(input: Input, structure: C) -> Self {
+        let faces = structure.faces().count();
+        Self {
+            of_faces: vec![[0.0; 3]; faces],
+            of_vertices: input.positions.clone(),
+            input,
+            structure,
+        }
+    }
+
+    /// Runs `operation` so many times; `None` if there is none of this name.
+    pub(crate) fn run(&mut self, operation: &str, times: u64) -> Option<Answer> {
+        let (mut wall, mut cpu) = (Duration::ZERO, Duration::ZERO);
+        let mut found = None;
+        for _ in 0..times {
+            let start = (Instant::now(), ThreadTime::now());
+            found = Some(self.once(operation)?);
+            cpu += start.1.elapsed();
+            wall += start.0.elapsed();
+            if operation == "vv_smooth" {
+                // A fresh copy for the next, outside the timing.
+                self.structure.set_positions(&self.input.positions);
+            }
+        }
+        let (checksum, elements) = found?;
+        Some(Answer {
+            wall_ns: wall.as_nanos(),
+            cpu_ns: cpu.as_nanos(),
+            checksum,
+            elements,
+        })
+    }
+
+    fn once(&mut self, operation: &str) -> Option<Found> {
+        Some(match operation {
+            "build" => {
+                let built = C::build(&self.input).ok()?;
+                let faces = built.faces().count() as u64;
+                let all = built.vertices().count() as u64 + faces;
+                black_box(built);
+                (all as f64, faces)
+            }
+            "circulate" => {
+                let (around, _) = self.ask("vertex_faces")?;
+                let (of_faces, _) = self.ask("face_vertices")?;
+                ((around + of_faces) as f64, around + of_faces)
+            }
+            "all_queries" => {
+                const ALL: [&str; 9] = [
+                    "vertex_vertices",
+                    "vertex_edges",
+                    "vertex_faces",
+                    "edge_vertices",
+                    "edge_edges",
+                    "edge_faces",
+                    "face_vertices",
+                    "face_edges",
+                    "face_faces",
+                ];
+                let mut all = 0;
+                for relation in ALL {
+                    all += self.ask(relation)?.0;
+                }
+                (all as f64, all)
+            }
+            "face_barycenter" => self.face_barycenter(),
+            "vertex_normal" => self.vertex_normal(),
+            "vv_smooth" => self.vv_smooth(),
+            "edge_length" => self.edge_length(),
+            "boundary" => self.boundary(),
+            "ff_bfs" => self.ff_bfs(),
+            relation => {
+                let (count, elements) = self.ask(relation)?;
+                (count as f64, elements)
+            }
+        })
+    }
+
+    /// One relation, asked of every element.
+    fn ask(&self, relation: &str) -> Option<(u64, u64)> {
+        let structure = &self.structure;
+        Some(match relation {
+            "vertex_vertices" => asked!(structure, vertices, vertex_vertices, vertex_index),
+            "vertex_edges" => asked!(structure, vertices, vertex_edges, edge_index),
+            "vertex_faces" => asked!(structure, vertices, vertex_faces, face_index),
+            "edge_vertices" => {
+                let (mut sink, mut elements) = (Sink::default(), 0);
+                for edge in structure.edges() {
+                    elements += 1;
+                    for v in structure.edge_vertices(edge) {
+                        sink.take(structure.vertex_index(v));
+                    }
+                }
+                (sink.count(), elements)
+            }
+            "edge_edges" => asked!(structure, edges, edge_edges, edge_index),
+            "edge_faces" => asked!(structure, edges, edge_faces, face_index),
+            "face_vertices" => asked!(structure, faces, face_vertices, vertex_index),
+            "face_edges" => asked!(structure, faces, face_edges, edge_index),
+            "face_faces" => asked!(structure, faces, face_faces, face_index),
+            _ => return None,
+        })
+    }
+
+    fn face_barycenter(&mut self) -> Found {
+        let structure = &self.structure;
+        for f in structure.faces() {
+            let (mut sum, mut corners) = ([0.0; 3], 0_u32);
+            structure.face_vertices(f, |v| {
+                sum = plus(sum, structure.position(v));
+                corners += 1;
+            });
+            self.of_faces[structure.face_index(f)] = sum.map(|x| x * (1.0 / corners as f32));
+        }
+        (field_sum(&self.of_faces), self.of_faces.len() as u64)
+    }
+
+    fn vertex_normal(&mut self) -> Found {
+        let structure = &self.structure;
+        for f in structure.faces() {
+            let [mut first, mut last, mut normal] = [[0.0; 3]; 3];
+            let mut seen = 0;
+            structure.face_vertices(f, |v| {
+                let here = structure.position(v);
+                match seen {
+                    0 => first = here,
+                    1 => {}
+                    _ => {
+                        let sides = [last, here].map(|corner| minus(corner, first));
+                        normal = plus(normal, cross(sides[0], sides[1]));
+                    }
+                }
+                last = here;
+                seen += 1;
+            });
+            self.of_faces[structure.face_index(f)] = normal;
+        }
+        for v in structure.vertices() {
+            let mut sum = [0.0; 3];
+            structure.vertex_faces(v, |f| {
+                sum = plus(sum, self.of_faces[structure.face_index(f)])
+            });
+            let length = sum.map(|x| x * x).iter().sum::<f32>().sqrt();
+            let by = if length > 0.0 { 1.0 / length } else { 1.0 };
+            self.of_vertices[structure.vertex_index(v)] = sum.map(|x| x * by);
+        }
+        (field_sum(&self.of_vertices), self.of_vertices.len() as u64)
+    }
+
+    fn vv_smooth(&mut self) -> Found {
+        let structure = &self.structure;
+        for v in structure.vertices() {
+            let (mut sum, mut valence) = ([0.0; 3], 0_u32);
+            structure.vertex_vertices(v, |w| {
+                sum = plus(sum, structure.position(w));
+                valence += 1;
+            });
+            self.of_vertices[structure.vertex_index(v)] = match valence {
+                0 => structure.position(v),
+                _ => sum.map(|x| x * (1.0 / valence as f32)),
+            };
+        }
+        self.structure.set_positions(&self.of_vertices);
+        (field_sum(&self.of_vertices), self.of_vertices.len() as u64)
+    }
+
+    fn edge_length(&self) -> Found {
+        let structure = &self.structure;
+        let (mut sum, mut edges) = (0.0, 0);
+        for e in structure.edges() {
+            let [a, b] = structure.edge_vertices(e).map(|v| structure.position(v));
+            let squares = minus(a, b).map(|x| x * x);
+            sum += f64::from(squares.iter().sum::<f32>().sqrt());
+            edges += 1;
+        }
+        (sum, edges)
+    }
+
+    fn boundary(&self) -> Found {
+        let structure = &self.structure;
+        let (mut boundary, mut edges) = (0_u64, 0);
+        for e in structure.edges() {
+            let mut faces = 0;
+            structure.edge_faces(e, |_| faces += 1);
+            boundary += u64::from(faces == 1);
+            edges += 1;
+        }
+        (boundary as f64, edges)
+    }
+
+    /// Breadth first over faces, from the lowest that is not yet seen.
+    fn ff_bfs(&self) -> Found {
+        let structure = &self.structure;
+        let faces: Vec<C::Face> = structure.faces().collect();
+        let mut depths = vec![u32::MAX; faces.len()];
+        let mut queue = VecDeque::new();
+        let mut sum = 0;
+        for &seed in &faces {
+            if depths[structure.face_index(seed)] != u32::MAX {
+                continue;
+            }
+            depths[structure.face_index(seed)] = 0;
+            queue.push_back(seed);
+            while let Some(f) = queue.pop_front() {
+                let depth = depths[structure.face_index(f)];
+                sum += u64::from(depth);
+                structure.face_faces(f, |g| {
+                    let place = &mut depths[structure.face_index(g)];
+                    if *place == u32::MAX {
+                        *place = depth + 1;
+                        queue.push_back(g);
+                    }
+                });
+            }
+        }
+        (sum as f64, faces.len() as u64)
+    }
+}
+
+fn field_sum(points: &[Vector]) -> f64 {
+    let weigh = |[x, y, z]: &Vector| {
+        f64::from(x.abs()) + 2.0 * f64::from(y.abs()) + 3.0 * f64::from(z.abs())
+    };
+    points.iter().map(weigh).sum()
+}
+
+fn plus(a: Vector, b: Vector) -> Vector {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+fn minus(a: Vector, b: Vector) -> Vector {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn cross(a: Vector, b: Vector) -> Vector {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}

@@ -1,0 +1,29 @@
+//! What the programs that make reports share: the opening lines, and the middle of samples.
+
+use study::Environment;
+
+/// The command that makes the report, as a block, and the machine it was made on.
+pub(crate) fn opening(machine: &Environment, example: &str, folder: &str, rounds: usize) -> String {
+    let cpu = machine.cpu_model.as_deref().unwrap_or("unknown processor");
+    let load = machine.load_average.unwrap_or(f64::NAN);
+    let flags = match machine.rustflags.as_str() {
+        "" => String::new(),
+        flags => format!("RUSTFLAGS=\"{flags}\" "),
+    };
+    format!(
+        "```sh\n{flags}cargo run --release -p report --example {example} -- {folder} {rounds}\n```\n\n\
+         {cpu}, {} cores, load {load:.1} at the start; {} {} {}; one thread, thread-CPU time, medians of \
+         {rounds} rounds in which all take turns.",
+        machine.cores.unwrap_or(0),
+        machine.rustc,
+        machine.profile,
+        machine.rustflags,
+    )
+}
+
+/// The middle of `samples`.
+pub(crate) fn median(samples: &[f64]) -> f64 {
+    let mut sorted = samples.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    f64::midpoint(sorted[(sorted.len() - 1) / 2], sorted[sorted.len() / 2])
+}

@@ -1,0 +1,124 @@
+//! How costs grow with the mesh: lines through the logarithms, whose slopes are exponents.
+
+use kuva::plot::{LinePlot, ScatterPlot};
+use kuva::render::plots::Plot;
+use study::numbers::{duration, grouped};
+use study::{Fit, GrowthReport, Operation, ResultRow, Slope};
+
+use crate::colours::of_column;
+use crate::figure::{Figure, Table, drawn, laid_out};
+
+/// One figure for each operation.
+pub(super) fn of_growth(report: &GrowthReport, id: &str, command: &str) -> Vec<Figure> {
+    let operations: Vec<Operation> = { Operation::ALL.into_iter() }
+        .filter(|&operation| report.fits.iter().any(|fit| fit.operation == operation))
+        .collect();
+    let figures =
+        { operations.into_iter() }.map(|operation| figure(report, operation, id, command));
+    figures.collect()
+}
+
+fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) -> Figure {
+    let fits = report.fits.iter().filter(|fit| fit.operation == operation);
+    let fits: Vec<&Fit> = fits.collect();
+    let names = fits.iter().map(|fit| fit.backend.as_str());
+    let mut table = Table::new(["faces"].into_iter().chain(names));
+    let mut plots = Vec::new();
+    for fit in &fits {
+        let (mut points, mut titles) = (Vec::new(), Vec::new());
+        for size in &report.sizes {
+            let mut rows = size.results.iter();
+            let row = rows.find(|row| row.operation == operation && row.backend == fit.backend);
+            let Some((row, ns)) = row.and_then(|row| Some((row, whole(row)?))) else {
+                continue;
+            };
+            points.push((size.faces as f64, ns / 1e6));
+            let how = if row.median_ns.is_none() {
+                ", estimated"
+            } else {
+                ""
+            };
+            titles.push(format!(
+                "{}, {} faces: {}{how}",
+                fit.backend,
+                grouped(size.faces),
+                duration(ns)
+            ));
+        }
+        let colour = of_column(&fit.backend);
+        let legend = match fit.all {
+            Some(slope) => format!("{}: {:.2}", fit.backend, slope.exponent),
+            None => fit.backend.clone(),
+        };
+        plots.push(Plot::Line(
+            LinePlot::new()
+                .with_data(points.clone())
+                .with_color(colour)
+                .with_stroke_width(2.0)
+                .with_legend(legend),
+        ));
+        plots.push(Plot::Scatter(
+            ScatterPlot::new()
+                .with_data(points)
+                .with_color(colour)
+                .with_size(4.0)
+                .with_tooltip_labels(titles),
+        ));
+    }
+    for size in &report.sizes {
+        let cell = |fit: &&Fit| {
+            let mut rows = size.results.iter();
+            let row = rows.find(|row| row.operation == operation && row.backend == fit.backend);
+            let each = row.and_then(|row| Some(whole(row)? / row.elements?.max(1) as f64));
+            each.map_or_else(|| "–".into(), duration)
+        };
+        let mut line = vec![grouped(size.faces)];
+        line.extend(fits.iter().map(cell));
+        table.row(line);
+    }
+    type Of = fn(&Fit) -> Option<Slope>;
+    let slopes: [(&str, Of); 3] = [
+        ("slope", |fit| fit.all),
+        ("slope, in cache", |fit| fit.in_cache),
+        ("slope, beyond", |fit| fit.beyond),
+    ];
+    for (name, of) in slopes {
+        let cells = fits.iter().map(|fit| match of(fit) {
+            Some(Slope {
+                exponent,
+                standard_error: Some(error),
+                ..
+            }) => format!("{exponent:.2} ± {error:.2}"),
+            Some(slope) => format!("{:.2}", slope.exponent),
+            None => "–".into(),
+        });
+        let cells: Vec<String> = cells.collect();
+        if cells.iter().any(|cell| cell != "–") {
+            table.row([vec![name.into()], cells].concat());
+        }
+    }
+    let (name, per) = (operation.name(), operation.per());
+    let title = format!("{name}: how its cost grows with the mesh");
+    let layout = laid_out(&plots, 860.0, 440.0)
+        .with_log_scale()
+        .with_x_label("faces")
+        .with_y_label("milliseconds in all");
+    Figure {
+        id: format!("{id}-{}", name.replace('_', "-")),
+        svg: drawn(&title, plots, layout),
+        title,
+        caption: format!(
+            "Both axes are logarithmic, so that a straight line is a power of the number of faces, and its slope, behind \
+             each name, the exponent: 1 is a price for each element that does not depend on the size, 2 a look at all \
+             faces for each. The table has the time of one {per}, and the slopes of the sizes that fit into the last \
+             cache and of those beyond."
+        ),
+        table,
+        command: command.into(),
+    }
+}
+
+/// The time of a whole run, measured or estimated.
+fn whole(row: &ResultRow) -> Option<f64> {
+    row.median_ns.or(row.estimated_ns)
+}

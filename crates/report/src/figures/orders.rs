@@ -1,0 +1,83 @@
+//! What the order of a mesh in memory costs each structure.
+
+use kuva::plot::BarPlot;
+use kuva::render::plots::Plot;
+use study::numbers::duration;
+use study::{Comparison, OrderRow, OrdersReport};
+
+use crate::colours::of_table;
+use crate::figure::{Figure, LEAST, Table, drawn, laid_out, ratios};
+
+/// One figure for each operation.
+pub(super) fn of_orders(report: &OrdersReport, id: &str, command: &str) -> Vec<Figure> {
+    let figures = { report.comparisons.iter() }
+        .filter_map(|comparison| figure(report, comparison, id, command));
+    figures.collect()
+}
+
+fn figure(
+    report: &OrdersReport,
+    comparison: &Comparison,
+    id: &str,
+    command: &str,
+) -> Option<Figure> {
+    let operation = comparison.operation;
+    let rows: Vec<&OrderRow> = report.rows(operation).collect();
+    if rows.is_empty() {
+        return None;
+    }
+    let names: Vec<&str> = report.orders.iter().map(|order| order.name()).collect();
+    let header = [""].into_iter().chain(names.iter().copied());
+    let mut table = Table::new(header.chain(["worst / best", "95 %"]));
+    let (mut plot, mut titles) = (BarPlot::new().with_legend(names), Vec::new());
+    let per = operation.per();
+    for of_one in rows.chunk_by(|a, b| a.row.backend == b.row.backend) {
+        let backend = &of_one[0].row.backend;
+        let (mut bars, mut line) = (Vec::new(), vec![backend.clone()]);
+        for (i, &order) in report.orders.iter().enumerate() {
+            let row = of_one.iter().find(|row| row.order == order);
+            let ratio = row.and_then(|row| row.row.ratio_to_best);
+            let time = row.and_then(|row| row.row.ns_per_element);
+            let time = time.map_or_else(|| "–".into(), duration);
+            titles.push(match ratio {
+                Some(ratio) => {
+                    format!("{backend}, {order}: {ratio:.3} × its best order, {time} a {per}")
+                }
+                None => format!("{backend}, {order}: not measured"),
+            });
+            let length = ratio.map_or(0.0, |ratio| ratio.log10().max(LEAST));
+            bars.push((length, of_table(i)));
+            line.push(time);
+        }
+        let effect = comparison.orders.iter().find(|e| e.backend == *backend);
+        let factor = effect.map(|effect| effect.worst_to_best);
+        line.push(factor.map_or_else(|| "–".into(), |factor| format!("{:.3}", factor.ratio)));
+        let interval = factor.and_then(|factor| factor.ci_low.zip(factor.ci_high));
+        line.push(interval.map_or_else(|| "–".into(), |(a, b)| format!("{a:.3} to {b:.3}")));
+        table.row(line);
+        plot = plot.with_group(backend.clone(), bars);
+    }
+    // Without the first, the groups of the marks would stay open.
+    let plot = plot.with_tooltips().with_tooltip_labels(titles);
+    let plots = vec![Plot::Bar(plot)];
+    let name = operation.name();
+    let title = format!(
+        "{name}: what the order in memory costs, {}",
+        report.mesh.name
+    );
+    let layout = laid_out(&plots, 860.0, 360.0)
+        .with_y_label("× the best order of the structure")
+        .with_y_axis_min(0.0)
+        .with_y_tick_format(ratios());
+    Some(Figure {
+        id: format!("{id}-{}", name.replace('_', "-")),
+        svg: drawn(&title, plots, layout),
+        title,
+        caption: format!(
+            "Each structure in four orders of the same mesh, by its own best order; the axis is logarithmic and begins at \
+             1. The table has the time of one {per}."
+        ),
+        table,
+        command: command.into(),
+    })
+}

@@ -1,0 +1,108 @@
+//! Times beside what moving the bytes takes: who is on the line cannot be faster but by fewer bytes.
+
+use kuva::plot::{LinePlot, ScatterPlot};
+use kuva::render::plots::Plot;
+use study::numbers::{bytes, duration};
+use study::{Rung, Timed, Why, WhyRow};
+
+use crate::colours::{INK, of_column};
+use crate::figure::{Figure, Table, drawn, laid_out};
+
+/// All relations on all structures in one figure; `None` where nothing was measured.
+pub(super) fn of_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
+    let rungs = why.memory.as_ref()?;
+    let rows = why.rows.iter().filter_map(|row| Some((row, row.timed?)));
+    let rows: Vec<(&WhyRow, Timed)> = rows
+        .filter(|(row, _)| row.reads.moved_bytes > 0.0)
+        .collect();
+    let ends = rows.iter().map(|(row, _)| row.reads.moved_bytes);
+    let [least, most] = ends.fold([f64::INFINITY, 0.0], |[least, most], bytes| {
+        [f64::min(least, bytes), f64::max(most, bytes)]
+    });
+    if rows.is_empty() {
+        return None;
+    }
+    let mut plots = Vec::new();
+    // The fastest and the slowest buffer: all others are between.
+    for rung in [rungs.first(), rungs.last()].into_iter().flatten() {
+        plots.push(line(rung, least, most));
+    }
+    for backend in &why.backends {
+        let (mut points, mut titles) = (Vec::new(), Vec::new());
+        for (row, timed) in rows.iter().filter(|(row, _)| row.backend == backend.name) {
+            points.push((row.reads.moved_bytes, timed.ns_per_element));
+            titles.push(format!(
+                "{}, {}: {:.1} bytes, {} a {}: {}",
+                row.backend,
+                row.reads.relation,
+                row.reads.moved_bytes,
+                duration(timed.ns_per_element),
+                row.per,
+                timed.bound.name()
+            ));
+        }
+        if points.is_empty() {
+            continue;
+        }
+        plots.push(Plot::Scatter(
+            ScatterPlot::new()
+                .with_data(points)
+                .with_color(of_column(&backend.name))
+                .with_size(5.0)
+                .with_legend(backend.name.clone())
+                .with_tooltip_labels(titles),
+        ));
+    }
+    let mut table = Table::new([
+        "",
+        "structure",
+        "bytes",
+        "jumps",
+        "takes",
+        "to move them",
+        "to wait",
+        "bound by",
+    ]);
+    for (row, timed) in &rows {
+        table.row(vec![
+            row.reads.relation.to_string(),
+            row.backend.clone(),
+            format!("{:.1}", row.reads.moved_bytes),
+            format!("{:.2}", row.reads.jumps),
+            duration(timed.ns_per_element),
+            duration(timed.floor_ns),
+            duration(timed.waits_ns),
+            timed.bound.name().into(),
+        ]);
+    }
+    let title = format!("Time against the bytes that must move: {}", why.mesh.name);
+    let layout = laid_out(&plots, 860.0, 520.0)
+        .with_log_scale()
+        .with_x_label("bytes that must move for each element")
+        .with_y_label("nanoseconds of each element");
+    Some(Figure {
+        id: id.into(),
+        svg: drawn(&title, plots, layout),
+        title,
+        caption: "One mark for each relation on each structure. The lines are what this machine takes to read so many \
+             bytes in order, from the smallest buffer and from the largest: a mark near its line is bound by \
+             bandwidth, one above it waits for reads that could not be foreseen, or is busy with its steps; the table \
+             says which."
+            .into(),
+        table,
+        command: command.into(),
+    })
+}
+
+/// What reading at the speed of `rung` takes, from the fewest bytes to the most.
+fn line(rung: &Rung, least: f64, most: f64) -> Plot {
+    let ends = [least, most].map(|bytes| (bytes, bytes / rung.gb_per_s));
+    Plot::Line(
+        LinePlot::new()
+            .with_data(ends.to_vec())
+            .with_color(INK)
+            .with_stroke_width(1.0)
+            .with_dashed()
+            .with_legend(format!("{:.1} GB/s, {}", rung.gb_per_s, bytes(rung.bytes))),
+    )
+}

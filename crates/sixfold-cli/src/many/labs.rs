@@ -1,0 +1,163 @@
+//! What a report of one mesh has besides its study: its orders, its growth, and what its queries wait for.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use ::study::{GrowthSettings, Labs, Operation, Results, Settings, Specimen, WhySettings};
+use clap::ValueEnum;
+
+use super::folder::Folder;
+use crate::arguments::Study;
+use crate::failure::Failure;
+use crate::text::{Text, complain, hanging, tame};
+use crate::{growth, orders, why};
+
+/// One of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Lab {
+    /// The mesh in several orders, as `sixfold orders` measures it
+    Orders,
+    /// A shape in several sizes, as `sixfold growth` measures it
+    Growth,
+    /// What queries read, as `sixfold why` counts it
+    Why,
+    /// None of these
+    None,
+}
+
+impl Lab {
+    const ALL: [Self; 3] = [Self::Orders, Self::Growth, Self::Why];
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Orders => "orders",
+            Self::Growth => "growth",
+            Self::Why => "why",
+            Self::None => "none",
+        }
+    }
+}
+
+/// Those that belong into the report.
+pub(super) fn wanted(arguments: &Study, single: bool) -> Result<Vec<Lab>, Failure> {
+    match (&arguments.labs, single) {
+        (Some(labs), true) if labs.contains(&Lab::None) && labs.len() > 1 => Err(Failure::usage(
+            "--labs none is none of them: name those you want, or none alone",
+        )),
+        (Some(labs), _) if labs == &[Lab::None] => Ok(Vec::new()),
+        (Some(_), false) => Err(Failure::usage(
+            "--labs are for the report of one mesh: measure them by `sixfold orders`, `growth` and `why`",
+        )),
+        (Some(labs), true) => Ok({ Lab::ALL.into_iter() }
+            .filter(|lab| labs.contains(lab))
+            .collect()),
+        (None, true) => Ok(Lab::ALL.into()),
+        (None, false) => Ok(Vec::new()),
+    }
+}
+
+/// What they are measured on.
+pub(super) struct Measuring<'a> {
+    pub(super) specimen: &'a Specimen,
+    pub(super) settings: &'a Settings,
+    pub(super) folder: &'a Folder,
+    /// The study was finished before: what is in the folder is of the same mesh and settings.
+    pub(super) resumed: bool,
+    pub(super) stop: &'a AtomicBool,
+}
+
+impl Measuring<'_> {
+    /// Measures those that are not in the folder; one that cannot be measured is told of and left out.
+    pub(super) fn labs(&self, wanted: &[Lab]) -> Result<Labs, Failure> {
+        let mut labs = Labs::default();
+        for &lab in wanted {
+            let known = match self.resumed {
+                true => self.folder.lab(lab.name()),
+                false => None,
+            };
+            if known.is_none() && self.stop.load(Ordering::Relaxed) {
+                continue;
+            }
+            let found = match known {
+                Some(known) => Ok(Some(known)),
+                None => self.measured(lab),
+            };
+            match found {
+                Ok(Some(results)) => {
+                    if !self.stop.load(Ordering::Relaxed) {
+                        self.folder.keep_lab(lab.name(), &results)?;
+                    }
+                    labs.take(results);
+                }
+                Ok(None) => {}
+                Err(failure) => complain(&format!(
+                    "note: the report is without {}: {}",
+                    lab.name(),
+                    failure.message
+                )),
+            }
+        }
+        Ok(labs)
+    }
+
+    fn measured(&self, lab: Lab) -> Result<Option<Results>, Failure> {
+        let Settings {
+            backends,
+            operations,
+            budget,
+            seed,
+            ..
+        } = self.settings;
+        let settings = || Settings {
+            backends: backends.clone(),
+            operations: operations.clone(),
+            budget: *budget,
+            seed: *seed,
+            ..Settings::default()
+        };
+        Ok(match lab {
+            Lab::Orders => {
+                let orders = orders::measured(self.specimen, &settings(), self.stop)?;
+                Some(Results::Orders(orders.into()))
+            }
+            Lab::Growth => {
+                let settings = GrowthSettings::within(settings());
+                let growth = growth::measured(&settings, self.stop)?;
+                Some(Results::Growth(growth.into()))
+            }
+            Lab::Why => {
+                let relations = operations.iter().filter_map(|operation| match operation {
+                    Operation::Relation(relation) => Some(*relation),
+                    _ => None,
+                });
+                let settings = WhySettings {
+                    backends: backends.clone(),
+                    relations: relations.collect(),
+                    ..WhySettings::default()
+                };
+                if settings.relations.is_empty() && !operations.is_empty() {
+                    return Ok(None);
+                }
+                let why = why::measured(self.specimen, settings, Some(*budget), self.stop)?;
+                Some(Results::Why(why.into()))
+            }
+            Lab::None => None,
+        })
+    }
+}
+
+/// What they show, in words; the rest is in the report.
+pub(super) fn print(labs: &Labs, text: &mut Text) {
+    let orders = { labs.orders.iter() }.map(|orders| {
+        let title = format!("What the order of {} costs", tame(&orders.mesh.name));
+        (title, &orders.words)
+    });
+    let growth = { labs.growth.iter() }
+        .map(|growth| (format!("How costs grow: {}", growth.shape), &growth.words));
+    for (title, words) in orders.chain(growth) {
+        text.say("");
+        text.say(&title);
+        for words in words {
+            text.say(&hanging("- ", words));
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! Reports: all that was measured on one page, and the command that makes each figure again.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::bad_input::refused;
+use crate::run::{Run, Sixfold, TETRAHEDRON, done, text};
+
+/// A study of half-edge and the corner table on one mesh, with whatever `more` asks for.
+fn study(sixfold: &Sixfold, more: &[&str]) -> Run {
+    let mut arguments = vec!["study", "grid.obj", "--budget", "300ms"];
+    arguments.extend(["--backends", "half-edge,corner-table"]);
+    arguments.extend(["--operations", "vertex_vertices,boundary"]);
+    arguments.extend(more);
+    sixfold.run(&arguments)
+}
+
+fn grid() -> Sixfold {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    sixfold
+}
+
+fn json(sixfold: &Sixfold, name: &str) -> Value {
+    serde_json::from_str(&text(sixfold, name)).expect("JSON")
+}
+
+/// The figures of a page, by their names.
+fn figures(page: &str) -> Vec<&str> {
+    let parts = page.split("data-figure=\"").skip(1);
+    parts.filter_map(|part| part.split('"').next()).collect()
+}
+
+#[test]
+fn the_report_of_one_mesh_has_its_orders_its_growth_and_its_roofline() {
+    let sixfold = grid();
+    let run = study(&sixfold, &["--report", "out"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(run.stdout.contains("How costs grow: "), "{}", run.stdout);
+    let results = json(&sixfold, "out/results.json");
+    for lab in ["orders", "growth", "why"] {
+        assert_eq!(
+            results["labs"][lab].as_array().map(Vec::len),
+            Some(1),
+            "{lab}"
+        );
+    }
+    let page = text(&sixfold, "out/report.html");
+    let expected = [
+        "heat-map",
+        "memory",
+        "ranking-vertex-vertices",
+        "ranking-boundary",
+        "orders-vertex-vertices",
+        "orders-boundary",
+        "growth-vertex-vertices",
+        "growth-boundary",
+        "roofline",
+    ];
+    let drawn = figures(&page);
+    for id in expected {
+        assert!(drawn.contains(&id), "{id}: {drawn:?}");
+        let svg = text(&sixfold, &format!("out/figures/{id}.svg"));
+        assert!(svg.starts_with("<svg") && svg.contains("<title>"), "{id}");
+        let [opened, closed] = ["<g", "</g>"].map(|tag| svg.matches(tag).count());
+        assert_eq!(opened, closed, "{id} is no XML");
+    }
+    // The page, the data and each figure say what makes them again.
+    let command = "sixfold study grid.obj --budget 300ms --backends half-edge,corner-table";
+    let markdown = text(&sixfold, "out/report.md");
+    assert!(
+        markdown.matches(command).count() > drawn.len(),
+        "{markdown}"
+    );
+    for lab in ["orders", "growth", "why"] {
+        let typed = &results["labs"][lab][0]["environment"]["command"];
+        assert!(
+            typed
+                .as_str()
+                .is_some_and(|typed| typed.starts_with(command))
+        );
+    }
+
+    // What is finished is not measured again, and what is missing is.
+    fs::remove_file(sixfold.folder().join("out/labs/growth.json")).expect("it is there");
+    let again = study(&sixfold, &["--report", "out", "--resume"]);
+    assert_eq!(again.code, Some(0), "{again:?}");
+    let resumed = json(&sixfold, "out/results.json");
+    assert_eq!(resumed["studies"], results["studies"]);
+    assert_eq!(resumed["labs"]["orders"], results["labs"]["orders"]);
+    assert_ne!(resumed["labs"]["growth"], results["labs"]["growth"]);
+
+    let without = study(&sixfold, &["--report", "bare", "--labs", "none"]);
+    assert_eq!(without.code, Some(0), "{without:?}");
+    let page = text(&sixfold, "bare/report.html");
+    assert!(!figures(&page).iter().any(|id| id.starts_with("growth")));
+    assert!(!sixfold.folder().join("bare/labs").exists());
+}
+
+#[test]
+fn a_lab_that_cannot_be_measured_is_told_of_and_left_out() {
+    let sixfold = grid();
+    let arguments = [
+        "--report",
+        "out",
+        "--budget",
+        "50ms",
+        "--labs",
+        "orders,why",
+    ];
+    let run = sixfold.run(
+        &[
+            &["study", "grid.obj", "--operations", "boundary"],
+            &arguments[..],
+        ]
+        .concat(),
+    );
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(
+        run.stderr.contains("without orders: a budget of 50 ms"),
+        "{}",
+        run.stderr
+    );
+    let labs = &json(&sixfold, "out/results.json")["labs"];
+    assert_eq!(
+        (&labs["orders"], &labs["why"]),
+        (&Value::Array(vec![]), &Value::Array(vec![]))
+    );
+}
+
+#[test]
+fn results_that_were_written_one_by_one_come_onto_one_page() {
+    let sixfold = grid();
+    let quickly = ["--budget", "300ms", "--backends", "half-edge,corner-table"];
+    let run = |command: &[&str], file: &str| {
+        done(&sixfold, &[command, &quickly, &["--json", file]].concat());
+    };
+    run(
+        &["study", "grid.obj", "--operations", "boundary"],
+        "study.json",
+    );
+    run(
+        &["orders", "grid.obj", "--operations", "boundary"],
+        "orders.json",
+    );
+    run(
+        &["why", "grid.obj", "--relations", "face_faces"],
+        "why.json",
+    );
+    run(
+        &[
+            "growth",
+            "--from",
+            "100",
+            "--to",
+            "2000",
+            "--steps",
+            "3",
+            "--operations",
+            "boundary",
+        ],
+        "growth.json",
+    );
+    run(
+        &["pick", "grid.obj", "--workload", "smoothing"],
+        "pick.json",
+    );
+    let all = [
+        "study.json",
+        "orders.json",
+        "why.json",
+        "growth.json",
+        "pick.json",
+    ];
+    done(
+        &sixfold,
+        &[&["report"], &all[..], &["growth.json", "--to", "out"]].concat(),
+    );
+    let page = text(&sixfold, "out/report.html");
+    let drawn = figures(&page);
+    for id in [
+        "ranking-boundary",
+        "orders-boundary",
+        "roofline",
+        "growth-boundary",
+        "growth-2-boundary",
+        "pick",
+        "pick-break-even",
+    ] {
+        assert!(drawn.contains(&id), "{id}: {drawn:?}");
+    }
+    // Each under the command that measured it, not the one that drew it.
+    assert!(page.contains("sixfold pick grid.obj --workload smoothing"));
+    assert!(page.contains("sixfold why grid.obj --relations face_faces"));
+
+    done(&sixfold, &["report", "growth.json", "--to", "alone"]);
+    let page = text(&sixfold, "alone/report.html");
+    assert!(page.contains("<h1>How costs grow: "), "{page:.2000}");
+    assert_eq!(figures(&page), ["growth-boundary"]);
+}
+
+#[test]
+fn what_no_page_can_be_made_of_is_refused() {
+    let sixfold = grid();
+    sixfold.file("other.json", "{\"schema\": 1}");
+    sixfold.file("cut.json", "{\"schema\": 1, \"sizes\": [");
+    sixfold.file("mesh.obj", TETRAHEDRON);
+    let quick = ["--budget", "60ms", "--operations", "boundary", "--json"];
+    done(
+        &sixfold,
+        &[&["study", "grid.obj"], &quick[..], &["a.json"]].concat(),
+    );
+    for (arguments, says) in [
+        (
+            &["report", "other.json", "--to", "out"][..],
+            "result of another command",
+        ),
+        (&["report", "cut.json", "--to", "out"], "ends too soon"),
+        (&["report", "mesh.obj", "--to", "out"], "is no JSON"),
+        (&["report", "none.json", "--to", "out"], "cannot be read"),
+        (
+            &["report", "a.json", "a.json", "--to", "out"],
+            "second study",
+        ),
+        (
+            &["report", "a.json", "--to", "mesh.obj"],
+            "cannot be written",
+        ),
+        (&["report", "a.json"], "--to"),
+        (&["study", "grid.obj", "--labs", "why"], "--report"),
+        (
+            &[
+                "study", "grid.obj", "mesh.obj", "--report", "x", "--labs", "why",
+            ],
+            "one mesh",
+        ),
+        (
+            &["study", "grid.obj", "--report", "x", "--labs", "none,why"],
+            "none alone",
+        ),
+    ] {
+        refused(&sixfold, arguments, 2, says);
+    }
+    assert!(
+        !sixfold.folder().join("out").exists(),
+        "nothing was written"
+    );
+}

@@ -1,0 +1,53 @@
+//! What stands beside a study in a report, and has a command of its own.
+
+use serde::{Deserialize, Serialize};
+
+use crate::growth::GrowthReport;
+use crate::orders::OrdersReport;
+use crate::pick::Answer;
+use crate::read::Results;
+use crate::why::Why;
+
+/// Results of other commands than `sixfold study`.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[serde(default)]
+pub struct Labs {
+    /// A mesh in several orders.
+    pub orders: Vec<OrdersReport>,
+    /// A shape in several sizes.
+    pub growth: Vec<GrowthReport>,
+    /// What queries read, beside what reading costs.
+    pub why: Vec<Why>,
+    /// Workloads.
+    pub picks: Vec<Answer>,
+}
+
+impl Labs {
+    /// Results that no difference between the backends explains.
+    pub fn mismatches(&self) -> usize {
+        let orders = self.orders.iter().map(OrdersReport::mismatches);
+        let growth = self.growth.iter().map(GrowthReport::mismatches);
+        let why = self.why.iter().map(Why::mismatches);
+        let picks = self.picks.iter().map(|answer| answer.mismatches.len());
+        orders.chain(growth).chain(why).chain(picks).sum()
+    }
+
+    /// Puts `others` behind these.
+    pub(crate) fn append(&mut self, mut others: Self) {
+        self.orders.append(&mut others.orders);
+        self.growth.append(&mut others.growth);
+        self.why.append(&mut others.why);
+        self.picks.append(&mut others.picks);
+    }
+
+    /// Takes in `results`, unless they are of a study.
+    pub fn take(&mut self, results: Results) {
+        match results {
+            Results::Orders(orders) => self.orders.push(*orders),
+            Results::Growth(growth) => self.growth.push(*growth),
+            Results::Why(why) => self.why.push(*why),
+            Results::Pick(answer) => self.picks.push(*answer),
+            Results::Study(_) | Results::Collection(_) => {}
+        }
+    }
+}
