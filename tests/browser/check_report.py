@@ -162,7 +162,7 @@ def check_ranking(figure, rows, operation):
             close_to(shown[1], low, f"{operation} on {name}, low", 6e-4)
             close_to(shown[2], high, f"{operation} on {name}, high", 6e-4)
         if longest > 1.2:
-            share = max(math.log10(row["ratio_to_best"]), 0.02) / math.log10(longest)
+            share = max(math.log10(row["ratio_to_best"]) / math.log10(longest), 0.02)
             close_to(mark["width"], share * widest, f"the bar of {operation} on {name}", 0.6)
 
 
@@ -210,6 +210,7 @@ def check_orders(figure, orders):
     assert len(figure["marks"]) == len(backends) * len(orders["orders"]), figure["id"]
     assert figure["rows"] == len(backends), figure["id"]
     lengths = []
+    most = math.log10(max([1.5] + [row["ratio_to_best"] or 1 for row in rows.values()]))
     for mark in figure["marks"]:
         name, rest = mark["title"].split(", ", 1)
         order, shown = rest.split(": ", 1)
@@ -218,7 +219,7 @@ def check_orders(figure, orders):
             assert shown == "not measured", mark["title"]
         else:
             close_to(float(shown.split(" ×")[0]), ratio, mark["title"], 6e-4)
-            lengths.append((mark["height"], max(math.log10(ratio), 0.02)))
+            lengths.append((mark["height"], max(math.log10(ratio), 0.02 * most)))
     tallest, longest = max(lengths)
     for height, length in lengths:
         close_to(height, tallest * length / longest, figure["id"], 0.6)

@@ -50,12 +50,16 @@ impl Table {
     }
 }
 
-/// The length of a bar for the fastest, whose ratio has the logarithm 0.
+/// The length of a bar for the fastest, whose ratio has the logarithm 0: a part of the longest.
 pub(crate) const LEAST: f64 = 0.02;
 
-/// Logarithms of ratios on an axis, as the ratios that they are of.
-pub(crate) fn ratios() -> TickFormat {
-    TickFormat::Custom(Arc::new(|log: f64| times(10_f64.powf(log))))
+/// Logarithms of ratios on an axis up to `most`, as the ratios that they are of.
+pub(crate) fn ratios(most: f64) -> TickFormat {
+    let close = most < 0.5;
+    TickFormat::Custom(Arc::new(move |log: f64| match 10_f64.powf(log) {
+        ratio if close => format!("{ratio:.2} ×"),
+        ratio => times(ratio),
+    }))
 }
 
 /// A layout in our colours and letters.

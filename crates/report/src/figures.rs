@@ -40,6 +40,13 @@ pub(crate) fn page(collection: &Collection, command: &str) -> Page {
             format!("Mesh data structures on {meshes}")
         }
     };
+    // What was typed for all of it, if that is one command.
+    let mut commands = environments(collection).map(|environment| made_by(environment, command));
+    let first = commands.next().unwrap_or(command);
+    let command = match commands.all(|other| other == first) {
+        true => first,
+        false => command,
+    };
     let mut machines: Vec<String> = Vec::new();
     for environment in environments(collection) {
         let machine = machine(environment);
@@ -125,13 +132,10 @@ fn labs(labs: &Labs, command: &str) -> Vec<Section> {
         let sizes = ends.map_or_else(String::new, |(first, last)| {
             let [first, last] = [first.faces, last.faces].map(grouped);
             let sizes = counted(growth.sizes.len(), "size", "sizes");
-            format!(
-                "{sizes} from {first} to {last} faces, in the order {}.",
-                growth.order
-            )
+            format!("{sizes} from {first} to {last} faces.")
         });
         sections.push(Section {
-            title: format!("How costs grow: {}", growth.shape),
+            title: format!("How costs grow: {}, {}", growth.shape, growth.order),
             facts: sizes,
             words: growth.words.clone(),
             figures: growth::of_growth(

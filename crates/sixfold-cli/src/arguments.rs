@@ -46,7 +46,7 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study quads.obj --triangulate --budget 2m
   sixfold study bunny.obj --json - --csv bunny.csv
   sixfold study bunny.obj --external mine='./mine {mesh}'
-  sixfold study bunny.obj --report bunny            a page with figures, and the labs
+  sixfold study bunny.obj --report bunny            a page with figures
   sixfold study scans --report results              all OBJ files in a folder; --resume goes on
 
 How it measures: every round runs each operation on each backend, one after the other, in random
@@ -182,7 +182,7 @@ pub(crate) struct Study {
     /// Write report.html, report.md, results.json and results.csv there
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
-    /// Also in the report of one mesh: orders,growth,why [default: all] or none, --budget each
+    /// For one mesh, also orders,growth,why; or none [default: all]
     #[arg(
         long,
         value_name = "NAME,…",

@@ -121,14 +121,14 @@ fn what_a_program_refuses_is_shown_as_refused() {
     let report = report(&sixfold);
     assert_eq!(
         refusal(&report, "edge_length"),
-        "it measures [31m no lengths"
+        "it measures\\u{1b}[31m no lengths"
     );
     assert_eq!(row(&report, "other", "edge_length"), None);
     let row = row(&report, "other", "boundary").expect("a row");
     assert_eq!(row["agreement"], "same");
     assert!(row["samples"].as_u64() > Some(2), "{row}");
     assert!(
-        run.stdout.contains("it measures [31m no lengths"),
+        run.stdout.contains("it measures\\u{1b}[31m no lengths"),
         "{run:?}"
     );
 }

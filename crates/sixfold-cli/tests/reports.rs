@@ -67,7 +67,7 @@ fn the_report_of_one_mesh_has_its_orders_its_growth_and_its_roofline() {
         assert_eq!(opened, closed, "{id} is no XML");
     }
     // The page, the data and each figure say what makes them again.
-    let command = "sixfold study grid.obj --budget 300ms --backends half-edge,corner-table";
+    let command = "sixfold study grid.obj --budget 300ms --backends 'half-edge,corner-table'";
     let markdown = text(&sixfold, "out/report.md");
     assert!(
         markdown.matches(command).count() > drawn.len(),

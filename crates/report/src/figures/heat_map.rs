@@ -89,7 +89,7 @@ fn figure(
     let layout = laid_out(&plots, width, height)
         .with_x_categories(columns.iter().map(|&name| name.to_owned()).collect())
         .with_y_categories(names.collect())
-        .with_colorbar_tick_format(ratios());
+        .with_colorbar_tick_format(ratios(DARKEST.log10()));
     Some(Figure {
         id: format!("{of}heat-map"),
         title: title.to_owned(),

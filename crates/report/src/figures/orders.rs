@@ -30,6 +30,9 @@ fn figure(
     let header = [""].into_iter().chain(names.iter().copied());
     let mut table = Table::new(header.chain(["worst / best", "95 %"]));
     let (mut plot, mut titles) = (BarPlot::new().with_legend(names), Vec::new());
+    let logs = rows.iter().filter_map(|row| row.row.ratio_to_best);
+    // So far at least, or noise would look like a mountain.
+    let most = logs.fold(1.5, f64::max).log10();
     let per = operation.per();
     for of_one in rows.chunk_by(|a, b| a.row.backend == b.row.backend) {
         let backend = &of_one[0].row.backend;
@@ -45,7 +48,7 @@ fn figure(
                 }
                 None => format!("{backend}, {order}: not measured"),
             });
-            let length = ratio.map_or(0.0, |ratio| ratio.log10().max(LEAST));
+            let length = ratio.map_or(0.0, |ratio| ratio.log10().max(LEAST * most));
             bars.push((length, of_table(i)));
             line.push(time);
         }
@@ -68,7 +71,8 @@ fn figure(
     let layout = laid_out(&plots, 860.0, 360.0)
         .with_y_label("× the best order of the structure")
         .with_y_axis_min(0.0)
-        .with_y_tick_format(ratios());
+        .with_y_axis_max(1.05 * most)
+        .with_y_tick_format(ratios(most));
     Some(Figure {
         id: format!("{id}-{}", name.replace('_', "-")),
         svg: drawn(&title, plots, layout),

@@ -114,11 +114,7 @@ fn figure(
         let cells = [row.backend, &ratio, &shown, &time, &row.note];
         table.row(cells.map(str::to_owned).to_vec());
         let length = row.ratio.log10();
-        bars.push((
-            row.backend.to_owned(),
-            length.max(LEAST),
-            of_column(row.backend),
-        ));
+        bars.push((row.backend.to_owned(), length, of_column(row.backend)));
         let ends = row
             .interval
             .map_or([length; 2], |ends| ends.map(f64::log10));
@@ -137,6 +133,9 @@ fn figure(
         .iter()
         .map(|(_, length, _)| *length)
         .fold(0.1, f64::max);
+    for (_, length, _) in &mut bars {
+        *length = length.max(LEAST * most);
+    }
     let height = 70.0 + 26.0 * bars.len() as f64;
     let plot = BarPlot::new()
         .with_colored_bars(bars)
@@ -149,7 +148,7 @@ fn figure(
     let layout = laid_out(&plots, 680.0, height)
         .with_x_axis_min(0.0)
         .with_x_axis_max(most * 1.08)
-        .with_x_tick_format(ratios());
+        .with_x_tick_format(ratios(most));
     Some(Figure {
         id,
         svg: drawn(&title, plots, layout),
