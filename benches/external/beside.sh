@@ -10,6 +10,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 out=$here/../../target/columns
 mkdir -p "$out"
 out=$(cd "$out" && pwd)
+export PATH=$out/rust/release:$out/cpp:$PATH
 columns=${COLUMNS:-lox alum parry3d tri-mesh openmesh cgal opensubdiv}
 
 wanted() { [[ " $columns " == *" $1 "* ]]; }
@@ -17,7 +18,7 @@ externals=()
 for name in lox alum parry3d tri-mesh; do
     wanted "$name" || continue
     cargo build --release --locked --manifest-path "$here/rust/Cargo.toml" --target-dir "$out/rust" -p "$name-column"
-    externals+=(--external "$name='$out/rust/release/$name-column' {mesh}")
+    externals+=(--external "$name=$name-column {mesh}")
 done
 if wanted openmesh || wanted cgal || wanted opensubdiv; then
     if ! { cmake -S "$here/cpp" -B "$out/cpp" && cmake --build "$out/cpp"; } >"$out/cpp.log" 2>&1; then
@@ -25,7 +26,7 @@ if wanted openmesh || wanted cgal || wanted opensubdiv; then
     fi
     for name in openmesh cgal opensubdiv; do
         if wanted "$name" && [ -x "$out/cpp/$name" ]; then
-            externals+=(--external "$name='$out/cpp/$name' {mesh}")
+            externals+=(--external "$name=$name {mesh}")
         fi
     done
 fi

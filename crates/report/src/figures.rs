@@ -208,6 +208,14 @@ fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
     figures
 }
 
+/// `a vertex`, `an edge`.
+pub(crate) fn one(per: &str) -> String {
+    match per.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        true => format!("an {per}"),
+        false => format!("a {per}"),
+    }
+}
+
 /// A name as links and files can have it.
 fn slug(mesh: &str) -> String {
     let fine = |c: char| {

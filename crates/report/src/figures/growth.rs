@@ -5,6 +5,7 @@ use kuva::render::plots::Plot;
 use study::numbers::{duration, grouped};
 use study::{Fit, GrowthReport, Operation, ResultRow, Slope};
 
+use super::one;
 use crate::colours::of_column;
 use crate::figure::{Figure, Table, drawn, laid_out};
 
@@ -97,7 +98,7 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
             table.row([vec![name.into()], cells].concat());
         }
     }
-    let (name, per) = (operation.name(), operation.per());
+    let (name, per) = (operation.name(), one(operation.per()));
     let title = format!("{name}: how its cost grows with the mesh");
     let layout = laid_out(&plots, 860.0, 440.0)
         .with_log_scale()
@@ -110,7 +111,7 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
         caption: format!(
             "Both axes are logarithmic, so that a straight line is a power of the number of faces, and its slope, behind \
              each name, the exponent: 1 is a price for each element that does not depend on the size, 2 a look at all \
-             faces for each. The table has the time of one {per}, and the slopes of the sizes that fit into the last \
+             faces for each. The table has the time of {per}, and the slopes of the sizes that fit into the last \
              cache and of those beyond."
         ),
         table,

@@ -5,6 +5,7 @@ use kuva::render::plots::Plot;
 use study::numbers::duration;
 use study::{Comparison, OrderRow, OrdersReport};
 
+use super::one;
 use crate::colours::of_table;
 use crate::figure::{Figure, LEAST, Table, drawn, laid_out, ratios};
 
@@ -33,7 +34,7 @@ fn figure(
     let logs = rows.iter().filter_map(|row| row.row.ratio_to_best);
     // So far at least, or noise would look like a mountain.
     let most = logs.fold(1.5, f64::max).log10();
-    let per = operation.per();
+    let per = one(operation.per());
     for of_one in rows.chunk_by(|a, b| a.row.backend == b.row.backend) {
         let backend = &of_one[0].row.backend;
         let (mut bars, mut line) = (Vec::new(), vec![backend.clone()]);
@@ -44,7 +45,7 @@ fn figure(
             let time = time.map_or_else(|| "–".into(), duration);
             titles.push(match ratio {
                 Some(ratio) => {
-                    format!("{backend}, {order}: {ratio:.3} × its best order, {time} a {per}")
+                    format!("{backend}, {order}: {ratio:.3} × its best order, {time} {per}")
                 }
                 None => format!("{backend}, {order}: not measured"),
             });
@@ -79,7 +80,7 @@ fn figure(
         title,
         caption: format!(
             "Each structure in four orders of the same mesh, by its own best order; the axis is logarithmic and begins at \
-             1. The table has the time of one {per}."
+             1. The table has the time of {per}."
         ),
         table,
         command: command.into(),

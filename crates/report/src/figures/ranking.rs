@@ -5,7 +5,7 @@ use kuva::render::plots::Plot;
 use study::numbers::duration;
 use study::{Answer, Collection, Operation, Report, Standing};
 
-use super::Row;
+use super::{Row, one};
 use crate::colours::{WHISKER, of_column};
 use crate::figure::{Figure, LEAST, Table, drawn, laid_out, ratios};
 
@@ -102,7 +102,7 @@ fn figure(
         return None;
     }
     rows.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
-    let mut table = Table::new(["", "× the fastest", "95 %", &format!("a {per}"), ""]);
+    let mut table = Table::new(["", "× the fastest", "95 %", &one(per), ""]);
     let (mut bars, mut whiskers, mut titles) = (Vec::new(), Vec::new(), Vec::new());
     for row in &rows {
         let interval = row
@@ -121,8 +121,9 @@ fn figure(
         whiskers.push(((length - ends[0]).max(0.0), (ends[1] - length).max(0.0)));
         let between = interval.map_or_else(String::new, |interval| format!(" ({interval})"));
         titles.push(format!(
-            "{}: {ratio}{between} × the fastest, {time} a {per}",
-            row.backend
+            "{}: {ratio}{between} × the fastest, {time} {}",
+            row.backend,
+            one(per)
         ));
     }
     // Categories go upwards: the fastest belongs on top.

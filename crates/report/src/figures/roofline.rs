@@ -5,6 +5,7 @@ use kuva::render::plots::Plot;
 use study::numbers::{bytes, duration};
 use study::{Rung, Timed, Why, WhyRow};
 
+use super::one;
 use crate::colours::{INK, of_column};
 use crate::figure::{Figure, Table, drawn, laid_out};
 
@@ -32,12 +33,12 @@ pub(super) fn of_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
         for (row, timed) in rows.iter().filter(|(row, _)| row.backend == backend.name) {
             points.push((row.reads.moved_bytes, timed.ns_per_element));
             titles.push(format!(
-                "{}, {}: {:.1} bytes, {} a {}: {}",
+                "{}, {}: {:.1} bytes, {} {}: {}",
                 row.backend,
                 row.reads.relation,
                 row.reads.moved_bytes,
                 duration(timed.ns_per_element),
-                row.per,
+                one(&row.per),
                 timed.bound.name()
             ));
         }
