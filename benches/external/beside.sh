@@ -13,6 +13,11 @@ out=$(cd "$out" && pwd)
 export PATH=$out/rust/release:$out/cpp:$PATH
 columns=${COLUMNS:-lox alum parry3d tri-mesh openmesh cgal opensubdiv}
 
+for name in $columns; do
+    case $name in lox | alum | parry3d | tri-mesh | openmesh | cgal | opensubdiv) ;;
+    *) echo "no column is called $name" >&2; exit 2 ;;
+    esac
+done
 wanted() { [[ " $columns " == *" $1 "* ]]; }
 externals=()
 for name in lox alum parry3d tri-mesh; do
@@ -22,7 +27,8 @@ for name in lox alum parry3d tri-mesh; do
 done
 if wanted openmesh || wanted cgal || wanted opensubdiv; then
     if ! { cmake -S "$here/cpp" -B "$out/cpp" && cmake --build "$out/cpp"; } >"$out/cpp.log" 2>&1; then
-        echo "no C++ columns: they need g++, cmake, nlohmann-json3-dev and the libraries; see $out/cpp.log" >&2
+        echo "not all C++ columns: they need g++, cmake, nlohmann-json3-dev and the libraries; see $out/cpp.log" >&2
+        rm -f "$out/cpp/openmesh" "$out/cpp/cgal" "$out/cpp/opensubdiv"
     fi
     for name in openmesh cgal opensubdiv; do
         if wanted "$name" && [ -x "$out/cpp/$name" ]; then

@@ -68,7 +68,11 @@ pub(crate) fn page(collection: &Collection, command: &str) -> Page {
             Some(study) => [vec![facts(&study.mesh)], study.words.clone()].concat(),
             None => collection.words.clone(),
         },
-        warnings: single.map_or_else(Vec::new, |study| study.warnings.clone()),
+        warnings: {
+            let warnings = single.map_or_else(Vec::new, |study| study.warnings.clone());
+            let cut = is_cut_short(collection).then(|| CUT_SHORT.to_owned());
+            warnings.into_iter().chain(cut).collect()
+        },
         figures: match single {
             Some(study) => of_one(study, command),
             None => pooled(collection, command),
@@ -83,6 +87,25 @@ pub(crate) fn page(collection: &Collection, command: &str) -> Page {
             .collect(),
         missing: collection.missing.clone(),
     }
+}
+
+const CUT_SHORT: &str = "Interrupted: some of this rests on what was finished by then. The same command with --resume goes on.";
+
+/// Whether something was told to stop before its end.
+fn is_cut_short(collection: &Collection) -> bool {
+    let Labs {
+        orders,
+        growth,
+        why,
+        picks,
+    } = &collection.labs;
+    let mut all = { collection.studies.iter() }
+        .map(|study| study.interrupted)
+        .chain(orders.iter().map(|orders| orders.interrupted))
+        .chain(growth.iter().map(|growth| growth.interrupted))
+        .chain(why.iter().map(|why| why.interrupted))
+        .chain(picks.iter().map(|answer| answer.interrupted));
+    all.any(|interrupted| interrupted)
 }
 
 /// All environments that figures come from.

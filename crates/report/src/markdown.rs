@@ -64,7 +64,7 @@ fn shown(text: &mut String, figure: &Figure, heading: &str) {
     let _ = writeln!(text, "{heading} {title}\n\n![{title}](figures/{id}.svg)\n");
     let _ = writeln!(text, "{}\n", plain(&figure.caption));
     rows(text, &figure.table);
-    let _ = writeln!(text, "`{}`\n", figure.command.replace('`', "'"));
+    let _ = writeln!(text, "```sh\n{}\n```\n", figure.command);
 }
 
 fn rows(text: &mut String, table: &Table) {

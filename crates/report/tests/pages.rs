@@ -70,7 +70,11 @@ fn every_figure_has_as_many_marks_as_numbers() {
         // The table is ranked, the fastest first.
         let ratios = ranking.table.rows.iter().map(|row| row[1].parse::<f64>());
         let ratios: Vec<f64> = ratios.map(|ratio| ratio.expect("a number")).collect();
-        assert_eq!(ratios[0], 1.0, "{id}");
+        // Who ties with it may come to less than 1, for ratios are formed within rounds.
+        assert!(
+            ratios[0] <= 1.0 && ratios.contains(&1.0),
+            "{id}: {ratios:?}"
+        );
         assert!(ratios.is_sorted(), "{id}: {ratios:?}");
     }
     let memory = named(&page, "memory");

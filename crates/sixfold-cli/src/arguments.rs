@@ -55,8 +55,9 @@ and which elements are sampled; how many is decided by the clock. One backend is
 its two columns differ by is the noise, and no more than that is a tie. Ctrl-C ends it between two
 samples and keeps what is finished. A second Ctrl-C ends it at once, with code 130.
 
-Exit codes: 0 done; 1 backends found different results, a fault in Sixfold; 2 wrong usage or
-unusable input; 3 no backend asked for can hold the mesh; 4 interrupted, finished part kept.";
+Exit codes: 0 done; 1 backends found different results, a fault in Sixfold, or another program
+did; 2 wrong usage or unusable input; 3 no backend asked for can hold the mesh; 4 interrupted,
+finished part kept.";
 
 const MERGE_EXAMPLES: &str = "Examples:
   sixfold study scans --shard 1/2 --report one      on one machine
@@ -182,7 +183,7 @@ pub(crate) struct Study {
     /// Write report.html, report.md, results.json and results.csv there
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
-    /// For one mesh, also orders,growth,why; or none [default: all]
+    /// For one mesh: orders, growth and why (if not given, all), or none
     #[arg(
         long,
         value_name = "NAME,…",

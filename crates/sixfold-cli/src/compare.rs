@@ -23,7 +23,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     for study in [before, after] {
         check_kept("the study", study, &[("--json", arguments.json.as_ref())])?;
     }
-    let read = |path: &Path| load::results(path, Report::read_json);
+    let read = |path: &Path| load::results(&load::results_in(path), Report::read_json);
     let [before, after] = [read(before)?, read(after)?];
     let json = Output::open_if(arguments.json.as_ref())?;
     let how = Comparing {

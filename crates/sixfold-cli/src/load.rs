@@ -1,7 +1,7 @@
 //! From a file to a mesh that can be looked into.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ::study::{ReadError, Specimen};
 use sixfold::mesh_io::{LeftOut, ObjMesh, read_obj};
@@ -91,6 +91,14 @@ pub(crate) fn without_creases(path: &Path) -> Result<PolygonMesh, Failure> {
         ));
     }
     Ok(polygons)
+}
+
+/// The file of results that `place` means: of the folder of a report the one with all of them.
+pub(crate) fn results_in(place: &Path) -> PathBuf {
+    match place.is_dir() {
+        true => place.join("results.json"),
+        false => place.to_owned(),
+    }
 }
 
 /// The results in the file at `path`, which `parse` makes sense of.

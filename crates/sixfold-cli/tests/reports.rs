@@ -122,6 +122,8 @@ fn a_lab_that_cannot_be_measured_is_told_of_and_left_out() {
         "{}",
         run.stderr
     );
+    let none = "without why: none of these operations is a relation";
+    assert!(run.stderr.contains(none), "{}", run.stderr);
     let labs = &json(&sixfold, "out/results.json")["labs"];
     assert_eq!(
         (&labs["orders"], &labs["why"]),
@@ -194,6 +196,15 @@ fn results_that_were_written_one_by_one_come_onto_one_page() {
     assert!(page.contains("sixfold pick grid.obj --workload smoothing"));
     assert!(page.contains("sixfold why grid.obj --relations face_faces"));
 
+    // A report of one mesh is a study to compare with.
+    let quick = ["--budget", "60ms", "--operations", "boundary"];
+    let report = ["--report", "again", "--labs", "none"];
+    done(
+        &sixfold,
+        &[&["study", "grid.obj"], &quick[..], &report].concat(),
+    );
+    done(&sixfold, &["compare", "study.json", "again"]);
+
     done(&sixfold, &["report", "growth.json", "--to", "alone"]);
     let page = text(&sixfold, "alone/report.html");
     assert!(page.contains("<h1>How costs grow: "), "{page:.2000}");
@@ -206,10 +217,16 @@ fn what_no_page_can_be_made_of_is_refused() {
     sixfold.file("other.json", "{\"schema\": 1}");
     sixfold.file("cut.json", "{\"schema\": 1, \"sizes\": [");
     sixfold.file("mesh.obj", TETRAHEDRON);
+    fs::create_dir(sixfold.folder().join("foreign")).expect("a folder");
+    sixfold.file("foreign/results.json", "{\"mine\": true}");
     let quick = ["--budget", "60ms", "--operations", "boundary", "--json"];
     done(
         &sixfold,
         &[&["study", "grid.obj"], &quick[..], &["a.json"]].concat(),
+    );
+    done(
+        &sixfold,
+        &["compare", "a.json", "a.json", "--json", "changes.json"],
     );
     for (arguments, says) in [
         (
@@ -217,6 +234,14 @@ fn what_no_page_can_be_made_of_is_refused() {
             "result of another command",
         ),
         (&["report", "cut.json", "--to", "out"], "ends too soon"),
+        (
+            &["report", "changes.json", "--to", "out"],
+            "another command",
+        ),
+        (
+            &["study", "grid.obj", "--report", "foreign"],
+            "is there already",
+        ),
         (&["report", "mesh.obj", "--to", "out"], "is no JSON"),
         (&["report", "none.json", "--to", "out"], "cannot be read"),
         (

@@ -90,7 +90,9 @@ pub struct Pooled {
 
 /// Results of more than one study were to stand on one page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("is a second study: put those of several meshes together with `sixfold merge`")]
+#[error(
+    "is a second study, and a page is of one: `sixfold study` takes several meshes, with --report DIR"
+)]
 pub struct SecondStudy;
 
 /// Why collections cannot be put together.
@@ -384,12 +386,24 @@ fn words(pooled: &[Pooled]) -> Vec<String> {
             ratio_to_best,
             ..
         } = leader;
+        let better = rows
+            .iter()
+            .filter(|row| row.meshes < most && row.ratio_to_best < *ratio_to_best);
+        let better = better.map(|row| {
+            let (name, ratio) = (&row.backend, row.ratio_to_best);
+            format!("{name} {ratio:.2} × on the {} it has", row.meshes)
+        });
+        let better: Vec<String> = better.collect();
+        let elsewhere = match better.is_empty() {
+            true => String::new(),
+            false => format!(" ({})", better.join(", ")),
+        };
         let ties = match tied {
             0 => String::new(),
             _ => format!(" and ties on {tied}"),
         };
         words.push(format!(
-            "{operation}: {backend} is ahead, the fastest on {best} of {meshes} meshes{ties}; {ratio_to_best:.2} × the best on average."
+            "{operation}: of those measured on all {meshes} meshes {backend} is ahead, the fastest on {best}{ties}; {ratio_to_best:.2} × the best on average{elsewhere}."
         ));
     }
     words

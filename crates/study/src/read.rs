@@ -106,7 +106,7 @@ impl Results {
 }
 
 impl Report {
-    /// Reads what [`write_json`](Self::write_json) wrote.
+    /// Reads what [`write_json`](Self::write_json) wrote, or a [`Collection`] of one mesh.
     ///
     /// # Errors
     ///
@@ -114,15 +114,24 @@ impl Report {
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
         let kind = kind(text)?;
-        if kind != Kind::Study {
-            return Err(ReadError::OtherKind {
-                found: kind.words(),
-                wanted: "the result of `sixfold study` for one mesh",
-            });
+        let other = || ReadError::OtherKind {
+            found: kind.words(),
+            wanted: "the result of `sixfold study` for one mesh",
+        };
+        match kind {
+            Kind::Study => {
+                let report: Self = parsed(text)?;
+                report.check()?;
+                Ok(report)
+            }
+            // What a report is of may be one mesh.
+            Kind::Collection => {
+                let studies = Collection::read_json(text)?.studies;
+                let [study] = <[Self; 1]>::try_from(studies).map_err(|_| other())?;
+                Ok(study)
+            }
+            _ => Err(other()),
         }
-        let report: Self = parsed(text)?;
-        report.check()?;
-        Ok(report)
     }
 
     /// Refuses figures that no study can come to, whoever wrote them.
@@ -204,10 +213,13 @@ fn kind(text: &str) -> Result<Kind, ReadError> {
         rows: Option<serde::de::IgnoredAny>,
         studies: Option<serde::de::IgnoredAny>,
         results: Option<serde::de::IgnoredAny>,
+        drift: Option<serde::de::IgnoredAny>,
     }
 
     let fields: Fields = parsed(text)?;
     let found = [
+        // A comparison has rows as well.
+        (fields.drift.is_some(), Kind::Other),
         (fields.ranking.is_some(), Kind::Pick),
         (fields.sizes.is_some(), Kind::Growth),
         (fields.comparisons.is_some(), Kind::Orders),

@@ -326,10 +326,10 @@ pub(crate) fn results(
         let times: Vec<Vec<(u32, Time)>> = group.iter().map(Entry::times).collect();
         let noise = noise(control, group[0].job.operation);
         let verdicts: Vec<Agreement> = agreements.by_ref().take(group.len()).collect();
-        // A program of somebody else that does other work is in no ranking.
+        // Who does other work, or may do so, is in no ranking.
         let mut ranked = times.clone();
-        for ((entry, verdict), times) in group.iter().zip(&verdicts).zip(&mut ranked) {
-            if *verdict == Agreement::Mismatch && subjects[entry.subject].is_external() {
+        for (verdict, times) in verdicts.iter().zip(&mut ranked) {
+            if *verdict == Agreement::Mismatch {
                 times.clear();
             }
         }

@@ -34,8 +34,13 @@ pub(crate) fn words(
         let ResultRow {
             backend, operation, ..
         } = row;
+        let column = backends.iter().find(|column| column.name == *backend);
+        let whose = match column.is_some_and(|column| column.external.is_some()) {
+            true => "its times compare nothing.",
+            false => "a fault in Sixfold; please report it.",
+        };
         words.push(format!(
-            "{backend} finds something else than the others for {operation}: a fault in Sixfold; please report it."
+            "{backend} finds something else than the others for {operation}: {whose}"
         ));
     }
     words

@@ -1,14 +1,17 @@
 //! Structures against operations, in one picture.
 
+use std::sync::Arc;
+
 use kuva::plot::{ColorMap, Heatmap};
 use kuva::render::plots::Plot;
 use study::numbers::times;
 use study::{Collection, Operation, Report};
 
+use crate::colours::GRID;
 use crate::figure::{Figure, Table, drawn, laid_out, ratios};
 
 /// Ratios beyond this have one colour: the differences that matter are below.
-const DARKEST: f64 = 1000.0;
+const LIGHTEST: f64 = 1000.0;
 
 /// The ratios to the best of one study.
 pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure> {
@@ -68,8 +71,8 @@ fn figure(
         let mut line = Vec::new();
         for column in columns {
             let value = ratio(operation, column);
-            // What was not measured has the colour of what nobody waits for.
-            line.push(value.unwrap_or(DARKEST).clamp(1.0, DARKEST).log10());
+            // What was not measured is no number, and has a colour of its own.
+            line.push(value.map_or(f64::NAN, |ratio| ratio.clamp(1.0, LIGHTEST).log10()));
             let shown = value.map_or_else(|| "not measured".into(), times);
             titles.push(format!("{operation} on {column}: {shown}"));
         }
@@ -79,7 +82,7 @@ fn figure(
     let width = 240.0 + 118.0 * columns.len() as f64;
     let plot = Heatmap::new()
         .with_data(cells)
-        .with_color_map(ColorMap::Viridis)
+        .with_color_map(ColorMap::Custom(Arc::new(colour)))
         .with_tooltip_labels(titles);
     let plots = vec![Plot::Heatmap(plot)];
     let names = operations
@@ -89,17 +92,25 @@ fn figure(
     let layout = laid_out(&plots, width, height)
         .with_x_categories(columns.iter().map(|&name| name.to_owned()).collect())
         .with_y_categories(names.collect())
-        .with_colorbar_tick_format(ratios(DARKEST.log10()));
+        .with_colorbar_tick_format(ratios(LIGHTEST.log10()));
     Some(Figure {
         id: format!("{of}heat-map"),
         title: title.to_owned(),
         svg: drawn(title, plots, layout),
         caption: format!(
-            "How many times as slow as the fastest of the row: dark is fast. {} and more have one colour, and so \
-             has what was not measured, for it would take too long or cannot be done.",
-            times(DARKEST)
+            "How many times as slow as the fastest of the row: dark is fast, {} and more have one colour. Grey is \
+             what was not measured, for it would take too long or cannot be done.",
+            times(LIGHTEST)
         ),
         table,
         command: command.into(),
     })
+}
+
+/// From dark to light, and grey for what is no number.
+fn colour(value: f64) -> String {
+    match value.is_nan() {
+        true => GRID.into(),
+        false => ColorMap::Viridis.map(value),
+    }
 }

@@ -14,10 +14,7 @@ use crate::measured::typed;
 pub(crate) fn run(arguments: &Draw) -> Result<ExitCode, Failure> {
     let mut collection = Collection::empty();
     for place in &arguments.results {
-        let file = match place.is_dir() {
-            true => place.join("results.json"),
-            false => place.clone(),
-        };
+        let file = load::results_in(place);
         let results = load::results(&file, Results::read_json)?;
         collection
             .take(results)

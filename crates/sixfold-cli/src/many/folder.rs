@@ -99,7 +99,12 @@ impl Folder {
         fs::create_dir_all(&studies).map_err(|cause| cannot_write(&shown.to_string(), &cause))?;
         let pieces = folder.pieces()?;
         if !resume {
+            let foreign = folder.path.join("results.json");
             return match pieces.len() {
+                0 if foreign.exists() => Err(Failure::usage(format!(
+                    "{} is there already, and is of no study that is kept here: name another folder, or take --resume to write over it",
+                    foreign.display()
+                ))),
                 0 => Ok(folder),
                 finished => {
                     let finished = counted(finished, "study that is", "studies that are");

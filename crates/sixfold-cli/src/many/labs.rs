@@ -88,7 +88,10 @@ impl Measuring<'_> {
                     }
                     labs.take(results);
                 }
-                Ok(None) => {}
+                Ok(None) => complain(&format!(
+                    "note: the report is without {}: none of these operations is a relation",
+                    lab.name()
+                )),
                 Err(failure) => complain(&format!(
                     "note: the report is without {}: {}",
                     lab.name(),

@@ -21,10 +21,7 @@ pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
     }
     let mut merged: Option<Collection> = None;
     for place in &arguments.shards {
-        let file = match place.is_dir() {
-            true => place.join("results.json"),
-            false => place.clone(),
-        };
+        let file = load::results_in(place);
         check_kept("a shard", &file, &[("--json", arguments.json.as_ref())])?;
         let shard = load::results(&file, Collection::read_json)?;
         match &mut merged {

@@ -32,7 +32,7 @@ pub(super) fn pooled_table(collection: &Collection, bold: bool) -> String {
     format!("{}\n{LEGEND}", table.trim_fmt())
 }
 
-const LEGEND: &str = "* on most meshes the fastest alone, or tied for it; (n) on n meshes only, for it holds no more";
+const LEGEND: &str = "* on most meshes the fastest alone, or tied for it; (n) on n meshes only: it holds no others, or did other work there";
 
 /// `1.04*`, `18.2 (3)`.
 fn cell(row: &Pooled, most: usize, bold: bool) -> Cell {

@@ -4,8 +4,10 @@
 mod input;
 mod operations;
 
+use std::any::Any;
 use std::error::Error;
 use std::io::{self, BufRead, Write};
+use std::panic;
 
 use serde::{Deserialize, Serialize};
 
@@ -109,15 +111,21 @@ struct Refused<'a> {
 pub fn serve<C: Column>() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("say which mesh")?;
     let input = Input::read(&path)?;
-    let built = C::build(&input);
+    // Some libraries panic at what they cannot hold.
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(|_| ()));
+    let built = panic::catch_unwind(|| operations::Running::new(input.clone(), C::build(&input)?));
+    panic::set_hook(hook);
+    let built = built.unwrap_or_else(|payload| Err(words(payload.as_ref())));
     say(&Greeting {
         protocol: 1,
         holds: built.is_ok(),
         library: C::LIBRARY,
         reason: built.as_ref().err().cloned(),
     })?;
-    let Ok(structure) = built else { return Ok(()) };
-    let mut running = operations::Running::new(input, structure);
+    let Ok(mut running) = built else {
+        return Ok(());
+    };
     for line in io::stdin().lock().lines() {
         let question: Question = serde_json::from_str(&line?)?;
         match running.run(&question.run, question.times) {
@@ -128,6 +136,13 @@ pub fn serve<C: Column>() -> Result<(), Box<dyn Error>> {
         }
     }
     Ok(())
+}
+
+/// What a panic said.
+fn words(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<&str>().map(ToString::to_string);
+    let text = text.or_else(|| payload.downcast_ref::<String>().cloned());
+    text.unwrap_or_else(|| "it panicked".into())
 }
 
 fn say(what: &impl Serialize) -> io::Result<()> {
