@@ -89,39 +89,18 @@ pub(crate) fn page(collection: &Collection, command: &str) -> Page {
     }
 }
 
-const CUT_SHORT: &str = "Interrupted: some of this rests on what was finished by then. The same command with --resume goes on.";
+/// What is said of results that were told to stop before their end.
+const CUT_SHORT: &str = "Interrupted: some of this rests on what was finished by then; `sixfold study --resume` takes a report up again.";
 
-/// Whether something was told to stop before its end.
 fn is_cut_short(collection: &Collection) -> bool {
-    let Labs {
-        orders,
-        growth,
-        why,
-        picks,
-    } = &collection.labs;
-    let mut all = { collection.studies.iter() }
-        .map(|study| study.interrupted)
-        .chain(orders.iter().map(|orders| orders.interrupted))
-        .chain(growth.iter().map(|growth| growth.interrupted))
-        .chain(why.iter().map(|why| why.interrupted))
-        .chain(picks.iter().map(|answer| answer.interrupted));
-    all.any(|interrupted| interrupted)
+    let mut studies = collection.studies.iter();
+    studies.any(|study| study.interrupted) || collection.labs.interrupted()
 }
 
 /// All environments that figures come from.
 fn environments(collection: &Collection) -> impl Iterator<Item = &Environment> {
-    let Labs {
-        orders,
-        growth,
-        why,
-        picks,
-    } = &collection.labs;
     let studies = collection.studies.iter().map(|study| &study.environment);
-    studies
-        .chain(orders.iter().map(|orders| &orders.environment))
-        .chain(growth.iter().map(|growth| &growth.environment))
-        .chain(why.iter().filter_map(|why| why.environment.as_ref()))
-        .chain(picks.iter().map(|answer| &answer.environment))
+    studies.chain(collection.labs.environments())
 }
 
 /// What was typed for these figures, or else for the page.

@@ -31,13 +31,9 @@ fn operations() -> Vec<Operation> {
 fn collection(meshes: &[&str]) -> Collection {
     let names: Vec<String> = meshes.iter().map(|&mesh| mesh.to_owned()).collect();
     let asked = Asked {
-        backends: Vec::new(),
-        externals: Vec::new(),
         operations: operations(),
         budget_s: 0.08,
-        seed: 1,
-        triangulate: false,
-        strict: false,
+        ..Asked::default()
     };
     let mut collection = Collection::new(names, asked);
     for mesh in meshes {
@@ -96,6 +92,18 @@ fn every_figure_has_as_many_marks_as_numbers() {
     ids.sort_unstable();
     ids.dedup();
     assert_eq!(ids.len(), count);
+}
+
+#[test]
+fn an_interrupted_page_says_so() {
+    let mut whole = collection(&["ball.obj"]);
+    let said = |collection: &Collection| {
+        let page = Page::of(collection, "sixfold study ball.obj");
+        [page.html(), page.markdown()].map(|text| text.contains("Interrupted: "))
+    };
+    assert_eq!(said(&whole), [false; 2]);
+    whole.studies[0].interrupted = true;
+    assert_eq!(said(&whole), [true; 2]);
 }
 
 #[test]

@@ -25,7 +25,7 @@ pub(crate) use reshaping::{Dual, Smooth, Triangulate};
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
 pub(crate) use why::Why;
 
-use crate::many::{Lab, Shard};
+use crate::many::{Chosen, Shard};
 
 const EXAMPLES: &str = "Examples:
   sixfold                                    study the built-in mesh
@@ -183,15 +183,9 @@ pub(crate) struct Study {
     /// Write report.html, report.md, results.json and results.csv there
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
-    /// For one mesh: orders, growth and why (if not given, all), or none
-    #[arg(
-        long,
-        value_name = "NAME,…",
-        value_delimiter = ',',
-        requires = "report",
-        hide_possible_values = true
-    )]
-    pub(crate) labs: Option<Vec<Lab>>,
+    /// Of one mesh: orders,growth,why, or none, or all (if not given)
+    #[arg(long, value_name = "NAME,…", requires = "report")]
+    pub(crate) labs: Option<Chosen>,
     /// Go on with what --report has in its folder
     #[arg(long, requires = "report")]
     pub(crate) resume: bool,

@@ -23,7 +23,7 @@ use crate::text::{Text, complain, hanging, tame};
 use ::study::numbers::counted;
 
 pub(crate) use drawn::run as draw;
-pub(crate) use labs::Lab;
+pub(crate) use labs::Chosen;
 pub(crate) use merge::run as merge;
 pub(crate) use meshes::Shard;
 
@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
             "--csv is for one mesh: --report DIR writes the samples of all into results.csv",
         ));
     }
-    let wanted = labs::wanted(arguments, single)?;
+    let wanted = labs::wanted(arguments.labs.as_ref(), single)?;
     let names = meshes.iter().map(|mesh| mesh.name.clone()).collect();
     let mut collection = Collection::new(names, asked(arguments, settings));
     let stop = interrupt_flag();

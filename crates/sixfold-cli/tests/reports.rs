@@ -262,7 +262,7 @@ fn what_no_page_can_be_made_of_is_refused() {
         ),
         (
             &["study", "grid.obj", "--report", "x", "--labs", "none,why"],
-            "none alone",
+            "no lab is called `none`",
         ),
     ] {
         refused(&sixfold, arguments, 2, says);

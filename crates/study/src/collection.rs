@@ -489,6 +489,20 @@ mod tests {
             "{:?}",
             all.words
         );
+        // Who is missing on one of them is not ahead, and is named.
+        let mut other = report("b", 1.0);
+        other.results.retain(|row| row.backend == "half-edge");
+        other.results[0].ratio_to_best = Some(5.0);
+        all.finish(other);
+        let said = &all.words[0];
+        assert!(
+            said.contains("on all 3 meshes half-edge is ahead"),
+            "{said}"
+        );
+        assert!(
+            said.contains("(corner-table 1.00 × on the 2 it has)"),
+            "{said}"
+        );
         // Done once more: the newer one counts.
         all.finish(report("b", 1.0));
         assert_eq!(all.studies.len(), 3);

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::environment::Environment;
 use crate::growth::GrowthReport;
 use crate::orders::OrdersReport;
 use crate::pick::Answer;
@@ -30,6 +31,24 @@ impl Labs {
         let why = self.why.iter().map(Why::mismatches);
         let picks = self.picks.iter().map(|answer| answer.mismatches.len());
         orders.chain(growth).chain(why).chain(picks).sum()
+    }
+
+    /// Whether some of them were told to stop before their end.
+    pub fn interrupted(&self) -> bool {
+        let orders = self.orders.iter().map(|orders| orders.interrupted);
+        let growth = self.growth.iter().map(|growth| growth.interrupted);
+        let why = self.why.iter().map(|why| why.interrupted);
+        let picks = self.picks.iter().map(|answer| answer.interrupted);
+        orders.chain(growth).chain(why).chain(picks).any(|cut| cut)
+    }
+
+    /// The machines and programs that they are of.
+    pub fn environments(&self) -> impl Iterator<Item = &Environment> {
+        let orders = self.orders.iter().map(|orders| &orders.environment);
+        let growth = self.growth.iter().map(|growth| &growth.environment);
+        let why = self.why.iter().filter_map(|why| why.environment.as_ref());
+        let picks = self.picks.iter().map(|answer| &answer.environment);
+        orders.chain(growth).chain(why).chain(picks)
     }
 
     /// Puts `others` behind these.

@@ -3,7 +3,7 @@
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;
 use study::numbers::{duration, grouped};
-use study::{Fit, GrowthReport, Operation, ResultRow, Slope};
+use study::{Fit, GrowthReport, Operation, ResultRow, SizeReport, Slope};
 
 use super::one;
 use crate::colours::of_column;
@@ -28,9 +28,7 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
     for fit in &fits {
         let (mut points, mut titles) = (Vec::new(), Vec::new());
         for size in &report.sizes {
-            let mut rows = size.results.iter();
-            let row = rows.find(|row| row.operation == operation && row.backend == fit.backend);
-            let Some((row, ns)) = row.and_then(|row| Some((row, whole(row)?))) else {
+            let Some((row, ns)) = row_of(size, fit).and_then(|row| Some((row, whole(row)?))) else {
                 continue;
             };
             points.push((size.faces as f64, ns / 1e6));
@@ -68,9 +66,8 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
     }
     for size in &report.sizes {
         let cell = |fit: &&Fit| {
-            let mut rows = size.results.iter();
-            let row = rows.find(|row| row.operation == operation && row.backend == fit.backend);
-            let each = row.and_then(|row| Some(whole(row)? / row.elements?.max(1) as f64));
+            let each =
+                row_of(size, fit).and_then(|row| Some(whole(row)? / row.elements?.max(1) as f64));
             each.map_or_else(|| "–".into(), duration)
         };
         let mut line = vec![grouped(size.faces)];
@@ -117,6 +114,12 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
         table,
         command: command.into(),
     }
+}
+
+/// What a size has for the line of `fit`.
+fn row_of<'s>(size: &'s SizeReport, fit: &Fit) -> Option<&'s ResultRow> {
+    let mut rows = size.results.iter();
+    rows.find(|row| row.operation == fit.operation && row.backend == fit.backend)
 }
 
 /// The time of a whole run, measured or estimated.

@@ -1,27 +1,25 @@
 //! What a report of one mesh has besides its study: its orders, its growth, and what its queries wait for.
 
+use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use ::study::unknown;
 use ::study::{GrowthSettings, Labs, Operation, Results, Settings, Specimen, WhySettings};
-use clap::ValueEnum;
 
 use super::folder::Folder;
-use crate::arguments::Study;
 use crate::failure::Failure;
 use crate::text::{Text, complain, hanging, tame};
 use crate::{growth, orders, why};
 
 /// One of them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Lab {
-    /// The mesh in several orders, as `sixfold orders` measures it
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Lab {
+    /// The mesh in several orders, as `sixfold orders` measures it.
     Orders,
-    /// A shape in several sizes, as `sixfold growth` measures it
+    /// A shape in several sizes, as `sixfold growth` measures it.
     Growth,
-    /// What queries read, as `sixfold why` counts it
+    /// What queries read, as `sixfold why` counts it.
     Why,
-    /// None of these
-    None,
 }
 
 impl Lab {
@@ -32,26 +30,41 @@ impl Lab {
             Self::Orders => "orders",
             Self::Growth => "growth",
             Self::Why => "why",
-            Self::None => "none",
         }
     }
 }
 
-/// Those that belong into the report.
-pub(super) fn wanted(arguments: &Study, single: bool) -> Result<Vec<Lab>, Failure> {
-    match (&arguments.labs, single) {
-        (Some(labs), true) if labs.contains(&Lab::None) && labs.len() > 1 => Err(Failure::usage(
-            "--labs none is none of them: name those you want, or none alone",
-        )),
-        (Some(labs), _) if labs == &[Lab::None] => Ok(Vec::new()),
-        (Some(_), false) => Err(Failure::usage(
+/// Which of them somebody asks for.
+#[derive(Clone, Debug)]
+pub(crate) struct Chosen(Vec<Lab>);
+
+impl FromStr for Chosen {
+    type Err = String;
+
+    /// `all`, `none`, or names.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let named = |name: &str| {
+            let lab = Lab::ALL.into_iter().find(|lab| lab.name() == name.trim());
+            lab.ok_or_else(|| unknown("lab", name.trim(), &Lab::ALL.map(Lab::name)))
+        };
+        let labs = match text.trim() {
+            "all" => Lab::ALL.into(),
+            "none" => Vec::new(),
+            names => names.split(',').map(named).collect::<Result<_, _>>()?,
+        };
+        Ok(Self(labs))
+    }
+}
+
+/// Those that belong into the report: all, unless some were chosen; none of several meshes.
+pub(super) fn wanted(chosen: Option<&Chosen>, single: bool) -> Result<Vec<Lab>, Failure> {
+    match (chosen, single) {
+        (Some(Chosen(labs)), false) if !labs.is_empty() => Err(Failure::usage(
             "--labs are for the report of one mesh: measure them by `sixfold orders`, `growth` and `why`",
         )),
-        (Some(labs), true) => Ok({ Lab::ALL.into_iter() }
-            .filter(|lab| labs.contains(lab))
-            .collect()),
+        (_, false) => Ok(Vec::new()),
+        (Some(Chosen(labs)), true) => Ok(labs.clone()),
         (None, true) => Ok(Lab::ALL.into()),
-        (None, false) => Ok(Vec::new()),
     }
 }
 
@@ -143,7 +156,6 @@ impl Measuring<'_> {
                 let why = why::measured(self.specimen, settings, Some(*budget), self.stop)?;
                 Some(Results::Why(why.into()))
             }
-            Lab::None => None,
         })
     }
 }
