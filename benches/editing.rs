@@ -8,7 +8,7 @@ use std::time::Duration;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput};
 use sixfold::{Edit, QueryCost, roster, shapes};
-use study::{Clock, Editing, Editor, MachineClock, SingleEdit};
+use study::{Editing, Editor, MachineClock, Series, SingleEdit};
 
 use crate::input::inputs;
 
@@ -42,8 +42,7 @@ fn edits(criterion: &mut Criterion) {
                 let Some(Ok(mut editor)) = job.on(backend.name, &polygons) else {
                     continue;
                 };
-                editor.prepare(1);
-                editor.run();
+                editor.time(&Series::once(&MachineClock::start()));
                 let edits = editor.result().elements.max(1);
                 let id = BenchmarkId::new(backend.name, polygons.face_count());
                 timed(&mut group, id, editor.as_mut(), edits);
@@ -69,8 +68,7 @@ fn workloads(criterion: &mut Criterion) {
                 let Some(Ok(mut editor)) = editing.on(backend.name, &input.mesh) else {
                     continue;
                 };
-                editor.prepare(1);
-                editor.run();
+                editor.time(&Series::once(&MachineClock::start()));
                 group.throughput(Throughput::Elements(editor.result().elements));
                 let id = BenchmarkId::new(backend.name, &input.name);
                 timed(&mut group, id, editor.as_mut(), 1);
@@ -80,7 +78,7 @@ fn workloads(criterion: &mut Criterion) {
     }
 }
 
-/// Times runs on fresh copies, each divided by `parts`.
+/// Times runs on a copy that is put back before each, divided by `parts`.
 fn timed(
     group: &mut BenchmarkGroup<'_, WallTime>,
     id: BenchmarkId,
@@ -90,14 +88,9 @@ fn timed(
     let clock = MachineClock::start();
     group.bench_function(id, |bench| {
         bench.iter_custom(|runs| {
-            let one = |_| {
-                editor.prepare(1);
-                let began = clock.now();
-                editor.run();
-                let time = clock.now() - began;
-                Duration::from_nanos((time.wall_ns / parts as f64) as u64)
-            };
-            (0..runs).map(one).sum()
+            let runs = u32::try_from(runs).unwrap_or(u32::MAX);
+            let time = editor.time(&Series::of_runs(runs, &clock).after(1));
+            Duration::from_nanos((time.wall_ns / parts as f64) as u64)
         });
     });
 }

@@ -13,9 +13,13 @@ mod zero_cost;
 use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use study::{Policy, pages};
 
+/// Freed pages stay with the process, as in a study: what allocates is measured without page faults.
+///
 /// Short measurements: there are hundreds of benchmarks, and the ratios within a group settle early.
 fn short() -> Criterion {
+    pages::put_in_force(Policy::Kept);
     Criterion::default()
         .sample_size(20)
         .warm_up_time(Duration::from_millis(100))

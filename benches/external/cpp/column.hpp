@@ -329,7 +329,12 @@ int serve(int argc, char** argv) {
             say({{"protocol", 1}, {"holds", false}, {"library", Adapter::library()}, {"reason", refusal.what()}});
             return 0;
         }
+        // The allocator is that of the C library: Sixfold's environment can tell that of GNU to keep pages.
+#ifdef __GLIBC__
+        say({{"protocol", 1}, {"holds", true}, {"library", Adapter::library()}, {"heap", "glibc"}});
+#else
         say({{"protocol", 1}, {"holds", true}, {"library", Adapter::library()}});
+#endif
         for (std::string line; std::getline(std::cin, line);) {
             const auto question = nlohmann::json::parse(line);
             say(running->run(question.at("run"), question.at("times")));

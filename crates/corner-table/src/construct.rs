@@ -3,7 +3,8 @@
 use mesh_core::{
     BuildError, Capabilities, Counts, Editing, FACE_HOLES, FaceId, FaceList, HoleSet,
     InvariantError, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost,
-    Representation, RowId, RowMap, Slot, Table, TwinPairs, Untraced, VERTEX_HOLES, VertexId,
+    Representation, RowId, RowMap, Slot, Table, Untraced, VERTEX_HOLES, VertexId,
+    pair_triangle_sides,
 };
 
 use crate::mesh::{AnyCornerTable, CornerId};
@@ -28,16 +29,18 @@ impl<E: Editing> Representation for AnyCornerTable<Untraced, E> {
         if !faces.is_empty() && faces.uniform_degree() != Some(3) {
             return Err(refusal());
         }
-        let pairs = TwinPairs::of(vertices, faces).ok_or_else(refusal)?;
-        let links = Links::of(pairs);
-        let corner = links.first_corners(vertices, faces.corners());
+        // The scratch of the pairing, until it is filled.
+        let mut vertex = vec![VertexId::new(0); faces.corners().len()];
+        let links = Links::between(vertices, faces, &mut vertex).ok_or_else(refusal)?;
+        vertex.copy_from_slice(faces.corners());
+        let corner = links.first_corners(vertices, &vertex);
         if !links.every_vertex_is_one_fan(&corner) {
             return Err(refusal());
         }
         Ok(Self {
             positions: Table::new("positions", "vertex", polygons.positions().to_vec()),
             corner: Table::new("corner", "vertex", corner),
-            vertex: Table::new("vertex", "corner", faces.corners().to_vec()),
+            vertex: Table::new("vertex", "corner", vertex),
             opposite: Table::new("opposite", "corner", links.opposite),
             vertex_holes: E::no_holes(VERTEX_HOLES, Untraced),
             face_holes: E::no_holes(FACE_HOLES, Untraced),
@@ -123,38 +126,41 @@ struct Links {
 }
 
 impl Links {
-    /// Lets the corners that face a pair of sides know each other; O(corners).
-    fn of(pairs: TwinPairs) -> Self {
-        let TwinPairs {
-            half_of_corner: mut sides,
-            edge_count,
-        } = pairs;
-        // By half-edge: the corner that faces it. None on the outside of a boundary.
-        let mut facing = vec![Slot::NONE; 2 * edge_count];
-        let mut corner = 0;
-        for &[a, b, c] in sides.as_chunks::<3>().0 {
-            // Side i runs from corner i to the next; the third corner faces it.
-            facing[a as usize] = Slot::some(CornerId::new(corner + 2));
-            facing[b as usize] = Slot::some(CornerId::new(corner));
-            facing[c as usize] = Slot::some(CornerId::new(corner + 1));
-            corner += 3;
-        }
-        let mut opposite = Vec::with_capacity(sides.len());
-        for triangle in sides.as_chunks_mut::<3>().0 {
-            let [a, b, c] = triangle.map(|half| facing[(half ^ 1) as usize]);
-            opposite.extend([b, c, a]);
-            // A triangle's sides are not read again, so their place is free for its swings: the
-            // walks around all vertices take half the time when no step has to work them out.
-            *triangle = [c, a, b].map(|right: Slot<CornerId>| match right.get() {
+    /// Writes into each corner which corner faces the same edge from the other side; O(corners +
+    /// vertices). `None` if the sides cannot be paired. `scratch` has a row for each corner.
+    fn between(vertices: usize, faces: &FaceList, scratch: &mut [VertexId]) -> Option<Self> {
+        let mut opposite = vec![Slot::some(CornerId::new(0)); faces.corners().len()];
+        let (mut swing, edges) = pair_triangle_sides(vertices, faces, scratch, |own, across| {
+            let [own, across] = [own, across].map(CornerId::new);
+            opposite[own.index()] = Slot::some(across);
+            opposite[across.index()] = Slot::some(own);
+        })?;
+        let closed = opposite.len() == 2 * edges;
+        let mut first = 0;
+        let triangles = opposite.as_chunks_mut::<3>().0.iter_mut();
+        // The scratch of the pairing has a row for each corner: its place is free for the swings. The
+        // walks around all vertices take half the time when no step has to work them out.
+        for (triangle, swing) in triangles.zip(swing.as_chunks_mut::<3>().0) {
+            if !closed {
+                // A corner that faces a boundary has been paired with itself.
+                for (corner, across) in (first..).zip(&mut *triangle) {
+                    if *across == Slot::some(CornerId::new(corner)) {
+                        *across = Slot::NONE;
+                    }
+                }
+            }
+            let [a, b, c] = *triangle;
+            *swing = [b, c, a].map(|right: Slot<CornerId>| match right.get() {
                 Some(right) => right.next().row(),
                 None => u32::MAX,
             });
+            first += 3;
         }
-        Self {
-            closed: opposite.len() == 2 * edge_count,
+        Some(Self {
             opposite,
-            swing: sides,
-        }
+            swing,
+            closed,
+        })
     }
 
     /// By vertex: a corner there, on a boundary the one that has no `unswing`.

@@ -87,7 +87,7 @@ impl EdgeCorner {
 ///
 /// 12 bytes a vertex for its position and 4 for `corner`, 24 a triangle: 64 bytes, or 16 words, per
 /// vertex of a large closed mesh. Once something was deleted, a bit a row besides.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct AnyCornerTable<P: Probe, E: Editing> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) corner: Table<Slot<CornerId>, P>,
@@ -96,6 +96,8 @@ pub struct AnyCornerTable<P: Probe, E: Editing> {
     pub(crate) vertex_holes: E::Holes<P>,
     pub(crate) face_holes: E::Holes<P>,
 }
+
+mesh_core::clone_by_field!(AnyCornerTable<P: Probe, E: Editing> { positions, corner, vertex, opposite, vertex_holes, face_holes });
 
 /// A corner table of which nothing can be deleted: [`AnyCornerTable`] whose rows are all elements.
 pub type CornerTable<P = Untraced> = AnyCornerTable<P, Whole>;

@@ -100,7 +100,7 @@ use mesh_core::{
 /// assert_eq!(mesh.edges().count(), 5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct AnyFaceVertexMesh<P: Probe, E: Editing> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) corners: Table<VertexId, P>,
@@ -110,6 +110,8 @@ pub struct AnyFaceVertexMesh<P: Probe, E: Editing> {
     pub(crate) vertex_holes: E::Holes<P>,
     pub(crate) face_holes: E::Holes<P>,
 }
+
+mesh_core::clone_by_field!(AnyFaceVertexMesh<P: Probe, E: Editing> { positions, corners, spans, fans, pool, vertex_holes, face_holes });
 
 /// A face-vertex mesh of which nothing can be deleted: [`AnyFaceVertexMesh`] whose rows are all elements.
 pub type FaceVertexMesh<P = Untraced> = AnyFaceVertexMesh<P, Whole>;

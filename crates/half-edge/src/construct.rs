@@ -3,7 +3,7 @@
 use mesh_core::{
     BuildError, Capabilities, Counts, Editing, FaceId, FaceList, HoleSet, InvariantError,
     MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
-    RowMap, Slot, TwinPairs, Untraced, VertexId, row,
+    RowId, RowMap, SideRows, Slot, TwinPairs, Untraced, VertexId, row,
 };
 
 use crate::mesh::{AnyHalfEdgeMesh, Half, HalfEdgeId};
@@ -22,8 +22,11 @@ impl<E: Editing> Representation for AnyHalfEdgeMesh<Untraced, E> {
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let refusal = || Self::CAPABILITIES.refusal(polygons);
         let faces = polygons.faces();
-        let pairs = TwinPairs::of(polygons.vertex_count(), faces).ok_or_else(refusal)?;
-        let mut draft = Draft::link(polygons.vertex_count(), faces, &pairs);
+        let mut halves = vec![BLANK; faces.corners().len()];
+        let mut unlinked = Unlinked(&mut halves);
+        let pairs = TwinPairs::with_rows(polygons.vertex_count(), faces, &mut unlinked);
+        let pairs = pairs.ok_or_else(refusal)?;
+        let mut draft = Draft::link(polygons.vertex_count(), faces, halves, &pairs);
         let closed = faces.corners().len() == 2 * pairs.edge_count;
         if (!closed && !draft.close_boundary_loops()) || !draft.every_vertex_is_one_fan() {
             return Err(refusal());
@@ -113,6 +116,34 @@ impl<E: Editing> Representation for AnyHalfEdgeMesh<Untraced, E> {
     }
 }
 
+/// A half that is not linked, along a hole as far as is known.
+const BLANK: Half = Half {
+    next: HalfEdgeId::new(0),
+    origin: VertexId::new(0),
+    face: Slot::NONE,
+};
+
+/// Halves that are not linked yet, in whose place the pairing sorts the sides: `origin` and `next` hold
+/// one, and `face` stays empty.
+struct Unlinked<'a>(&'a mut [Half]);
+
+impl SideRows for Unlinked<'_> {
+    #[inline(always)]
+    fn write(&mut self, at: usize, high: VertexId, tag: u32) {
+        self.0[at] = Half {
+            next: HalfEdgeId::new(tag),
+            origin: high,
+            face: Slot::NONE,
+        };
+    }
+
+    #[inline(always)]
+    fn read(&self, at: usize) -> (VertexId, u32) {
+        let half = &self.0[at];
+        (half.origin, half.next.row())
+    }
+}
+
 /// The tables while they are being filled.
 struct Draft {
     leaving: Vec<Slot<HalfEdgeId>>,
@@ -121,18 +152,21 @@ struct Draft {
 }
 
 impl Draft {
-    /// Writes the half of every corner; the halves along holes stay blank.
-    fn link(vertices: usize, faces: &FaceList, pairs: &TwinPairs) -> Self {
-        let blank = Half {
-            next: HalfEdgeId::new(0),
-            origin: VertexId::new(0),
-            face: Slot::NONE,
-        };
+    /// Writes the half of every corner over the rows of `halves`, whose faces are empty; the halves
+    /// along holes keep an empty face.
+    fn link(vertices: usize, faces: &FaceList, halves: Vec<Half>, pairs: &TwinPairs) -> Self {
         let mut draft = Self {
             leaving: vec![Slot::NONE; vertices],
-            halves: vec![blank; 2 * pairs.edge_count],
+            halves,
             first: Vec::with_capacity(faces.len()),
         };
+        let half_count = 2 * pairs.edge_count;
+        if half_count > draft.halves.len() {
+            // There is a boundary, and halves without a corner. The old rows are freed first, for a block
+            // that grows may be copied, and the table would be in memory twice.
+            draft.halves = Vec::new();
+            draft.halves = vec![BLANK; half_count];
+        }
         let halves = pairs.half_of_corner.as_slice();
         match faces.uniform_degree() {
             Some(3) => draft.link_uniform::<3>(faces.corners(), halves),

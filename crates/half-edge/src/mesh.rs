@@ -91,7 +91,7 @@ pub(crate) const NO_HALF: HalfEdgeId = HalfEdgeId::new(u32::MAX);
 /// 12 bytes a vertex for its position and 4 for `leaving`, 24 an edge, 4 a face: 96 bytes, or 24
 /// words, per vertex of a large closed triangle mesh. Once something is deleted, a bit for each
 /// vertex, edge or face up to it.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct AnyHalfEdgeMesh<P: Probe, E: Editing> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) leaving: Table<Slot<HalfEdgeId>, P>,
@@ -101,6 +101,8 @@ pub struct AnyHalfEdgeMesh<P: Probe, E: Editing> {
     pub(crate) edge_holes: E::Holes<P>,
     pub(crate) face_holes: E::Holes<P>,
 }
+
+mesh_core::clone_by_field!(AnyHalfEdgeMesh<P: Probe, E: Editing> { positions, leaving, halves, first, vertex_holes, edge_holes, face_holes });
 
 /// A half-edge mesh of which nothing can be deleted: [`AnyHalfEdgeMesh`] whose rows are all elements.
 pub type HalfEdgeMesh<P = Untraced> = AnyHalfEdgeMesh<P, Whole>;

@@ -65,12 +65,14 @@ use mesh_core::{
 /// To tell a listener which sides of a face others have too, `add_face`, `remove_face`,
 /// `remove_vertex` and `split_face` scan once more. Nothing but a handle that names nothing, or the
 /// rule of the edit itself, makes one illegal: any polygon mesh is held.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct AnyIndexedFaceSet<P: Probe, E: Editing> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) vertex_holes: E::Holes<P>,
     pub(crate) faces: ScannedFaces<VertexId, P, E>,
 }
+
+mesh_core::clone_by_field!(AnyIndexedFaceSet<P: Probe, E: Editing> { positions, vertex_holes, faces });
 
 /// An indexed face set of which nothing can be deleted: [`AnyIndexedFaceSet`] whose rows are all elements.
 pub type IndexedFaceSet<P = Untraced> = AnyIndexedFaceSet<P, Whole>;

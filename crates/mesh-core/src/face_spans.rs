@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::clone_by_field;
 use crate::editing::{Editable, Editing, HoleSet, Whole};
 use crate::holes::Holes;
 use crate::memory::TableBytes;
@@ -13,7 +14,7 @@ use crate::table::Table;
 ///
 /// Structures keep the corners themselves: vertices, or points. A face that is deleted keeps its row
 /// and its corners until the mesh is compacted; the corners are blank then, so that no scan finds them.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub enum FaceSpans<P: Probe = Untraced, E: Editing = Whole> {
     /// Every face has `degree` corners.
     Uniform {
@@ -28,14 +29,35 @@ pub enum FaceSpans<P: Probe = Untraced, E: Editing = Whole> {
     Scattered(E::Scattered<P>),
 }
 
+impl<P: Probe, E: Editing> Clone for FaceSpans<P, E> {
+    fn clone(&self) -> Self {
+        match self {
+            &Self::Uniform { degree, faces } => Self::Uniform { degree, faces },
+            Self::Mixed(offsets) => Self::Mixed(offsets.clone()),
+            Self::Scattered(faces) => Self::Scattered(faces.clone()),
+        }
+    }
+
+    /// Copies into the tables that are there if both are of one kind, and allocates nothing if they fit.
+    fn clone_from(&mut self, source: &Self) {
+        match (self, source) {
+            (Self::Mixed(offsets), Self::Mixed(others)) => offsets.clone_from(others),
+            (Self::Scattered(faces), Self::Scattered(others)) => faces.clone_from(others),
+            (spans, _) => *spans = source.clone(),
+        }
+    }
+}
+
 /// Faces that lie anywhere among the corners.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct ScatteredFaces<P: Probe = Untraced> {
     /// By face.
     spans: Table<Span, P>,
     /// By corner: the face that has it.
     owners: Table<Slot<FaceId>, P>,
 }
+
+clone_by_field!(ScatteredFaces<P: Probe> { spans, owners });
 
 impl<P: Probe> AsRef<Self> for ScatteredFaces<P> {
     fn as_ref(&self) -> &Self {

@@ -28,6 +28,11 @@ pub trait HandleMap<H: Copy, T: Clone>: Index<H, Output = T> + IndexMut<H> + Clo
     /// A map that reads `value` everywhere; `rows` bounds the rows of handles that are rows.
     fn filled(rows: usize, value: T) -> Self;
 
+    /// Allocates room for `more` handles at once, if the map allocates for each handle that is written.
+    fn reserve(&mut self, more: usize) {
+        let _ = more;
+    }
+
     /// Keeps `value` for `handle`, which may be new: where data is by row the map grows up to it, and
     /// rows in between, which are no elements yet, read `value` too. O(1) amortised.
     fn insert(&mut self, handle: H, value: T);
@@ -126,6 +131,10 @@ impl<H: Handle, T: Clone> HandleMap<H, T> for HashHandleMap<H, T> {
             written: FxHashMap::default(),
             otherwise: value,
         }
+    }
+
+    fn reserve(&mut self, more: usize) {
+        self.written.reserve(more);
     }
 
     fn insert(&mut self, handle: H, value: T) {

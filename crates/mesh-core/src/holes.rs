@@ -1,5 +1,6 @@
 //! Rows that are there no longer: what deleting leaves behind until a mesh is compacted.
 
+use crate::clone_by_field;
 use crate::editing::HoleSet;
 use crate::memory::TableBytes;
 use crate::probe::{Probe, Untraced};
@@ -17,12 +18,14 @@ const WORD: usize = u64::BITS as usize;
 /// ```
 ///
 /// Nothing at all is kept until the first row is deleted.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Holes<P: Probe = Untraced> {
     /// A word for 64 rows; rows beyond the last word are no holes.
     words: Table<u64, P>,
     count: usize,
 }
+
+clone_by_field!(Holes<P: Probe> { words, count });
 
 impl Holes {
     /// No holes; `name` is what the table of bits is called, once there is one (`"face holes"`).

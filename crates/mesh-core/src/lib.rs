@@ -17,6 +17,7 @@
 //! Nothing here knows any one of the six structures.
 
 mod capability;
+mod clone_by_field;
 mod creases;
 mod distinct;
 mod edit;
@@ -66,7 +67,7 @@ pub use handle::{Handle, HandleMap, HashHandleMap, Pair, RowMap};
 pub use holes::Holes;
 pub use incidence::EdgeUse;
 pub use memory::{MemoryFootprint, TableBytes};
-pub use pairing::TwinPairs;
+pub use pairing::{SideRows, TwinPairs, pair_triangle_sides};
 pub use polygon_mesh::PolygonMesh;
 pub use probe::{Access, AccessKind, Probe, Traced, Untraced};
 pub use query::{EdgeMap, FaceMap, MeshQuery, VertexMap};

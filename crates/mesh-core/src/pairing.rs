@@ -1,8 +1,8 @@
 //! Twin pairs: the edges of an oriented manifold, found without hashing.
 
 use crate::face_list::FaceList;
-use crate::row_id::VertexId;
-use crate::sides::Buckets;
+use crate::row_id::{RowId, VertexId};
+use crate::sides::{Sides, bucket_starts, fill_buckets};
 
 /// The most corners that [`TwinPairs`] can number: a corner and a direction share 32 bits.
 pub(crate) const MAX_CORNERS: usize = (u32::MAX / 2) as usize;
@@ -29,30 +29,55 @@ impl TwinPairs {
     /// each higher end finds the partner. `None` if two sides run along one edge in the same
     /// direction, as they must where an edge has three faces, or if there are more corners or edges
     /// than have names; [`Capabilities::check`](crate::Capabilities::check) says which.
+    ///
+    /// Scratch: 8 bytes a corner and 8 a vertex; [`with_rows`](Self::with_rows) needs less.
     pub fn of(vertices: usize, faces: &FaceList) -> Option<Self> {
+        let mut rows = vec![(0_u32, 0_u32); faces.corners().len()];
+        Self::with_rows(vertices, faces, &mut rows[..])
+    }
+
+    /// As [`of`](Self::of), with the sorted sides in `rows`, which have a place for each corner: a table
+    /// of the result that is not filled yet. What the rows hold afterwards is of no use.
+    ///
+    /// # Panics
+    ///
+    /// If there are fewer places than corners.
+    #[inline(always)]
+    pub fn with_rows<R: SideRows + ?Sized>(
+        vertices: usize,
+        faces: &FaceList,
+        rows: &mut R,
+    ) -> Option<Self> {
         let corners = faces.corners().len();
         if corners > MAX_CORNERS {
             return None;
         }
-        let buckets = Buckets::of(vertices, faces, Bucketed::of);
-        // By higher end: the bucket that wrote here last; its edge, and the directions seen of it.
-        let mut last = vec![(u32::MAX, 0_u32); vertices];
+        let (mut ends, _) = bucket_starts(vertices, faces);
+        fill_buckets(faces, &mut ends, |at, a, b, corner| {
+            rows.write(at, a.max(b), tag(a, b, corner));
+        });
+        // By higher end: the last edge that ends there, and the directions seen of it; 0 if there is no
+        // edge yet. The edges of earlier buckets have lower numbers, which shows that they are old.
+        let mut last = vec![0_u32; vertices];
         let mut half_of_corner = vec![0_u32; corners];
         let (mut edges, mut clash, mut start) = (0_u32, 0, 0);
-        for (low, &end) in (0_u32..).zip(&buckets.ends) {
-            for side in &buckets.entries[start..end as usize] {
-                let row = &mut last[side.high as usize];
-                let (corner, direction) = (side.tag >> 1, side.tag & 1);
-                let new = row.0 != low;
+        for end in ends {
+            let end = end as usize;
+            let first = (edges << 2).max(1);
+            for at in start..end {
+                let (high, tag) = rows.read(at);
+                let row = &mut last[high.index()];
+                let (corner, direction) = (tag >> 1, tag & 1);
+                let new = *row < first;
                 // Without a branch, for half of all sides are new, in no order to be foreseen.
-                let known = if new { edges << 2 } else { row.1 };
+                let known = if new { edges << 2 } else { *row };
                 let seen = 1 << direction;
                 clash |= known & seen;
-                *row = (low, known | seen);
+                *row = known | seen;
                 edges += u32::from(new);
                 half_of_corner[corner as usize] = known >> 2 << 1 | direction;
             }
-            start = end as usize;
+            start = end;
             if edges as usize > MAX_EDGES {
                 return None;
             }
@@ -65,21 +90,108 @@ impl TwinPairs {
     }
 }
 
-/// A side in the bucket of its lower end.
-#[derive(Clone, Copy, Default)]
-struct Bucketed {
-    /// The higher end.
-    high: u32,
-    /// Twice the corner where the side starts, plus one if it runs from high to low.
-    tag: u32,
+/// Places for the sorted sides of faces, one for each corner.
+///
+/// A constructor implements it for rows of its result that it has not filled yet, so that the sides
+/// take no memory of their own.
+pub trait SideRows {
+    /// Writes the higher end of a side and a tag, which is not `u32::MAX`, to place `at`.
+    fn write(&mut self, at: usize, high: VertexId, tag: u32);
+
+    /// Reads both from place `at`.
+    fn read(&self, at: usize) -> (VertexId, u32);
 }
 
-impl Bucketed {
+impl SideRows for [(u32, u32)] {
     #[inline(always)]
-    fn of(a: VertexId, b: VertexId, corner: u32) -> Self {
-        Self {
-            high: a.max(b).index() as u32,
-            tag: corner << 1 | u32::from(a > b),
+    fn write(&mut self, at: usize, high: VertexId, tag: u32) {
+        self[at] = (high.row(), tag);
+    }
+
+    #[inline(always)]
+    fn read(&self, at: usize) -> (VertexId, u32) {
+        let (high, tag) = self[at];
+        (VertexId::new(high), tag)
+    }
+}
+
+/// Pairs the sides of triangles without numbering their edges; O(corners + vertices).
+///
+/// A side is named by the corner that faces it. Calls `pair` once for each side, with the side and the
+/// other side of its edge; the first side of an edge is paired with itself, and a side on a boundary
+/// stays so. `highs` is scratch with a row for each corner: a table of the result that is not filled
+/// yet. Returns 4 bytes of scratch a corner, for the caller to use again, and the number of edges;
+/// `None` as [`TwinPairs::of`].
+///
+/// # Panics
+///
+/// If a face is not a triangle, or if `highs` has fewer rows than there are corners.
+#[inline(always)]
+pub fn pair_triangle_sides(
+    vertices: usize,
+    faces: &FaceList,
+    highs: &mut [VertexId],
+    mut pair: impl FnMut(u32, u32),
+) -> Option<(Vec<u32>, usize)> {
+    let corners = faces.corners();
+    if corners.len() > MAX_CORNERS {
+        return None;
+    }
+    assert!(faces.is_empty() || faces.uniform_degree() == Some(3));
+    let faces = FacedSides(corners);
+    let (mut ends, sides) = bucket_starts(vertices, &faces);
+    let mut tags = vec![0_u32; sides];
+    fill_buckets(&faces, &mut ends, |at, a, b, corner| {
+        highs[at] = a.max(b);
+        tags[at] = tag(a, b, corner);
+    });
+    // By higher end: one more than the place of the first side of the last edge that ends there.
+    let mut last = vec![0_u32; vertices];
+    let (mut edges, mut clash, mut start) = (0, false, 0);
+    for end in ends {
+        for at in start..end {
+            let tag = tags[at as usize];
+            let row = &mut last[highs[at as usize].index()];
+            // Without a branch: see `TwinPairs::with_rows`.
+            let new = *row <= start;
+            let first_at = if new { at } else { *row - 1 };
+            *row = first_at + 1;
+            let first = &mut tags[first_at as usize];
+            if *first == PAIRED {
+                // A third side along one edge: rare enough for a branch.
+                return None;
+            }
+            clash |= !new & ((*first ^ tag) & 1 == 0);
+            let twin = std::mem::replace(first, if new { tag } else { PAIRED });
+            edges += usize::from(new);
+            pair(tag >> 1, twin >> 1);
+        }
+        start = end;
+    }
+    (!clash && edges <= MAX_EDGES).then_some((tags, edges))
+}
+
+/// The tag of an edge that has both of its sides: no corner is so large.
+const PAIRED: u32 = u32::MAX;
+
+/// Twice the corner of a side, plus one if it runs from the higher end to the lower.
+#[inline(always)]
+fn tag(a: VertexId, b: VertexId, corner: u32) -> u32 {
+    corner << 1 | u32::from(a > b)
+}
+
+/// The sides of triangles, each with the corner that faces it.
+struct FacedSides<'a>(&'a [VertexId]);
+
+impl Sides for FacedSides<'_> {
+    #[inline(always)]
+    fn for_each_side(&self, mut visit: impl FnMut(VertexId, VertexId, u32)) {
+        let mut first = 0;
+        for &[a, b, c] in self.0.as_chunks::<3>().0 {
+            visit(a, b, first + 2);
+            visit(b, c, first);
+            visit(c, a, first + 1);
+            first += 3;
         }
     }
 }
@@ -122,5 +234,35 @@ mod tests {
         assert_eq!(mixed.edge_count, 6);
         assert_eq!(mixed.half_of_corner[0] ^ 1, mixed.half_of_corner[4]);
         assert_eq!(pairs(0, &[]).expect("empty").edge_count, 0);
+    }
+    /// The sides of these triangles by the corner that faces them, each with its partner.
+    fn paired(vertices: usize, faces: &[[u32; 3]]) -> Option<Vec<u32>> {
+        let corners: Vec<VertexId> = faces.iter().flatten().map(|&v| VertexId::new(v)).collect();
+        let list = FaceList::uniform(3, corners).expect("small");
+        let mut highs = vec![VertexId::new(0); list.corners().len()];
+        let mut partners = vec![u32::MAX; list.corners().len()];
+        let done = pair_triangle_sides(vertices, &list, &mut highs, |side, other| {
+            partners[side as usize] = other;
+            partners[other as usize] = side;
+        });
+        let (scratch, edges) = done?;
+        assert_eq!(scratch.len(), partners.len());
+        let pairs = TwinPairs::of(vertices, &list).expect("the same verdict");
+        assert_eq!(edges, pairs.edge_count);
+        Some(partners)
+    }
+
+    #[test]
+    fn sides_of_triangles_are_paired_by_the_corners_that_face_them() {
+        // The edge v0–v1 is faced by the third corner of both triangles; the others are on the boundary.
+        let two = paired(4, &[[0, 1, 2], [1, 0, 3]]).expect("manifold");
+        assert_eq!(two, [0, 1, 5, 3, 4, 2]);
+        assert_eq!(paired(4, &[[0, 1, 2], [0, 1, 3]]), None, "one direction");
+        for order in [[0, 1, 2], [1, 0, 2], [1, 2, 0], [2, 0, 1]] {
+            let book = [[0, 1, 2], [1, 0, 3], [0, 1, 4]];
+            let pages = order.map(|page: usize| book[page]);
+            assert_eq!(paired(5, &pages), None, "three faces: {order:?}");
+        }
+        assert_eq!(paired(0, &[]), Some(vec![]));
     }
 }

@@ -1,5 +1,6 @@
 //! Faces as lists of corners, and nothing that leads from a vertex to them.
 
+use crate::clone_by_field;
 use crate::distinct::IteratorExt;
 use crate::editing::{Editable, Editing, FACE_HOLES, HoleSet, NoHoles, Whole};
 use crate::face_spans::FaceSpans;
@@ -161,7 +162,7 @@ impl<V: Handle> Hit<V> {
 /// What the faces at a vertex or along an edge are, a scan of all corners finds out, for every query
 /// and every edit again. Corners that belong to no face, because theirs was deleted or has moved to
 /// another place in the table, are blank: no scan finds them.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct ScannedFaces<V: ScannedVertex, P: Probe = Untraced, E: Editing = Whole> {
     /// The corners, face by face.
     pub corners: Table<V::Corner, P>,
@@ -170,6 +171,8 @@ pub struct ScannedFaces<V: ScannedVertex, P: Probe = Untraced, E: Editing = Whol
     /// Which faces are deleted.
     pub holes: E::Holes<P>,
 }
+
+clone_by_field!(ScannedFaces<V: ScannedVertex, P: Probe, E: Editing> { corners, spans, holes });
 
 impl<V: ScannedVertex, E: Editing> ScannedFaces<V, Untraced, E> {
     /// The faces that `spans` make of `corners`.

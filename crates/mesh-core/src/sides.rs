@@ -103,20 +103,41 @@ impl<T: Copy + Default> Buckets<T> {
         faces: &impl Sides,
         entry: impl Fn(VertexId, VertexId, u32) -> T,
     ) -> Self {
-        let mut ends = vec![0_u32; vertices];
-        faces.for_each_side(|a, b, _| ends[a.min(b).index()] += 1);
-        let mut total = 0;
-        for end in &mut ends {
-            total += std::mem::replace(end, total);
-        }
-        let mut entries = vec![T::default(); total as usize];
-        faces.for_each_side(|a, b, corner| {
-            let at = &mut ends[a.min(b).index()];
-            entries[*at as usize] = entry(a, b, corner);
-            *at += 1;
+        let (mut ends, total) = bucket_starts(vertices, faces);
+        let mut entries = vec![T::default(); total];
+        fill_buckets(faces, &mut ends, |at, a, b, corner| {
+            entries[at] = entry(a, b, corner);
         });
         Self { entries, ends }
     }
+}
+
+/// Counts the sides by their lower end: returns where the bucket of each vertex starts, and how many
+/// sides there are.
+#[inline(always)]
+pub(crate) fn bucket_starts(vertices: usize, faces: &impl Sides) -> (Vec<u32>, usize) {
+    let mut starts = vec![0_u32; vertices];
+    faces.for_each_side(|a, b, _| starts[a.min(b).index()] += 1);
+    let mut total = 0;
+    for start in &mut starts {
+        total += std::mem::replace(start, total);
+    }
+    (starts, total as usize)
+}
+
+/// Calls `place` with the row of each side in the bucket of its lower end, and with the side's two ends
+/// and corner. Every row of `starts` is moved to the end of its bucket.
+#[inline(always)]
+pub(crate) fn fill_buckets(
+    faces: &impl Sides,
+    starts: &mut [u32],
+    mut place: impl FnMut(usize, VertexId, VertexId, u32),
+) {
+    faces.for_each_side(|a, b, corner| {
+        let at = &mut starts[a.min(b).index()];
+        place(*at as usize, a, b, corner);
+        *at += 1;
+    });
 }
 
 impl<P: Probe, E: Editing> FaceSpans<P, E> {

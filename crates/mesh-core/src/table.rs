@@ -15,7 +15,6 @@ use crate::row_id::VertexId;
 /// With the probe [`Untraced`] a read is a bounds-checked index and nothing else (the benchmark
 /// group `zero_cost` compares with bare slices). Each table knows its name, and what its rows are,
 /// for traces, memory reports and the panic of a handle that has no row.
-#[derive(Clone)]
 pub struct Table<T, P: Probe = Untraced> {
     rows: Vec<T>,
     name: &'static str,
@@ -243,6 +242,26 @@ impl<P: Probe> Table<Point, P> {
         }
         self.rows.copy_from_slice(positions.values());
         Ok(())
+    }
+}
+
+impl<T: Clone, P: Probe> Clone for Table<T, P> {
+    fn clone(&self) -> Self {
+        Self {
+            rows: self.rows.clone(),
+            name: self.name,
+            element: self.element,
+            probe: self.probe.clone(),
+        }
+    }
+
+    /// Copies the rows into the memory that this table holds: it allocates only if they do not fit, and
+    /// keeps what it holds beyond them.
+    fn clone_from(&mut self, source: &Self) {
+        self.rows.clone_from(&source.rows);
+        self.name = source.name;
+        self.element = source.element;
+        self.probe.clone_from(&source.probe);
     }
 }
 

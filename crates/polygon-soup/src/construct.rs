@@ -30,9 +30,9 @@ impl<E: Editing> Representation for AnyPolygonSoup<Untraced, E> {
 
     /// Copies the position of every corner; O(corners).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
-        let at: Vec<Point> = polygons.positions().iter().map(|&p| canonical(p)).collect();
-        let faces = polygons.faces();
-        let corners = faces.corners().iter().map(|v| at[v.index()]).collect();
+        let (positions, faces) = (polygons.positions(), polygons.faces());
+        let corners = faces.corners().iter();
+        let corners = corners.map(|v| canonical(positions[v.index()])).collect();
         let mesh = Self {
             faces: ScannedFaces::new(corners, faces.spans()),
         };

@@ -82,10 +82,12 @@ use crate::vertex::SoupVertex;
 /// assert_eq!(soup.vertex_faces(SoupVertex::at(Point::ZERO)).count(), 2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct AnyPolygonSoup<P: Probe, E: Editing> {
     pub(crate) faces: ScannedFaces<SoupVertex, P, E>,
 }
+
+mesh_core::clone_by_field!(AnyPolygonSoup<P: Probe, E: Editing> { faces });
 
 /// A polygon soup of which nothing can be deleted: [`AnyPolygonSoup`] whose rows are all elements.
 pub type PolygonSoup<P = Untraced> = AnyPolygonSoup<P, Whole>;

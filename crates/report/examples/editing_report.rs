@@ -17,7 +17,7 @@ use opening::median;
 use report::{Panel, panels};
 use serde_json::json;
 use sixfold::{Edit, PolygonMesh, QueryCost, roster, shapes};
-use study::{Clock, Editing, Editor, Environment, MachineClock, SingleEdit};
+use study::{Editing, Editor, Environment, MachineClock, Policy, Series, SingleEdit, pages};
 
 /// Sides of the tori: 1,058, 4,232, 16,200, 64,800, 259,200 and 1,036,800 triangles.
 const SIDES: [usize; 6] = [23, 46, 90, 180, 360, 720];
@@ -50,7 +50,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         .next()
         .ok_or("usage: editing_report FOLDER [ROUNDS]")?;
     let rounds = words.next().map_or(Ok(5), |word| word.parse())?;
-    let machine = Environment::here(0, 0.0);
+    let machine = Environment {
+        heap: Some(pages::put_in_force(Policy::Kept)),
+        ..Environment::here(0, 0.0)
+    };
     let mut samples = Samples::new();
     for side in SIDES {
         let polygons = shapes::triangle_torus(side, side)?;
@@ -115,22 +118,16 @@ fn measure(
     let clock = MachineClock::start();
     for _ in 0..rounds {
         for (line, editor) in &mut jobs {
-            // On a small mesh there are few places: more copies, so that the clock does not show.
+            // On a small mesh there are few places: more runs, so that the clock does not show.
             let copies = (COPIES / faces).max(1);
-            editor.prepare(copies);
-            let began = clock.now();
-            for _ in 0..copies {
-                editor.run();
-            }
-            let time = (clock.now() - began).scaled(1.0 / copies as f64);
+            let series = Series::of_runs(copies as u32, &clock).after(1);
+            let time = editor.time(&series).scaled(1.0 / copies as f64);
             let edits = editor.result();
             if edits.refused > 0 && !Editing::ALL.iter().any(|e| e.name() == line.0) {
                 return Err(format!("{line:?}: {edits:?}").into());
             }
             let ns = time.ns() / edits.elements.max(1) as f64;
             samples.entry((*line, faces)).or_default().push(ns);
-            // Room for the next: a mesh of a million faces is not small.
-            editor.prepare(0);
         }
     }
     Ok(())

@@ -17,7 +17,7 @@ use report::{Panel, panels};
 use serde_json::json;
 use sixfold::subdivision::{Scheme, SubdivisionError};
 use sixfold::{Creases, PolygonMesh, roster, shapes};
-use study::{Clock, Environment, MachineClock, Refiner, Refining, Way};
+use study::{Clock, Environment, MachineClock, Policy, Refiner, Refining, Way, pages};
 
 /// The schemes of the report; both take the control mesh, of triangles.
 const SCHEMES: [Scheme; 2] = [Scheme::CatmullClark, Scheme::Loop];
@@ -48,7 +48,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         .next()
         .ok_or("usage: subdivision_report FOLDER [ROUNDS]")?;
     let rounds = words.next().map_or(Ok(5), |word| word.parse())?;
-    let machine = Environment::here(0, 0.0);
+    let machine = Environment {
+        heap: Some(pages::put_in_force(Policy::Kept)),
+        ..Environment::here(0, 0.0)
+    };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let polygons = shapes::geodesic(16)?;
     let samples = pool.install(|| measured(&polygons, rounds))?;

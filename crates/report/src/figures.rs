@@ -21,6 +21,8 @@ pub(crate) struct Row<'a> {
     pub(crate) interval: Option<[f64; 2]>,
     /// Nanoseconds of an element, where that is known.
     pub(crate) ns: Option<f64>,
+    /// The same of the first time, on fresh pages, where that is known and differs.
+    pub(crate) first_ns: Option<f64>,
     /// What else there is to say: `best`, `tied`, `on 3 of 4 meshes`.
     pub(crate) note: String,
 }
@@ -287,6 +289,7 @@ fn machine(environment: &Environment) -> String {
         "thread-cpu" => "processor time of the thread".into(),
         _ => "wall time".into(),
     });
+    parts.extend(environment.memory_phrases());
     let parts: Vec<String> = parts.iter().map(|part| part.trim().to_owned()).collect();
     parts.join("; ")
 }

@@ -12,7 +12,7 @@ mod why;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use ::study::{External, Operation};
+use ::study::{CacheState, External, Operation, Policy};
 use clap::{Args, Parser, Subcommand};
 use sixfold::shapes::Order;
 
@@ -54,6 +54,12 @@ order, on the processor time of the thread; the table shows medians. The seed de
 and which elements are sampled; how many is decided by the clock. One backend is entered twice: what
 its two columns differ by is the noise, and no more than that is a tie. Ctrl-C ends it between two
 samples and keeps what is finished. A second Ctrl-C ends it at once, with code 130.
+
+Memory: --heap kept makes freed pages stay with the process, so that no sample pays for fresh ones;
+what operations take on fresh pages is shown as `first time`. --heap system leaves that to the
+platform's allocator: times of what allocates then depend on what ran before. With --caches cold
+each sample is one run, after the caches were filled with other data. `compare` and `merge` refuse
+to mix results of different heaps or caches.
 
 Exit codes: 0 done; 1 backends found different results, a fault in Sixfold, or another program
 did; 2 wrong usage or unusable input; 3 no backend asked for can hold the mesh; 4 interrupted,
@@ -162,6 +168,8 @@ pub(crate) struct Study {
     /// What decides the order, and which elements are sampled
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) memory: MemoryState,
     /// Another program as one more column; may be given again
     #[arg(long = "external", value_name = "NAME=COMMAND")]
     pub(crate) externals: Vec<External>,
@@ -192,6 +200,23 @@ pub(crate) struct Study {
     /// Only every n-th mesh, from the i-th on: for `sixfold merge`
     #[arg(long, value_name = "i/n", requires = "report")]
     pub(crate) shard: Option<Shard>,
+}
+
+/// What is done to freed pages and to the caches while times are measured.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub(crate) struct MemoryState {
+    /// Freed pages: kept by this process, or system
+    #[arg(long, value_name = "POLICY", default_value = "kept")]
+    pub(crate) heap: Policy,
+    /// Caches before each sample: warm or cold
+    #[arg(long, value_name = "STATE", default_value = "warm", value_parser = cache_state)]
+    pub(crate) caches: CacheState,
+}
+
+fn cache_state(name: &str) -> Result<CacheState, String> {
+    let mut all = CacheState::ALL.into_iter();
+    all.find(|state| state.name() == name)
+        .ok_or_else(|| format!("there is no cache state `{name}`: choose `warm` or `cold`"))
 }
 
 /// Put the shards of a study of many meshes together.
@@ -233,6 +258,7 @@ impl Default for Study {
             operations: Vec::new(),
             budget: settings.budget,
             seed: settings.seed,
+            memory: MemoryState::default(),
             externals: Vec::new(),
             patience: settings.patience,
             triangulate: false,

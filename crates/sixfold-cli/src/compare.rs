@@ -30,7 +30,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
         relative: arguments.relative,
         drift: arguments.noise,
     };
-    let changes = compare(&before, &after, how);
+    let changes = compare(&before, &after, how).map_err(Failure::usage)?;
     if changes.rows.is_empty() {
         return Err(Failure::usage(format!(
             "{} and {} have no operation on one backend in common: nothing to compare",

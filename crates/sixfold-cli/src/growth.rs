@@ -30,6 +30,8 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
             operations: arguments.operations.clone(),
             budget: arguments.budget,
             seed: arguments.seed,
+            heap: arguments.memory.heap,
+            caches: arguments.memory.caches,
             ..Settings::default()
         },
         shape: arguments.shape.clone(),
@@ -38,7 +40,7 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
         to: arguments.to,
         steps: arguments.steps,
     };
-    let stop = interrupt_flag();
+    let stop = interrupt_flag(arguments.memory.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
     tell_of_debug_build();
     let report = measured(&settings, &stop)?;

@@ -2,7 +2,7 @@
 
 use std::alloc::System;
 
-use ::study::Heap;
+use ::study::{AllocationCounter, Heap};
 use peakmem_alloc::{PeakMemAlloc, PeakMemAllocTrait};
 use stats_alloc::StatsAlloc;
 
@@ -31,6 +31,12 @@ impl Heap for Counters {
 
     fn peak(&self) -> usize {
         PEAK.get_peak_memory()
+    }
+}
+
+impl AllocationCounter for Counters {
+    fn allocated(&self) -> usize {
+        LIVE.stats().bytes_allocated
     }
 }
 
@@ -64,5 +70,16 @@ mod tests {
         assert!(about(Counters.peak(), BYTES), "{}", Counters.peak());
         Counters.restart_peak();
         assert!(about(Counters.peak(), 0), "{}", Counters.peak());
+    }
+    #[test]
+    fn freed_blocks_stay_counted_and_growth_counts_once() {
+        let before = Counters.allocated();
+        let allocated = || Counters.allocated() - before;
+        drop(Vec::<u8>::with_capacity(BYTES));
+        assert!(about(allocated(), BYTES), "{}", allocated());
+        let mut block = Vec::<u8>::with_capacity(BYTES / 2);
+        assert!(about(allocated(), BYTES / 2 * 3), "{}", allocated());
+        block.reserve_exact(BYTES);
+        assert!(about(allocated(), 2 * BYTES), "{}", allocated());
     }
 }

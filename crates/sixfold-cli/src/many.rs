@@ -53,7 +53,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
     let wanted = labs::wanted(arguments.labs.as_ref(), single)?;
     let names = meshes.iter().map(|mesh| mesh.name.clone()).collect();
     let mut collection = Collection::new(names, asked(arguments, settings));
-    let stop = interrupt_flag();
+    let stop = interrupt_flag(settings.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
     let csv = Output::open_if(arguments.csv.as_ref())?;
     let folder = match &arguments.report {
@@ -148,6 +148,8 @@ fn asked(arguments: &Study, settings: &Settings) -> Asked {
         operations: settings.operations.clone(),
         budget_s: settings.budget.as_secs_f64(),
         seed: settings.seed,
+        heap: settings.heap,
+        caches: settings.caches,
         triangulate: arguments.triangulate,
         strict: arguments.strict,
     }

@@ -2,7 +2,10 @@
 
 use std::process::ExitCode;
 
-use ::study::{Audit, Audited, BackendReport, Settings, audit};
+use ::study::{
+    Audit, Audited, Backend, BackendReport, MOST_SCANNED_FACES, OperationBytes, Settings, audit,
+    count_allocations,
+};
 use comfy_table::{Cell, CellAlignment, Table};
 
 use crate::arguments::Memory;
@@ -37,9 +40,16 @@ pub(crate) fn run(arguments: &Memory) -> Result<ExitCode, Failure> {
     };
     let backends = settings.chosen_backends().map_err(Failure::usage)?;
     let stage = Stage::new();
-    let audit = audit(&specimen, &backends, &Counters, &mut |backend| {
+    let mut audit = audit(&specimen, &backends, &Counters, &mut |backend| {
         stage.show(format!("building {} and counting", backend.name()));
     });
+    let mut counting = |backend: &Backend, operation| {
+        stage.show(format!(
+            "running {operation} on {} and counting",
+            backend.name()
+        ));
+    };
+    count_allocations(&mut audit, &specimen, &backends, &Counters, &mut counting);
     stage.clear();
 
     let write = |json: Option<Output>| match json {
@@ -82,6 +92,10 @@ fn print(audit: &Audit, text: &mut Text) {
     text.say("");
     text.say(&words_table(audit));
     text.say("");
+    if let Some(table) = operations_table(audit) {
+        text.say(&table);
+        text.say("");
+    }
     for words in words(audit) {
         text.say(&hanging("- ", &words));
     }
@@ -164,6 +178,34 @@ fn words_table(audit: &Audit) -> String {
     table.trim_fmt()
 }
 
+/// The bytes that operations allocate for each byte of their result: a row for each operation that
+/// some structure can run, a column for each structure. `None` if nothing was counted.
+fn operations_table(audit: &Audit) -> Option<String> {
+    let counted = |one: &&Audited| !one.operations.is_empty();
+    let columns: Vec<&Audited> = audit.backends.iter().filter(counted).collect();
+    let names = columns
+        .iter()
+        .map(|one| one.backend.name.replace('-', "\n"));
+    let header = std::iter::once("allocated bytes\n/ result bytes".to_owned()).chain(names);
+    let aligned = |(i, text): (usize, String)| Cell::new(text).set_alignment(side(i));
+    let mut table = table(header.enumerate().map(aligned).collect());
+    for (i, first) in columns.first()?.operations.iter().enumerate() {
+        let cells: Vec<&OperationBytes> = columns.iter().map(|one| &one.operations[i]).collect();
+        if cells.iter().all(|cell| cell.reason.is_some()) {
+            continue;
+        }
+        let figure = |cell: &OperationBytes| match (cell.allocated_to_result, cell.scans) {
+            (Some(ratio), _) => format!("{ratio:.2}"),
+            (None, true) => "scans".to_owned(),
+            (None, false) => "–".to_owned(),
+        };
+        let cells = cells.into_iter().map(figure);
+        let cells = std::iter::once(first.operation.to_string()).chain(cells);
+        table.add_row(cells.enumerate().map(aligned).collect::<Vec<_>>());
+    }
+    Some(table.trim_fmt())
+}
+
 /// An empty table under `header`, whose figures stand to the right.
 fn headed<const COLUMNS: usize>(header: &[&str; COLUMNS]) -> Table {
     let aligned = |(i, text): (usize, &&str)| Cell::new(text).set_alignment(side(i));
@@ -204,6 +246,7 @@ fn words(audit: &Audit) -> Vec<String> {
          and 3 edges a vertex, as the literature counts."
             .to_owned(),
     );
+    words.extend(words_of_operations(audit));
     for one in held {
         let backend = &one.backend;
         if let Some(merged @ 1..) = backend.merged_vertices {
@@ -214,6 +257,35 @@ fn words(audit: &Audit) -> Vec<String> {
                 counted(merged, "vertex", "vertices")
             ));
         }
+    }
+    words
+}
+
+/// The legend of the table of operations; empty without that table.
+fn words_of_operations(audit: &Audit) -> Vec<String> {
+    let operations = || audit.backends.iter().flat_map(|one| &one.operations);
+    let mut words = Vec::new();
+    if operations().next().is_none() {
+        return words;
+    }
+    words.push(
+        "Allocated bytes are all bytes that one run of the operation requests from the allocator, \
+         including scratch that it frees. A block that grows counts by its growth. Native steps \
+         start with new tables."
+            .to_owned(),
+    );
+    words.push(
+        "The result of build is the structure, of ff_bfs the depth of each face, of catmull_clark_* \
+         and loop_* the structure of the refined mesh, and of the other operations the mesh after \
+         the edits."
+            .to_owned(),
+    );
+    if operations().any(|operation| operation.scans) {
+        words.push(format!(
+            "scans: not run, because the structure scans all faces for each element and the mesh has \
+             more than {} faces.",
+            grouped(MOST_SCANNED_FACES)
+        ));
     }
     words
 }

@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
         arguments.mesh.as_deref(),
         &[("--json", arguments.json.as_ref())],
     )?;
-    let stop = interrupt_flag();
+    let stop = interrupt_flag(arguments.memory.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
     let specimen = match &arguments.mesh {
         Some(path) => load::for_study(path, false, arguments.triangulate)?,
@@ -40,6 +40,8 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
         operations: arguments.operations.clone(),
         budget: arguments.budget,
         seed: arguments.seed,
+        heap: arguments.memory.heap,
+        caches: arguments.memory.caches,
         ..Settings::default()
     };
     tell_of_debug_build();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use ::study::Progress;
+use ::study::{Policy, Progress, pages};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::output::exit_without_drafts;
@@ -179,7 +179,11 @@ pub(crate) fn end_on_interrupt() {
 }
 
 /// A flag that the first Ctrl-C sets; the second ends the program at once.
-pub(crate) fn interrupt_flag() -> Arc<AtomicBool> {
+///
+/// Puts `heap` in force first: the handler has a thread of its own, and the number of heaps is fixed when
+/// the first thread starts.
+pub(crate) fn interrupt_flag(heap: Policy) -> Arc<AtomicBool> {
+    pages::put_in_force(heap);
     /// What shells expect of a program that was interrupted.
     const AT_ONCE: i32 = 130;
     let flag = Arc::new(AtomicBool::new(false));

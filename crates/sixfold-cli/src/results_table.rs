@@ -1,16 +1,22 @@
 //! The table: a row for each operation, a column for each backend.
 
-use ::study::{Agreement, BackendReport, Operation, Refusal, Report, ResultRow, Standing};
+use ::study::{
+    Agreement, BackendReport, ControlRow, FIRST_TIME_SHOWN, Operation, Refusal, Report, ResultRow,
+    Standing,
+};
 use comfy_table::{
     Attribute, Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle,
 };
 
-use crate::text::{WIDTH, wrapped};
+use crate::text::{WIDTH, hanging, wrapped};
 use ::study::numbers::{duration, figure};
 
 /// Two blanks between columns, and one line under the header.
 pub(crate) const STYLE: TableStyle =
     TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
+
+/// The name of the line below an operation whose first time differs.
+const FIRST_TIME: &str = "  first time";
 
 /// The table of times and bytes, and what its signs mean.
 pub(crate) fn results_table(report: &Report, bold: bool) -> String {
@@ -26,17 +32,24 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     } else {
         table.force_no_tty();
     }
+    let mut signs = Signs::default();
     let mut header = vec![Cell::new("nanoseconds"), Cell::new("per")];
     header.extend(columns.iter().map(|backend| {
-        let name = match intervals {
+        let mut name = match intervals {
             true => backend.name.clone(),
             false => backend.name.replace('-', "\n"),
         };
+        if backend
+            .external
+            .as_ref()
+            .is_some_and(|program| program.own_heap)
+        {
+            name += &format!(" ({})", signs.note('h'));
+        }
         Cell::new(name).set_alignment(CellAlignment::Right)
     }));
     table.set_header(header);
 
-    let mut signs = Signs::default();
     for operation in Operation::ALL {
         let rows: Vec<&ResultRow> = report.rows(operation).collect();
         let refused = |refusal: &Refusal| refusal.operation == operation;
@@ -52,18 +65,69 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
             });
         }
         table.add_row(line);
+        if let Some(line) = first_times(&rows, &columns, intervals, &mut signs) {
+            table.add_row(line);
+        }
     }
     add_bytes(&mut table, &columns, intervals, bold, &mut signs);
     // All six and their names fit into a hundred columns.
     if let Some(names) = table.column_mut(0) {
         names.set_padding((0, 1));
     }
-    let mut text = table.trim_fmt();
+    let mut lines: Vec<String> = Vec::new();
+    let mut doubted = None;
+    for line in table.trim_fmt().lines() {
+        // Below both lines of an operation.
+        if !line.starts_with(FIRST_TIME) {
+            lines.extend(doubted.take());
+            doubted = doubt(report, line).map(|doubt| hanging("  ↑ ", &doubt));
+        }
+        lines.push(line.to_owned());
+    }
+    let mut text = lines.join("\n");
     for line in signs.legend(report) {
         text += "\n";
         text += &line;
     }
     text
+}
+
+/// The line below an operation that allocates, where the first time differs: a cell for each backend.
+fn first_times(
+    rows: &[&ResultRow],
+    columns: &[&BackendReport],
+    intervals: bool,
+    signs: &mut Signs,
+) -> Option<Vec<Cell>> {
+    let differs = |row: &&&ResultRow| {
+        let ratio = row.first_ratio().unwrap_or(1.0);
+        ratio.max(ratio.recip()) > FIRST_TIME_SHOWN
+    };
+    rows.iter().find(differs)?;
+    signs.note('1');
+    let mut line = vec![Cell::new(FIRST_TIME), Cell::new("")];
+    line.extend(columns.iter().map(|backend| {
+        let row = rows.iter().find(|row| row.backend == backend.name);
+        let first = row.and_then(|row| Some(row.first_ns? / row.elements?.max(1) as f64));
+        let text = first.map_or(String::new(), figure);
+        marked(aligned(text, "", intervals), ' ', ' ', false)
+    }));
+    Some(line)
+}
+
+/// What is said below the line of an operation whose control differs from itself.
+fn doubt(report: &Report, line: &str) -> Option<String> {
+    let control = report.control.as_ref()?;
+    let of_line = |row: &&ControlRow| line.split(' ').next() == Some(row.operation.name());
+    let row = { control.operations.iter() }.find(of_line)?;
+    row.is_unsteady().then(|| {
+        format!(
+            "{}, measured twice, differs from itself by {:.0} % here: smaller differences are no result. Measure again, with a longer --budget or --operations {} alone.",
+            control.backend,
+            100.0 * (row.difference() - 1.0),
+            row.operation
+        )
+    })
 }
 
 /// Bytes for each vertex: really held, and by the layout.
@@ -185,6 +249,14 @@ impl Signs {
                 '=',
                 "tied for best: no difference beyond the noise, or less than 2 % (2 × below three samples)",
             ),
+            (
+                '1',
+                "first time: a run on fresh pages, with tables of exact size",
+            ),
+            (
+                'h',
+                "own heap: this program's allocator is not told to keep pages",
+            ),
             ('~', "from a sample of the elements"),
             ('?', "estimated, not run"),
             ('±', "95 % interval of the median"),
@@ -195,7 +267,10 @@ impl Signs {
         // Broken between meanings only.
         let mut lines: Vec<String> = Vec::new();
         for (sign, meaning) in there {
-            let part = format!("{sign} {meaning}");
+            let part = match sign {
+                '1' => (*meaning).to_owned(),
+                _ => format!("{sign} {meaning}"),
+            };
             match lines.last_mut() {
                 Some(line) if line.chars().count() + 2 + part.chars().count() <= WIDTH => {
                     *line += "; ";
@@ -260,7 +335,7 @@ fn refused(report: &Report) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use ::study::{Environment, MeshReport, SCHEMA};
+    use ::study::{Control, Environment, MeshReport, SCHEMA};
     use sixfold::{Facts, PolygonMesh, roster};
 
     use super::*;
@@ -308,6 +383,21 @@ mod tests {
             runs_per_sample: 1,
             warm_up_only: false,
             by_name_only: false,
+            faults: None,
+            retaken: 0,
+            disturbed: 0,
+            first_ns: None,
+            first_samples: 0,
+            first_faults: None,
+        }
+    }
+
+    fn control(operation: &str, [ratio, low, high]: [f64; 3]) -> ControlRow {
+        ControlRow {
+            operation: operation.parse().expect("a name"),
+            ratio,
+            ci_low: Some(low),
+            ci_high: Some(high),
         }
     }
 
@@ -319,6 +409,8 @@ mod tests {
         let mut unrun = row("polygon-soup", "ff_bfs", 0.0, Standing::Slower);
         (unrun.median_ns, unrun.ns_per_element, unrun.standing) = (None, None, None);
         unrun.estimated_ns = Some(7.3e9);
+        let mut fresh = row("half-edge", "build", 1240.0, Standing::Tied);
+        (fresh.first_ns, fresh.first_samples) = (Some(3120.0), 5);
         let mut merged = row("polygon-soup", "build", 1234.0, Standing::Tied);
         merged.agreement = Agreement::Merged;
         let mut left_out = row("polygon-soup", "loop_gather", 0.0, Standing::Slower);
@@ -344,7 +436,7 @@ mod tests {
             backends: vec![backend("polygon-soup", 7200), backend("half-edge", 9600)],
             results: vec![
                 merged,
-                row("half-edge", "build", 1240.0, Standing::Tied),
+                fresh,
                 scanned,
                 row("half-edge", "vertex_vertices", 1.2e6, Standing::Best),
                 unrun,
@@ -357,7 +449,16 @@ mod tests {
                 refusal("catmull_clark_native", "it cannot split its own tables"),
                 refusal("loop_native", "it cannot split its own tables"),
             ],
-            control: None,
+            control: Some(Control {
+                backend: "half-edge".into(),
+                operations: vec![
+                    control("build", [1.124, 1.08, 1.15]),
+                    control("vertex_vertices", [1.2, 0.99, 1.5]),
+                    control("ff_bfs", [1.03, 1.02, 1.04]),
+                ],
+                typical: 1.12,
+                worst: 1.2,
+            }),
             words: Vec::new(),
             warnings: Vec::new(),
             raw: Vec::new(),

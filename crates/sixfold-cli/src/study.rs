@@ -26,6 +26,8 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         operations: arguments.operations.clone(),
         budget: arguments.budget,
         seed: arguments.seed,
+        heap: arguments.memory.heap,
+        caches: arguments.memory.caches,
         ..Settings::default()
     };
     let several = arguments.meshes.len() > 1 || arguments.meshes.iter().any(|path| path.is_dir());
@@ -41,7 +43,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         ],
     )?;
     // Before the drafts of the outputs, so that Ctrl-C can leave none behind.
-    let stop = interrupt_flag();
+    let stop = interrupt_flag(settings.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
     let csv = Output::open_if(arguments.csv.as_ref())?;
     let specimen = match mesh {
@@ -153,11 +155,11 @@ pub(crate) fn print(report: &Report, text: &mut Text) {
 
 /// What the engine itself costs.
 fn overhead(timer: Timer) -> String {
-    let share = timer.largest_share.map_or(String::new(), |share| {
-        format!(": {:.2} % of the shortest", 100.0 * share)
+    let share = timer.largest_share.map_or("unknown".into(), |share| {
+        format!("{:.2} % of the shortest sample", 100.0 * share)
     });
     format!(
-        "A sample of nothing takes {:.0} ns{share}.",
+        "Reading the clock takes {:.0} ns, which is subtracted; what may be left of it is {share}.",
         timer.overhead_ns
     )
 }
@@ -184,6 +186,7 @@ pub(crate) fn setting(environment: &Environment, most_rounds: usize) -> String {
         "thread-cpu" => "processor time of the thread".into(),
         _ => "wall time".into(),
     });
+    parts.extend(environment.memory_phrases());
     let rounds = counted(most_rounds, "round", "rounds");
     parts.push(format!("medians of up to {rounds}"));
     parts.push(format!("seed {seed}"));

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use ::study::{MachineClock, MemorySpeed, Specimen, StudyError, Timing, WhySettings};
+use ::study::{MachineClock, MemorySpeed, Policy, Specimen, StudyError, Timing, WhySettings};
 
 use crate::arguments::Why;
 use crate::facts_text::{facts_text, verdicts_text};
@@ -23,7 +23,7 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
         &[("--json", arguments.json.as_ref())],
     )?;
     // Before the draft of the output, so that Ctrl-C can leave none behind.
-    let stop = interrupt_flag();
+    let stop = interrupt_flag(Policy::Kept);
     let json = Output::open_if(arguments.json.as_ref())?;
     let specimen = match &arguments.mesh {
         Some(path) => load::for_study(path, false, arguments.triangulate)?,

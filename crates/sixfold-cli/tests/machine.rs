@@ -29,7 +29,7 @@ pub(crate) const FACTS: [(&str, &str); 19] = [
     ("face_degree", "object or null"),
 ];
 
-const RESULT: [(&str, &str); 24] = [
+const RESULT: [(&str, &str); 30] = [
     ("backend", "string"),
     ("operation", "string"),
     ("median_ns", "number or null"),
@@ -54,6 +54,12 @@ const RESULT: [(&str, &str); 24] = [
     ("runs_per_sample", "number"),
     ("warm_up_only", "boolean"),
     ("by_name_only", "boolean"),
+    ("faults", "number or null"),
+    ("retaken", "number"),
+    ("disturbed", "number"),
+    ("first_ns", "number or null"),
+    ("first_samples", "number"),
+    ("first_faults", "number or null"),
 ];
 
 fn kind(value: &Value) -> &'static str {

@@ -6,7 +6,7 @@ use crate::bad_input::refused;
 use crate::machine::{FACTS, has, parsed};
 use crate::run::{Sixfold, TETRAHEDRON, done};
 
-const BACKEND: [(&str, &str); 15] = [
+const BACKEND: [(&str, &str); 16] = [
     ("holds", "boolean"),
     ("reason", "string or null"),
     ("bytes", "number or null"),
@@ -22,6 +22,16 @@ const BACKEND: [(&str, &str); 15] = [
     ("agrees", "boolean or null"),
     ("tables", "array"),
     ("merged_vertices", "number or null"),
+    ("operations", "array"),
+];
+
+const OPERATION: [(&str, &str); 6] = [
+    ("operation", "string"),
+    ("allocated_bytes", "number or null"),
+    ("result_bytes", "number or null"),
+    ("allocated_to_result", "number or null"),
+    ("reason", "string or null"),
+    ("scans", "boolean"),
 ];
 
 #[test]
@@ -57,6 +67,65 @@ fn machines_read_the_three_ways_and_their_tables() {
     assert_eq!(backends["indexed-face-set"]["counted_bytes"], 64);
     assert_eq!(backends["half-edge"]["counted_bytes"], 164);
     assert_eq!(backends["half-edge"]["layout_words_per_vertex"], 10.25);
+}
+
+/// The most bytes that building a structure may allocate for each byte of the result. Beside the
+/// result there is scratch: 4 bytes a corner and 8 a vertex for a corner table and for half-edges, 12 a
+/// corner and 8 a vertex for winged edges.
+const BUILD_LIMITS: [(&str, f64); 6] = [
+    ("polygon-soup", 1.02),
+    ("indexed-face-set", 1.0),
+    ("face-vertex", 1.0),
+    ("winged-edge", 1.67),
+    ("half-edge", 1.34),
+    ("corner-table", 1.5),
+];
+
+/// The same for a subdivision, by the end of the name of the operation.
+const SUBDIVISION_LIMITS: [(&str, f64); 3] =
+    [("_gather", 3.0), ("_scatter", 3.0), ("_native", 1.2)];
+
+/// Holds the figures at the level reached when they were last reduced.
+#[test]
+fn operations_on_the_built_in_mesh_allocate_little_beside_their_result() {
+    let run = done(&Sixfold::new(), &["memory", "--json", "-"]);
+    let audit = parsed(&run.stdout);
+    let mut counted = 0;
+    for (backend, build_limit) in BUILD_LIMITS {
+        let operations = audit["backends"][backend]["operations"].as_array();
+        for operation in operations.expect("a list") {
+            has(operation, &OPERATION);
+            let name = operation["operation"].as_str().expect("a name");
+            let Some(ratio) = operation["allocated_to_result"].as_f64() else {
+                assert!(operation["reason"].is_string(), "{name} on {backend}");
+                continue;
+            };
+            counted += 1;
+            let mut ends = SUBDIVISION_LIMITS.into_iter();
+            let limit = match ends.find(|(end, _)| name.ends_with(end)) {
+                Some((_, limit)) => limit,
+                None if name == "build" => build_limit,
+                None => continue,
+            };
+            assert!(
+                ratio <= limit,
+                "{name} on {backend} allocates {ratio} bytes for each byte of the result"
+            );
+        }
+    }
+    assert!(counted > 40, "{counted} operations were run");
+}
+
+/// On a small mesh nothing is left out because of scans.
+#[test]
+fn operations_that_scan_are_run_on_small_meshes_only() {
+    let sixfold = Sixfold::new();
+    sixfold.file("ok.obj", TETRAHEDRON);
+    let run = done(&sixfold, &["memory", "ok.obj"]);
+    assert!(run.stdout.contains("loop_gather"), "{run:?}");
+    assert!(!run.stdout.contains("scans"), "{run:?}");
+    let run = done(&sixfold, &["memory"]);
+    assert!(run.stdout.contains("- scans: not run"), "{run:?}");
 }
 
 #[test]

@@ -1,8 +1,10 @@
 //! Sixfold's own column beside the established libraries: arguments and output as theirs.
 //!
 //! `peer --mesh FILE.obj [--op NAME …] [--reps N] [--budget SECONDS] [--backend NAME]` prints one
-//! JSON object a line. Every operation runs once to warm up and then `N` times, alone; the code is
-//! that of a study. Processor time is that of the only thread.
+//! JSON object a line. Every operation is warmed up and then measured `N` times, alone; the code is
+//! that of a study. A short one is repeated until 200 µs have passed between two readings of the clock,
+//! and what changes the mesh works on a copy that is put back while the clock stands still. Freed pages
+//! stay with the process. Processor time is that of the only thread.
 //!
 //! Subdivision is called `catmull_clark_2`, `loop_1`, `sqrt3_1` and so on, the scheme and the steps;
 //! `--way` is gather, scatter, native_fresh or native. With `--threads` beyond 1 all times of it are
@@ -15,7 +17,10 @@ use serde_json::json;
 use sixfold::mesh_io::read_obj;
 use sixfold::subdivision::{Boundary, Scheme};
 use sixfold::{Creases, PolygonMesh};
-use study::{Clock, MachineClock, Operation, Refining, Solo, Time, Way};
+use study::{MachineClock, Operation, Policy, Refining, Solo, Time, Way, pages, timed};
+
+/// A sample is repeated until so much time has passed.
+const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
 
 struct Arguments {
     mesh: String,
@@ -81,6 +86,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let (polygons, _) = read_obj(path).map_err(|e| e.to_string())?.into_polygons();
     let mesh = path.file_stem().unwrap_or_default().to_string_lossy();
     let peer = format!("sixfold {}", arguments.backend);
+    pages::put_in_force(Policy::Kept);
     let mut solo = Solo::new(&arguments.backend, &polygons).map_err(|e| e.to_string())?;
     let wanted = |name: &str| {
         arguments.operations.is_empty() || arguments.operations.iter().any(|o| o == name)
@@ -144,10 +150,13 @@ fn refined(
         refiner.run().map_err(|e| e.to_string())?;
         // On a thread of the pool: alone there, its clock is that of all the work.
         let clock = MachineClock::start();
+        let mut runs = 1;
         Ok(Row::of(arguments, name, || {
-            let began = clock.now();
-            refiner.run().expect("it has run before");
-            let mut time = clock.now() - began;
+            let time = timed(&clock, || {
+                (0..runs).for_each(|_| refiner.run().expect("it has run before"));
+            });
+            let mut time = time.scaled(1.0 / f64::from(runs));
+            runs = (SHORTEST_SAMPLE_NS / time.ns().max(1.0)).ceil() as u32;
             if arguments.threads > 1 {
                 time.cpu_ns = None;
             }

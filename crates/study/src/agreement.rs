@@ -9,7 +9,7 @@ use crate::report::Agreement;
 use workload::Clock;
 use workload::Operation;
 use workload::field_sum;
-use workload::{Job, Outcome, Subject};
+use workload::{Job, Outcome, Series, Subject};
 
 /// How far sums of `f32` may differ by the order of adding, relative to their size.
 const TOLERANCE: f64 = 1e-4;
@@ -85,7 +85,7 @@ fn size(job: &Job) -> usize {
 }
 
 fn rerun(subject: &mut Box<dyn Subject + '_>, job: &Job, clock: &dyn Clock) -> Option<Outcome> {
-    subject.run(job, 1, clock, true).outcome
+    subject.run(job, &Series::once(clock).checked()).outcome
 }
 
 /// Whether two checksums tell of the same work.
@@ -180,7 +180,7 @@ mod tests {
         fn bytes(&self) -> usize {
             1
         }
-        fn run(&mut self, job: &Job, _: u32, clock: &dyn Clock, _: bool) -> Run {
+        fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
             // A sample finds half as much as the whole.
             assert!(!self.no_whole || job.sample.is_some(), "run in full");
             let part = if job.sample.is_some() { 0.5 } else { 1.0 };
@@ -188,7 +188,7 @@ mod tests {
                 checksum: self.checksum * part,
                 elements: 10 - self.merged as u64,
             };
-            Run::done(clock.now(), Some(outcome))
+            Run::done(series.clock.now(), Some(outcome))
         }
     }
 
@@ -207,7 +207,9 @@ mod tests {
                 merged,
                 no_whole,
             };
-            entry.outcome = subject.run(&entry.job, 1, &clock, true).outcome;
+            entry.outcome = subject
+                .run(&entry.job, &Series::once(&clock).checked())
+                .outcome;
             boxed.push(Box::new(subject));
             entries.push(entry);
         }

@@ -10,7 +10,9 @@ use std::io;
 use serde::Serialize;
 use serde_with::{KeyValueMap, serde_as};
 use sixfold::{BuildError, Counts, PolygonMesh};
-use workload::{Backend, Heap, Weighed};
+use workload::{
+    AllocationCounter, Backend, Heap, MOST_SCANNED_FACES, NotCounted, Operation, Weighed,
+};
 
 use crate::inspect::{Specimen, per_vertex, unbuilt};
 use crate::report::{BackendReport, MeshReport, SCHEMA, write_json};
@@ -55,6 +57,25 @@ pub struct Audited {
     pub peak_to_counted: Option<f64>,
     /// Whether the three ways come to the same; `None` if the mesh is refused.
     pub agrees: Option<bool>,
+    /// The bytes that operations allocate; empty if the mesh is refused or they were not counted.
+    pub operations: Vec<OperationBytes>,
+}
+
+/// The bytes that one run of an operation allocates on one backend.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OperationBytes {
+    /// The operation.
+    pub operation: Operation,
+    /// Bytes requested from the allocator during the timed part; `None` if it was not run.
+    pub allocated_bytes: Option<usize>,
+    /// Bytes of the result; `None` if it was not run.
+    pub result_bytes: Option<usize>,
+    /// Allocated bytes divided by the bytes of the result.
+    pub allocated_to_result: Option<f64>,
+    /// Why it was not run.
+    pub reason: Option<String>,
+    /// Whether it was not run because the structure scans all faces for each element.
+    pub scans: bool,
 }
 
 /// Builds each of `backends` from the mesh, one at a time, while `heap` counts.
@@ -77,6 +98,69 @@ pub fn audit(
         schema: SCHEMA,
         mesh: specimen.report(),
         backends: backends.collect(),
+    }
+}
+
+/// Runs each operation that allocates on each backend of `audit` that holds the mesh, and adds the
+/// bytes that `counter` counts to the audit. `audit` is that of `backends` on `specimen`.
+///
+/// A run is repeated until two runs agree on the smallest number of bytes, because other threads may
+/// allocate meanwhile.
+pub fn count_allocations(
+    audit: &mut Audit,
+    specimen: &Specimen,
+    backends: &[Backend],
+    counter: &dyn AllocationCounter,
+    counting: &mut dyn FnMut(&Backend, Operation),
+) {
+    let (polygons, edges) = (&specimen.polygons, specimen.facts.edges);
+    for (audited, backend) in audit.backends.iter_mut().zip(backends) {
+        if !audited.backend.holds {
+            continue;
+        }
+        let operations = Operation::ALL.into_iter().filter(|job| job.allocates());
+        let operations = operations.map(|operation| {
+            counting(backend, operation);
+            let count = || backend.allocated(operation, polygons, edges, counter);
+            let mut least = count();
+            for _ in 1..MOST_WEIGHINGS {
+                let again = match &least {
+                    Ok(_) => count(),
+                    Err(_) => break,
+                };
+                match (&least, &again) {
+                    (Ok(before), Ok(now)) if now.bytes < before.bytes => least = again,
+                    (Ok(before), Ok(now)) if now.bytes > before.bytes => {}
+                    _ => break,
+                }
+            }
+            OperationBytes::new(operation, least)
+        });
+        audited.operations = operations.collect();
+    }
+}
+
+impl OperationBytes {
+    fn new(operation: Operation, counted: Result<workload::Allocated, NotCounted>) -> Self {
+        let scans = counted == Err(NotCounted::Scans);
+        let counted = counted.map_err(|not_counted| match not_counted {
+            NotCounted::Refused(reason) => reason,
+            NotCounted::Scans => format!(
+                "it scans all faces for each element, and the mesh has more than \
+                 {MOST_SCANNED_FACES} faces"
+            ),
+        });
+        let figures = counted.as_ref().ok();
+        Self {
+            operation,
+            allocated_bytes: figures.map(|figures| figures.bytes),
+            result_bytes: figures.map(|figures| figures.result_bytes),
+            allocated_to_result: figures
+                .filter(|figures| figures.result_bytes > 0)
+                .map(|figures| figures.bytes as f64 / figures.result_bytes as f64),
+            reason: counted.err(),
+            scans,
+        }
     }
 }
 
@@ -151,6 +235,7 @@ impl Audited {
                 .zip(counted.filter(|&bytes| bytes > 0))
                 .map(|(peak, counted)| peak as f64 / counted as f64),
             agrees: counted.map(|_| layout == tables && tables == counted),
+            operations: Vec::new(),
             backend: report,
         }
     }

@@ -7,7 +7,9 @@ use std::io;
 
 use serde::{Deserialize, Serialize};
 use workload::Operation;
+use workload::pages::Policy;
 
+use crate::heap::CacheState;
 use crate::labs::Labs;
 use crate::read::{ReadError, Results, check_schema, parsed};
 use crate::report::{Agreement, Report, SCHEMA, Standing, unwrapped, write_json};
@@ -50,10 +52,20 @@ pub struct Asked {
     pub budget_s: f64,
     /// What decided samples and orders.
     pub seed: u64,
+    /// What happened to freed pages; older versions measured on the system's heap.
+    #[serde(default = "system_heap")]
+    pub heap: Policy,
+    /// What the caches held when a sample began.
+    #[serde(default)]
+    pub caches: CacheState,
     /// Polygons were cut into triangles first.
     pub triangulate: bool,
     /// Files with degenerate faces were refused.
     pub strict: bool,
+}
+
+fn system_heap() -> Policy {
+    Policy::System
 }
 
 /// A mesh that could not be studied.
@@ -198,6 +210,7 @@ impl Collection {
             return Err(MergeError::OtherMeshes { which });
         }
         self.settings.check(&other.settings)?;
+        self.check_memory(&other)?;
         for study in other.studies {
             // One that was finished elsewhere is worth more than one that failed here.
             let mesh = study.mesh.name.clone();
@@ -215,6 +228,27 @@ impl Collection {
         }
         self.settle();
         Ok(())
+    }
+
+    /// Refuses studies with other heaps or caches than ours: where memory was short, what was in force is
+    /// not what was asked for.
+    fn check_memory(&self, other: &Self) -> Result<(), MergeError> {
+        let in_force = |study: &Report| study.environment.memory_words();
+        let Some(ours) = self.studies.first().map(in_force) else {
+            return Ok(());
+        };
+        let differs = |theirs: &[&str; 2]| *theirs != ours;
+        match other.studies.iter().map(in_force).find(differs) {
+            None => Ok(()),
+            Some(theirs) => {
+                let i = usize::from(ours[0] == theirs[0]);
+                Err(MergeError::OtherSettings {
+                    what: ["--heap", "--caches"][i],
+                    ours: ours[i].into(),
+                    theirs: theirs[i].into(),
+                })
+            }
+        }
     }
 
     /// Puts everything into the order of the meshes, and pools it.
@@ -293,13 +327,15 @@ impl Asked {
             let names: Vec<&str> = operations.iter().map(|o| o.name()).collect();
             names.join(",")
         };
-        let of = |asked: &Self| -> [(&'static str, String); 7] {
+        let of = |asked: &Self| -> [(&'static str, String); 9] {
             [
                 ("--backends", asked.backends.join(",")),
                 ("--external", asked.externals.join(",")),
                 ("--operations", names(&asked.operations)),
                 ("--budget", format!("{} s", asked.budget_s)),
                 ("--seed", asked.seed.to_string()),
+                ("--heap", asked.heap.to_string()),
+                ("--caches", asked.caches.name().into()),
                 ("--triangulate", asked.triangulate.to_string()),
                 ("--strict", asked.strict.to_string()),
             ]
@@ -426,6 +462,8 @@ mod tests {
             operations: vec![Operation::Boundary],
             budget_s: 0.02,
             seed: 1,
+            heap: Policy::Kept,
+            caches: CacheState::Warm,
             triangulate: false,
             strict: false,
         }
@@ -441,6 +479,8 @@ mod tests {
         };
         let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ());
         let mut report = report.expect("a study");
+        // Whatever other tests of this program have put in force meanwhile.
+        report.environment.heap.as_mut().expect("measured").policy = Policy::Kept;
         report
             .results
             .retain(|row| row.backend == "half-edge" || row.backend == "corner-table");

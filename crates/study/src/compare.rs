@@ -11,7 +11,7 @@ use workload::Operation;
 
 use crate::control::noise;
 use crate::environment::Environment;
-use crate::report::{Report, ResultRow, SCHEMA, Standing, write_json};
+use crate::report::{RawSamples, Report, ResultRow, SCHEMA, Standing, write_json};
 use crate::standing::BEYOND_DOUBT;
 use crate::statistics::{Median, quotient};
 
@@ -127,8 +127,39 @@ pub struct NewWinner {
     pub after: String,
 }
 
-/// Holds `after` against `before`.
-pub fn compare(before: &Report, after: &Report, how: Comparing) -> Changes {
+/// Two studies whose times cannot be compared.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum CompareError {
+    /// Another heap policy, or another state of the caches.
+    #[error(
+        "the first was measured with {option} {before}, the second with {option} {after}: these times cannot be compared; measure one of them again"
+    )]
+    OtherMemory {
+        option: &'static str,
+        before: &'static str,
+        after: &'static str,
+    },
+}
+
+/// Compares `after` with `before`.
+///
+/// # Errors
+///
+/// Studies on heaps of another policy, or with caches in another state.
+pub fn compare(before: &Report, after: &Report, how: Comparing) -> Result<Changes, CompareError> {
+    let words = [before, after].map(|report| report.environment.memory_words());
+    for (i, option) in ["--heap", "--caches"].into_iter().enumerate() {
+        let [before, after] = [words[0][i], words[1][i]];
+        if before != after {
+            return Err(CompareError::OtherMemory {
+                option,
+                before,
+                after,
+            });
+        }
+    }
     let Comparing { relative, drift } = how;
     let mut rows = Vec::new();
     let (mut only_before, mut only_after) = (Vec::new(), Vec::new());
@@ -162,7 +193,7 @@ pub fn compare(before: &Report, after: &Report, how: Comparing) -> Changes {
         words: Vec::new(),
     };
     changes.words = changes.words();
-    changes
+    Ok(changes)
 }
 
 fn named(row: &ResultRow) -> String {
@@ -216,9 +247,7 @@ fn samples(report: &Report, row: &ResultRow) -> Vec<f64> {
     let mut raw = report.raw.iter();
     let of_it = raw
         .find(|raw| !raw.control && raw.operation == row.operation && raw.backend == row.backend);
-    of_it.map_or_else(Vec::new, |raw| {
-        raw.cpu_ns.clone().unwrap_or_else(|| raw.wall_ns.clone())
-    })
+    of_it.map_or_else(Vec::new, RawSamples::counted_ns)
 }
 
 fn verdict(row: &Change, taken_out: f64) -> Verdict {
@@ -242,7 +271,15 @@ fn differences(before: &Environment, after: &Environment) -> Vec<Setting> {
     fn shown<T: ToString>(value: Option<&T>) -> String {
         value.map_or_else(|| "not known".into(), ToString::to_string)
     }
-    let of = |e: &Environment| -> [(&'static str, String); 12] {
+    let heap = |e: &Environment| {
+        let heap = e.heap.as_ref()?;
+        let pages = heap
+            .transparent_huge_pages
+            .as_deref()
+            .unwrap_or("not known");
+        Some(format!("{}, huge pages: {pages}", heap.allocator))
+    };
+    let of = |e: &Environment| -> [(&'static str, String); 13] {
         [
             ("processor", shown(e.cpu_model.as_ref())),
             ("cores", shown(e.cores.as_ref())),
@@ -256,6 +293,7 @@ fn differences(before: &Environment, after: &Environment) -> Vec<Setting> {
             ("sixfold", e.sixfold.clone()),
             ("commit", shown(e.commit.as_ref())),
             ("clock", e.clock.clone()),
+            ("allocator", shown(heap(e).as_ref())),
         ]
     };
     let pairs = of(before).into_iter().zip(of(after));

@@ -35,7 +35,7 @@ pub(crate) fn control(
         let Some(once) = of(first, operation) else {
             continue;
         };
-        if let Some(ratio) = ratio(&again.samples, &once.samples) {
+        if let Some(ratio) = ratio(&again.times(), &once.times()) {
             operations.push(ControlRow {
                 operation,
                 ratio: ratio.value,

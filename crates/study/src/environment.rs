@@ -7,7 +7,10 @@ use serde::{Deserialize, Serialize};
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
 use workload::MachineClock;
 
-use crate::caches::{Cache, caches};
+use crate::heap::{CacheState, CachesReport, Memory};
+use crate::numbers::bytes;
+use workload::pages::{HeapReport, Policy};
+use workload::{Cache, caches};
 
 /// What else a figure depends on.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
@@ -53,6 +56,13 @@ pub struct Environment {
     pub load_average: Option<f64>,
     /// The clock that the figures are of: `thread-cpu` or `wall`.
     pub clock: String,
+    /// The heap that operations allocate from; `None` in results of older versions, which measured on
+    /// the system's.
+    #[serde(default)]
+    pub heap: Option<HeapReport>,
+    /// What was done to the caches before each sample; `None` in results of older versions: nothing.
+    #[serde(default)]
+    pub cache_state: Option<CachesReport>,
     /// Seconds since 1970 when the study began.
     pub unix_time: u64,
     /// What decided samples and orders.
@@ -93,10 +103,58 @@ impl Environment {
             boost: boost(),
             load_average: cfg!(unix).then(|| System::load_average().one),
             clock: MachineClock::name().into(),
+            heap: None,
+            cache_state: None,
             unix_time: since.map_or(0, |time| time.as_secs()),
             seed,
             budget_s,
         }
+    }
+
+    /// The same, with the heap and the caches of the measurements.
+    pub(crate) fn with_memory(self, memory: &Memory) -> Self {
+        Self {
+            heap: Some(memory.heap.clone()),
+            cache_state: Some(memory.caches()),
+            ..self
+        }
+    }
+
+    /// The heap and the caches in words, for a line that says how it was measured.
+    pub fn memory_phrases(&self) -> Vec<String> {
+        let mut phrases = Vec::new();
+        if let Some(heap) = &self.heap {
+            let pages = match heap.policy {
+                Policy::Kept => "freed pages kept",
+                Policy::System => "system heap",
+            };
+            phrases.push(format!("{pages} ({})", heap.allocator));
+        }
+        let caches = self.cache_state.as_ref();
+        if let Some(caches) = caches.filter(|caches| caches.state == CacheState::Cold) {
+            let level = caches.defeats_level.map_or(String::new(), |level| {
+                format!(", twice the level-{level} cache")
+            });
+            let written = bytes(caches.written_bytes);
+            phrases.push(format!(
+                "cold caches ({written} written before each sample{level})"
+            ));
+        }
+        phrases
+    }
+
+    /// The heap policy and the cache state in force, as two words: figures of different ones are not to
+    /// be mixed.
+    pub fn memory_words(&self) -> [&'static str; 2] {
+        let heap = self
+            .heap
+            .as_ref()
+            .map_or(Policy::System, |heap| heap.policy);
+        let caches = self
+            .cache_state
+            .as_ref()
+            .map_or(CacheState::Warm, |c| c.state);
+        [heap.name(), caches.name()]
     }
 }
 

@@ -23,8 +23,8 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
-use sixfold::PolygonMesh;
 use sixfold::mesh_io::write_obj;
+use sixfold::{Counts, PolygonMesh};
 use tempfile::TempDir;
 
 use crate::report::BackendReport;
@@ -32,6 +32,7 @@ use crate::tame::tame;
 use program::{Greeting, Program};
 use subject::ExternalSubject;
 use workload::Subject;
+use workload::pages::{HeapReport, Policy};
 
 /// Where the path of the mesh goes.
 const MESH: &str = "{mesh}";
@@ -55,6 +56,10 @@ pub struct ExternalReport {
     pub command: Vec<String>,
     /// What it says that it measures: a library and its version.
     pub library: Option<String>,
+    /// Pages are kept for our backends, and its allocator does what it likes: what it allocates may cost
+    /// page faults that ours are spared.
+    #[serde(default)]
+    pub own_heap: bool,
 }
 
 /// Why that is no program for a study.
@@ -112,13 +117,6 @@ impl External {
         let word = |word: &String| word.replace(MESH, &path);
         self.command.iter().map(word).collect()
     }
-
-    fn report(&self, library: Option<String>) -> ExternalReport {
-        ExternalReport {
-            command: self.command.clone(),
-            library,
-        }
-    }
 }
 
 /// The mesh of a study as a file that programs can read; it goes away with this.
@@ -144,16 +142,19 @@ impl MeshFile {
 pub(crate) fn put_on_the_bench<'a>(
     external: &External,
     mesh: &MeshFile,
-    vertices: usize,
+    counts: &Counts,
+    heap: &HeapReport,
     patience: Duration,
     stop: &'a AtomicBool,
 ) -> (BackendReport, Option<Box<dyn Subject + 'a>>) {
-    let started = Program::start(&external.words(&mesh.path()), patience, stop);
+    let started = Program::start(&external.words(&mesh.path()), heap.policy, patience, stop);
     let greeted = started.and_then(|mut program| Ok((program.greeting()?, program)));
     let (greeting, program) = match greeted {
         Ok((greeting, program)) => (greeting, Some(program)),
         Err(reason) => (Greeting::refusing(reason), None),
     };
+    let told = Program::is_told(heap.policy);
+    let own_heap = heap.policy == Policy::Kept && !(told && greeting.keeps_pages_if_told());
     let refusal = match greeting.holds {
         true => None,
         false => Some(
@@ -164,19 +165,23 @@ pub(crate) fn put_on_the_bench<'a>(
         ),
     };
     let bytes = greeting.bytes.filter(|_| refusal.is_none());
-    let per_vertex = |bytes: usize| bytes as f64 / vertices as f64;
+    let per_vertex = |bytes: usize| bytes as f64 / counts.vertices as f64;
     let report = BackendReport {
         name: external.name.clone(),
         holds: refusal.is_none(),
         reason: refusal,
         bytes,
-        bytes_per_vertex: bytes.filter(|_| vertices > 0).map(per_vertex),
+        bytes_per_vertex: bytes.filter(|_| counts.vertices > 0).map(per_vertex),
         layout_bytes: None,
         layout_bytes_per_vertex: None,
         tables: Vec::new(),
         merged_vertices: None,
         capabilities: None,
-        external: Some(external.report(greeting.library.map(|library| tame(&library)))),
+        external: Some(ExternalReport {
+            command: external.command.clone(),
+            library: greeting.library.map(|library| tame(&library)),
+            own_heap,
+        }),
     };
     let program = program.filter(|_| report.holds);
     let name = external.name.clone();

@@ -28,9 +28,9 @@ pub use settings::{GrowthError, GrowthSettings, growth_bytes};
 pub use shapes::{GROWING, Growing};
 
 use crate::agreement::judge;
-use crate::caches::{Cache, caches, last_level};
 use crate::control::{control, entered_twice};
 use crate::environment::Environment;
+use crate::heap::Memory;
 use crate::measure::{Bench, Progress};
 use crate::report::{Agreement, Control, Refusal, ResultRow, SCHEMA, write_json};
 use crate::study::{StudyError, is_skewed, put_on_the_bench, refusals, results, scans};
@@ -38,6 +38,7 @@ use fits::{cache_ends, fits};
 use settings::Plan;
 use shares::Shares;
 use workload::{Backend, Draw, MachineClock, Subject};
+use workload::{Cache, caches, last_level};
 
 /// What a sweep over sizes finds.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -152,6 +153,8 @@ pub fn growth(
         unheld: Vec::new(),
         counts: None,
     };
+    let study = &settings.study;
+    let mut memory = Memory::start(study.heap, study.caches, growth_bytes(settings)?);
     let time = Shares::of(&plan.sizes, budget);
     let mut sizes: Vec<SizeReport> = Vec::new();
     let mut left_out = Vec::new();
@@ -180,7 +183,7 @@ pub fn growth(
                 ..at
             });
         };
-        match sweep.size(&mesh, step, &share, &mut here)? {
+        match sweep.size(&mesh, step, &share, &mut memory, &mut here)? {
             Some(size) => sizes.push(size),
             None => break,
         }
@@ -211,7 +214,7 @@ pub fn growth(
         caches,
         words,
         interrupted,
-        environment,
+        environment: environment.with_memory(&memory),
     })
 }
 
@@ -233,6 +236,7 @@ impl Sweep<'_> {
         mesh: &PolygonMesh,
         step: usize,
         share: &dyn Fn() -> Duration,
+        memory: &mut Memory,
         progress: &mut dyn FnMut(Progress<'_>),
     ) -> Result<Option<SizeReport>, GrowthError> {
         let Plan {
@@ -283,6 +287,7 @@ impl Sweep<'_> {
             population: [counts.vertices, counts.edges, counts.faces],
             skewed,
             clock: &clock,
+            memory,
             budget: share(),
             named: !self.settings.study.operations.is_empty(),
             random: ChaCha8Rng::seed_from_u64(seed.wrapping_add(step as u64)),

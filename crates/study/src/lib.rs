@@ -13,7 +13,6 @@
 
 mod agreement;
 mod audit;
-mod caches;
 mod collection;
 mod compare;
 mod control;
@@ -21,7 +20,9 @@ mod control;
 mod disturbed;
 mod environment;
 mod external;
+mod gauge;
 mod growth;
+mod heap;
 mod inspect;
 mod labs;
 mod measure;
@@ -43,16 +44,18 @@ mod warnings;
 mod why;
 mod words;
 
-pub use audit::{Audit, Audited, audit};
-pub use caches::{Cache, caches};
+pub use audit::{Audit, Audited, OperationBytes, audit, count_allocations};
 pub use collection::{Asked, Collection, Failed, MergeError, Pooled, SecondStudy};
-pub use compare::{Change, Changes, Comparing, DRIFT, NewWinner, Setting, Verdict, compare};
+pub use compare::{
+    Change, Changes, CompareError, Comparing, DRIFT, NewWinner, Setting, Verdict, compare,
+};
 pub use environment::Environment;
 pub use external::{External, ExternalError, ExternalReport, PATIENCE};
 pub use growth::{
     CacheEnd, Fit, GROWING, Growing, GrowthError, GrowthReport, GrowthSettings, SizeReport, Unheld,
     Weight, growth, growth_bytes,
 };
+pub use heap::{CacheState, CachesReport, free_memory};
 pub use inspect::{Specimen, inspect};
 pub use labs::Labs;
 pub use measure::Progress;
@@ -66,8 +69,8 @@ pub use pick::{
 };
 pub use read::{ReadError, Results};
 pub use report::{
-    Agreement, BackendReport, Control, ControlRow, Inspection, MeshReport, RawSamples, Refusal,
-    Report, ResultRow, SCHEMA, Standing,
+    Agreement, BackendReport, Control, ControlRow, FIRST_TIME_SHOWN, Inspection, MeshReport,
+    RawSamples, Refusal, Report, ResultRow, SCHEMA, Standing,
 };
 pub use slope::Slope;
 pub use solo::{Solo, SoloRun};
@@ -75,9 +78,11 @@ pub use study::{Settings, StudyError, study};
 pub use tame::tame;
 pub use timer::Timer;
 pub use why::{Bound, Model, Timed, Timing, Why, WhyRow, WhySettings, why};
+pub use workload::pages::{self, HeapReport, Policy, UnknownPolicy};
 pub use workload::{Access, Action, Amount, NoPlace, Workload, WorkloadError, built_in, built_ins};
 pub use workload::{
-    Backend, Clock, Editing, Editor, Edits, Heap, Kind, MachineClock, MemorySpeed, Operation,
-    Reads, Refiner, Refining, Rung, SingleEdit, TableReads, Time, UnknownOperation, Way, Weighed,
-    unknown,
+    Allocated, AllocationCounter, Backend, Cache, Clock, Editing, Editor, Edits, Heap, Kind,
+    MOST_SCANNED_FACES, MachineClock, MemorySpeed, NotCounted, Operation, Reads, Refiner, Refining,
+    Rung, Scrubber, Series, SingleEdit, Start, TableReads, Time, UnknownOperation, Way, Weighed,
+    caches, timed, unknown,
 };

@@ -3,8 +3,8 @@
 //! In every round each operation runs on every structure, one right after the other, in an order
 //! drawn anew: whatever drifts (frequency, heat, neighbours on the machine) hits all alike, and the
 //! ratios formed within a round are nearly free of it. A sample repeats a short operation until the
-//! clock can resolve it, after one run that nobody times, so that caches hold what this structure
-//! would have there.
+//! clock can resolve it, after one run that is not timed, so that caches hold what this structure
+//! would have there. What allocates is measured a second time at the end, on fresh pages.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -12,12 +12,19 @@ use std::time::Duration;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
+use crate::gauge::{Gauge, Verdict, undisturbed};
+use crate::heap::Memory;
+use crate::statistics::Median;
 use workload::Operation;
 use workload::{Clock, Time};
-use workload::{Job, Outcome, Run, Subject};
+use workload::{Job, LONG_ENOUGH_NS, Outcome, Run, Series, Start, Subject};
 
 /// No interval gets much better by more rounds than these.
 const MOST_ROUNDS: u32 = 200;
+/// What samples on fresh pages may take of the budget.
+const FIRST_TIMES: f64 = 0.15;
+/// No figure gets much better by more samples on fresh pages than these.
+const MOST_FIRST_TIMES: u32 = 9;
 /// Runs longer than this fill the caches by themselves.
 pub(crate) const LONG_RUN_NS: f64 = 10_000_000.0;
 
@@ -30,7 +37,7 @@ pub(crate) struct Entry {
     pub(crate) job: Job,
     /// How often in a row, for one sample.
     pub(crate) runs: u32,
-    /// It takes part in every so-manieth round; in none if 0.
+    /// It takes part in every n-th round; in none if 0.
     pub(crate) every: u32,
     /// What one sample is thought to take, in nanoseconds of wall time.
     pub(crate) cost_ns: f64,
@@ -46,6 +53,14 @@ pub(crate) struct Entry {
     pub(crate) refusal: Option<String>,
     /// By round: the time of one run.
     pub(crate) samples: Vec<(u32, Time)>,
+    /// By sample: the larger slowdown of the [`Gauge`] before and after it.
+    pub(crate) slowdowns: Vec<f64>,
+    /// Its last sample was disturbed: it takes part in the next round, too.
+    pub(crate) owed: bool,
+    /// How many samples were taken again because pages faulted in them, or the machine was disturbed.
+    pub(crate) retaken: u32,
+    /// The times of one run each, on fresh pages and tables, and of one as in a sample right after.
+    pub(crate) first_times: Vec<[Time; 2]>,
 }
 
 impl Entry {
@@ -66,24 +81,58 @@ impl Entry {
             by_name_only: false,
             refusal: None,
             samples: Vec::new(),
+            slowdowns: Vec::new(),
+            owed: false,
+            retaken: 0,
+            first_times: Vec::new(),
         }
     }
 
-    /// The samples, or the warm-up run where there was time for nothing else.
+    /// How often it is run before the clock starts: once, so that caches hold what they would have there
+    /// and tables have their size; not where a run fills the caches by itself, and no tables grow.
+    pub(crate) fn untimed(&self) -> u32 {
+        let long = self.warm_up.is_some_and(|time| time.ns() > LONG_RUN_NS);
+        let needed = self.job.sample.is_none() && (!long || self.job.operation.grows_tables());
+        u32::from(needed)
+    }
+
+    /// The time of the first run: the median, times the median of how much longer the first run takes.
+    pub(crate) fn first_ns(&self) -> Option<f64> {
+        let median = Median::of(self.times().iter().map(|(_, time)| time.ns()))?;
+        let ratio = |[first, later]: &[Time; 2]| first.ns() / later.ns().max(1.0);
+        Some(median.value * Median::of(self.first_times.iter().map(ratio))?.value)
+    }
+
+    /// What measuring one first time is expected to take: three runs with what is set up for them.
+    fn first_time_cost_ns(&self) -> f64 {
+        3.0 * self.cost_ns / f64::from(self.runs + self.untimed())
+    }
+
+    /// Whether what it allocates is new to the process the first time.
+    fn has_a_first_time(&self) -> bool {
+        let measured = !self.samples.is_empty() && self.job.sample.is_none();
+        measured && self.job.operation.allocates()
+    }
+
+    /// The samples that count, or the warm-up run where there was time for nothing else.
     pub(crate) fn times(&self) -> Vec<(u32, Time)> {
         match (&self.samples[..], self.warm_up) {
             ([], Some(time)) if self.estimate.is_none() => vec![(0, time)],
-            (samples, _) => samples.to_vec(),
+            (samples, _) => undisturbed(samples, &self.slowdowns),
         }
     }
 
-    /// How long the shortest sample took between two looks at the clock, all its runs together.
+    /// How long the shortest stretch between two readings of the clock took: a sample, or a part of it
+    /// where the clock stops between runs.
     pub(crate) fn shortest_sample_ns(&self) -> Option<f64> {
         // A sample of the elements is scaled up to stand for all: how long it took is not kept.
         let whole = self.samples.iter().filter(|_| self.job.sample.is_none());
-        let runs = f64::from(self.runs);
-        let times = whole.map(|(_, time)| time.ns() * runs);
-        times.min_by(f64::total_cmp)
+        let shortest = whole.map(|(_, time)| time.ns()).min_by(f64::total_cmp)?;
+        let sample = shortest * f64::from(self.runs);
+        Some(match self.job.operation.stops_the_clock() {
+            true => shortest.max(sample.min(LONG_ENOUGH_NS)),
+            false => sample,
+        })
     }
 }
 
@@ -103,13 +152,15 @@ pub struct Progress<'a> {
 /// The bench: subjects, clock and budget.
 pub(crate) struct Bench<'b, 's> {
     pub(crate) subjects: &'b mut [Box<dyn Subject + 's>],
-    /// Which of the subjects is another a second time, and makes no meshes: for the control.
+    /// Which of the subjects is another a second time, for the control.
     pub(crate) control: Option<usize>,
     /// By kind: how many elements the mesh has.
     pub(crate) population: [usize; 3],
     /// Some valence or degree is so large that walking around it is as bad as a scan.
     pub(crate) skewed: bool,
     pub(crate) clock: &'b dyn Clock,
+    /// The heap and the caches.
+    pub(crate) memory: &'b mut Memory,
     pub(crate) budget: Duration,
     /// The operations were asked for by name.
     pub(crate) named: bool,
@@ -126,12 +177,23 @@ impl Bench<'_, '_> {
         let deadline = start + self.budget.as_nanos() as f64;
         let mut entries = Vec::new();
         for &operation in operations {
-            let takes_part = |s: &usize| self.control != Some(*s) || !operation.makes_a_mesh();
-            let subjects = (0..self.subjects.len()).filter(takes_part);
-            entries.extend(subjects.map(|s| Entry::new(s, operation)));
+            entries.extend((0..self.subjects.len()).map(|s| Entry::new(s, operation)));
         }
+        // What is built in the warm-up may be all that there is time for.
+        let largest = self.subjects.iter().map(|subject| subject.bytes()).max();
+        self.memory.reserve_for(2 * largest.unwrap_or(0) as u64);
         self.warm_up(&mut entries, deadline);
-        self.rounds(&mut entries, start, deadline);
+        self.memory.reserve();
+        let allocates = operations.iter().any(|operation| operation.allocates());
+        let for_first_times = match allocates && !self.memory.is_cold() {
+            true => FIRST_TIMES * self.budget.as_nanos() as f64,
+            false => 0.0,
+        };
+        self.rounds(&mut entries, start, deadline - for_first_times);
+        // Last, for the pages that it gives back are those that samples would find.
+        if for_first_times > 0.0 {
+            self.first_times(&mut entries, deadline);
+        }
         entries
     }
 
@@ -140,14 +202,30 @@ impl Bench<'_, '_> {
         self.stop.load(Ordering::Relaxed)
     }
 
-    pub(crate) fn run(&mut self, subject: usize, job: &Job, runs: u32, check: bool) -> Run {
-        self.subjects[subject].run(job, runs, self.clock, check)
+    /// Runs `job` with caches as the settings ask for: `untimed` runs, then `runs` timed ones.
+    pub(crate) fn run(
+        &mut self,
+        subject: usize,
+        job: &Job,
+        [untimed, runs]: [u32; 2],
+        check: bool,
+    ) -> Run {
+        let series = Series {
+            untimed,
+            runs,
+            start: self.memory.start_of_runs(),
+            check,
+            clock: self.clock,
+        };
+        self.subjects[subject].run(job, &series)
     }
 
     /// Rounds until the next would not end in time; the first leaves out what would not.
     fn rounds(&mut self, entries: &mut [Entry], start: f64, deadline: f64) {
         let mut groups = groups(entries);
+        let mut gauge = Gauge::new(self.budget.as_nanos() as f64);
         for round in 0..MOST_ROUNDS {
+            self.memory.watch();
             let costs = entries.iter().filter(|e| takes_part(e, round));
             let cost: f64 = costs.map(|e| e.cost_ns).sum();
             let now = self.clock.now().wall_ns;
@@ -157,9 +235,12 @@ impl Bench<'_, '_> {
             groups.shuffle(&mut self.random);
             for group in &mut groups {
                 group.shuffle(&mut self.random);
+                // All of an operation together: ratios are formed within rounds.
+                let owed = group.iter().any(|&entry| entries[entry].owed);
                 for &entry in &*group {
                     let entry = &mut entries[entry];
-                    if !takes_part(entry, round) {
+                    let wanted = takes_part(entry, round) || (owed && can_take_part(entry));
+                    if !wanted {
                         continue;
                     }
                     if self.stopped() {
@@ -172,25 +253,66 @@ impl Bench<'_, '_> {
                     let by_time = (now - start) / (deadline - start);
                     let by_count = f64::from(round) / f64::from(MOST_ROUNDS);
                     self.report(by_time.max(by_count).clamp(0.1, 1.0), "measuring", entry);
-                    self.sample(entry, round);
+                    self.sample(&mut gauge, entry, round);
                 }
             }
         }
     }
 
-    fn sample(&mut self, entry: &mut Entry, round: u32) {
-        let long = entry.warm_up.is_some_and(|time| time.ns() > LONG_RUN_NS);
-        if entry.job.sample.is_none() && !long && !entry.job.operation.readies_itself() {
-            self.run(entry.subject, &entry.job, 1, false);
-            if self.stopped() {
-                return;
+    /// Takes a sample. An external program may refuse at any time.
+    fn sample(&mut self, gauge: &mut Gauge, entry: &mut Entry, round: u32) {
+        let (stop, kept) = (self.stop, self.memory.keeps_pages());
+        let runs = [entry.untimed(), entry.runs];
+        let taken = gauge.take(
+            self.clock,
+            || self.run(entry.subject, &entry.job, runs, false),
+            |run| match run.refusal.is_some() || stop.load(Ordering::Relaxed) {
+                true => Verdict::Final,
+                false => Verdict::on_faults(run.time, kept),
+            },
+        );
+        entry.retaken += taken.retaken;
+        match taken.value.refusal {
+            None => {
+                entry.samples.push((round, taken.value.time));
+                entry.slowdowns.push(taken.slowdown);
+                entry.owed = taken.disturbed;
             }
-        }
-        let run = self.run(entry.subject, &entry.job, entry.runs, false);
-        // A program of somebody else may fail at any time.
-        match run.refusal {
-            None => entry.samples.push((round, run.time)),
             refusal => entry.refusal = refusal,
+        }
+    }
+
+    /// Measures what allocates on fresh pages, one run a sample, in rounds, while there is time. Right after
+    /// each comes a run as in any sample: the ratio of the two does not depend on how fast the machine is
+    /// at that time.
+    fn first_times(&mut self, entries: &mut [Entry], deadline: f64) {
+        let control = self.control;
+        let mut entries: Vec<&mut Entry> = entries
+            .iter_mut()
+            .filter(|entry| entry.has_a_first_time() && Some(entry.subject) != control)
+            .filter(|entry| !self.subjects[entry.subject].is_external())
+            .collect();
+        for _ in 0..MOST_FIRST_TIMES {
+            entries.shuffle(&mut self.random);
+            for entry in &mut entries {
+                let now = self.clock.now().wall_ns;
+                if self.stopped() {
+                    return;
+                }
+                if now + entry.first_time_cost_ns() > deadline {
+                    continue; // a shorter one may still fit
+                }
+                self.report(1.0, "first times", entry);
+                let series = Series {
+                    start: Start::FreshPages,
+                    ..Series::once(self.clock)
+                };
+                let first = self.subjects[entry.subject].run(&entry.job, &series);
+                let later = self.run(entry.subject, &entry.job, [1, 1], false);
+                if first.refusal.is_none() && later.refusal.is_none() {
+                    entry.first_times.push([first.time, later.time]);
+                }
+            }
         }
     }
 
@@ -205,9 +327,13 @@ impl Bench<'_, '_> {
 }
 
 fn takes_part(entry: &Entry, round: u32) -> bool {
-    let wanted = entry.every > 0 && round.is_multiple_of(entry.every);
+    can_take_part(entry) && round.is_multiple_of(entry.every)
+}
+
+/// Whether it is run in rounds at all.
+fn can_take_part(entry: &Entry) -> bool {
     let can = entry.warm_up.is_some() && entry.refusal.is_none();
-    wanted && can && entry.estimate.is_none()
+    can && entry.every > 0 && entry.estimate.is_none()
 }
 
 /// The numbers of the entries, those of one operation together.

@@ -25,6 +25,7 @@ pub use effects::{Comparison, Factor, Larger, OrderEffect, StructureEffect};
 use crate::agreement::judge;
 use crate::control::{control, entered_twice, noise};
 use crate::environment::Environment;
+use crate::heap::Memory;
 use crate::inspect::Specimen;
 use crate::measure::{Bench, Entry, Progress};
 use crate::report::{
@@ -162,6 +163,8 @@ pub fn orders(
     }
     let environment = Environment::here(settings.seed, settings.budget.as_secs_f64());
     let counts = polygons.counts(specimen.facts.edges);
+    let needed = orders_bytes(specimen, settings)?;
+    let mut memory = Memory::start(settings.heap, settings.caches, needed);
     let skewed = is_skewed(&specimen.facts);
     let drawn = chosen.iter().any(|b| skewed || scans(b, &operations));
     let meshes = Meshes::of(polygons, settings.seed, drawn);
@@ -204,6 +207,7 @@ pub fn orders(
         population: [counts.vertices, counts.edges, counts.faces],
         skewed,
         clock: &clock,
+        memory: &mut memory,
         budget: settings.budget,
         named: !settings.operations.is_empty(),
         random: ChaCha8Rng::seed_from_u64(settings.seed),
@@ -250,7 +254,7 @@ pub fn orders(
         control,
         words,
         interrupted,
-        environment,
+        environment: environment.with_memory(&memory),
     })
 }
 

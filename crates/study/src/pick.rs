@@ -18,14 +18,18 @@ mod tests;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use workload::{Backend, Draw, MachineClock, MixRefusal, NoPlace, Route, Script, Workload};
+use workload::pages::Policy;
+use workload::{
+    Backend, Draw, MachineClock, MixRefusal, NoPlace, Operation, Route, Script, Workload,
+};
 
 pub use answer::{Answer, BreakEven, Excluded, OnMesh, PartCost, Ranked};
 pub use needs::{Need, UnknownNeed};
 
 use crate::environment::Environment;
+use crate::heap::{CacheState, Memory};
 use crate::inspect::Specimen;
-use crate::study::StudyError;
+use crate::study::{Settings, StudyError, needed_bytes};
 use crate::timer::Timer;
 use contest::Contest;
 use entrant::Entrant;
@@ -45,6 +49,19 @@ pub struct Question {
     pub budget: Duration,
     /// Decides what is random: routes, and the order in which backends are measured.
     pub seed: u64,
+    /// What happens to pages that operations free.
+    pub heap: Policy,
+}
+
+impl Question {
+    /// The backends that may be the answer.
+    fn chosen_backends(&self) -> Result<Vec<Backend>, StudyError> {
+        let settings = Settings {
+            backends: self.backends.clone(),
+            ..Settings::default()
+        };
+        settings.chosen_backends()
+    }
 }
 
 /// Why there is no answer.
@@ -92,6 +109,8 @@ pub fn pick(
         return Err(PickError::NoMesh);
     }
     let environment = Environment::here(question.seed, question.budget.as_secs_f64());
+    let needed = specimens.iter().map(|specimen| needed(specimen, question));
+    let mut memory = Memory::start(question.heap, CacheState::Warm, needed.max().unwrap_or(0));
     let clock = MachineClock::start();
     let timer = Timer::of(&clock);
     let budget = question.budget / specimens.len() as u32;
@@ -102,7 +121,14 @@ pub fn pick(
         }
         let part = |done: f64| (i as f64 + done) / specimens.len() as f64;
         let mut progress = |done: f64, what: &str| progress(part(done), what);
-        let answer = on_one(specimen, question, budget, &clock, stop, &mut progress);
+        let measuring = Measuring {
+            budget,
+            clock: &clock,
+            memory: &mut memory,
+            stop,
+            progress: &mut progress,
+        };
+        let answer = on_one(specimen, question, measuring);
         answers.push(answer.map_err(|error| for_all(error, question, specimens.len()))?);
     }
     let interrupted = stop.load(Ordering::Relaxed);
@@ -110,9 +136,27 @@ pub fn pick(
         answers,
         question,
         timer,
-        environment,
+        environment.with_memory(&memory),
         interrupted,
     ))
+}
+
+/// About how many bytes the contest on one mesh holds at once.
+fn needed(specimen: &Specimen, question: &Question) -> u64 {
+    let counts = specimen.polygons.counts(specimen.facts.edges);
+    // A name that is unknown is refused later.
+    let backends = question.chosen_backends().unwrap_or_default();
+    // As much again for the tables of relations, and for what edits and subdivision hold.
+    2 * needed_bytes(&backends, &Operation::ALL, &counts)
+}
+
+/// What a contest on one mesh is measured by.
+pub(crate) struct Measuring<'m> {
+    budget: Duration,
+    clock: &'m MachineClock,
+    memory: &'m mut Memory,
+    stop: &'m AtomicBool,
+    progress: &'m mut dyn FnMut(f64, &str),
 }
 
 /// An error about the share of one mesh, in terms of what was asked for all of them.
@@ -134,10 +178,6 @@ fn qualified(
     specimen: &Specimen,
     question: &Question,
 ) -> Result<(Vec<Backend>, Vec<Excluded>), PickError> {
-    let settings = crate::study::Settings {
-        backends: question.backends.clone(),
-        ..Default::default()
-    };
     let polygons = &specimen.polygons;
     if polygons.face_count() == 0 {
         return Err(StudyError::NoFaces.into());
@@ -145,7 +185,7 @@ fn qualified(
     let counts = polygons.counts(specimen.facts.edges);
     let mut excluded = Vec::new();
     let mut qualified = Vec::new();
-    for backend in settings.chosen_backends()? {
+    for backend in question.chosen_backends()? {
         let lacks = question
             .needs
             .iter()
@@ -171,11 +211,15 @@ fn qualified(
 fn on_one(
     specimen: &Specimen,
     question: &Question,
-    budget: Duration,
-    clock: &MachineClock,
-    stop: &AtomicBool,
-    progress: &mut dyn FnMut(f64, &str),
+    measuring: Measuring<'_>,
 ) -> Result<contest::Outcome, PickError> {
+    let Measuring {
+        budget,
+        clock,
+        memory,
+        stop,
+        progress,
+    } = measuring;
     let (backends, mut excluded) = qualified(specimen, question)?;
     let polygons = &specimen.polygons;
     let counts = polygons.counts(specimen.facts.edges);
@@ -225,7 +269,7 @@ fn on_one(
     } else {
         progress(0.05, "tabulating");
         let tabulate = |name: &str| workload::tabulate(name, polygons, &script, &route);
-        let tables = entrant::tables(&entrants, polygons, clock, tabulate);
+        let tables = entrant::tables(&entrants, clock, tabulate);
         match tables {
             Some(tables)
                 if question
@@ -247,6 +291,7 @@ fn on_one(
         script: &script,
         budget,
         clock,
+        memory,
         stop,
         progress,
     };

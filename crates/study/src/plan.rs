@@ -1,6 +1,6 @@
 //! The warm-up: everything once, and from that a plan of samples that fit the budget.
 
-use crate::measure::{Bench, Entry, LONG_RUN_NS};
+use crate::measure::{Bench, Entry};
 use workload::Time;
 use workload::{Job, Run, Sample};
 use workload::{Kind, Operation};
@@ -24,8 +24,8 @@ const ONCE: f64 = 0.5;
 const SMALL_SHARE: f64 = 0.02;
 /// So many faces, cut out of the mesh, tell for the first time what subdividing or editing it takes.
 const FIRST_PATCH: usize = 1024;
-/// Structures that one sample may build or copy, in bytes.
-const MOST_BYTES: usize = 64 << 20;
+/// More runs than these make no sample better.
+const MOST_RUNS: f64 = 1e7;
 
 impl Bench<'_, '_> {
     /// Runs everything once and plans samples that fit the budget: first what does not scan, then,
@@ -91,7 +91,7 @@ impl Bench<'_, '_> {
                 continue;
             }
             self.report(0.1, "warming up", entry);
-            let run = self.run(entry.subject, &entry.job, 1, true);
+            let run = self.run(entry.subject, &entry.job, [0, 1], true);
             entry.estimate = None;
             entry.every = 0;
             keep(entry, run);
@@ -113,7 +113,7 @@ impl Bench<'_, '_> {
     }
 
     fn plan_whole(&mut self, entry: &mut Entry, share: f64) {
-        let (run, mut outside) = self.run_and_look(entry, 1, true);
+        let (run, mut outside) = self.run_and_look(entry, [0, 1], true);
         let mut ns = run.time.ns().max(1.0);
         keep(entry, run);
         if self.stopped() || entry.refusal.is_some() {
@@ -121,36 +121,27 @@ impl Bench<'_, '_> {
         }
         if ns < SHORTEST_SAMPLE_NS {
             // The first run paid for cold caches and page faults; a second series says more.
-            let runs = (SHORTEST_SAMPLE_NS / 4.0 / ns).clamp(1.0, self.most_runs(entry));
-            let (run, besides) = self.run_and_look(entry, runs as u32, false);
+            let runs = (SHORTEST_SAMPLE_NS / 4.0 / ns).clamp(1.0, MOST_RUNS);
+            let (run, besides) = self.run_and_look(entry, [entry.untimed(), runs as u32], false);
             (ns, outside) = (run.time.ns().max(0.1), besides);
         }
         let target = (share / 2.0).clamp(SHORTEST_SAMPLE_NS, LONGEST_SAMPLE_NS);
-        entry.runs = (target / ns).ceil().clamp(1.0, self.most_runs(entry)) as u32;
-        let untimed = match ns > LONG_RUN_NS || entry.job.operation.readies_itself() {
-            true => 0.0,
-            false => 1.0,
+        entry.runs = match self.memory.is_cold() {
+            true => 1,
+            false => (target / ns).ceil().clamp(1.0, MOST_RUNS) as u32,
         };
-        let cost = ns * (f64::from(entry.runs) + untimed) + outside * (1.0 + untimed);
+        let cost = ns * f64::from(entry.runs + entry.untimed()) + outside;
         self.plan_rounds(entry, cost, share);
     }
 
     /// The run, and the wall time that went by outside its timing.
-    fn run_and_look(&mut self, entry: &Entry, runs: u32, check: bool) -> (Run, f64) {
+    fn run_and_look(&mut self, entry: &Entry, runs: [u32; 2], check: bool) -> (Run, f64) {
         let start = self.clock.now().wall_ns;
         let run = self.run(entry.subject, &entry.job, runs, check);
-        let inside = run.time.wall_ns * f64::from(runs);
+        let [untimed, runs] = runs;
+        let inside = run.time.wall_ns * f64::from(untimed + runs);
         let outside = self.clock.now().wall_ns - start - inside;
         (run, outside.max(0.0))
-    }
-
-    /// More runs than this in a row would hold too many structures at once.
-    fn most_runs(&self, entry: &Entry) -> f64 {
-        if entry.job.operation.holds_a_mesh_a_run() {
-            let bytes = self.subjects[entry.subject].bytes().max(64);
-            return (MOST_BYTES / bytes).clamp(1, 100_000) as f64;
-        }
-        1e7
     }
 
     fn plan_rounds(&self, entry: &mut Entry, cost_ns: f64, share: f64) {
@@ -191,7 +182,7 @@ impl Bench<'_, '_> {
         let size = ((share / each) as usize).clamp(FEWEST_ELEMENTS, all.max(FEWEST_ELEMENTS));
         entry.job.sample = Some(Sample { scanned, size });
         let start = self.clock.now().wall_ns;
-        let run = self.run(entry.subject, &entry.job, 1, true);
+        let run = self.run(entry.subject, &entry.job, [0, 1], true);
         keep(entry, run);
         let cost = self.clock.now().wall_ns - start;
         self.plan_rounds(entry, cost, share);
@@ -216,7 +207,9 @@ impl Bench<'_, '_> {
         loop {
             let sample = Some(Sample { scanned, size });
             let start = self.clock.now().wall_ns;
-            let whole = self.run(subject, &Job { operation, sample }, 1, false).time;
+            let whole = self
+                .run(subject, &Job { operation, sample }, [0, 1], false)
+                .time;
             let cost = self.clock.now().wall_ns - start;
             if cost > share.min(LONGEST_SAMPLE_NS) || size >= all || self.stopped() {
                 return Probe { whole, cost, size };
@@ -229,7 +222,7 @@ impl Bench<'_, '_> {
     /// at all.
     fn plan_maker(&mut self, entry: &mut Entry, scanned: [bool; 3], share: f64, left: f64) {
         // A single face tells what is refused.
-        let run = self.run(entry.subject, &of_a_patch(entry, 1), 1, false);
+        let run = self.run(entry.subject, &of_a_patch(entry, 1), [0, 1], false);
         entry.refusal = run.refusal;
         if self.stopped() || entry.refusal.is_some() {
             return;
@@ -257,6 +250,12 @@ impl Bench<'_, '_> {
         }
     }
 
+    /// Runs the operation of `entry` on a patch of so many faces, with tables as in a later run.
+    fn run_grown(&mut self, entry: &Entry, size: usize) -> Run {
+        let untimed = u32::from(entry.job.operation.grows_tables());
+        self.run(entry.subject, &of_a_patch(entry, size), [untimed, 1], false)
+    }
+
     /// What the searches of an operation that makes a mesh take together, by samples.
     fn search_time(&mut self, entry: &Entry, scanned: [bool; 3], share: f64) -> Time {
         let mut total = Time::none_like(self.clock.now());
@@ -278,7 +277,7 @@ impl Bench<'_, '_> {
         let mut size = FIRST_PATCH;
         while size < all {
             let start = self.clock.now().wall_ns;
-            let run = self.run(entry.subject, &of_a_patch(entry, size), 1, false);
+            let run = self.run_grown(entry, size);
             entry.refusal = run.refusal;
             let cost = self.clock.now().wall_ns - start;
             if cost > share || size.saturating_mul(4) >= all || self.stopped() {

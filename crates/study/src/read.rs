@@ -141,7 +141,10 @@ impl Report {
         for raw in &self.raw {
             let of = format!("the samples of {} on {}", raw.operation, raw.backend);
             let cpu = raw.cpu_ns.as_ref().unwrap_or(&raw.wall_ns);
-            if raw.wall_ns.len() != raw.rounds.len() || cpu.len() != raw.rounds.len() {
+            let optional = [raw.slowdowns.len(), raw.faults.as_ref().map_or(0, Vec::len)];
+            let fits = |len: usize| len == raw.rounds.len();
+            let fit = fits(raw.wall_ns.len()) && fits(cpu.len());
+            if !fit || !optional.into_iter().all(|len| len == 0 || fits(len)) {
                 return wrong(format!("{of} are columns of different lengths"));
             }
             if !raw.wall_ns.iter().chain(cpu).all(time) {

@@ -10,6 +10,7 @@ use sixfold::{Capabilities, Facts, TableBytes};
 
 use crate::environment::Environment;
 use crate::external::ExternalReport;
+use crate::gauge::undisturbed;
 use crate::timer::Timer;
 use workload::Operation;
 
@@ -75,6 +76,27 @@ pub struct RawSamples {
     pub cpu_ns: Option<Vec<f64>>,
     /// Wall time of one run, in nanoseconds.
     pub wall_ns: Vec<f64>,
+    /// Page faults in each sample; `None` where they were not counted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub faults: Option<Vec<u64>>,
+    /// For each sample the time of a small fixed piece of work before or after it, whichever is longer,
+    /// divided by the undisturbed time of that work. A sample above 1.08 does not count if at least a
+    /// quarter of the samples are below.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub slowdowns: Vec<f64>,
+    /// Time of one run on fresh pages and tables, in nanoseconds: samples of their own, of no round.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub first_ns: Vec<f64>,
+}
+
+impl RawSamples {
+    /// Returns the times of the samples that count: processor time if it is known, else wall time.
+    pub fn counted_ns(&self) -> Vec<f64> {
+        undisturbed(
+            self.cpu_ns.as_ref().unwrap_or(&self.wall_ns),
+            &self.slowdowns,
+        )
+    }
 }
 
 /// A mesh, as its file has it.
@@ -169,7 +191,39 @@ pub struct ResultRow {
     pub warm_up_only: bool,
     /// It was left to an estimate because nobody asked for it by name: the budget has room for a run.
     pub by_name_only: bool,
+    /// The most page faults in any sample; `None` where they were not counted.
+    #[serde(default)]
+    pub faults: Option<u64>,
+    /// How many samples were taken again because pages faulted in them, or other work disturbed the
+    /// machine.
+    #[serde(default)]
+    pub retaken: u32,
+    /// How many samples do not count, because other work disturbed the machine beside them.
+    #[serde(default)]
+    pub disturbed: usize,
+    /// The time of a first run, as in a program that does this once, on fresh pages and with tables of exact
+    /// size: `median_ns` multiplied by the median ratio of first runs to runs right after them. `None` for
+    /// what does not allocate, and if there was no time for it.
+    #[serde(default)]
+    pub first_ns: Option<f64>,
+    /// How many samples that stands on.
+    #[serde(default)]
+    pub first_samples: usize,
+    /// The most page faults in any of them.
+    #[serde(default)]
+    pub first_faults: Option<u64>,
 }
+
+impl ResultRow {
+    /// By how much the first time takes longer than the median, where both are known.
+    pub fn first_ratio(&self) -> Option<f64> {
+        let (first, median) = self.first_ns.zip(self.median_ns)?;
+        (median > 0.0).then(|| first / median)
+    }
+}
+
+/// A first time that differs by more than this from the kept one is shown.
+pub const FIRST_TIME_SHOWN: f64 = 1.1;
 
 /// One backend, entered twice (an A/A control): by how much its two columns differ, the machine and
 /// the clock alone are to blame.
@@ -185,6 +239,9 @@ pub struct Control {
     pub worst: f64,
 }
 
+/// The two columns of a control should not differ by more than this.
+const UNSTEADY: f64 = 1.05;
+
 /// What the second column of a control says of one operation.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ControlRow {
@@ -199,6 +256,14 @@ pub struct ControlRow {
 }
 
 impl ControlRow {
+    /// Whether the two differ by more than 5 %, and not by chance: smaller differences between backends
+    /// are no result then.
+    pub fn is_unsteady(&self) -> bool {
+        let interval = self.ci_low.zip(self.ci_high);
+        let beyond_chance = interval.is_some_and(|(low, high)| low > 1.0 || high < 1.0);
+        self.difference() > UNSTEADY && beyond_chance
+    }
+
     /// How far the two are apart, whichever is slower: 1 or more.
     pub fn difference(&self) -> f64 {
         self.ratio.max(self.ratio.recip())
@@ -217,7 +282,7 @@ pub struct Refusal {
 }
 
 /// The fields of a row, for a file without any.
-const COLUMNS: [&str; 24] = [
+const COLUMNS: [&str; 30] = [
     "backend",
     "operation",
     "median_ns",
@@ -242,6 +307,12 @@ const COLUMNS: [&str; 24] = [
     "runs_per_sample",
     "warm_up_only",
     "by_name_only",
+    "faults",
+    "retaken",
+    "disturbed",
+    "first_ns",
+    "first_samples",
+    "first_faults",
 ];
 
 /// What the checksums of one operation say.

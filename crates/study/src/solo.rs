@@ -2,17 +2,32 @@
 
 use sixfold::{Facts, PolygonMesh};
 
+use crate::gauge::{Gauge, Verdict};
 use crate::study::{StudyError, put_on_the_bench};
 use workload::Backend;
 use workload::Draw;
 use workload::Operation;
+use workload::pages::{self, Policy};
 use workload::{Clock, Time};
-use workload::{Job, Subject};
+use workload::{Job, Series, Subject};
 
 /// One backend, built and ready: the same code that a study runs, without its rounds.
+///
+/// Freed pages stay with the process, as in a study.
 pub struct Solo<'a> {
     subject: Box<dyn Subject + 'a>,
+    /// The operation of the last run, and how many runs make a sample of it.
+    last: Option<(Operation, u32)>,
+    gauge: Gauge,
 }
+
+/// A short operation is repeated until this much time has passed between two readings of the clock.
+const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
+
+/// The budget that the patience of the gauge is a part of, in nanoseconds.
+const BUDGET_NS: f64 = 10e9;
+/// More runs than these are not needed for any operation.
+const MOST_RUNS: u32 = 1 << 20;
 
 /// What one run came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +48,7 @@ impl<'a> Solo<'a> {
     ///
     /// A name that no backend has, and a mesh that this one cannot hold.
     pub fn new(backend: &str, polygons: &'a PolygonMesh) -> Result<Self, StudyError> {
+        pages::put_in_force(Policy::Kept);
         let name = backend.to_owned();
         let found = Backend::roster()
             .into_iter()
@@ -45,7 +61,11 @@ impl<'a> Solo<'a> {
         let subject = subject.ok_or_else(|| StudyError::NoneHolds {
             refusals: refusals(),
         })?;
-        Ok(Self { subject })
+        Ok(Self {
+            subject,
+            last: None,
+            gauge: Gauge::new(BUDGET_NS),
+        })
     }
 
     /// The bytes that it holds.
@@ -53,17 +73,56 @@ impl<'a> Solo<'a> {
         self.subject.bytes()
     }
 
-    /// Runs `operation` once on the whole mesh.
+    /// Runs `operation` on the whole mesh: repeatedly until 200 µs have passed if it is short, after an
+    /// untimed run if its tables grow by it, and again if other work disturbs the machine. The time is that
+    /// of one run.
     pub fn run(&mut self, operation: Operation, clock: &dyn Clock) -> SoloRun {
-        let job = Job {
-            operation,
-            sample: None,
+        let runs = match self.last {
+            Some((last, runs)) if last == operation => runs,
+            _ => self.runs_of(operation, clock),
         };
-        let run = self.subject.run(&job, 1, clock, true);
-        SoloRun {
-            time: run.time,
-            checksum: run.outcome.map_or(f64::NAN, |outcome| outcome.checksum),
-            elements: run.outcome.map_or(0, |outcome| outcome.elements),
+        self.last = Some((operation, runs));
+        let Self { subject, gauge, .. } = self;
+        let sample = || run_times(subject.as_mut(), operation, runs, clock);
+        let verdict = |run: &SoloRun| Verdict::on_faults(run.time, true);
+        gauge.take(clock, sample, verdict).value
+    }
+
+    /// How many runs take long enough together.
+    fn runs_of(&mut self, operation: Operation, clock: &dyn Clock) -> u32 {
+        let mut runs = 1;
+        loop {
+            let ns = self.run_times(operation, runs, clock).time.ns() * f64::from(runs);
+            if ns >= SHORTEST_SAMPLE_NS || runs >= MOST_RUNS {
+                return runs;
+            }
+            let wanted = f64::from(runs) * SHORTEST_SAMPLE_NS / ns.max(1.0);
+            runs = (wanted * 1.1).ceil().min(f64::from(runs) * 16.0) as u32;
         }
+    }
+
+    /// Runs `operation` `runs` times, after an untimed run if its tables grow by it. The time is that of one
+    /// run.
+    pub fn run_times(&mut self, operation: Operation, runs: u32, clock: &dyn Clock) -> SoloRun {
+        run_times(self.subject.as_mut(), operation, runs, clock)
+    }
+}
+
+fn run_times(
+    subject: &mut dyn Subject,
+    operation: Operation,
+    runs: u32,
+    clock: &dyn Clock,
+) -> SoloRun {
+    let job = Job {
+        operation,
+        sample: None,
+    };
+    let untimed = u32::from(operation.grows_tables());
+    let run = subject.run(&job, &Series::of_runs(runs, clock).after(untimed).checked());
+    SoloRun {
+        time: run.time,
+        checksum: run.outcome.map_or(f64::NAN, |outcome| outcome.checksum),
+        elements: run.outcome.map_or(0, |outcome| outcome.elements),
     }
 }

@@ -97,6 +97,7 @@ mod tests {
         let time = |&ns: &f64| Time {
             cpu_ns: Some(ns),
             wall_ns: ns,
+            faults: None,
         };
         (0..).zip(times.iter().map(time)).collect()
     }

@@ -11,8 +11,10 @@ use crate::agreement::judge;
 use crate::control::{entered_twice, noise};
 use crate::environment::Environment;
 use crate::external::{self, External, MeshFile, PATIENCE};
+use crate::heap::{CacheState, Memory};
 use crate::inspect::{Specimen, per_vertex, unbuilt};
 use crate::measure::{Bench, Entry, Progress};
+use crate::orders::on_the_bench_bytes;
 use crate::report::{
     Agreement, BackendReport, Control, RawSamples, Refusal, Report, ResultRow, SCHEMA,
 };
@@ -25,6 +27,7 @@ use workload::Backend;
 use workload::Draw;
 use workload::Operation;
 use workload::Subject;
+use workload::pages::Policy;
 use workload::unknown;
 use workload::{MachineClock, Time};
 
@@ -51,6 +54,11 @@ pub struct Settings {
     /// Decides the order in which elements are drawn for samples, and the order of measurement; how
     /// large samples are follows the clock.
     pub seed: u64,
+    /// What happens to pages that operations free. Kept pages take more memory, so that the system's
+    /// policy is in force where there is too little.
+    pub heap: Policy,
+    /// Whether the caches hold the mesh when a sample begins.
+    pub caches: CacheState,
 }
 
 impl Default for Settings {
@@ -63,6 +71,8 @@ impl Default for Settings {
             operations: Vec::new(),
             budget: Duration::from_secs(20),
             seed: 1,
+            heap: Policy::Kept,
+            caches: CacheState::Warm,
         }
     }
 }
@@ -177,6 +187,8 @@ pub fn study(
     }
     let environment = Environment::here(settings.seed, settings.budget.as_secs_f64());
     let counts = polygons.counts(specimen.facts.edges);
+    let needed = needed_bytes(&chosen, &operations, &counts);
+    let mut memory = Memory::start(settings.heap, settings.caches, needed);
     let skewed = is_skewed(&specimen.facts);
     let draw = chosen
         .iter()
@@ -202,7 +214,7 @@ pub fn study(
     for (external, mesh) in settings.externals.iter().zip(mesh_file.iter().cycle()) {
         let patience = settings.patience;
         let (report, subject) =
-            external::put_on_the_bench(external, mesh, counts.vertices, patience, stop);
+            external::put_on_the_bench(external, mesh, &counts, &memory.heap, patience, stop);
         backends.push(report);
         programs.extend(subject);
     }
@@ -233,6 +245,7 @@ pub fn study(
         population: [counts.vertices, counts.edges, counts.faces],
         skewed,
         clock: &clock,
+        memory: &mut memory,
         budget: settings.budget,
         named: !settings.operations.is_empty(),
         random: ChaCha8Rng::seed_from_u64(settings.seed),
@@ -256,6 +269,7 @@ pub fn study(
         costs.is_some_and(|b| b.info.costs[relation as usize] == QueryCost::Scan)
     };
     let words = words(&backends, &results, polygons, control.as_ref(), &scanning);
+    let environment = environment.with_memory(&memory);
     let warnings = warnings(&environment, &timer, &results, control.as_ref());
     Ok(Report {
         schema: SCHEMA,
@@ -271,6 +285,18 @@ pub fn study(
         timer: Some(timer),
         environment,
     })
+}
+
+/// About how many bytes measuring holds at once: the structures with their outputs, one more for the
+/// control, and what the operation holds that takes most: a refined mesh has four times the faces, and is
+/// there as polygons and as a structure.
+pub(crate) fn needed_bytes(backends: &[Backend], operations: &[Operation], counts: &Counts) -> u64 {
+    let bytes = backends
+        .iter()
+        .map(|backend| on_the_bench_bytes(backend, counts));
+    let (all, most) = bytes.fold((0, 0_u64), |(all, most), one| (all + one, most.max(one)));
+    let makes = operations.iter().any(|operation| operation.makes_a_mesh());
+    all + most * if makes { 10 } else { 3 }
 }
 
 /// Whether some vertex or face has so many neighbours that to walk around it once for each of them
@@ -388,10 +414,21 @@ pub(crate) fn results(
                 runs_per_sample: entry.runs,
                 warm_up_only: entry.samples.is_empty() && entry.warm_up.is_some(),
                 by_name_only: entry.by_name_only,
+                faults: most_faults(entry.samples.iter().map(|(_, time)| time)),
+                retaken: entry.retaken,
+                disturbed: entry.samples.len().saturating_sub(times.len()),
+                first_ns: entry.first_ns(),
+                first_samples: entry.first_times.len(),
+                first_faults: most_faults(entry.first_times.iter().map(|[first, _]| first)),
             });
         }
     }
     rows
+}
+
+/// The most page faults in any of the samples; `None` where they were not counted.
+fn most_faults<'t>(samples: impl IntoIterator<Item = &'t Time>) -> Option<u64> {
+    samples.into_iter().filter_map(|time| time.faults).max()
 }
 
 /// The samples of all entries; those of the subject `control` are a backend's second.
@@ -408,6 +445,11 @@ fn raw(
         rounds: entry.samples.iter().map(|(round, _)| *round).collect(),
         cpu_ns: entry.samples.iter().map(|(_, time)| time.cpu_ns).collect(),
         wall_ns: entry.samples.iter().map(|(_, time)| time.wall_ns).collect(),
+        faults: entry.samples.iter().map(|(_, time)| time.faults).collect(),
+        slowdowns: entry.slowdowns.clone(),
+        first_ns: { entry.first_times.iter() }
+            .map(|[first, _]| first.ns())
+            .collect(),
     });
     columns.collect()
 }

@@ -4,6 +4,7 @@ use crate::environment::Environment;
 use crate::report::{Control, ResultRow};
 use crate::statistics::Median;
 use crate::timer::Timer;
+use workload::pages::Policy;
 
 /// A load above this part of the cores was there before the study came.
 const BUSY: f64 = 0.5;
@@ -27,6 +28,8 @@ pub(crate) fn warnings(
 ) -> Vec<String> {
     let all = [
         nothing_measured(environment, results),
+        not_kept(environment),
+        faulted(environment, results),
         busy(environment),
         interrupted(environment, results),
         noisy(control),
@@ -42,6 +45,7 @@ pub(crate) fn warnings(
 /// What is wrong with the machine itself.
 pub(crate) fn of_machine(environment: &Environment) -> Vec<String> {
     let all = [
+        not_kept(environment),
         busy(environment),
         wall_alone(environment),
         powersave(environment),
@@ -56,6 +60,38 @@ fn nothing_measured(environment: &Environment, results: &[ResultRow]) -> Option<
     nothing.then(|| {
         format!(
             "The budget of {budget} s was too small to measure anything: every figure is one run with cold caches. Give a longer --budget, or name fewer --operations."
+        )
+    })
+}
+
+/// Pages are not kept although that was asked for, or page faults are not counted.
+fn not_kept(environment: &Environment) -> Option<String> {
+    let heap = environment.heap.as_ref()?;
+    match &heap.reason {
+        Some(reason) => Some(format!(
+            "Measured on the system's heap: {reason}. What allocates includes page faults, and depends on what ran before: compare with results of --heap system only."
+        )),
+        None if !heap.counts_faults => Some(
+            "This platform does not count page faults: samples that include some are not recognised. Trust the control in operations that allocate.".into(),
+        ),
+        None => None,
+    }
+}
+
+/// Samples with page faults, where there should be none.
+fn faulted(environment: &Environment, results: &[ResultRow]) -> Option<String> {
+    let heap = environment.heap.as_ref()?;
+    let faulted = |row: &&ResultRow| row.faults.is_some_and(|faults| faults > 0);
+    let rows = results.iter().filter(faulted);
+    let worst = rows.clone().max_by_key(|row| row.faults)?;
+    let (count, faults) = (rows.count(), worst.faults.unwrap_or(0));
+    let ResultRow {
+        operation, backend, ..
+    } = worst;
+    (heap.policy == Policy::Kept).then(|| {
+        format!(
+            "{count} of {} figures include samples in which pages faulted, at most {faults} in a sample ({operation} on {backend}). Measure again with more free memory.",
+            results.len()
         )
     })
 }
@@ -95,8 +131,7 @@ fn noisy(control: Option<&Control>) -> Option<String> {
 }
 
 fn coarse(timer: &Timer) -> Option<String> {
-    let shortest = timer.overhead_ns / timer.largest_share?;
-    let share = timer.resolution_ns.max(timer.overhead_ns) / shortest;
+    let share = timer.resolution_ns.max(timer.left_ns) / timer.shortest_ns?;
     (share > COARSE).then(|| {
         format!(
             "The clock is too coarse: {:.1} % of the shortest sample is the clock itself. Study a larger mesh.",
@@ -186,8 +221,10 @@ mod tests {
 
     const TIMER: Timer = Timer {
         resolution_ns: 20.0,
-        overhead_ns: 100.0,
+        overhead_ns: 600.0,
+        left_ns: 100.0,
         largest_share: Some(0.0005),
+        shortest_ns: Some(200_000.0),
     };
 
     #[test]
@@ -212,6 +249,7 @@ mod tests {
         };
         let coarse = Timer {
             largest_share: Some(0.05),
+            shortest_ns: Some(2000.0),
             ..TIMER
         };
         let busy = Environment {

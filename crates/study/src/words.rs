@@ -210,6 +210,12 @@ pub(crate) fn row(
         runs_per_sample: 1,
         warm_up_only: false,
         by_name_only: false,
+        faults: None,
+        retaken: 0,
+        disturbed: 0,
+        first_ns: None,
+        first_samples: 0,
+        first_faults: None,
     }
 }
 

@@ -59,7 +59,7 @@ struct Butterfly {
 pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
     manifold::check(mesh, Scheme::Butterfly)?;
     let scheme = Butterfly::new();
-    let mut outline = Outline::of(Split::Triangles, mesh);
+    let mut outline = Outline::of(Split::Triangles, mesh, 3 * mesh.face_count());
     let numbers = vertex_numbers(mesh);
     let mut regular = mesh.vertex_map(false);
     mesh.vertices().for_each(|v| {

@@ -6,7 +6,7 @@
 //!   vertex point  VV, VF             and each vertex: O(faces²) on a polygon soup.
 //! ```
 
-use mesh_core::{Creases, MeshQuery, Point};
+use mesh_core::{Creases, FaceMap, HandleMap, MeshQuery, Point};
 
 use crate::SubdivisionError;
 use crate::crease::{SharpEdge, SharpLevel};
@@ -20,14 +20,18 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
     mask: K,
     creases: &Creases,
     creasing: Creasing,
+    corners: usize,
 ) -> Result<Step, SubdivisionError> {
-    let mut outline = Outline::of(K::SPLIT, mesh);
-    let mut values = mesh.face_map(Point::ZERO);
+    let mut outline = Outline::of(K::SPLIT, mesh, corners);
+    // Without a row where no face value is read.
+    let mut values: FaceMap<M, Point> = HandleMap::filled(0, Point::ZERO);
     if K::EDGES_SEE_FACES || K::VERTICES_SEE_FACES || outline.has_face_points() {
+        values = mesh.face_map(Point::ZERO);
         mesh.faces()
             .for_each(|f| values[f] = face_value(mesh, mask, f));
     }
     let mut numbers = mesh.vertex_map(0_u32);
+    numbers.reserve(outline.vertices());
     let mut number = 0;
     mesh.vertices().for_each(|v| {
         numbers[v] = number;
@@ -48,6 +52,7 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
         corners: creases.corners().to_vec(),
     };
     let mut edge_points = mesh.edge_map(0_u32);
+    edge_points.reserve(outline.expected_edges());
     mesh.edges().for_each(|e| {
         let edge = outline.points.len() - first_edge;
         edge_points[e] = outline.points.len() as u32;
@@ -76,7 +81,7 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
 }
 
 /// Where vertices are, by their numbers; worked out where it is asked for.
-fn by_number<M: MeshQuery>(mesh: &M) -> impl Fn(u32) -> Point {
+pub(crate) fn by_number<M: MeshQuery>(mesh: &M) -> impl Fn(u32) -> Point {
     let positions: Vec<Point> = mesh.vertices().map(|v| mesh.position(v)).collect();
     move |v| positions[v as usize]
 }

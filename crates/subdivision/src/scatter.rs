@@ -8,28 +8,26 @@
 //! Only FV and FE are asked, which every structure answers at once: near-linear on all of them,
 //! where edges and vertices that are no rows are found in hash maps.
 
-use mesh_core::{Creases, MeshQuery, Point};
+use mesh_core::{Creases, HandleMap, MeshQuery, Point};
 
 use crate::SubdivisionError;
 use crate::crease::{SharpEdge, SharpLevel};
+use crate::gather::by_number;
 use crate::mask::{Mask, midpoint};
 use crate::options::Creasing;
 use crate::step::{Marked, Outline, Step};
 
-/// What a vertex has been given.
+/// What a vertex has been given by its edges.
 #[derive(Clone, Copy, Default)]
 struct VertexSum {
-    at: Point,
     valence: u32,
     neighbours: Point,
-    faces: Point,
 }
 
-/// What an edge has been given.
+/// The ends of an edge, and how many faces have given to it.
 #[derive(Clone, Copy)]
 struct EdgeSum {
     ends: [u32; 2],
-    faces: Point,
     count: u32,
 }
 
@@ -37,36 +35,49 @@ struct EdgeSum {
 const UNMET: u32 = u32::MAX;
 
 /// One step of a scheme that splits faces.
+///
+/// The points of the result hold what is summed up until they are placed: the old positions and, for
+/// each edge, the sum of its face values.
 pub(crate) fn step<M: MeshQuery, K: Mask>(
     mesh: &M,
     mask: K,
     creases: &Creases,
     creasing: Creasing,
+    corners: usize,
 ) -> Result<Step, SubdivisionError> {
-    let mut outline = Outline::of(K::SPLIT, mesh);
+    let mut outline = Outline::of(K::SPLIT, mesh, corners);
     let mut numbers = mesh.vertex_map(0_u32);
-    let mut vertices: Vec<VertexSum> = Vec::new();
+    numbers.reserve(outline.vertices());
     mesh.vertices().for_each(|v| {
-        numbers[v] = vertices.len() as u32;
-        vertices.push(VertexSum {
-            at: mesh.position(v),
-            ..VertexSum::default()
-        });
+        numbers[v] = outline.points.len() as u32;
+        outline.points.push(mesh.position(v));
     });
+    let vertices = outline.points.len();
+    if outline.has_face_points() {
+        outline
+            .points
+            .resize(vertices + mesh.face_count(), Point::ZERO);
+    }
+    let first_edge = outline.points.len();
+    let mut vertex_faces = Vec::new();
+    if K::VERTICES_SEE_FACES {
+        vertex_faces.resize(vertices, Point::ZERO);
+    }
     let mut edge_numbers = mesh.edge_map(UNMET);
-    let mut edges: Vec<EdgeSum> = Vec::with_capacity(mesh.face_count() * 3 / 2);
-    // By corner: its vertex, and the edge of the side that starts there; and where faces end.
-    let (mut corners, mut sides, mut face_ends) = (Vec::new(), Vec::new(), Vec::new());
-    let mut values = Vec::with_capacity(mesh.face_count());
+    edge_numbers.reserve(outline.expected_edges());
+    let mut edges: Vec<EdgeSum> = Vec::with_capacity(outline.expected_edges());
+    // Of one face: its vertices, and the edge points of the sides that start there.
+    let (mut own, mut middles) = (Vec::new(), Vec::new());
+    let mut face_point = vertices;
     mesh.faces().for_each(|f| {
-        let first = corners.len();
+        own.clear();
+        middles.clear();
         let mut sum = Point::ZERO;
         mesh.face_vertices(f).for_each(|v| {
             let number = numbers[v];
-            sum += vertices[number as usize].at;
-            corners.push(number);
+            sum += outline.points[number as usize];
+            own.push(number);
         });
-        let own = &corners[first..];
         let value = mask.face(sum, own.len());
         let mut corner = 0;
         mesh.face_edges(f).for_each(|e| {
@@ -80,55 +91,50 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
                 };
                 edges.push(EdgeSum {
                     ends: [own[corner], own[next]],
-                    faces: Point::ZERO,
                     count: 0,
                 });
+                outline.points.push(Point::ZERO);
             }
-            let edge = &mut edges[*number as usize];
-            edge.faces += value;
-            edge.count += 1;
-            sides.push(*number);
+            let middle = first_edge + *number as usize;
+            outline.points[middle] += value;
+            edges[*number as usize].count += 1;
+            middles.push(middle as u32);
             corner += 1;
         });
         if K::VERTICES_SEE_FACES {
-            for &v in own {
-                vertices[v as usize].faces += value;
+            for &v in &own {
+                vertex_faces[v as usize] += value;
             }
         }
-        values.push(value);
-        face_ends.push(corners.len());
+        outline.split_face(&own, &middles, face_point as u32);
+        if outline.has_face_points() {
+            outline.points[face_point] = value;
+        }
+        face_point += 1;
     });
+    let (old, edge_points) = outline.points.split_at_mut(first_edge);
+    let mut sums = Vec::new();
     if K::APPROXIMATES {
+        sums.resize(vertices, VertexSum::default());
         for edge in &edges {
             let [a, b] = edge.ends.map(|v| v as usize);
-            let ends = [vertices[a].at, vertices[b].at];
-            for (v, far) in [(a, ends[1]), (b, ends[0])] {
-                vertices[v].neighbours += far;
-                vertices[v].valence += 1;
+            for (v, far) in [(a, b), (b, a)] {
+                sums[v].neighbours += old[far];
+                sums[v].valence += 1;
             }
         }
     }
-    outline
-        .points
-        .extend(vertices.iter().map(|v| match v.valence {
-            0 => v.at,
-            valence => mask.vertex(v.at, valence as usize, v.neighbours, v.faces),
-        }));
-    if outline.has_face_points() {
-        outline.points.extend(&values);
-    }
-    let first_edge = outline.points.len();
-    let marked = Marked::of(creases, vertices.len());
+    let marked = Marked::of(creases, vertices);
     let mut level = SharpLevel {
         edges: Vec::new(),
         corners: creases.corners().to_vec(),
     };
-    for (number, &EdgeSum { ends, faces, count }) in edges.iter().enumerate() {
-        let places = ends.map(|v| vertices[v as usize].at);
-        outline.points.push(match count {
-            2 => mask.edge(places, faces),
+    for (number, (&EdgeSum { ends, count }, point)) in edges.iter().zip(edge_points).enumerate() {
+        let places = ends.map(|v| old[v as usize]);
+        *point = match count {
+            2 => mask.edge(places, *point),
             _ => midpoint(places),
-        });
+        };
         let by_nature = count != 2;
         let sharpness = marked.sharpness(creases, ends, by_nature);
         if K::APPROXIMATES && sharpness > 0.0 {
@@ -140,15 +146,17 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
             });
         }
     }
-    for side in &mut sides {
-        *side += first_edge as u32;
+    for (v, sum) in sums.iter().enumerate().filter(|(_, sum)| sum.valence > 0) {
+        let faces = match K::VERTICES_SEE_FACES {
+            true => vertex_faces[v],
+            false => Point::ZERO,
+        };
+        old[v] = mask.vertex(old[v], sum.valence as usize, sum.neighbours, faces);
     }
-    let (mut face_point, mut start) = (vertices.len() as u32, 0);
-    for end in face_ends {
-        outline.split_face(&corners[start..end], &sides[start..end], face_point);
-        (start, face_point) = (end, face_point + 1);
+    if level.is_empty() {
+        return outline.finish(Creases::default());
     }
-    let old = |v: u32| vertices[v as usize].at;
+    let old = by_number(mesh);
     let creases = level.place(old, &mut outline.points, first_edge, creasing);
     outline.finish(creases)
 }

@@ -20,25 +20,41 @@ pub struct Step {
 pub(crate) struct Outline {
     split: Split,
     vertices: usize,
+    expected_edges: usize,
     corners: Vec<VertexId>,
     /// Vertex points, face points, edge points.
     pub(crate) points: Vec<Point>,
 }
 
 impl Outline {
-    /// Nothing yet, with room for what `mesh` will be split into.
-    pub(crate) fn of<M: MeshQuery>(split: Split, mesh: &M) -> Self {
+    /// Nothing yet, with room for what `mesh` will be split into. Its faces have so many `corners`
+    /// together.
+    pub(crate) fn of<M: MeshQuery>(split: Split, mesh: &M, corners: usize) -> Self {
         let (vertices, faces) = (mesh.vertex_count(), mesh.face_count());
+        // Exact on a closed mesh and, by Euler's formula, close on a mesh with boundaries. If there are
+        // more edges, the tables grow.
+        let expected_edges = (corners / 2).max(vertices + faces).min(corners);
         let (points, corners) = match split {
-            Split::Quads => (vertices + 3 * faces, 16 * faces),
-            _ => (vertices + 3 * faces / 2, 12 * faces),
+            Split::Quads => (vertices + faces + expected_edges, 4 * corners),
+            _ => (vertices + expected_edges, 12 * faces),
         };
         Self {
             split,
             vertices,
+            expected_edges,
             corners: Vec::with_capacity(corners),
             points: Vec::with_capacity(points),
         }
+    }
+
+    /// How many vertices the mesh has that is split.
+    pub(crate) fn vertices(&self) -> usize {
+        self.vertices
+    }
+
+    /// About how many edges the mesh has that is split.
+    pub(crate) fn expected_edges(&self) -> usize {
+        self.expected_edges
     }
 
     pub(crate) fn has_face_points(&self) -> bool {

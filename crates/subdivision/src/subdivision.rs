@@ -63,8 +63,8 @@ impl Subdivision {
         creases: &Creases,
         level: u32,
     ) -> Result<Step, SubdivisionError> {
-        self.check(mesh)?;
-        by_mask!(self, mask => gather::step(mesh, mask, creases, self.creasing), {
+        let corners = self.check(mesh)?;
+        by_mask!(self, mask => gather::step(mesh, mask, creases, self.creasing, corners), {
             Scheme::Sqrt3 => sqrt3::gather(mesh, is_second(level)),
             Scheme::Butterfly => butterfly::gather(mesh),
             Scheme::DooSabin => doo_sabin::gather(mesh),
@@ -83,8 +83,8 @@ impl Subdivision {
         creases: &Creases,
         level: u32,
     ) -> Result<Step, SubdivisionError> {
-        self.check(mesh)?;
-        by_mask!(self, mask => scatter::step(mesh, mask, creases, self.creasing), {
+        let corners = self.check(mesh)?;
+        by_mask!(self, mask => scatter::step(mesh, mask, creases, self.creasing, corners), {
             Scheme::Sqrt3 => sqrt3::scatter(mesh, is_second(level)),
             Scheme::Butterfly => Err(self.no_method(Method::Scatter, "gather or native")),
             Scheme::DooSabin => doo_sabin::scatter(mesh),
@@ -148,8 +148,9 @@ impl Subdivision {
         }
     }
 
-    /// Whether the scheme can split the faces of `mesh`, and the result has names for all; O(faces).
-    fn check<M: MeshQuery>(&self, mesh: &M) -> Result<(), SubdivisionError> {
+    /// Checks that the scheme can split the faces of `mesh`, and that the result has names for all;
+    /// O(faces). Returns how many corners the faces have together.
+    fn check<M: MeshQuery>(&self, mesh: &M) -> Result<usize, SubdivisionError> {
         let kind = self.scheme.kind();
         let (mut corners, mut odd) = (0, None);
         for (number, f) in (0..).zip(mesh.faces()) {
@@ -174,7 +175,7 @@ impl Subdivision {
             let elements = "corners";
             return Err(PolygonError::TooMany { elements, limit }.into());
         }
-        Ok(())
+        Ok(corners)
     }
 }
 

@@ -25,6 +25,8 @@ impl<E: Editing> Representation for AnyWingedEdgeMesh<Untraced, E> {
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let refusal = || Self::CAPABILITIES.refusal(polygons);
         let faces = polygons.faces();
+        // With scratch of its own. Sorted in the rows of the edges, which are four times as large, the
+        // sides fall out of the caches: the build of 392,000 triangles took 1.5 times as long.
         let pairs = TwinPairs::of(polygons.vertex_count(), faces).ok_or_else(refusal)?;
         let mut draft = Draft::link(polygons.vertex_count(), faces, &pairs);
         let closed = faces.corners().len() == 2 * pairs.edge_count;

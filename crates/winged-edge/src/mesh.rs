@@ -49,7 +49,7 @@ use crate::edge::{Edge, NO_EDGE, Run};
 /// 12 bytes a vertex for its position and 4 for its spoke, 32 an edge, 4 a face: 120 bytes, or 30
 /// words, per vertex of a large closed triangle mesh. Once something was deleted, also a bit for each
 /// row up to the last hole.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct AnyWingedEdgeMesh<P: Probe, E: Editing> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) spokes: Table<Slot<EdgeId>, P>,
@@ -59,6 +59,8 @@ pub struct AnyWingedEdgeMesh<P: Probe, E: Editing> {
     pub(crate) edge_holes: E::Holes<P>,
     pub(crate) face_holes: E::Holes<P>,
 }
+
+mesh_core::clone_by_field!(AnyWingedEdgeMesh<P: Probe, E: Editing> { positions, spokes, edges, sides, vertex_holes, edge_holes, face_holes });
 
 /// A winged-edge mesh of which nothing can be deleted: [`AnyWingedEdgeMesh`] whose rows are all elements.
 pub type WingedEdgeMesh<P = Untraced> = AnyWingedEdgeMesh<P, Whole>;

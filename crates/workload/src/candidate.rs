@@ -4,12 +4,13 @@ use std::hint::black_box;
 
 use sixfold::{MeshQuery, PolygonMesh, QueryCost, Representation};
 
-use crate::clock::{Clock, Time, timed};
+use crate::clock::Time;
 use crate::editing::Editing;
 use crate::operation::{Kind, Operation};
 use crate::refining::Refining;
 use crate::sample::{Draw, Side};
-use crate::subdividing::{OneThread, patch};
+use crate::series::{KeptCopies, Series};
+use crate::subdividing::{patch, subdivide};
 use crate::sweeps::{All, Elements, Outputs, Tally, field_sum, share};
 
 /// What to run: an operation on all elements, or on a sample.
@@ -77,8 +78,8 @@ pub trait Subject {
     fn merged_vertices(&self) -> usize;
     /// The bytes held.
     fn bytes(&self) -> usize;
-    /// Runs `job` `runs` times in a row, once if it has a sample; `check` asks for the outcome.
-    fn run(&mut self, job: &Job, runs: u32, clock: &dyn Clock, check: bool) -> Run;
+    /// Runs `job` as `series` says, once if it has a sample; the time is that of one run.
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run;
 }
 
 /// A structure built from `polygons`, with room for outputs and its names of the draw.
@@ -88,7 +89,7 @@ pub(crate) struct Candidate<'a, M: Representation> {
     mesh: M,
     outputs: Outputs<M>,
     chosen: Chosen<M>,
-    thread: OneThread,
+    built: KeptCopies<Option<M>>,
     merged_vertices: usize,
 }
 
@@ -100,45 +101,59 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
             draw,
             outputs: Outputs::for_mesh(&mesh),
             chosen: Chosen::default(),
-            thread: OneThread::default(),
+            built: KeptCopies::default(),
             merged_vertices: polygons.vertex_count().saturating_sub(mesh.vertex_count()),
             mesh,
         }
     }
 
-    fn build(&self, runs: u32, clock: &dyn Clock) -> Run {
-        let mut built = Vec::with_capacity(runs as usize);
-        let time = timed(clock, || {
-            for _ in 0..runs {
-                built.push(black_box(M::from_polygons(black_box(self.polygons))));
-            }
-        });
-        let outcome = built.pop().and_then(Result::ok).map(|mesh| Outcome {
+    /// What a run builds is dropped while the clock stands still.
+    fn build(&mut self, series: &Series<'_>) -> Run {
+        let Self {
+            polygons,
+            built,
+            mesh,
+            ..
+        } = self;
+        let time = built.time(
+            series,
+            mesh.memory().total(),
+            || None,
+            |last| *last = None,
+            |built| *built = black_box(M::from_polygons(black_box(polygons)).ok()),
+        );
+        let mesh = built.last().and_then(Option::as_ref);
+        let outcome = mesh.map(|mesh| Outcome {
             checksum: (mesh.vertex_count() + mesh.face_count()) as f64,
             elements: mesh.face_count() as u64,
         });
+        // The room of the results is for the others.
+        *built = KeptCopies::default();
         Run::done(time, outcome)
     }
 
-    /// Each run smooths a fresh copy, made before the clock starts.
-    fn smooth(&mut self, runs: u32, clock: &dyn Clock, check: bool) -> Run {
-        let mut copies = vec![self.mesh.clone(); runs as usize];
+    /// Each run smooths a copy that has the positions of the mesh.
+    fn smooth(&mut self, series: &Series<'_>) -> Run {
+        let Self { mesh, outputs, .. } = self;
+        let mut copies = KeptCopies::default();
         let mut tally = Tally::default();
         let mut moved = Ok(());
-        let operation = Operation::VvSmooth;
-        let time = timed(clock, || {
-            for copy in &mut copies {
-                tally = share(operation, Kind::Vertex, copy, &All, &mut self.outputs);
-                moved = copy.set_positions(&self.outputs.vertices);
-                black_box(&mut *copy);
-            }
-        });
-        let outcome = copies.pop().filter(|_| check).map(|smoothed| {
+        let time = copies.time(
+            series,
+            mesh.memory().total(),
+            || mesh.clone(),
+            |copy| copy.clone_from(mesh),
+            |copy| {
+                tally = share(Operation::VvSmooth, Kind::Vertex, copy, &All, outputs);
+                moved = copy.set_positions(&outputs.vertices);
+            },
+        );
+        let outcome = copies.last().filter(|_| series.check).map(|smoothed| {
             let after = smoothed.vertices().map(|v| smoothed.position(v));
-            let means = self.mesh.vertices().map(|v| self.outputs.vertices[v]);
+            let means = mesh.vertices().map(|v| outputs.vertices[v]);
             // Where a vertex is its coordinates, two may have moved to one place, or two corners
             // of a face have been refused it: the same work up to there, and the means tell.
-            let apart = smoothed.vertex_count() == self.mesh.vertex_count();
+            let apart = smoothed.vertex_count() == mesh.vertex_count();
             let checksum = match moved.is_ok() && apart {
                 true => field_sum(after),
                 false => field_sum(means),
@@ -151,31 +166,30 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
         Run::done(time, outcome)
     }
 
-    fn whole(&mut self, operation: Operation, runs: u32, clock: &dyn Clock, check: bool) -> Run {
+    fn whole(&mut self, operation: Operation, series: &Series<'_>) -> Run {
         let mut tallies = [Tally::default(); 3];
-        let time = timed(clock, || {
-            for _ in 0..runs {
-                for &kind in operation.kinds() {
-                    let mesh = black_box(&self.mesh);
-                    tallies[kind.index()] =
-                        black_box(share(operation, kind, mesh, &All, &mut self.outputs));
-                }
-                black_box(&mut self.outputs);
+        let time = series.time_together(|| {
+            for &kind in operation.kinds() {
+                let mesh = black_box(&self.mesh);
+                tallies[kind.index()] =
+                    black_box(share(operation, kind, mesh, &All, &mut self.outputs));
             }
+            black_box(&mut self.outputs);
         });
-        let outcome = check.then(|| self.outcome(operation, &All, tallies, [1.0; 3]));
+        let outcome = series
+            .check
+            .then(|| self.outcome(operation, &All, tallies, [1.0; 3]));
         Run::done(time, outcome)
     }
 
-    fn sampled(
-        &mut self,
-        operation: Operation,
-        sample: Sample,
-        clock: &dyn Clock,
-        check: bool,
-    ) -> Run {
+    fn sampled(&mut self, operation: Operation, sample: Sample, series: &Series<'_>) -> Run {
+        let series = &Series {
+            untimed: 0,
+            runs: 1,
+            ..*series
+        };
         let Some(draw) = self.draw else {
-            return self.whole(operation, 1, clock, check);
+            return self.whole(operation, series);
         };
         self.chosen
             .grow(&self.mesh, self.polygons, draw, sample.size);
@@ -194,10 +208,10 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
             size,
         };
         let mut tallies = [Tally::default(); 3];
-        let mut total = Time::none_like(clock.now());
+        let mut total = Time::none_like(series.clock.now());
         for &kind in operation.kinds() {
             let k = kind.index();
-            let time = timed(clock, || {
+            let time = series.timed(|| {
                 let mesh = black_box(&self.mesh);
                 tallies[k] = black_box(share(operation, kind, mesh, &chosen, &mut self.outputs));
                 black_box(&mut self.outputs);
@@ -206,13 +220,15 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
         }
         if operation == Operation::VvSmooth {
             let mut copy = self.mesh.clone();
-            let swap = timed(clock, || {
+            let swap = series.timed(|| {
                 let moved = copy.set_positions(&self.outputs.vertices);
                 black_box((&mut copy, moved.is_ok()));
             });
             total = total.plus(swap);
         }
-        let outcome = check.then(|| self.outcome(operation, &chosen, tallies, scale));
+        let outcome = series
+            .check
+            .then(|| self.outcome(operation, &chosen, tallies, scale));
         Run::done(total, outcome)
     }
 
@@ -221,18 +237,14 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
         &mut self,
         refining: Refining,
         sample: Option<Sample>,
-        runs: u32,
-        clock: &dyn Clock,
-        check: bool,
+        series: &Series<'_>,
     ) -> Run {
         let Some(Sample { size, .. }) = sample else {
-            return self
-                .thread
-                .run::<M>(refining, self.polygons, runs, clock, check);
+            return subdivide::<M>(refining, self.polygons, series);
         };
         let patch = patch(self.polygons, size);
         let scale = self.polygons.face_count() as f64 / patch.face_count() as f64;
-        let run = self.thread.run::<M>(refining, &patch, runs, clock, check);
+        let run = subdivide::<M>(refining, &patch, series);
         Run {
             time: run.time.scaled(scale),
             ..run
@@ -296,35 +308,33 @@ impl<M: Representation + 'static> Subject for Candidate<'_, M> {
         self.mesh.memory().total()
     }
 
-    fn run(&mut self, job: &Job, runs: u32, clock: &dyn Clock, check: bool) -> Run {
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
         let refining = job.operation.refining();
         let run = match (job.operation, job.sample, refining) {
             (Operation::Editing(editing), sample, _) => {
-                edit::<M>(editing, self.polygons, sample, runs, clock, check)
+                edit::<M>(editing, self.polygons, sample, series)
             }
-            (_, sample, Some(refining)) => self.subdivide(refining, sample, runs, clock, check),
-            (Operation::Build, ..) => self.build(runs, clock),
+            (_, sample, Some(refining)) => self.subdivide(refining, sample, series),
+            (Operation::Build, ..) => self.build(series),
             (operation, Some(sample), None) => {
-                return self.sampled(operation, sample, clock, check);
+                return self.sampled(operation, sample, series);
             }
-            (Operation::VvSmooth, ..) => self.smooth(runs, clock, check),
-            (operation, ..) => self.whole(operation, runs, clock, check),
+            (Operation::VvSmooth, ..) => self.smooth(series),
+            (operation, ..) => self.whole(operation, series),
         };
         Run {
-            time: run.time.scaled(1.0 / f64::from(runs)),
+            time: run.time.scaled(1.0 / f64::from(series.runs)),
             ..run
         }
     }
 }
 
-/// Runs a workload that changes the mesh, on copies, or on a patch of the mesh that stands for it.
+/// Runs a workload that changes the mesh, or a patch of the mesh that stands for it.
 fn edit<M: Representation>(
     editing: Editing,
     polygons: &PolygonMesh,
     sample: Option<Sample>,
-    runs: u32,
-    clock: &dyn Clock,
-    check: bool,
+    series: &Series<'_>,
 ) -> Run {
     let piece = sample.map(|sample| patch(polygons, sample.size));
     let of = piece.as_ref().unwrap_or(polygons);
@@ -334,19 +344,14 @@ fn edit<M: Representation>(
         Ok(editor) => editor,
         Err(refusal) => {
             return Run {
-                time: Time::none_like(clock.now()),
+                time: Time::none_like(series.clock.now()),
                 outcome: None,
                 refusal: Some(refusal),
             };
         }
     };
-    editor.prepare(runs as usize);
-    let time = timed(clock, || {
-        for _ in 0..runs {
-            black_box(&mut editor).run();
-        }
-    });
-    let outcome = check.then(|| {
+    let time = editor.time(series);
+    let outcome = series.check.then(|| {
         let edits = editor.result();
         Outcome {
             checksum: edits.checksum,

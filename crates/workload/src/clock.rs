@@ -3,6 +3,8 @@
 use std::ops::Sub;
 use std::time::Instant;
 
+use crate::pages;
+
 /// A moment, or the time between two.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Time {
@@ -10,6 +12,8 @@ pub struct Time {
     pub cpu_ns: Option<f64>,
     /// Wall time, in nanoseconds.
     pub wall_ns: f64,
+    /// Page faults of this thread meanwhile; `None` where nobody counted them.
+    pub faults: Option<u64>,
 }
 
 impl Time {
@@ -18,25 +22,51 @@ impl Time {
         self.cpu_ns.unwrap_or(self.wall_ns)
     }
 
-    /// Both figures times `factor`.
+    /// A time of wall time alone.
+    pub fn of_wall(wall_ns: f64) -> Self {
+        Self {
+            wall_ns,
+            ..Self::default()
+        }
+    }
+
+    /// Both times multiplied by `factor`; the page faults stay as they were counted.
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             cpu_ns: self.cpu_ns.map(|ns| ns * factor),
             wall_ns: self.wall_ns * factor,
+            faults: self.faults,
         }
     }
 
-    /// Both figures added up.
+    /// Both times and the page faults added up; page faults are known if either part knows them.
     pub fn plus(self, other: Self) -> Self {
+        let known = self.faults.is_some() || other.faults.is_some();
         Self {
             cpu_ns: self.cpu_ns.zip(other.cpu_ns).map(|(a, b)| a + b),
             wall_ns: self.wall_ns + other.wall_ns,
+            faults: known.then(|| self.faults.unwrap_or(0) + other.faults.unwrap_or(0)),
         }
     }
 
-    /// No time at all, on both clocks or on the wall alone as `like` has it.
+    /// No time at all, on both clocks or on the wall clock alone as `like` has it, and no page faults counted.
     pub fn none_like(like: Self) -> Self {
-        like.scaled(0.0)
+        Self {
+            faults: None,
+            ..like.scaled(0.0)
+        }
+    }
+
+    /// Subtracts `overhead` from both times, down to zero.
+    fn without(self, overhead: Self) -> Self {
+        let less = |ns: f64, overhead: f64| (ns - overhead).max(0.0);
+        Self {
+            cpu_ns: self
+                .cpu_ns
+                .map(|ns| less(ns, overhead.cpu_ns.unwrap_or(0.0))),
+            wall_ns: less(self.wall_ns, overhead.wall_ns),
+            faults: self.faults,
+        }
     }
 }
 
@@ -47,6 +77,7 @@ impl Sub for Time {
         Self {
             cpu_ns: self.cpu_ns.zip(earlier.cpu_ns).map(|(a, b)| a - b),
             wall_ns: self.wall_ns - earlier.wall_ns,
+            faults: None,
         }
     }
 }
@@ -57,19 +88,75 @@ impl Sub for Time {
 pub trait Clock: Sync {
     /// The moment.
     fn now(&self) -> Time;
+
+    /// What reading the clock twice costs, which [`timed`] subtracts from every time.
+    fn overhead(&self) -> Time {
+        Time::default()
+    }
+
+    /// Page faults of this thread so far; `None` where they are not counted.
+    fn faults(&self) -> Option<u64> {
+        None
+    }
 }
 
-/// The clocks of this machine.
+/// How often the clock is read for each figure of its overhead.
+const READINGS: usize = 301;
+/// Words that the work between two readings goes through: more than a first-level cache holds.
+const WORDS: usize = 8192;
+/// Reading the clock takes at most so many times as long in use as in a loop that does nothing else.
+const MOST_TIMES_HOT: f64 = 3.0;
+
+/// The clocks of this machine, and its counter of page faults.
 #[derive(Clone, Debug)]
 pub struct MachineClock {
     start: Instant,
+    overhead: Time,
+    counts_faults: bool,
 }
 
 impl MachineClock {
-    /// A clock that starts now.
+    /// A clock that starts now. Reading it is timed first, which takes some milliseconds.
     pub fn start() -> Self {
-        Self {
+        let mut clock = Self {
             start: Instant::now(),
+            overhead: Time::default(),
+            counts_faults: pages::counts_faults(),
+        };
+        clock.overhead = clock.cost_of_reading();
+        clock
+    }
+
+    /// What two readings add to the time of the work between them: twice the time of some work, less that of
+    /// twice the work, so that the caches are as in use; at least what they take one right after the other.
+    fn cost_of_reading(&self) -> Time {
+        let words: Vec<u64> = vec![1; WORDS];
+        let pass = || std::hint::black_box(std::hint::black_box(&words).iter().sum::<u64>());
+        let median = |passes: usize| {
+            let mut readings: Vec<Time> = (0..READINGS)
+                .map(|_| {
+                    let start = self.now();
+                    for _ in 0..passes {
+                        pass();
+                    }
+                    self.now() - start
+                })
+                .collect();
+            readings.sort_by(|a, b| a.ns().total_cmp(&b.ns()));
+            readings[READINGS / 2]
+        };
+        let [nothing, once, twice] = [0, 1, 2].map(median);
+        let between = |nothing: f64, once: f64, twice: f64| {
+            (2.0 * once - twice).clamp(nothing, MOST_TIMES_HOT * nothing)
+        };
+        Time {
+            cpu_ns: nothing
+                .cpu_ns
+                .zip(once.cpu_ns)
+                .zip(twice.cpu_ns)
+                .map(|((nothing, once), twice)| between(nothing, once, twice)),
+            wall_ns: between(nothing.wall_ns, once.wall_ns, twice.wall_ns),
+            faults: None,
         }
     }
 
@@ -88,16 +175,34 @@ impl Clock for MachineClock {
         Time {
             cpu_ns: thread_cpu_ns(),
             wall_ns: self.start.elapsed().as_nanos() as f64,
+            faults: None,
+        }
+    }
+
+    fn overhead(&self) -> Time {
+        self.overhead
+    }
+
+    fn faults(&self) -> Option<u64> {
+        match self.counts_faults {
+            true => pages::faults(),
+            false => None,
         }
     }
 }
 
-/// The time that `work` takes.
+/// The time that `work` takes, without that of reading the clock, and the page faults meanwhile.
 #[inline]
 pub fn timed(clock: &dyn Clock, work: impl FnOnce()) -> Time {
+    let faults = clock.faults();
     let start = clock.now();
     work();
-    clock.now() - start
+    let time = clock.now() - start;
+    let faults = clock.faults().zip(faults);
+    Time {
+        faults: faults.map(|(after, before)| after.saturating_sub(before)),
+        ..time.without(clock.overhead())
+    }
 }
 
 #[cfg(any(
@@ -124,6 +229,8 @@ fn thread_cpu_ns() -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Mutex;
+
     use super::*;
 
     #[test]
@@ -141,11 +248,52 @@ mod tests {
 
     #[test]
     fn a_clock_without_processor_time_stays_without() {
-        let wall = |wall_ns| Time {
-            cpu_ns: None,
-            wall_ns,
-        };
+        let wall = Time::of_wall;
         assert_eq!((wall(5.0) - wall(2.0)).scaled(2.0).ns(), 6.0);
         assert_eq!(Time::none_like(wall(9.0)).plus(wall(4.0)), wall(4.0));
+    }
+
+    /// A clock on which each reading takes 300 ns, and during each work four pages fault.
+    struct Slow(Mutex<(f64, u64)>);
+
+    impl Clock for Slow {
+        fn now(&self) -> Time {
+            let (ns, _) = &mut *self.0.lock().expect("no panics");
+            *ns += 300.0;
+            Time {
+                cpu_ns: Some(*ns),
+                ..Time::of_wall(*ns)
+            }
+        }
+
+        fn overhead(&self) -> Time {
+            Time {
+                cpu_ns: Some(300.0),
+                ..Time::of_wall(300.0)
+            }
+        }
+
+        fn faults(&self) -> Option<u64> {
+            Some(self.0.lock().expect("no panics").1)
+        }
+    }
+
+    #[test]
+    fn reading_the_clock_is_subtracted_and_faults_are_counted() {
+        let clock = Slow(Mutex::new((0.0, 10)));
+        let work = |ns: f64| {
+            timed(&clock, || {
+                let (now, faults) = &mut *clock.0.lock().expect("no panics");
+                *now += ns;
+                *faults += 4;
+            })
+        };
+        let time = work(5000.0);
+        assert_eq!((time.cpu_ns, time.wall_ns), (Some(5000.0), 5000.0));
+        assert_eq!(time.faults, Some(4));
+        assert_eq!(time.plus(work(0.0)).faults, Some(8));
+        assert_eq!(time.scaled(0.5).faults, Some(4));
+        assert_eq!(work(-100.0).ns(), 0.0, "never less than nothing");
+        assert_eq!(Time::none_like(time).plus(Time::of_wall(1.0)).faults, None);
     }
 }

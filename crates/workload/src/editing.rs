@@ -8,6 +8,9 @@ use sixfold::{
     visit_editable,
 };
 
+use crate::clock::Time;
+use crate::series::{KeptCopies, Series};
+
 /// One of the workloads that change a mesh of triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Editing {
@@ -72,8 +75,7 @@ impl Editing {
                         _ => Vec::new(),
                     },
                     mesh,
-                    copies: Vec::new(),
-                    done: Vec::new(),
+                    copies: KeptCopies::default(),
                 }))
             }
         }
@@ -88,13 +90,10 @@ impl fmt::Display for Editing {
     }
 }
 
-/// A workload that is set up to be run again and again, each time on a fresh copy.
+/// A workload that is set up to be run again and again, each time on the mesh as it was.
 pub trait Editor {
-    /// Makes copies for so many runs: what is not timed.
-    fn prepare(&mut self, runs: usize);
-
-    /// Runs on the next copy, if one is prepared.
-    fn run(&mut self);
+    /// Runs it as `series` says; the time is that of all timed runs together.
+    fn time(&mut self, series: &Series<'_>) -> Time;
 
     /// What the last run came to.
     fn result(&self) -> Edits;
@@ -119,46 +118,54 @@ struct Edited<M: MeshEdit> {
     mesh: M,
     /// Those to be flipped, in their order.
     edges: Vec<M::Edge>,
-    copies: Vec<Fresh<M>>,
-    /// The meshes that were worked on: kept, for to let one go takes time.
-    done: Vec<(M, Edits)>,
+    copies: KeptCopies<Changed<M>>,
 }
 
-/// A fresh mesh, and what its workload needs to know where its edges are.
-struct Fresh<M: MeshEdit> {
+/// A copy of the mesh, what its workload needs to know of where its edges are, and what the last run on
+/// it came to.
+struct Changed<M: MeshEdit> {
     mesh: M,
     edges: Option<Followed<M>>,
+    edits: Edits,
 }
 
 impl<M: Representation + MeshEdit + 'static> Editor for Edited<M> {
-    fn prepare(&mut self, runs: usize) {
-        self.done = Vec::with_capacity(runs);
-        let edges = || match self.job {
-            Editing::FlipAll => Some(Followed::of(&self.mesh, &self.edges)),
+    fn time(&mut self, series: &Series<'_>) -> Time {
+        let Self {
+            job,
+            mesh,
+            edges,
+            copies,
+        } = self;
+        let followed = match job {
+            Editing::FlipAll => Some(Followed::of(mesh, edges)),
             _ => None,
         };
-        let copies = (0..runs).map(|_| Fresh {
-            mesh: self.mesh.clone(),
-            edges: edges(),
-        });
-        self.copies = copies.collect();
-    }
-
-    fn run(&mut self) {
-        let Some(Fresh { mut mesh, edges }) = self.copies.pop() else {
-            return;
-        };
-        let edits = match (self.job, edges) {
-            (Editing::FlipAll, Some(mut edges)) => flip_all(&mut mesh, &mut edges),
-            (Editing::DecimateHalf, _) => decimate_to(&mut mesh, 0.5),
-            (Editing::DecimateTenth, _) => decimate_to(&mut mesh, 0.1),
-            _ => split_collapse(&mut mesh),
-        };
-        self.done.push((mesh, edits));
+        copies.time(
+            series,
+            mesh.memory().total(),
+            || Changed {
+                mesh: mesh.clone(),
+                edges: followed.clone(),
+                edits: Edits::default(),
+            },
+            |copy| {
+                copy.mesh.clone_from(mesh);
+                copy.edges.clone_from(&followed);
+            },
+            |copy| {
+                copy.edits = match (*job, &mut copy.edges) {
+                    (Editing::FlipAll, Some(edges)) => flip_all(&mut copy.mesh, edges),
+                    (Editing::DecimateHalf, _) => decimate_to(&mut copy.mesh, 0.5),
+                    (Editing::DecimateTenth, _) => decimate_to(&mut copy.mesh, 0.1),
+                    _ => split_collapse(&mut copy.mesh),
+                };
+            },
+        )
     }
 
     fn result(&self) -> Edits {
-        let Some((mesh, edits)) = self.done.last() else {
+        let Some(Changed { mesh, edits, .. }) = self.copies.last() else {
             return Edits::default();
         };
         let lengths = mesh.edges().map(|e| {
@@ -266,6 +273,31 @@ struct Followed<M: MeshEdit> {
     told: Vec<(u32, M::Edge)>,
 }
 
+impl<M: MeshEdit> Clone for Followed<M> {
+    fn clone(&self) -> Self {
+        Self {
+            edges: self.edges.clone(),
+            places: self.places.clone(),
+            flipping: self.flipping,
+            told: self.told.clone(),
+        }
+    }
+
+    /// Copies into the tables that are there.
+    fn clone_from(&mut self, source: &Self) {
+        let Self {
+            edges,
+            places,
+            flipping,
+            told,
+        } = source;
+        self.edges.clone_from(edges);
+        self.places.clone_from(places);
+        self.flipping = *flipping;
+        self.told.clone_from(told);
+    }
+}
+
 impl<M: MeshEdit> Followed<M> {
     fn of(mesh: &M, edges: &[M::Edge]) -> Self {
         let mut places = mesh.edge_map(0);
@@ -309,6 +341,7 @@ mod tests {
     use sixfold::{roster, shapes};
 
     use super::*;
+    use crate::clock::MachineClock;
 
     #[test]
     fn every_structure_does_the_same_work() {
@@ -318,10 +351,10 @@ mod tests {
             for backend in roster() {
                 let editor = job.on(backend.name, &polygons);
                 let mut editor = editor.expect("all six").expect("triangles");
-                editor.prepare(2);
-                editor.run();
+                let clock = MachineClock::start();
+                editor.time(&Series::once(&clock));
                 let once = editor.result();
-                editor.run();
+                editor.time(&Series::of_runs(3, &clock).after(1));
                 assert_eq!(editor.result(), once, "{job} on {}, again", backend.name);
                 results.push((backend.name, once));
             }

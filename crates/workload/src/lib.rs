@@ -4,8 +4,10 @@
 //! how long that took and what it found. Everything that is compiled once for each structure is in
 //! this crate; who measures, and judges, is above it and knows no types of meshes.
 
+mod allocation;
 mod backend;
 mod built_in;
+mod caches;
 mod candidate;
 mod clock;
 mod editing;
@@ -14,10 +16,12 @@ mod ledger;
 mod memory_speed;
 mod mix;
 mod operation;
+pub mod pages;
 mod place;
 mod reads;
 mod refining;
 mod sample;
+mod series;
 mod single_edit;
 mod subdividing;
 mod sweeps;
@@ -25,8 +29,10 @@ mod unknown;
 mod workload;
 mod workload_file;
 
+pub use allocation::{Allocated, AllocationCounter, MOST_SCANNED_FACES, NotCounted};
 pub use backend::{Backend, OnTheBench};
 pub use built_in::{built_in, built_ins};
+pub use caches::{Cache, caches, last_level};
 pub use candidate::{Job, Outcome, Run, Sample, Subject};
 pub use clock::{Clock, MachineClock, Time, timed};
 pub use editing::{Editing, Editor, Edits};
@@ -38,6 +44,7 @@ pub use operation::{Kind, Operation, UnknownOperation};
 pub use reads::{Counted, MOST_READS, Reads, SAMPLE, TableReads};
 pub use refining::{Refiner, Refining, Way};
 pub use sample::{Draw, Side};
+pub use series::{LONG_ENOUGH_NS, Scrubber, Series, Start};
 pub use single_edit::SingleEdit;
 pub use sweeps::field_sum;
 pub use unknown::unknown;

@@ -193,10 +193,7 @@ mod tests {
 
     impl Clock for Ticking {
         fn now(&self) -> Time {
-            Time {
-                cpu_ns: None,
-                wall_ns: self.0.fetch_add(1, Ordering::Relaxed) as f64,
-            }
+            Time::of_wall(self.0.fetch_add(1, Ordering::Relaxed) as f64)
         }
     }
 

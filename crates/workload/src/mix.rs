@@ -13,11 +13,10 @@ mod script;
 mod streams;
 mod tables;
 
-use sixfold::PolygonMesh;
-
 use crate::candidate::{Run, Sample};
 use crate::clock::{Clock, Time};
 use crate::operation::Operation;
+use crate::series::Series;
 
 pub use bench::{MixOutcome, MixRefusal, set_up};
 pub use places::NoPlace;
@@ -53,7 +52,8 @@ pub trait Mixer {
     /// By part of the mix: whether it looks at all faces.
     fn scans(&self) -> Vec<bool>;
 
-    /// Runs the element operations of so many turns from `turn` on, on as many copies if there are edits.
+    /// Runs the element operations of so many turns from `turn` on. If there are edits, it does so
+    /// `copies` times, each time on a copy that is put back while the clock stands still.
     fn run(&mut self, turn: u64, turns: u64, copies: usize, clock: &dyn Clock) -> MixRun;
 
     /// Runs so many operations of one part alone, from a place on its route; edits at fresh places.
@@ -67,9 +67,7 @@ pub trait Mixer {
         &mut self,
         operation: Operation,
         sample: Option<Sample>,
-        runs: u32,
-        clock: &dyn Clock,
-        check: bool,
+        series: &Series<'_>,
     ) -> Run;
 
     /// By edit of the script, and by place: whether it is accepted.
@@ -78,6 +76,6 @@ pub trait Mixer {
     /// Goes on with the places where `accepted` says so, which are the same for all structures.
     fn keep(&mut self, accepted: &[Vec<bool>]);
 
-    /// Builds it from `polygons` once more.
-    fn build(&self, polygons: &PolygonMesh, clock: &dyn Clock) -> Time;
+    /// Builds it from the polygons as often as `series` says; the time is that of one building.
+    fn build(&self, series: &Series<'_>) -> Time;
 }

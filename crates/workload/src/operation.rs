@@ -170,18 +170,24 @@ impl Operation {
         self.subdivides() || matches!(self, Self::Editing(_))
     }
 
-    /// Whether each run of a series leaves a mesh of its own behind, or works on one made beforehand.
-    pub const fn holds_a_mesh_a_run(self) -> bool {
+    /// Whether a run makes tables larger that the next run uses again: its first run takes longer.
+    pub const fn grows_tables(self) -> bool {
+        matches!(
+            self,
+            Self::CatmullClark(Method::Native)
+                | Self::Loop(Method::Native)
+                | Self::Editing(Editing::SplitCollapse | Editing::FlipAll)
+        )
+    }
+
+    /// Whether the clock stops between its runs: what they changed is put back, or what they made dropped.
+    pub const fn stops_the_clock(self) -> bool {
         matches!(self, Self::Build | Self::VvSmooth | Self::Editing(_))
     }
 
-    /// Whether every series of its runs begins with one that nobody times: it fills the tables that
-    /// the others use again.
-    pub const fn readies_itself(self) -> bool {
-        matches!(
-            self,
-            Self::CatmullClark(Method::Native) | Self::Loop(Method::Native)
-        )
+    /// Whether it allocates while the clock runs: what it takes depends on where the pages come from.
+    pub const fn allocates(self) -> bool {
+        matches!(self, Self::Build | Self::FfBfs) || self.makes_a_mesh()
     }
 
     /// How many elements it visits on `polygons` where no run has told: the faces, or the new ones.

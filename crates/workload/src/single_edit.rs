@@ -2,8 +2,10 @@
 
 use sixfold::{Edit, EditVisitor, MeshEdit, PolygonMesh, Representation, visit_editable};
 
+use crate::clock::Time;
 use crate::editing::{Editor, Edits};
 use crate::place::{Place, perform, places, prepare};
+use crate::series::{KeptCopies, Series};
 
 /// An edit to be done at some places of a closed mesh of triangles.
 ///
@@ -54,8 +56,7 @@ struct AtPlaces<M: MeshEdit> {
     edit: Edit,
     mesh: M,
     places: Vec<Place<M>>,
-    copies: Vec<M>,
-    done: Vec<(M, Edits)>,
+    copies: KeptCopies<(M, Edits)>,
 }
 
 impl<M: Representation + MeshEdit + 'static> AtPlaces<M> {
@@ -64,8 +65,7 @@ impl<M: Representation + MeshEdit + 'static> AtPlaces<M> {
         if let Some((f, _)) = polygons.first_polygon() {
             return Err(format!("face {f} is no triangle"));
         }
-        // One more, to be done before the clock starts.
-        let places = places(polygons, job.places.saturating_add(1))?;
+        let places = places(polygons, job.places)?;
         let look_up = |f| Place::of(&mesh, polygons, job.edit, f);
         let mut ready: Vec<Place<M>> = places.into_iter().map(look_up).collect();
         for place in &mut ready {
@@ -76,55 +76,30 @@ impl<M: Representation + MeshEdit + 'static> AtPlaces<M> {
             edit: job.edit,
             mesh,
             places: ready,
-            copies: Vec::new(),
-            done: Vec::new(),
+            copies: KeptCopies::default(),
         })
     }
 }
 
 impl<M: Representation + MeshEdit + 'static> Editor for AtPlaces<M> {
-    /// The edit is done at the first place of each copy: tables that are exactly full have moved then,
-    /// and the bits of the holes are there, what many edits share and no single one should pay.
-    fn prepare(&mut self, runs: usize) {
-        self.done = Vec::with_capacity(runs);
-        self.copies = vec![self.mesh.clone(); runs];
-        for copy in &mut self.copies {
-            if let Some(first) = self.places.first() {
-                // Whether it is refused, the others will tell.
-                let _ = perform(copy, self.edit, first);
-            }
-        }
-    }
-
-    fn run(&mut self) {
-        let Some(mut mesh) = self.copies.pop() else {
-            return;
-        };
-        let mut edits = Edits::default();
-        match self.edit {
-            Edit::Compact => {
-                mesh.compact(&mut ());
-                edits.done = 1;
-            }
-            Edit::RemoveIsolatedVertices => {
-                mesh.remove_isolated_vertices(&mut ());
-                edits.done = 1;
-            }
-            edit => {
-                for place in self.places.iter().skip(1) {
-                    match perform(&mut mesh, edit, place) {
-                        Ok(()) => edits.done += 1,
-                        Err(_) => edits.refused += 1,
-                    }
-                }
-            }
-        }
-        edits.elements = edits.done + edits.refused;
-        self.done.push((mesh, edits));
+    fn time(&mut self, series: &Series<'_>) -> Time {
+        let Self {
+            edit,
+            mesh,
+            places,
+            copies,
+        } = self;
+        copies.time(
+            series,
+            mesh.memory().total(),
+            || (mesh.clone(), Edits::default()),
+            |(copy, _)| copy.clone_from(mesh),
+            |(copy, edits)| *edits = everywhere(*edit, copy, places),
+        )
     }
 
     fn result(&self) -> Edits {
-        let Some((mesh, edits)) = self.done.last() else {
+        let Some((mesh, edits)) = self.copies.last() else {
             return Edits::default();
         };
         Edits {
@@ -134,11 +109,41 @@ impl<M: Representation + MeshEdit + 'static> Editor for AtPlaces<M> {
     }
 }
 
+/// Does the edit at all places, or the one pass over the mesh that it is.
+fn everywhere<M: MeshEdit + Representation>(
+    edit: Edit,
+    mesh: &mut M,
+    places: &[Place<M>],
+) -> Edits {
+    let mut edits = Edits::default();
+    match edit {
+        Edit::Compact => {
+            mesh.compact(&mut ());
+            edits.done = 1;
+        }
+        Edit::RemoveIsolatedVertices => {
+            mesh.remove_isolated_vertices(&mut ());
+            edits.done = 1;
+        }
+        edit => {
+            for place in places {
+                match perform(mesh, edit, place) {
+                    Ok(()) => edits.done += 1,
+                    Err(_) => edits.refused += 1,
+                }
+            }
+        }
+    }
+    edits.elements = edits.done + edits.refused;
+    edits
+}
+
 #[cfg(test)]
 mod tests {
     use sixfold::{roster, shapes};
 
     use super::*;
+    use crate::clock::MachineClock;
 
     #[test]
     fn every_edit_is_accepted_at_every_place() {
@@ -153,8 +158,7 @@ mod tests {
                     continue;
                 };
                 let mut editor = editor.expect("a closed triangle mesh");
-                editor.prepare(1);
-                editor.run();
+                editor.time(&Series::of_runs(2, &MachineClock::start()).after(1));
                 let edits = editor.result();
                 let places = if job.is_a_pass() { 1 } else { 20 };
                 assert_eq!(

@@ -2,89 +2,71 @@
 
 use std::collections::BTreeSet;
 use std::hint::black_box;
+use std::sync::OnceLock;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use sixfold::subdivision::{Method, SubdivisionError};
+use sixfold::subdivision::SubdivisionError;
 use sixfold::{Creases, Point, PolygonMesh, Representation, VertexId};
 
 use crate::candidate::{Outcome, Run};
-use crate::clock::{Clock, timed};
+use crate::clock::Time;
 use crate::refining::Refining;
+use crate::series::Series;
 
-/// One thread, so that processor time is that of all the work and every structure has as much.
-#[derive(Default)]
-pub(crate) struct OneThread(Option<ThreadPool>);
+/// The thread that all subdivisions run on: one, so that processor time is that of all the work, and the
+/// same for all structures, so that they share its heap.
+fn thread() -> Result<&'static ThreadPool, String> {
+    static THREAD: OnceLock<Result<ThreadPool, String>> = OnceLock::new();
+    let start = || {
+        let pool = ThreadPoolBuilder::new().num_threads(1).build();
+        pool.map_err(|error| format!("no thread could be started: {error}"))
+    };
+    THREAD.get_or_init(start).as_ref().map_err(Clone::clone)
+}
 
-impl OneThread {
-    /// The thread, started when it is first asked for.
-    fn pool(&mut self) -> Result<&ThreadPool, String> {
-        if self.0.is_none() {
-            let pool = ThreadPoolBuilder::new().num_threads(1).build();
-            let pool = pool.map_err(|error| format!("no thread could be started: {error}"))?;
-            self.0 = Some(pool);
-        }
-        self.0.as_ref().ok_or_else(|| "no thread".into())
-    }
-
-    /// Sets `job` up on a structure of type `M` built from `polygons`, and runs it `runs` times.
-    ///
-    /// Setting up is outside the timing, and so is a first run of a native one, which makes the
-    /// tables that all later runs use again. What the others build anew they build inside.
-    pub(crate) fn run<M: Representation + 'static>(
-        &mut self,
-        job: Refining,
-        polygons: &PolygonMesh,
-        runs: u32,
-        clock: &dyn Clock,
-        check: bool,
-    ) -> Run {
-        let done = self.pool().and_then(|pool| {
-            pool.install(|| set_up_and_run::<M>(job, polygons, runs, clock, check))
-        });
-        done.unwrap_or_else(|refusal| Run {
-            time: clock.now().scaled(0.0),
-            outcome: None,
-            refusal: Some(refusal),
-        })
-    }
+/// Sets `job` up on a structure of type `M` built from `polygons`, and runs it as `series` says.
+///
+/// Setting up is outside the timing. The runs that are not timed make the tables that all later runs
+/// of a native one use again. What the others build anew they build inside.
+pub(crate) fn subdivide<M: Representation + 'static>(
+    job: Refining,
+    polygons: &PolygonMesh,
+    series: &Series<'_>,
+) -> Run {
+    // The clock, the caches and the page faults are those of that thread.
+    let on_thread =
+        |thread: &ThreadPool| thread.install(|| set_up_and_run::<M>(job, polygons, series));
+    thread().and_then(on_thread).unwrap_or_else(|refusal| Run {
+        time: Time::none_like(series.clock.now()),
+        outcome: None,
+        refusal: Some(refusal),
+    })
 }
 
 fn set_up_and_run<M: Representation + 'static>(
     job: Refining,
     polygons: &PolygonMesh,
-    runs: u32,
-    clock: &dyn Clock,
-    check: bool,
+    series: &Series<'_>,
 ) -> Result<Run, String> {
     check_degrees(job, polygons).map_err(|error| error.to_string())?;
     let refiner = job.of::<M>(polygons, &Creases::default());
     let refiner = refiner.ok_or("it has no native method: it cannot split its own tables")?;
     let mut refiner = refiner.map_err(|error| error.to_string())?;
     let mut done = Ok(());
-    if job.way.method() == Method::Native {
-        done = refiner.run();
-    }
-    let time = timed(clock, || {
-        for _ in 0..runs {
-            if done.is_err() {
-                break;
-            }
+    let time = series.time_together(|| {
+        if done.is_ok() {
             done = black_box(&mut refiner).run();
         }
     });
     done.map_err(|error| error.to_string())?;
-    let outcome = check.then(|| {
+    let outcome = series.check.then(|| {
         let (faces, checksum) = refiner.result();
         Outcome {
             checksum,
             elements: faces as u64,
         }
     });
-    Ok(Run {
-        time,
-        outcome,
-        refusal: None,
-    })
+    Ok(Run::done(time, outcome))
 }
 
 /// That the scheme takes the faces: asked here, so that the answer is the same for all structures and

@@ -3,7 +3,7 @@
 use sixfold::{PolygonMesh, roster, shapes};
 use workload::{
     Access, Action, Draw, MachineClock, MixRefusal, MixRun, Mixer, Operation, Route, Script,
-    Workload, built_in, built_ins, set_up, tabulate,
+    Series, Workload, built_in, built_ins, set_up, tabulate,
 };
 
 /// A mesh with what a mix needs to know of it.
@@ -161,7 +161,7 @@ fn tables_pass_over_the_mesh_as_structures_do() {
             panic!("only passes");
         };
         let outcomes: Vec<_> = { mixers.iter_mut() }
-            .map(|mixer| mixer.run_pass(operation, None, 2, &clock, true))
+            .map(|mixer| mixer.run_pass(operation, None, &Series::of_runs(2, &clock).checked()))
             .map(|run| run.outcome.expect("checked"))
             .collect();
         for (outcome, name) in outcomes.iter().zip(&names) {
@@ -214,7 +214,7 @@ fn every_built_in_runs() {
                 Action::Pass(operation) => operation,
                 _ => Operation::Loop(sixfold::subdivision::Method::Native),
             };
-            let run = half_edge.run_pass(operation, None, 1, &clock, true);
+            let run = half_edge.run_pass(operation, None, &Series::once(&clock).checked());
             assert!(run.outcome.is_some(), "{name}: {:?}", run.refusal);
         }
     }

@@ -33,7 +33,8 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
             return Some(0.0);
         }
         let mut builds = study.rows(Operation::Build);
-        builds.find(|build| build.backend == row.backend)?.median_ns
+        let build = builds.find(|build| build.backend == row.backend)?;
+        build.first_ns.or(build.median_ns)
     };
     let rows = study.rows(operation);
     let lines: Vec<(&str, f64, f64)> = rows
@@ -59,7 +60,7 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
         study.mesh.name
     );
     let caption = format!(
-        "An {GIVEN} is there already; another structure is built first, and where its line goes below, it has paid \
+        "An {GIVEN} is there already; another structure is built first, on fresh pages, and where its line goes below, it has paid \
          for that. `sixfold pick` measures this for the mix of a program."
     );
     let curves = Curves {
@@ -88,7 +89,7 @@ pub(super) fn of_workload(answer: &Answer, id: &str, command: &str) -> Option<Fi
         name: &ranked.backend,
         build: match ranked.backend.as_str() {
             GIVEN => 0.0,
-            _ => ranked.build_ns,
+            _ => ranked.first_build_ns(),
         },
         run: ranked.ns_per_operation,
         pays: pays(&ranked.backend),
@@ -97,7 +98,7 @@ pub(super) fn of_workload(answer: &Answer, id: &str, command: &str) -> Option<Fi
     let name = &answer.workload.name;
     let title = format!("Building, and then {name}");
     let caption = format!(
-        "An {GIVEN} is there already; another structure is built first, and where its line goes below, it has paid \
+        "An {GIVEN} is there already; another structure is built first, on fresh pages, and where its line goes below, it has paid \
          for that. One use of the mesh comes to {}.",
         counted(
             answer.operations.round() as usize,

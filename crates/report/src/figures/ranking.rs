@@ -3,7 +3,7 @@
 use kuva::plot::BarPlot;
 use kuva::render::plots::Plot;
 use study::numbers::duration;
-use study::{Answer, Collection, Operation, Report, Standing};
+use study::{Answer, Collection, FIRST_TIME_SHOWN, Operation, Report, ResultRow, Standing};
 
 use super::{Row, one};
 use crate::colours::{WHISKER, of_column};
@@ -18,6 +18,7 @@ pub(super) fn of_study(study: &Report, command: &str) -> Vec<Figure> {
                 ratio: row.ratio_to_best?,
                 interval: row.ratio_ci_low.zip(row.ratio_ci_high).map(|(a, b)| [a, b]),
                 ns: row.ns_per_element,
+                first_ns: first_time(row),
                 note: match row.standing {
                     Some(Standing::Best) => "best".into(),
                     Some(Standing::Tied) => "tied for best".into(),
@@ -35,6 +36,13 @@ pub(super) fn of_study(study: &Report, command: &str) -> Vec<Figure> {
     figures.collect()
 }
 
+/// The first time of an element, on fresh pages, where it differs from the others.
+fn first_time(row: &ResultRow) -> Option<f64> {
+    let ratio = row.first_ratio()?;
+    let each = row.first_ns? / row.elements.filter(|&n| n > 0)? as f64;
+    (ratio.max(ratio.recip()) > FIRST_TIME_SHOWN).then_some(each)
+}
+
 /// One figure for each operation, over all meshes.
 pub(super) fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
     let figures = Operation::ALL.into_iter().filter_map(|operation| {
@@ -47,6 +55,7 @@ pub(super) fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
             ratio: row.ratio_to_best,
             interval: row.ci_low.zip(row.ci_high).map(|(a, b)| [a, b]),
             ns: row.ns_per_element,
+            first_ns: None,
             note: format!(
                 "on {} meshes, the fastest alone on {}, tied on {}",
                 row.meshes, row.best, row.tied
@@ -64,6 +73,7 @@ pub(super) fn of_workload(answer: &Answer, id: &str, command: &str) -> Option<Fi
         ratio: ranked.ratio_to_best,
         interval: ranked.ci_low.zip(ranked.ci_high).map(|(a, b)| [a, b]),
         ns: Some(ranked.ns_per_operation),
+        first_ns: None,
         note: match (ranked.tied_with_best, ranked.ratio_to_best) {
             (_, 1.0) => "best".into(),
             (true, _) => "tied for best".into(),
@@ -102,7 +112,11 @@ fn figure(
         return None;
     }
     rows.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
-    let mut table = Table::new(["", "× the fastest", "95 %", &one(per), ""]);
+    let firsts = rows.iter().any(|row| row.first_ns.is_some());
+    let mut header = vec!["".into(), "× the fastest".into(), "95 %".into(), one(per)];
+    header.extend(firsts.then(|| "the first time".into()));
+    header.push(String::new());
+    let mut table = Table::new(header);
     let (mut bars, mut whiskers, mut titles) = (Vec::new(), Vec::new(), Vec::new());
     for row in &rows {
         let interval = row
@@ -111,8 +125,12 @@ fn figure(
         let time = row.ns.map_or_else(|| "–".into(), duration);
         let ratio = format!("{:.3}", row.ratio);
         let shown = interval.clone().unwrap_or_else(|| "–".into());
-        let cells = [row.backend, &ratio, &shown, &time, &row.note];
-        table.row(cells.map(str::to_owned).to_vec());
+        let mut cells = [row.backend, &ratio, &shown, &time]
+            .map(str::to_owned)
+            .to_vec();
+        cells.extend(firsts.then(|| row.first_ns.map_or_else(|| "–".into(), duration)));
+        cells.push(row.note.clone());
+        table.row(cells);
         let length = row.ratio.log10();
         bars.push((row.backend.to_owned(), length, of_column(row.backend)));
         let ends = row

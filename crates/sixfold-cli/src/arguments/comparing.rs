@@ -7,7 +7,7 @@ use ::study::{GrowthSettings, Operation};
 use clap::Args;
 use sixfold::shapes::Order;
 
-use super::{backend, duration, operation, seed};
+use super::{MemoryState, backend, duration, operation, seed};
 
 /// What help on `orders` says before the names.
 pub(crate) const ORDERS_EXAMPLES: &str = "Examples:
@@ -48,6 +48,8 @@ pub(crate) struct Orders {
     /// What decides the order `shuffled`, and what is sampled
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) memory: MemoryState,
     /// Cut every polygon into a fan of triangles first
     #[arg(long)]
     pub(crate) triangulate: bool,
@@ -150,6 +152,8 @@ pub(crate) struct Growth {
     /// What decides the order `shuffled`, and what is sampled
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) memory: MemoryState,
     /// Write everything as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,

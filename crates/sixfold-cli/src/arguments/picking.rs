@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use ::study::Need;
+use ::study::{Need, Policy};
 use clap::Args;
 
 use super::{backend, duration, seed};
@@ -62,6 +62,9 @@ pub(crate) struct Pick {
     /// What decides random orders
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
+    /// Freed pages: kept by this process, or system
+    #[arg(long, value_name = "POLICY", default_value = "kept")]
+    pub(crate) heap: Policy,
     /// Cut every polygon into a fan of triangles first
     #[arg(long)]
     pub(crate) triangulate: bool,

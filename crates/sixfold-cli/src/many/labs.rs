@@ -121,6 +121,8 @@ impl Measuring<'_> {
             operations,
             budget,
             seed,
+            heap,
+            caches,
             ..
         } = self.settings;
         let settings = || Settings {
@@ -128,6 +130,8 @@ impl Measuring<'_> {
             operations: operations.clone(),
             budget: *budget,
             seed: *seed,
+            heap: *heap,
+            caches: *caches,
             ..Settings::default()
         };
         Ok(match lab {

@@ -1,5 +1,7 @@
+use crate::heap::CacheState;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
+use workload::pages::Policy;
 
 use sixfold::shapes;
 
@@ -11,12 +13,14 @@ fn report(factor: impl Fn(&str, Operation) -> f64) -> Report {
     let specimen = Specimen::new("ball", shapes::icosahedron());
     let settings = Settings {
         operations: vec![Operation::Boundary, Operation::EdgeLength, Operation::Build],
-        budget: Duration::from_millis(30),
+        budget: Duration::from_millis(400),
         ..Settings::default()
     };
     let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ());
     let mut report = report.expect("a study");
     report.control = None;
+    // Whatever other tests of this program have put in force meanwhile.
+    report.environment.heap.as_mut().expect("measured").policy = Policy::Kept;
     for raw in &mut report.raw {
         let base = 1000.0 * factor(&raw.backend, raw.operation);
         // Nine samples, two per cent apart.
@@ -53,8 +57,14 @@ fn a_known_change_is_found_and_nothing_else() {
         drift: 1.05,
         ..Comparing::default()
     };
-    assert_eq!(compare(&before, &after, quiet).changed().count(), 3);
-    let changes = compare(&before, &after, Comparing::default());
+    assert_eq!(
+        compare(&before, &after, quiet)
+            .expect("one memory state")
+            .changed()
+            .count(),
+        3
+    );
+    let changes = compare(&before, &after, Comparing::default()).expect("one memory state");
     assert_eq!(changes.rows.len(), before.results.len());
     let found: Vec<_> = { changes.changed() }
         .map(|row| (row.backend.as_str(), row.operation, row.verdict))
@@ -90,7 +100,7 @@ fn a_slower_machine_is_one_factor_and_what_is_left_is_told() {
         _ => 3.0,
     });
     after.environment.cpu_model = Some("an old one".into());
-    let absolute = compare(&before, &after, Comparing::default());
+    let absolute = compare(&before, &after, Comparing::default()).expect("one memory state");
     assert_eq!(absolute.count(Verdict::Slower), absolute.rows.len());
     assert!(
         absolute.words[1].contains("3.00 × slower"),
@@ -110,11 +120,39 @@ fn a_slower_machine_is_one_factor_and_what_is_left_is_told() {
             relative: true,
             ..Comparing::default()
         },
-    );
+    )
+    .expect("one memory state");
     let found: Vec<_> = { relative.changed() }
         .map(|row| (row.backend.as_str(), row.verdict))
         .collect();
     assert_eq!(found, [("half-edge", Verdict::Faster)]);
+}
+
+#[test]
+fn other_heaps_and_other_caches_are_refused() {
+    let before = report(|_, _| 1.0);
+    let mut after = before.clone();
+    let heap = after.environment.heap.as_mut().expect("measured");
+    heap.policy = match heap.policy {
+        Policy::Kept => Policy::System,
+        Policy::System => Policy::Kept,
+    };
+    let refused = compare(&before, &after, Comparing::default());
+    let message = refused.expect_err("two policies").to_string();
+    assert!(
+        message.contains("--heap kept") && message.contains("--heap system"),
+        "{message}"
+    );
+    let mut after = before.clone();
+    let caches = after.environment.cache_state.as_mut().expect("measured");
+    caches.state = CacheState::Cold;
+    let refused = compare(&before, &after, Comparing::default());
+    let message = refused.expect_err("two states").to_string();
+    assert!(message.contains("--caches cold"), "{message}");
+    // Older versions measured on the system's heap, with warm caches.
+    let mut old = before.clone();
+    (old.environment.heap, old.environment.cache_state) = (None, None);
+    assert_eq!(old.environment.memory_words(), ["system", "warm"]);
 }
 
 #[test]
@@ -137,7 +175,7 @@ fn what_only_one_has_another_work_and_another_winner_are_told() {
     row.checksum = row.checksum.map(|sum| sum * 1.01);
     let name = row.backend.clone();
     after.backends[3].bytes = Some(7);
-    let changes = compare(&before, &after, Comparing::default());
+    let changes = compare(&before, &after, Comparing::default()).expect("one memory state");
     assert_eq!(changes.only_before.len(), 6);
     assert!(
         changes.only_before[0].starts_with("build on "),
@@ -161,7 +199,7 @@ fn without_samples_only_what_is_beyond_doubt_counts() {
     let before = report(|_, _| 1.0);
     let mut after = report(|backend, _| if backend == "half-edge" { 2.5 } else { 1.5 });
     after.raw.clear();
-    let changes = compare(&before, &after, Comparing::default());
+    let changes = compare(&before, &after, Comparing::default()).expect("one memory state");
     let found: Vec<_> = changes.changed().map(|row| row.backend.as_str()).collect();
     assert_eq!(found, ["half-edge"; 3]);
     assert!(changes.rows.iter().all(|row| row.ci_low.is_none()));

@@ -11,6 +11,8 @@ use std::time::{Duration, Instant};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
+use workload::pages::Policy;
+
 use crate::tame::tame;
 
 /// The version of the protocol.
@@ -36,7 +38,16 @@ pub(super) struct Greeting {
     pub(super) bytes: Option<usize>,
     /// What it measures: a library and its version.
     pub(super) library: Option<String>,
+    /// Its allocator, if that can be told by the environment to keep pages: `glibc`.
+    #[serde(default)]
+    pub(super) heap: Option<String>,
 }
+
+/// What tells the GNU C library to keep freed pages, as this program tells its own.
+const TUNABLES: [&str; 2] = [
+    "GLIBC_TUNABLES",
+    "glibc.malloc.mmap_max=0:glibc.malloc.trim_threshold=9223372036854775807:glibc.malloc.top_pad=1048576:glibc.malloc.arena_max=1",
+];
 
 impl Greeting {
     pub(super) fn refusing(reason: String) -> Self {
@@ -46,7 +57,13 @@ impl Greeting {
             reason: Some(reason),
             bytes: None,
             library: None,
+            heap: None,
         }
+    }
+
+    /// Whether its allocator obeys the environment that it was started with.
+    pub(super) fn keeps_pages_if_told(&self) -> bool {
+        self.heap.as_deref() == Some("glibc")
     }
 }
 
@@ -94,11 +111,16 @@ impl<'a> Program<'a> {
     /// Starts `words`; `Err` says why that did not work.
     pub(super) fn start(
         words: &[String],
+        heap: Policy,
         patience: Duration,
         stop: &'a AtomicBool,
     ) -> Result<Self, String> {
         let mut command = Command::new(&words[0]);
         command.args(&words[1..]);
+        if Self::is_told(heap) {
+            let [tunables, kept] = TUNABLES;
+            command.env(tunables, kept);
+        }
         command.stdin(Stdio::piped());
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         // Ctrl-C is for us: what we started is told by the end of its input.
@@ -130,6 +152,11 @@ impl<'a> Program<'a> {
             patience,
             stop,
         })
+    }
+
+    /// Whether programs are told to keep pages: not if the user has set the variable for that.
+    pub(super) fn is_told(heap: Policy) -> bool {
+        heap == Policy::Kept && std::env::var_os(TUNABLES[0]).is_none()
     }
 
     /// What it says of the mesh.

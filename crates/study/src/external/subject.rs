@@ -1,7 +1,7 @@
 //! A program on the bench, beside the structures.
 
 use sixfold::QueryCost;
-use workload::{Clock, Job, Outcome, Run, Subject, Time};
+use workload::{Clock, Job, Outcome, Run, Series, Subject, Time};
 
 use super::program::{Answer, Program, Question};
 use crate::tame::tame;
@@ -71,7 +71,8 @@ impl Subject for ExternalSubject<'_> {
         self.bytes
     }
 
-    fn run(&mut self, job: &Job, runs: u32, clock: &dyn Clock, _: bool) -> Run {
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+        let clock = series.clock;
         let none = Time::none_like(clock.now());
         let refused = |refusal: String| Run {
             time: none,
@@ -81,15 +82,21 @@ impl Subject for ExternalSubject<'_> {
         if job.sample.is_some() {
             return refused("it cannot be asked about a sample".into());
         }
-        let question = Question {
+        let question = |times: u32| Question {
             run: job.operation.name(),
-            times: runs,
+            times,
         };
-        match self.ask(&question, clock) {
+        if series.untimed > 0
+            && let Err(why) = self.ask(&question(series.untimed), clock)
+        {
+            return refused(why);
+        }
+        series.begin();
+        match self.ask(&question(series.runs), clock) {
             Ok((answer, Some(time))) => {
                 let found = answer.checksum.zip(answer.elements);
                 let outcome = found.map(|(checksum, elements)| Outcome { checksum, elements });
-                Run::done(time.scaled(1.0 / f64::from(runs)), outcome)
+                Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
             }
             Ok((answer, None)) => refused(tame(&answer.refused.unwrap_or_default())),
             Err(why) => refused(why),
@@ -116,5 +123,6 @@ fn time(answer: &Answer, waited_ns: f64, cpu: bool) -> Result<Time, String> {
             false => None,
         },
         wall_ns,
+        faults: None,
     })
 }

@@ -5,8 +5,8 @@ use sixfold::Counts;
 
 use super::SizeReport;
 use super::settings::scaled;
-use crate::caches::Cache;
 use crate::slope::Slope;
+use workload::Cache;
 use workload::{Backend, Operation};
 
 /// How the time of one operation on one backend goes with the number of faces.
@@ -157,6 +157,12 @@ mod tests {
             runs_per_sample: 1,
             warm_up_only: false,
             by_name_only: false,
+            faults: None,
+            retaken: 0,
+            disturbed: 0,
+            first_ns: None,
+            first_samples: 0,
+            first_faults: None,
         };
         SizeReport {
             vertices: 0,

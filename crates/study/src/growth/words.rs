@@ -1,10 +1,10 @@
 //! What a sweep over sizes shows, in a few plain sentences.
 
 use super::{CacheEnd, Fit, SizeReport};
-use crate::caches::{Cache, last_level};
 use crate::numbers::{grouped, times};
 use crate::report::{Agreement, Standing};
 use crate::slope::Slope;
+use workload::{Cache, last_level};
 
 /// Sentences on exponents, on the price of an element, on who is fastest where, and on the caches.
 pub(super) fn words(

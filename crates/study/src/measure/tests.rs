@@ -10,8 +10,10 @@ use sixfold::{QueryCost, Relation};
 use super::*;
 use crate::control::{control, noise};
 use crate::disturbed::Machine;
+use crate::heap::CacheState;
 use crate::plan::FEWEST_ELEMENTS;
 use crate::statistics::Median;
+use workload::pages::Policy;
 
 /// A structure whose every element costs the same, known, time.
 struct Synthetic {
@@ -35,11 +37,15 @@ impl Subject for Synthetic {
     fn bytes(&self) -> usize {
         1
     }
-    fn run(&mut self, job: &Job, runs: u32, clock: &dyn Clock, _: bool) -> Run {
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+        let Series { runs, clock, .. } = *series;
         let size = job
             .sample
             .map_or(self.elements, |s| s.size.min(self.elements));
         self.asked.set(self.asked.get().max(size));
+        for _ in 0..series.untimed {
+            self.machine.work(self.ns_per_element * size as f64);
+        }
         let start = clock.now();
         for _ in 0..runs {
             self.machine.work(self.ns_per_element * size as f64);
@@ -86,6 +92,7 @@ fn bench(
         population: [10_000; 3],
         skewed,
         clock: &machine,
+        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
         budget,
         named: false,
         random: ChaCha8Rng::seed_from_u64(3),
@@ -99,6 +106,20 @@ fn bench(
 fn ratio(entries: &[Entry], a: usize, b: usize) -> Median {
     let pairs = entries[a].samples.iter().zip(&entries[b].samples);
     Median::of(pairs.map(|((_, a), (_, b))| a.ns() / b.ns())).expect("samples")
+}
+
+#[test]
+fn a_cost_that_depends_on_the_place_is_seen_by_the_control() {
+    // The second entry of the first takes a fifth longer, wherever it lies.
+    let entries = measured(&[7.0, 10.0, 8.4], false, Duration::from_secs(2), false);
+    let planted = control(&entries, 0, 2, "synthetic").expect("samples");
+    for row in &planted.operations {
+        assert!(row.is_unsteady(), "{row:?}");
+        assert!(noise(Some(&planted), row.operation) >= 1.19, "{row:?}");
+    }
+    let entries = measured(&[7.0, 10.0, 7.0], false, Duration::from_secs(2), false);
+    let steady = control(&entries, 0, 2, "synthetic").expect("samples");
+    assert!(steady.operations.iter().all(|row| !row.is_unsteady()));
 }
 
 #[test]
@@ -227,6 +248,7 @@ fn a_subdivision_is_estimated_first_and_left_out_if_it_is_long_and_nobody_asked(
             population: [10_000; 3],
             skewed: false,
             clock: &machine,
+            memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
             budget: Duration::from_secs(2),
             named,
             random: ChaCha8Rng::seed_from_u64(3),

@@ -218,6 +218,7 @@ mod tests {
         let time = |drift: f64| Time {
             cpu_ns: Some(ns * drift),
             wall_ns: ns * drift,
+            faults: None,
         };
         Timed {
             backend,

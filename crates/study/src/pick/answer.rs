@@ -87,8 +87,12 @@ pub struct Ranked {
     pub ci_high: Option<f64>,
     /// Nobody can tell it from the fastest.
     pub tied_with_best: bool,
-    /// What building it from polygons takes, tabulating included.
+    /// What building it from polygons takes, tabulating included, where freed pages are there to be used
+    /// again: what each rebuilding costs.
     pub build_ns: f64,
+    /// The same on fresh pages: what a program pays that builds it once. `None` where there was no time.
+    #[serde(default)]
+    pub first_build_ns: Option<f64>,
     /// The bytes it holds.
     pub bytes: usize,
     /// The same for each vertex.
@@ -101,6 +105,9 @@ pub struct Ranked {
     pub parts: Vec<PartCost>,
     /// How many rounds it took part in.
     pub samples: usize,
+    /// The most page faults in any sample; `None` where they were not counted.
+    #[serde(default)]
+    pub faults: Option<u64>,
     /// The crates to depend on.
     pub crates: Vec<String>,
 }
@@ -114,6 +121,13 @@ pub struct PartCost {
     pub share: f64,
     /// What one takes by itself, in the order of the workload; `None` where nothing was measured.
     pub ns: Option<f64>,
+}
+
+impl Ranked {
+    /// What the first building takes: on fresh pages, where that is known.
+    pub fn first_build_ns(&self) -> f64 {
+        self.first_build_ns.unwrap_or(self.build_ns)
+    }
 }
 
 impl PartCost {

@@ -28,13 +28,13 @@ pub(crate) fn break_even(
         let build = if ranked.backend == BASE {
             0.0
         } else {
-            ranked.build_ns
+            ranked.first_build_ns()
         };
         let after = |ns: f64| (ns > 0.0).then(|| build / ns);
         let pays = after(saved.value);
         Some(BreakEven {
             backend: ranked.backend.clone(),
-            build_ns: ranked.build_ns,
+            build_ns: ranked.first_build_ns(),
             saves_ns_per_operation: saved.value,
             operations: pays,
             ci_low: saved.interval.and_then(|[_, high]| after(high)),

@@ -8,9 +8,11 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sixfold::subdivision::{Method, Scheme};
 use sixfold::{Counts, support};
-use workload::{Action, Clock, Kind, NoPlace, Operation, Run, Sample, Script, Time};
+use workload::{Action, Clock, Kind, NoPlace, Operation, Run, Sample, Script, Series, Start, Time};
 
 use crate::agreement::agree;
+use crate::gauge::{Gauge, Verdict, undisturbed};
+use crate::heap::Memory;
 use crate::inspect::Specimen;
 use crate::pick::answer::{BreakEven, Excluded, PartCost, Ranked};
 use crate::pick::break_even::break_even;
@@ -31,8 +33,10 @@ const LONGEST_SAMPLE_NS: f64 = 20_000_000.0;
 const BUILDS: usize = 9;
 /// What the parts by themselves may take of the budget, after the rounds.
 const FOR_PARTS: f64 = 0.15;
-/// Copies that one sample may be worked on, in bytes.
-const MOST_BYTES: usize = 64 << 20;
+/// What building on fresh pages may take of the budget, at the end.
+const FOR_FIRST_BUILDS: f64 = 0.05;
+/// More copies than these in a sample make it no better.
+const MOST_COPIES: usize = 10_000;
 /// So many faces tell for the first time what a pass takes that scans.
 const PATCHES: [usize; 2] = [256, 1024];
 /// Elements that are asked where every answer is a search.
@@ -46,6 +50,7 @@ pub(crate) struct Contest<'c> {
     pub(crate) script: &'c Script,
     pub(crate) budget: Duration,
     pub(crate) clock: &'c dyn Clock,
+    pub(crate) memory: &'c mut Memory,
     pub(crate) stop: &'c AtomicBool,
     pub(crate) progress: &'c mut dyn FnMut(f64, &str),
 }
@@ -96,6 +101,8 @@ impl Contest<'_> {
             self.plan_passes(entrant, share);
             self.plan_parts(entrant, share);
         }
+        self.memory.reserve();
+        let mut gauge = Gauge::new(budget);
         let mut random = ChaCha8Rng::seed_from_u64(self.question.seed);
         let mut order: Vec<usize> = (0..entrants.len()).collect();
         let mut cost = 0.0;
@@ -105,6 +112,7 @@ impl Contest<'_> {
             if self.stopped() || (round > 0 && now + cost > rounds_end) {
                 break;
             }
+            self.memory.watch();
             order.shuffle(&mut random);
             for &i in &order {
                 if self.stopped() {
@@ -113,7 +121,7 @@ impl Contest<'_> {
                 let label = entrants[i].mixer.name();
                 let done = ((now - start) / budget).clamp(0.1, 1.0);
                 (self.progress)(done, &format!("round {}, {label}", round + 1));
-                self.sample(&mut entrants[i], round, slices);
+                self.sample(&mut gauge, &mut entrants[i], round, slices);
             }
             cost = cost.max(self.now() - now);
         }
@@ -127,7 +135,12 @@ impl Contest<'_> {
                 needed_ms: (1.5 * needed / 1e8).ceil() as u64 * 100,
             });
         }
-        self.time_parts(&mut entrants, deadline);
+        for entrant in &mut entrants {
+            entrant.samples = undisturbed(&entrant.samples, &entrant.slowdowns);
+        }
+        self.time_parts(&mut entrants, deadline - FOR_FIRST_BUILDS * budget);
+        // Last, for the pages that it gives back are those that samples would find.
+        self.time_first_builds(&mut entrants, deadline);
         let shortest_ns = entrants
             .iter()
             .filter_map(|e| shortest(e, slices, self.script));
@@ -154,12 +167,10 @@ impl Contest<'_> {
             return Ok(nothing);
         }
         let (mut least, mut most) = (f64::INFINITY, 1.0_f64);
-        let mut bytes = 1;
         for entrant in entrants.iter_mut().filter(|e| !e.scans()) {
             entrant.mixer.run(0, 1, 1, self.clock);
             let ns = entrant.mixer.run(1, 1, 1, self.clock).time.ns().max(1.0);
             (least, most) = (least.min(ns), most.max(ns));
-            bytes = bytes.max(entrant.mixer.bytes());
         }
         if !least.is_finite() {
             return Ok(nothing); // all scan
@@ -180,7 +191,7 @@ impl Contest<'_> {
                 let copies = turns.div_ceil(in_a_copy) as usize;
                 Ok(Slices {
                     turns: in_a_copy.min(turns),
-                    copies: copies.min(MOST_BYTES / bytes).max(1),
+                    copies: copies.clamp(1, MOST_COPIES),
                 })
             }
         }
@@ -205,7 +216,9 @@ impl Contest<'_> {
             if scans || scanned.contains(&true) {
                 self.plan_search(entrant, operation, scanned, share, &mut plan);
             } else {
-                let run = entrant.mixer.run_pass(operation, None, 1, self.clock, true);
+                let grows = u32::from(operation.grows_tables());
+                let series = Series::once(self.clock).after(grows).checked();
+                let run = entrant.mixer.run_pass(operation, None, &series);
                 entrant.found[part] = run.outcome.map(|outcome| outcome.checksum);
                 let ns = run.time.ns().max(1.0);
                 plan.runs = (SHORTEST_SAMPLE_NS / ns).ceil().clamp(1.0, 1000.0) as u32;
@@ -224,10 +237,10 @@ impl Contest<'_> {
         share: f64,
         plan: &mut PassPlan,
     ) {
-        let mut run = |operation, sample: Option<Sample>| -> Run {
-            entrant
-                .mixer
-                .run_pass(operation, sample, 1, self.clock, false)
+        let mut run = |operation: Operation, sample: Option<Sample>| -> Run {
+            let grows = u32::from(operation.grows_tables());
+            let series = Series::once(self.clock).after(grows);
+            entrant.mixer.run_pass(operation, sample, &series)
         };
         if operation.can_be_sampled() || operation == Operation::FfBfs {
             // What walks over all faces asks the relation of each.
@@ -323,8 +336,24 @@ impl Contest<'_> {
         }
     }
 
-    /// One sample of everything that the mix does.
-    fn sample(&self, entrant: &mut Entrant<'_>, round: u32, slices: Slices) {
+    /// Takes a sample of everything that the mix does.
+    fn sample(&self, gauge: &mut Gauge, entrant: &mut Entrant<'_>, round: u32, slices: Slices) {
+        let kept = self.memory.keeps_pages();
+        let taken = gauge.take(
+            self.clock,
+            || self.sample_once(entrant, round, slices),
+            |time| match self.stopped() {
+                true => Verdict::Final,
+                false => Verdict::on_faults(*time, kept),
+            },
+        );
+        if !self.stopped() {
+            entrant.samples.push((round, taken.value));
+            entrant.slowdowns.push(taken.slowdown);
+        }
+    }
+
+    fn sample_once(&self, entrant: &mut Entrant<'_>, round: u32, slices: Slices) -> Time {
         let mut total = Time::none_like(self.clock.now());
         if self.script.on_elements > 0.0 {
             total = total.plus(if entrant.scans() {
@@ -339,13 +368,11 @@ impl Contest<'_> {
         }
         let rebuilds = self.question.workload.rebuilds_per_operation(&self.counts);
         if rebuilds > 0.0 || entrant.builds.len() < BUILDS {
-            let time = entrant.mixer.build(&self.specimen.polygons, self.clock);
+            let time = entrant.mixer.build(&Series::once(self.clock));
             entrant.builds.push(time);
             total = total.plus(time.scaled(rebuilds));
         }
-        if !self.stopped() {
-            entrant.samples.push((round, total));
-        }
+        total
     }
 
     /// All parts on elements in one loop; the turns before these run first, untimed, so that caches
@@ -384,15 +411,30 @@ impl Contest<'_> {
             return estimate;
         }
         let operation = operation.unwrap_or(Operation::Build);
-        if runs > 1 {
-            entrant
-                .mixer
-                .run_pass(operation, sample, 1, self.clock, false);
+        let untimed = u32::from(runs > 1 || operation.grows_tables());
+        let series = Series::of_runs(runs, self.clock).after(untimed);
+        entrant.mixer.run_pass(operation, sample, &series).time
+    }
+
+    /// Builds every structure on fresh pages, in rounds, while there is time.
+    fn time_first_builds(&self, entrants: &mut [Entrant<'_>], deadline: f64) {
+        let mut longest = 0.0_f64;
+        for _ in 0..BUILDS {
+            let now = self.now();
+            if self.stopped() || now + longest > deadline {
+                return;
+            }
+            for entrant in entrants.iter_mut().filter(|e| !e.control) {
+                let series = Series {
+                    start: Start::FreshPages,
+                    ..Series::once(self.clock)
+                };
+                let first = entrant.mixer.build(&series);
+                let later = entrant.mixer.build(&Series::once(self.clock).after(1));
+                entrant.first_builds.push(first.ns() / later.ns().max(1.0));
+            }
+            longest = longest.max(self.now() - now);
         }
-        entrant
-            .mixer
-            .run_pass(operation, sample, runs, self.clock, false)
-            .time
     }
 
     /// Each part by itself, in rounds, as long as there is time; at least once.
@@ -484,12 +526,19 @@ impl Contest<'_> {
                 ci_high: place.ratio.interval.map(|[_, high]| high),
                 tied_with_best: place.standing != crate::report::Standing::Slower,
                 build_ns: build.value,
+                first_build_ns: Median::of(entrant.first_builds.iter().copied())
+                    .map(|ratio| ratio.value * build.value),
                 bytes,
                 bytes_per_vertex: bytes as f64 / vertices,
                 sampled: entrant.scans() || entrant.passes.iter().any(|p| p.sample.is_some()),
                 estimated: entrant.passes.iter().any(|plan| plan.estimate.is_some()),
                 parts: self.parts(entrant),
                 samples: entrant.samples.len(),
+                faults: entrant
+                    .samples
+                    .iter()
+                    .filter_map(|(_, time)| time.faults)
+                    .max(),
                 crates: entrant
                     .over
                     .into_iter()

@@ -1,7 +1,7 @@
 //! Who takes part in a contest, and what each has done so far.
 
-use sixfold::{Edit, PolygonMesh};
-use workload::{Action, Clock, Mixer, NoPlace, Script, Time};
+use sixfold::Edit;
+use workload::{Action, Clock, Mixer, NoPlace, Script, Series, Time};
 
 /// A backend, or tables, with its samples.
 pub(crate) struct Entrant<'a> {
@@ -16,8 +16,12 @@ pub(crate) struct Entrant<'a> {
     pub(crate) part_operations: Vec<u64>,
     /// By round: the time of one operation of the mix, rebuilding included.
     pub(crate) samples: Vec<(u32, Time)>,
+    /// By sample: the larger slowdown of the gauge before and after it.
+    pub(crate) slowdowns: Vec<f64>,
     /// What building took.
     pub(crate) builds: Vec<Time>,
+    /// How much longer building took on fresh pages than right after.
+    pub(crate) first_builds: Vec<f64>,
     /// By part: the times of one operation by itself.
     pub(crate) parts: Vec<Vec<f64>>,
     /// By part: how much its operations yielded on all elements, or the checksum of a pass; `None` where
@@ -48,7 +52,9 @@ impl<'a> Entrant<'a> {
             passes: vec![PassPlan::default(); parts],
             part_operations: vec![0; parts],
             samples: Vec::new(),
+            slowdowns: Vec::new(),
             builds: Vec::new(),
+            first_builds: Vec::new(),
             parts: vec![Vec::new(); parts],
             found: vec![None; parts],
         }
@@ -112,7 +118,6 @@ pub(crate) fn agree_on_places(
 /// where it asks nothing that could be tabulated.
 pub(crate) fn tables<'a>(
     entrants: &[Entrant<'a>],
-    polygons: &PolygonMesh,
     clock: &dyn Clock,
     tabulate: impl Fn(&str) -> Option<Box<dyn Mixer + 'a>>,
 ) -> Option<Entrant<'a>> {
@@ -123,7 +128,7 @@ pub(crate) fn tables<'a>(
         let Some(tables) = tabulate(over) else {
             continue;
         };
-        let ns = tables.build(polygons, clock).ns();
+        let ns = tables.build(&Series::once(clock)).ns();
         if best.as_ref().is_none_or(|(least, _)| ns < *least) {
             let over = Some(over);
             best = Some((

@@ -50,10 +50,7 @@ pub(crate) fn pooled(
     };
     let shortest = outcomes.iter().filter_map(|o| o.shortest_ns);
     let shortest = shortest.min_by(f64::total_cmp);
-    let timer = Timer {
-        largest_share: shortest.map(|ns| timer.overhead_ns / ns),
-        ..timer
-    };
+    let timer = timer.with_shortest(shortest);
     let mut disagreeing: Vec<String> = { outcomes.iter() }
         .flat_map(|o| o.disagreeing.clone())
         .collect();
@@ -137,6 +134,9 @@ fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
             ci_high: known.then(|| ratio * doubt.exp()),
             tied_with_best: ratio <= noise || (known && ratio * (-doubt).exp() <= 1.0),
             build_ns: geometric(rows.iter().map(|r| r.build_ns)),
+            first_build_ns: { rows.iter().map(|r| r.first_build_ns) }
+                .collect::<Option<Vec<f64>>>()
+                .map(|builds| geometric(builds.into_iter())),
             bytes,
             bytes_per_vertex: geometric(rows.iter().map(|r| r.bytes_per_vertex)),
             sampled: rows.iter().any(|r| r.sampled),
@@ -165,7 +165,7 @@ fn on_all(outcomes: &[Outcome], ranked: &Ranked) -> Option<BreakEven> {
     };
     Some(BreakEven {
         backend: ranked.backend.clone(),
-        build_ns: ranked.build_ns,
+        build_ns: ranked.first_build_ns(),
         saves_ns_per_operation: mean(rows.iter().map(|r| r.saves_ns_per_operation))?,
         operations: all(|row| row.operations),
         ci_low: all(|row| row.ci_low),

@@ -157,7 +157,7 @@ fn over_one_use(answer: &Answer, best: &Ranked) -> Option<String> {
         // An indexed face set is what there is before anything is built.
         let build = match ranked.backend.as_str() {
             "indexed-face-set" => 0.0,
-            _ => ranked.build_ns,
+            _ => ranked.first_build_ns(),
         };
         build + operations * ranked.ns_per_operation
     };

@@ -1,7 +1,8 @@
 //! Contests of mixers whose costs are known, on a machine whose speed drifts.
 
 use sixfold::{PolygonMesh, shapes};
-use workload::{MixRun, Mixer, Operation, Run, Sample, Time, built_in};
+use workload::pages::Policy;
+use workload::{MixRun, Mixer, Operation, Run, Sample, Series, Time, built_in};
 
 use super::*;
 use crate::disturbed::Machine;
@@ -65,22 +66,17 @@ impl Mixer for Known {
     fn cycle(&self, _: usize) -> u64 {
         1000
     }
-    fn run_pass(
-        &mut self,
-        _: Operation,
-        _: Option<Sample>,
-        _: u32,
-        clock: &dyn workload::Clock,
-        _: bool,
-    ) -> Run {
-        Run::done(self.time(1e6, clock), None)
+    fn run_pass(&mut self, _: Operation, _: Option<Sample>, series: &Series<'_>) -> Run {
+        Run::done(self.time(1e6, series.clock), None)
     }
     fn accepted(&mut self) -> Vec<Vec<bool>> {
         Vec::new()
     }
     fn keep(&mut self, _: &[Vec<bool>]) {}
-    fn build(&self, _: &PolygonMesh, clock: &dyn workload::Clock) -> Time {
-        self.time(self.build_ns, clock)
+    fn build(&self, series: &Series<'_>) -> Time {
+        let untimed = series.untimed;
+        (0..untimed).for_each(|_| self.machine.work(self.build_ns));
+        self.time(self.build_ns, series.clock)
     }
 }
 
@@ -92,6 +88,7 @@ fn question(budget: Duration) -> Question {
         max_memory: None,
         budget,
         seed: 7,
+        heap: Policy::Kept,
     }
 }
 
@@ -134,6 +131,7 @@ fn contest(costs_ns: &[f64], seed: u64) -> Outcome {
         script: &script,
         budget,
         clock: &machine,
+        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
         stop: &stop,
         progress: &mut |_, _| (),
     };

@@ -21,6 +21,7 @@ use crate::mix::{MixRun, Mixer};
 use crate::operation::Operation;
 use crate::place::{Place, perform, prepare};
 use crate::sample::Draw;
+use crate::series::{KeptCopies, Series};
 use crate::sweeps::Outputs;
 use crate::workload::{Action, Part};
 
@@ -151,31 +152,12 @@ struct Doing<'a, M: Representation, W> {
 }
 
 impl<M: Representation, W: Writing<M>> Doing<'_, M, W> {
-    /// The edit of the script that `part` is, with its places, but for the one that is kept for
-    /// [`prime`](Self::prime).
+    /// The edit of the script that `part` is, with its places.
     fn edit(&self, part: usize) -> Option<(Edit, &[Place<M>])> {
-        let (edit, places) = self.all_places(part)?;
-        match places {
-            [asked @ .., _] if !asked.is_empty() => Some((edit, asked)),
-            few => Some((edit, few)),
-        }
-    }
-
-    fn all_places(&self, part: usize) -> Option<(Edit, &[Place<M>])> {
         let nth = self.script.edits().position(|other| other == part)?;
         match self.script.parts[part].action {
             Action::Edit(edit) => Some((edit, self.places.get(nth)?)),
             _ => None,
-        }
-    }
-
-    /// Does each edit once, at the last of its places, if it has several: tables that are exactly full
-    /// have moved then, which many edits share and a sample of few should not pay for.
-    fn prime(&self, mesh: &mut M) {
-        for part in self.script.edits() {
-            if let Some((edit, [_, .., last])) = self.all_places(part) {
-                black_box(W::perform(mesh, edit, last));
-            }
         }
     }
 
@@ -238,6 +220,8 @@ struct Bench<'a, M: Representation, W> {
     doing: Doing<'a, M, W>,
     /// The mesh made ready for its edits; `None` without.
     ready: Option<M>,
+    /// Copies of it, and what the last run on each came to.
+    copies: KeptCopies<(M, [u64; 3])>,
     /// The structure as a study has it, for passes that make a mesh or go over a sample; built when it
     /// is first needed.
     as_studied: Option<Box<dyn Subject + 'a>>,
@@ -261,6 +245,7 @@ impl<'a, M: Representation + 'static, W: Writing<M>> Bench<'a, M, W> {
             draw: start.draw,
             doing,
             ready: None,
+            copies: KeptCopies::default(),
             as_studied: None,
         };
         bench.look_up();
@@ -301,31 +286,40 @@ impl<'a, M: Representation + 'static, W: Writing<M>> Bench<'a, M, W> {
         prepared
     }
 
-    /// Runs `work` on the mesh, or, where there are edits, on each of so many copies made ready for
-    /// them, which are made and let go outside the timing.
-    fn worked(
+    /// Runs `work` on the mesh, or, where there are edits, so many times on copies that are put back
+    /// while the clock stands still.
+    fn run_timed(
         &mut self,
-        copies: usize,
+        runs: usize,
         clock: &dyn Clock,
         work: impl Fn(&Doing<'a, M, W>, &mut M) -> [u64; 3],
     ) -> MixRun {
-        let Self { mesh, doing, .. } = self;
-        let mut meshes = match &self.ready {
-            Some(ready) => vec![ready.clone(); copies.max(1)],
-            None => Vec::new(),
+        let Self {
+            mesh,
+            doing,
+            ready,
+            copies,
+            ..
+        } = self;
+        let runs = if ready.is_some() { runs.max(1) } else { 1 };
+        let mut counts = [0; 3];
+        let time = match ready {
+            None => timed(clock, || counts = work(doing, black_box(mesh))),
+            Some(ready) => {
+                let series = Series::of_runs(runs as u32, clock);
+                let time = copies.time(
+                    &series,
+                    ready.memory().total(),
+                    || (ready.clone(), counts),
+                    |(copy, _)| copy.clone_from(ready),
+                    |(copy, counts)| *counts = work(doing, copy),
+                );
+                // All runs do the same.
+                counts = copies.last().map_or(counts, |(_, counts)| *counts);
+                time
+            }
         };
-        meshes.iter_mut().for_each(|mesh| doing.prime(mesh));
-        let mut sums = [0; 3];
-        let time = timed(clock, || {
-            if meshes.is_empty() {
-                sums = work(doing, black_box(mesh));
-            }
-            for mesh in &mut meshes {
-                let came_to = work(doing, black_box(mesh));
-                sums = std::array::from_fn(|i| sums[i] + came_to[i]);
-            }
-        });
-        let [operations, yielded, refused] = sums;
+        let [operations, yielded, refused] = counts.map(|count| count * runs as u64);
         MixRun {
             time,
             operations,
@@ -362,7 +356,7 @@ impl<M: Representation + 'static, W: Writing<M>> Mixer for Bench<'_, M, W> {
     }
 
     fn run(&mut self, turn: u64, turns: u64, copies: usize, clock: &dyn Clock) -> MixRun {
-        self.worked(copies, clock, |doing, mesh| {
+        self.run_timed(copies, clock, |doing, mesh| {
             doing.turns(mesh, turn..turn + turns)
         })
     }
@@ -370,7 +364,7 @@ impl<M: Representation + 'static, W: Writing<M>> Mixer for Bench<'_, M, W> {
     fn run_part(&mut self, part: usize, first: u64, operations: u64, clock: &dyn Clock) -> MixRun {
         let is_edit = self.doing.edit(part).is_some();
         let first = if is_edit { 0 } else { first };
-        self.worked(1, clock, |doing, mesh| {
+        self.run_timed(1, clock, |doing, mesh| {
             doing.act(mesh, part, first..first + operations)
         })
     }
@@ -387,12 +381,10 @@ impl<M: Representation + 'static, W: Writing<M>> Mixer for Bench<'_, M, W> {
         &mut self,
         operation: Operation,
         sample: Option<Sample>,
-        runs: u32,
-        clock: &dyn Clock,
-        check: bool,
+        series: &Series<'_>,
     ) -> Run {
         if sample.is_none() && !operation.makes_a_mesh() && operation != Operation::VvSmooth {
-            return pass_over(&self.mesh, &mut self.outputs, operation, runs, clock, check);
+            return pass_over(&self.mesh, &mut self.outputs, operation, series);
         }
         if self.as_studied.is_none() {
             let roster = Backend::roster();
@@ -401,10 +393,10 @@ impl<M: Representation + 'static, W: Writing<M>> Mixer for Bench<'_, M, W> {
             self.as_studied = built.and_then(Result::ok).map(|(subject, _)| subject);
         }
         match &mut self.as_studied {
-            Some(subject) => subject.run(&Job { operation, sample }, runs, clock, check),
+            Some(subject) => subject.run(&Job { operation, sample }, series),
             None => Run {
                 refusal: Some("no such structure is in the roster".into()),
-                ..Run::done(Time::none_like(clock.now()), None)
+                ..Run::done(Time::none_like(series.clock.now()), None)
             },
         }
     }
@@ -415,7 +407,7 @@ impl<M: Representation + 'static, W: Writing<M>> Mixer for Bench<'_, M, W> {
             return accepted;
         };
         for (part, accepted) in self.doing.script.edits().zip(&mut accepted) {
-            let Some((edit, places)) = self.doing.all_places(part) else {
+            let Some((edit, places)) = self.doing.edit(part) else {
                 continue;
             };
             for (place, accepted) in places.iter().zip(accepted) {
@@ -430,9 +422,14 @@ impl<M: Representation + 'static, W: Writing<M>> Mixer for Bench<'_, M, W> {
         self.look_up();
     }
 
-    fn build(&self, polygons: &PolygonMesh, clock: &dyn Clock) -> Time {
-        timed(clock, || {
-            black_box(M::from_polygons(black_box(polygons)).is_ok());
-        })
+    fn build(&self, series: &Series<'_>) -> Time {
+        let time = KeptCopies::default().time(
+            series,
+            self.bytes(),
+            || None,
+            |last| *last = None,
+            |built| *built = black_box(M::from_polygons(black_box(self.polygons)).ok()),
+        );
+        time.scaled(1.0 / f64::from(series.runs))
     }
 }

@@ -5,8 +5,8 @@ use std::hint::black_box;
 use sixfold::MeshQuery;
 
 use crate::candidate::{Outcome, Run};
-use crate::clock::{Clock, timed};
 use crate::operation::{Kind, Operation};
+use crate::series::Series;
 use crate::sweeps::{All, Outputs, Tally, field_sum, share};
 
 /// Runs `operation` over all of `mesh` so many times; the time is that of one.
@@ -14,21 +14,17 @@ pub(crate) fn pass_over<M: MeshQuery>(
     mesh: &M,
     outputs: &mut Outputs<M>,
     operation: Operation,
-    runs: u32,
-    clock: &dyn Clock,
-    check: bool,
+    series: &Series<'_>,
 ) -> Run {
     let mut sum = Tally::default();
-    let time = timed(clock, || {
-        for _ in 0..runs {
-            sum = Tally::default();
-            for &kind in operation.kinds() {
-                sum.add(share(operation, kind, black_box(mesh), &All, outputs));
-            }
-            black_box(&mut *outputs);
+    let time = series.time_together(|| {
+        sum = Tally::default();
+        for &kind in operation.kinds() {
+            sum.add(share(operation, kind, black_box(mesh), &All, outputs));
         }
+        black_box(&mut *outputs);
     });
-    let outcome = check.then(|| {
+    let outcome = series.check.then(|| {
         let of_vertices = || field_sum(mesh.vertices().map(|v| outputs.vertices[v]));
         let of_faces = || field_sum(mesh.faces().map(|f| outputs.faces[f]));
         let checksum = match operation {
@@ -48,5 +44,5 @@ pub(crate) fn pass_over<M: MeshQuery>(
         };
         Outcome { checksum, elements }
     });
-    Run::done(time.scaled(1.0 / f64::from(runs)), outcome)
+    Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
 }

@@ -16,6 +16,7 @@ use crate::mix::script::Script;
 use crate::mix::streams::Streams;
 use crate::mix::{MixRun, Mixer};
 use crate::operation::Operation;
+use crate::series::{KeptCopies, Series};
 use crate::sweeps::Outputs;
 use crate::workload::Action;
 
@@ -180,6 +181,7 @@ pub fn tabulate<'a>(
                 tables,
                 script: self.script,
                 streams,
+                polygons: self.polygons,
                 build: build::<M>,
             }))
         }
@@ -217,17 +219,24 @@ fn streams<M: Representation>(mesh: &M, polygons: &PolygonMesh, route: &Route) -
     )
 }
 
-/// Builds the structure and tabulates, in the time that both take.
+/// Builds the structure and tabulates, in the time that both take; the tables are dropped while the
+/// clock stands still.
 fn build<M: Representation>(
     polygons: &PolygonMesh,
     relations: &[Relation],
-    clock: &dyn Clock,
+    bytes: usize,
+    series: &Series<'_>,
 ) -> Time {
-    timed(clock, || {
-        let mesh = M::from_polygons(black_box(polygons));
-        let tables = mesh.ok().map(|mesh| Tables::of(&mesh, relations));
-        black_box(tables.is_some());
-    })
+    KeptCopies::default().time(
+        series,
+        bytes,
+        || None,
+        |last| *last = None,
+        |built| {
+            let mesh = M::from_polygons(black_box(polygons)).ok();
+            *built = black_box(mesh.map(|mesh| Tables::of(&mesh, relations)));
+        },
+    )
 }
 
 /// Tables on which a mix is run.
@@ -238,7 +247,8 @@ struct Tabulated<'a> {
     outputs: Outputs<Tables>,
     moved: Vec<Point>,
     merged: usize,
-    build: fn(&PolygonMesh, &[Relation], &dyn Clock) -> Time,
+    polygons: &'a PolygonMesh,
+    build: fn(&PolygonMesh, &[Relation], usize, &Series<'_>) -> Time,
 }
 
 impl Tabulated<'_> {
@@ -315,42 +325,19 @@ impl Mixer for Tabulated<'_> {
         kind.map_or(1, |kind| self.streams.len(kind) as u64)
     }
 
-    fn run_pass(
-        &mut self,
-        operation: Operation,
-        _: Option<Sample>,
-        runs: u32,
-        clock: &dyn Clock,
-        check: bool,
-    ) -> Run {
-        if operation == Operation::VvSmooth {
-            let moved = &mut self.moved;
-            let run = pass_over(
-                &self.tables,
-                &mut self.outputs,
-                operation,
-                runs,
-                clock,
-                check,
-            );
-            // Into a copy, as with every structure: the old positions stay.
-            let swap = timed(clock, || {
-                for _ in 0..runs {
-                    moved.copy_from_slice(black_box(self.outputs.vertices.values()));
-                    black_box(&mut *moved);
-                }
-            });
-            let time = run.time.plus(swap.scaled(1.0 / f64::from(runs)));
-            return Run { time, ..run };
+    fn run_pass(&mut self, operation: Operation, _: Option<Sample>, series: &Series<'_>) -> Run {
+        let run = pass_over(&self.tables, &mut self.outputs, operation, series);
+        if operation != Operation::VvSmooth {
+            return run;
         }
-        pass_over(
-            &self.tables,
-            &mut self.outputs,
-            operation,
-            runs,
-            clock,
-            check,
-        )
+        // Into a copy, as with every structure: the old positions stay.
+        let Self { moved, outputs, .. } = self;
+        let swap = series.time_together(|| {
+            moved.copy_from_slice(black_box(outputs.vertices.values()));
+            black_box(&mut *moved);
+        });
+        let time = run.time.plus(swap.scaled(1.0 / f64::from(series.runs)));
+        Run { time, ..run }
     }
 
     fn accepted(&mut self) -> Vec<Vec<bool>> {
@@ -359,7 +346,9 @@ impl Mixer for Tabulated<'_> {
 
     fn keep(&mut self, _: &[Vec<bool>]) {}
 
-    fn build(&self, polygons: &PolygonMesh, clock: &dyn Clock) -> Time {
-        (self.build)(polygons, &relations(self.script), clock)
+    fn build(&self, series: &Series<'_>) -> Time {
+        let bytes = self.tables.bytes();
+        let time = (self.build)(self.polygons, &relations(self.script), bytes, series);
+        time.scaled(1.0 / f64::from(series.runs))
     }
 }

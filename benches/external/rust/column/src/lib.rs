@@ -82,6 +82,9 @@ struct Greeting<'a> {
     library: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<String>,
+    /// The allocator, where Sixfold's environment can tell it to keep pages.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    heap: Option<&'static str>,
 }
 
 #[derive(Deserialize)]
@@ -122,6 +125,7 @@ pub fn serve<C: Column>() -> Result<(), Box<dyn Error>> {
         holds: built.is_ok(),
         library: C::LIBRARY,
         reason: built.as_ref().err().cloned(),
+        heap: cfg!(all(target_os = "linux", target_env = "gnu")).then_some("glibc"),
     })?;
     let Ok(mut running) = built else {
         return Ok(());

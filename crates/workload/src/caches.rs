@@ -56,10 +56,18 @@ pub fn caches() -> Vec<Cache> {
 }
 
 /// The bytes of the last level that data comes through, if any is known.
-pub(crate) fn last_level(caches: &[Cache]) -> Option<u64> {
+pub fn last_level(caches: &[Cache]) -> Option<u64> {
     let data = caches.iter().filter(|cache| cache.holds_data());
     data.max_by_key(|cache| cache.level)
         .map(|cache| cache.bytes)
+}
+
+/// The bytes of the cache of `level` that data comes through, if it is known.
+pub(crate) fn level_bytes(caches: &[Cache], level: u8) -> Option<u64> {
+    let data = caches.iter().filter(|cache| cache.holds_data());
+    data.filter(|cache| cache.level == level)
+        .map(|cache| cache.bytes)
+        .next()
 }
 
 /// `32K`, `1M` in bytes: a thousand and twenty-four of each to the next.

@@ -1,0 +1,110 @@
+//! Whether the time of an operation that changes the mesh depends on how many runs make a sample.
+//!
+//! ```sh
+//! cargo run --release -p study --example runs_per_sample -- 21
+//! ```
+//!
+//! Argument: how many rounds. In each, every operation that changes the mesh, and the mix of a workload
+//! with edits, is run in samples of 1 and of 50 runs. Printed are the medians of the ratios; exit code 1 if
+//! one is beyond 5 %.
+
+use std::process::ExitCode;
+
+use sixfold::{Facts, PolygonMesh, shapes};
+use study::{Backend, Clock, MachineClock, Operation, Policy, Series, pages};
+use workload::{Access, Draw, Job, Route, Script, built_in, set_up};
+
+const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
+const OPERATIONS: [&str; 8] = [
+    "build",
+    "vv_smooth",
+    "catmull_clark_native",
+    "loop_native",
+    "split_collapse",
+    "flip_all",
+    "decimate_half",
+    "decimate_tenth",
+];
+const MANY: u32 = 50;
+
+fn main() -> ExitCode {
+    pages::put_in_force(Policy::Kept);
+    let rounds = std::env::args().nth(1).and_then(|text| text.parse().ok());
+    let rounds: usize = rounds.unwrap_or(21);
+    let clock = MachineClock::start();
+    let mut worst = 1.0_f64;
+    for frequency in [10, 32] {
+        let polygons = shapes::geodesic(frequency).expect("a sphere");
+        for structure in STRUCTURES {
+            let mut lines = operations(structure, &polygons, rounds, &clock);
+            lines.push(mix(structure, &polygons, rounds, &clock));
+            for (name, ratio) in lines {
+                let faces = polygons.face_count();
+                println!("{faces:>6} faces  {structure:<13} {name:<22} {ratio:.3}");
+                worst = worst.max(ratio.max(ratio.recip()));
+            }
+        }
+    }
+    println!("farthest from 1: {worst:.3}");
+    match worst <= 1.05 {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::FAILURE,
+    }
+}
+
+/// For each operation that the structure does: the time by samples of 1 run, by that by samples of 50.
+fn operations(
+    structure: &str,
+    polygons: &PolygonMesh,
+    rounds: usize,
+    clock: &dyn Clock,
+) -> Vec<(String, f64)> {
+    let roster = Backend::roster();
+    let backend = roster.iter().find(|backend| backend.name() == structure);
+    let built = backend
+        .expect("a structure")
+        .put_on_the_bench(polygons, None);
+    let (mut subject, _) = built.expect("it holds a sphere");
+    let mut lines = Vec::new();
+    for name in OPERATIONS {
+        let operation: Operation = name.parse().expect("an operation");
+        let job = Job {
+            operation,
+            sample: None,
+        };
+        let mut time = |runs| {
+            let run = subject.run(&job, &Series::of_runs(runs, clock).after(1));
+            run.refusal.is_none().then(|| run.time.ns())
+        };
+        let ratios = (0..rounds).map(|_| Some(time(1)? / time(MANY)?));
+        if let Some(ratios) = ratios.collect::<Option<Vec<f64>>>() {
+            lines.push((name.to_owned(), median(ratios)));
+        }
+    }
+    lines
+}
+
+/// The same for the edits of a workload, on which `sixfold pick` works.
+fn mix(structure: &str, polygons: &PolygonMesh, rounds: usize, clock: &dyn Clock) -> (String, f64) {
+    let name = "remeshing";
+    let workload = built_in(name).expect("it is built in");
+    let script = Script::of(&workload, &polygons.counts(Facts::of(polygons).edges));
+    let route = Route::of(Access::Patches, polygons, 1);
+    let draw = Draw::of(polygons, 1);
+    let set_up = set_up(structure, polygons, &draw, &script, &route);
+    let Some(Ok(mut mixer)) = set_up else {
+        panic!("{structure} can be edited");
+    };
+    let mut time = |runs| {
+        mixer.run(0, 1, 1, clock);
+        let run = mixer.run(0, 1, runs, clock);
+        run.time.ns() / run.operations as f64
+    };
+    let ratios = (0..rounds).map(|_| time(1) / time(MANY as usize));
+    (format!("mix of {name}"), median(ratios.collect()))
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    f64::midpoint(values[(values.len() - 1) / 2], values[values.len() / 2])
+}

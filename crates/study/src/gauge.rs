@@ -1,0 +1,265 @@
+//! Whether other work slows the machine down at this moment.
+//!
+//! On a shared machine another program may run on the same core at any time, and a sample taken meanwhile
+//! takes up to twice as long, in phases of milliseconds to seconds. A small fixed piece of work, timed before
+//! and after each sample, takes longer then, too. A sample beside which it did is *disturbed*: it is taken
+//! again, within limits, and does not count if enough others do. What the fixed work takes does not depend
+//! on the sample, so that this prefers no backend and no result.
+
+use std::hint::black_box;
+
+use workload::{Clock, Time, timed};
+
+/// A sample is taken again at most this often.
+const MOST_RETAKEN: u32 = 3;
+/// Words of the table that the fixed work reads: half of a usual first-level cache.
+const WORDS: usize = 2048;
+/// Passes over the table in one look: some 10 µs.
+const PASSES: usize = 12;
+/// The machine is disturbed if the fixed work takes more than this multiple of its undisturbed time.
+const DISTURBED: f64 = 1.08;
+/// The undisturbed time is this quantile of the times of all looks.
+const UNDISTURBED: f64 = 0.05;
+/// How long to wait for an undisturbed moment before a sample, at most, in nanoseconds.
+const LONGEST_WAIT_NS: f64 = 10_000_000.0;
+/// What waiting and disturbed samples may take of a budget.
+const PATIENCE: f64 = 0.3;
+/// Undisturbed samples stand for all if they are at least this part of them.
+const ENOUGH: f64 = 0.25;
+
+/// The fixed work, what it has taken so far, and how long may still be spent on waiting.
+pub(crate) struct Gauge {
+    words: Vec<u64>,
+    /// The times of all looks, ascending.
+    looks_ns: Vec<f64>,
+    patience_ns: f64,
+}
+
+impl Gauge {
+    /// For measurements that take `budget_ns`.
+    pub(crate) fn new(budget_ns: f64) -> Self {
+        let word = |i: u64| i.wrapping_mul(0x9e37_79b9_7f4a_7c15) % WORDS as u64;
+        Self {
+            words: (0..WORDS as u64).map(word).collect(),
+            looks_ns: Vec::new(),
+            patience_ns: PATIENCE * budget_ns,
+        }
+    }
+
+    /// Takes a sample by `sample`, and takes it again if `verdict` asks for it or if the machine was
+    /// disturbed before or after it: three times at most, and for disturbances while patience lasts.
+    pub(crate) fn take<T>(
+        &mut self,
+        clock: &dyn Clock,
+        mut sample: impl FnMut() -> T,
+        verdict: impl Fn(&T) -> Verdict,
+    ) -> Taken<T> {
+        let mut retaken = 0;
+        loop {
+            let before = self.wait(clock);
+            let start = clock.now().wall_ns;
+            let value = sample();
+            let took = clock.now().wall_ns - start;
+            let slowdown = self.slowdown(clock).max(before);
+            let disturbed = slowdown > DISTURBED && self.is_patient();
+            let again = match verdict(&value) {
+                Verdict::Final => false,
+                Verdict::Again => true,
+                Verdict::Good => disturbed,
+            };
+            if !again || retaken == MOST_RETAKEN {
+                return Taken {
+                    value,
+                    slowdown,
+                    retaken,
+                    disturbed,
+                };
+            }
+            retaken += 1;
+            self.patience_ns -= took;
+        }
+    }
+
+    /// Whether time is left for waiting and for taking disturbed samples again.
+    fn is_patient(&self) -> bool {
+        self.patience_ns > 0.0
+    }
+
+    /// Waits up to 10 ms for an undisturbed moment. Returns the slowdown after that.
+    fn wait(&mut self, clock: &dyn Clock) -> f64 {
+        let start = clock.now().wall_ns;
+        loop {
+            let slowdown = self.slowdown(clock);
+            let waited = clock.now().wall_ns - start;
+            if slowdown <= DISTURBED || waited > LONGEST_WAIT_NS || !self.is_patient() {
+                self.patience_ns -= waited;
+                return slowdown;
+            }
+        }
+    }
+
+    /// Returns the time of the fixed work now, divided by its undisturbed time; 1 if the clock does not
+    /// advance meanwhile.
+    fn slowdown(&mut self, clock: &dyn Clock) -> f64 {
+        // The first pass brings the table into the cache.
+        black_box(self.pass());
+        let ns = timed(clock, || {
+            for _ in 0..PASSES {
+                black_box(self.pass());
+            }
+        })
+        .ns();
+        if ns <= 0.0 {
+            return 1.0;
+        }
+        let place = self.looks_ns.partition_point(|&look| look < ns);
+        self.looks_ns.insert(place, ns);
+        let undisturbed = (self.looks_ns.len() as f64 * UNDISTURBED) as usize;
+        ns / self.looks_ns[undisturbed]
+    }
+
+    /// Four sums that do not wait for each other: work that fills the core, and so takes longer if another
+    /// thread shares it.
+    fn pass(&self) -> u64 {
+        let words = black_box(&self.words);
+        let mut sums = [0_u64; 4];
+        for four in words.chunks_exact(4) {
+            for (sum, &word) in sums.iter_mut().zip(four) {
+                *sum = sum.wrapping_add(words[word as usize % WORDS] ^ word);
+            }
+        }
+        sums.iter().fold(0, |all, sum| all.wrapping_add(*sum))
+    }
+}
+
+/// What [`Gauge::take`] does with a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Verdict {
+    /// Keeps it, unless the machine was disturbed.
+    Good,
+    /// Takes it again.
+    Again,
+    /// Keeps it in any case: it was refused, or the study was told to stop.
+    Final,
+}
+
+impl Verdict {
+    /// The verdict on a sample of `time`, where pages are `kept` and so should not fault.
+    pub(crate) fn on_faults(time: Time, kept: bool) -> Self {
+        match kept && time.faults.is_some_and(|faults| faults > 0) {
+            true => Self::Again,
+            false => Self::Good,
+        }
+    }
+}
+
+/// A sample, and how it was taken.
+pub(crate) struct Taken<T> {
+    pub(crate) value: T,
+    /// The larger slowdown of before and after.
+    pub(crate) slowdown: f64,
+    /// How often it was taken again.
+    pub(crate) retaken: u32,
+    /// The machine was disturbed, and patience is left for another sample.
+    pub(crate) disturbed: bool,
+}
+
+/// Returns the samples that count: the undisturbed ones if they are at least a quarter, else all.
+pub(crate) fn undisturbed<T: Copy>(samples: &[T], slowdowns: &[f64]) -> Vec<T> {
+    let quiet = samples.iter().zip(slowdowns);
+    let quiet = quiet.filter(|(_, slowdown)| **slowdown <= DISTURBED);
+    let quiet: Vec<T> = quiet.map(|(sample, _)| *sample).collect();
+    match !quiet.is_empty() && quiet.len() as f64 >= ENOUGH * samples.len() as f64 {
+        true => quiet,
+        false => samples.to_vec(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+
+    /// A clock on which each look takes what the list says, then the last of it.
+    struct Scripted(Mutex<(f64, Vec<f64>, bool)>);
+
+    impl Clock for Scripted {
+        fn now(&self) -> Time {
+            let (now, script, ends) = &mut *self.0.lock().expect("no panics");
+            if *ends {
+                *now += if script.len() > 1 {
+                    script.remove(0)
+                } else {
+                    script[0]
+                };
+            }
+            *ends = !*ends;
+            Time::of_wall(*now)
+        }
+    }
+
+    /// A clock that advances by 200 ns with each reading.
+    struct Ticking(Mutex<f64>);
+
+    impl Clock for Ticking {
+        fn now(&self) -> Time {
+            let now = &mut *self.0.lock().expect("no panics");
+            *now += 200.0;
+            Time::of_wall(*now)
+        }
+    }
+
+    #[test]
+    fn a_disturbed_moment_is_seen_and_waited_for_as_long_as_there_is_patience() {
+        let looks = |script: &[f64]| Scripted(Mutex::new((0.0, script.to_vec(), false)));
+        let mut gauge = Gauge::new(1e9);
+        let clock = looks(&[100.0, 101.0, 160.0, 99.0, 106.0, 112.0]);
+        let slowdowns: Vec<f64> = (0..6).map(|_| gauge.slowdown(&clock)).collect();
+        let disturbed: Vec<bool> = slowdowns.iter().map(|s| *s > DISTURBED).collect();
+        assert_eq!(disturbed, [false, false, true, false, false, true]);
+
+        assert_eq!(Gauge::new(1.0).slowdown(&looks(&[0.0])), 1.0);
+
+        // Without patience a disturbed moment is taken as it is.
+        gauge.patience_ns = 0.0;
+        let slow = Ticking(Mutex::new(0.0));
+        assert!(gauge.wait(&slow) > 1.9);
+        assert_eq!(*slow.0.lock().expect("no panics"), 4.0 * 200.0, "one look");
+    }
+
+    #[test]
+    fn samples_are_taken_again_up_to_three_times() {
+        let tries = |verdict: Verdict, looks_ns: &[f64], patience_ns: f64| {
+            let mut gauge = Gauge {
+                looks_ns: looks_ns.to_vec(),
+                ..Gauge::new(1.0)
+            };
+            gauge.patience_ns = patience_ns;
+            let mut tries = 0;
+            let taken = gauge.take(&Ticking(Mutex::new(0.0)), || tries += 1, |()| verdict);
+            assert_eq!(taken.retaken + 1, tries);
+            (tries, taken.disturbed)
+        };
+        let (quiet, disturbed) = (&[200.0; 40], &[100.0; 400]);
+        assert_eq!(tries(Verdict::Good, quiet, 1e9), (1, false));
+        assert_eq!(tries(Verdict::Again, quiet, 1e9), (4, false));
+        assert_eq!(tries(Verdict::Good, disturbed, 1e9), (4, true));
+        assert_eq!(tries(Verdict::Final, disturbed, 1e9), (1, true));
+        assert_eq!(tries(Verdict::Good, disturbed, 0.0), (1, false));
+    }
+
+    #[test]
+    fn disturbed_samples_do_not_count_if_enough_others_do() {
+        let samples: Vec<(u32, Time)> = (0..6).map(|i| (i, Time::of_wall(f64::from(i)))).collect();
+        let rounds = |slowdowns: [f64; 6]| -> Vec<u32> {
+            let counted = undisturbed(&samples, &slowdowns);
+            counted.iter().map(|(round, _)| *round).collect()
+        };
+        assert_eq!(rounds([1.0, 1.5, 1.0, 1.07, 2.0, 1.0]), [0, 2, 3, 5]);
+        assert_eq!(rounds([1.0, 1.5, 1.0, 1.5, 2.0, 1.5]), [0, 2]);
+        assert_eq!(rounds([1.0, 1.5, 1.1, 1.5, 2.0, 1.5]), [0, 1, 2, 3, 4, 5]);
+        // Results of older versions have no slowdowns.
+        assert_eq!(undisturbed(&samples, &[]).len(), 6);
+    }
+}

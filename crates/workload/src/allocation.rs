@@ -1,0 +1,147 @@
+//! How many bytes an operation asks the allocator for, beside the bytes of its result.
+
+use sixfold::remeshing::{Decimation, Target, decimate};
+use sixfold::subdivision::Method;
+use sixfold::{Counts, EditVisitor, FaceId, MeshEdit, PolygonMesh, Representation, visit_editable};
+
+use crate::backend::Backend;
+use crate::candidate::Job;
+use crate::clock::{Clock, Time};
+use crate::editing::Editing;
+use crate::operation::Operation;
+use crate::series::Series;
+
+/// The counter of an allocator that adds up all requests; a program that installs one implements it.
+pub trait AllocationCounter: Sync {
+    /// Bytes requested since the program started. A block that grows counts by its growth, and a block
+    /// that is freed stays counted.
+    fn allocated(&self) -> usize;
+}
+
+/// The bytes of one run of an operation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Allocated {
+    /// Bytes requested from the allocator during the timed part.
+    pub bytes: usize,
+    /// Bytes of the result, by the formula of the layout.
+    pub result_bytes: usize,
+}
+
+/// The reason why an operation has no figures.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NotCounted {
+    /// The structure or the scheme refuses the mesh, or the structure lacks the method.
+    Refused(String),
+    /// The structure scans all faces for each element, and the mesh has too many faces for that.
+    Scans,
+}
+
+/// The most faces of a mesh on which operations that scan are run.
+pub const MOST_SCANNED_FACES: usize = 2_000;
+
+/// A clock that shows bytes instead of time, so that set-up stays out of the figures as it does when
+/// time is measured.
+struct ByteClock<'a>(&'a dyn AllocationCounter);
+
+impl Clock for ByteClock<'_> {
+    fn now(&self) -> Time {
+        Time::of_wall(self.0.allocated() as f64)
+    }
+}
+
+impl Backend {
+    /// Runs `operation` once and counts the bytes that it requests. A native step is counted with new
+    /// tables: its first run, not the later runs, which reuse the tables.
+    ///
+    /// The result is: of `build` the structure; of a subdivision the structure of the refined mesh; of
+    /// an edit workload the mesh after the edits; of `ff_bfs` the depth of each face. `edges` is the
+    /// number of edges of `polygons`.
+    ///
+    /// # Errors
+    ///
+    /// Why there are no figures.
+    pub fn allocated(
+        &self,
+        operation: Operation,
+        polygons: &PolygonMesh,
+        edges: usize,
+        counter: &dyn AllocationCounter,
+    ) -> Result<Allocated, NotCounted> {
+        let native = operation.refining().map(|refining| refining.way.method());
+        let native = native == Some(Method::Native);
+        let scans = operation.scans(&self.info.costs).contains(&true);
+        if scans && !native && polygons.face_count() > MOST_SCANNED_FACES {
+            return Err(NotCounted::Scans);
+        }
+        let bytes = self.allocated_by_run(operation, polygons, counter);
+        let counts = polygons.counts(edges);
+        Ok(Allocated {
+            bytes: bytes.map_err(NotCounted::Refused)?,
+            result_bytes: self.result_bytes(operation, polygons, &counts),
+        })
+    }
+
+    fn allocated_by_run(
+        &self,
+        operation: Operation,
+        polygons: &PolygonMesh,
+        counter: &dyn AllocationCounter,
+    ) -> Result<usize, String> {
+        let bench = self.put_on_the_bench(polygons, None);
+        let (mut subject, _) = bench.map_err(|refusal| refusal.to_string())?;
+        let job = Job {
+            operation,
+            sample: None,
+        };
+        let run = subject.run(&job, &Series::once(&ByteClock(counter)));
+        match run.refusal {
+            Some(refusal) => Err(refusal),
+            None => Ok(run.time.wall_ns as usize),
+        }
+    }
+
+    fn result_bytes(&self, operation: Operation, polygons: &PolygonMesh, counts: &Counts) -> usize {
+        let counts = match operation {
+            Operation::FfBfs => return size_of::<FaceId>() * counts.faces,
+            Operation::Editing(editing) => counts_after(editing, self.name(), polygons, counts),
+            _ => match operation.refining().map(|job| job.subdivision.split(0)) {
+                Some(Some(split)) => split.grown(counts, 0),
+                _ => *counts,
+            },
+        };
+        (self.layout_bytes)(&counts)
+    }
+}
+
+/// The sizes of the mesh that `editing` leaves on the structure called `backend`.
+fn counts_after(
+    editing: Editing,
+    backend: &str,
+    polygons: &PolygonMesh,
+    before: &Counts,
+) -> Counts {
+    struct Decimated<'a>(&'a PolygonMesh, f64);
+
+    impl EditVisitor for Decimated<'_> {
+        type Output = Option<Counts>;
+
+        fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Option<Counts> {
+            let mut mesh = M::from_polygons(self.0).ok()?;
+            let job = Decimation {
+                target: Target::Ratio(self.1),
+                ..Decimation::default()
+            };
+            decimate(&mut mesh, &job).ok()?;
+            Some(mesh.to_polygons().counts(mesh.edges().count()))
+        }
+    }
+
+    let ratio = match editing {
+        // Both leave as many elements as there were.
+        Editing::SplitCollapse | Editing::FlipAll => return *before,
+        Editing::DecimateHalf => 0.5,
+        Editing::DecimateTenth => 0.1,
+    };
+    let counts = visit_editable(backend, &mut Decimated(polygons, ratio)).flatten();
+    counts.unwrap_or(*before)
+}

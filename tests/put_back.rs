@@ -1,0 +1,58 @@
+//! A copy that edits have changed is made equal to its mesh again without allocating.
+//!
+//! A program of its own, for its allocator counts every block.
+
+use std::alloc::System;
+
+use sixfold::{EditVisitor, MeshEdit, PolygonMesh, Representation, roster, shapes, visit_editable};
+use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
+
+#[global_allocator]
+static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+struct PutBack<'a>(&'a PolygonMesh);
+
+impl EditVisitor for PutBack<'_> {
+    type Output = ();
+
+    fn visit<M: Representation + MeshEdit + 'static>(&mut self) {
+        let mesh = M::from_polygons(self.0).expect("a closed triangle mesh");
+        let (before, bytes) = (mesh.to_polygons(), mesh.memory().total());
+        let mut copy = mesh.clone();
+        for round in 0..3 {
+            change(&mut copy);
+            assert_ne!(copy.to_polygons(), before, "{}: changed", M::NAME);
+            let blocks = HEAP.stats().allocations + HEAP.stats().reallocations;
+            copy.clone_from(&mesh);
+            let blocks = HEAP.stats().allocations + HEAP.stats().reallocations - blocks;
+            assert_eq!(blocks, 0, "{}, round {round}: blocks allocated", M::NAME);
+            assert_eq!(copy.to_polygons(), before, "{}: put back", M::NAME);
+            copy.validate().expect("every invariant");
+        }
+        assert!(copy.memory().total() >= bytes, "{}", M::NAME);
+        println!("{}: put back without an allocation", M::NAME);
+    }
+}
+
+/// Makes tables longer, and leaves holes.
+fn change<M: MeshEdit>(mesh: &mut M) {
+    let faces: Vec<M::Face> = mesh.faces().take(40).collect();
+    for (i, face) in faces.into_iter().enumerate() {
+        if i % 4 == 0 {
+            mesh.remove_face(face, &mut ()).ok();
+        } else {
+            let mut corners = mesh.face_vertices(face);
+            let at = corners.next().map(|v| mesh.position(v) * 1.01);
+            drop(corners);
+            mesh.poke_face(face, at.expect("three corners"), &mut ())
+                .ok();
+        }
+    }
+}
+
+fn main() {
+    let polygons = shapes::geodesic(6).expect("720 triangles");
+    for backend in roster() {
+        visit_editable(backend.name, &mut PutBack(&polygons)).expect("all six can be edited");
+    }
+}
