@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use sixfold::shapes;
 use study::{
-    MachineClock, Policy, Question, Series, Settings, Specimen, Start, built_in, pages, pick,
-    study, timed,
+    MachineClock, PickError, Policy, Question, Series, Settings, Specimen, Start, built_in, pages,
+    pick, study, timed,
 };
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
@@ -20,14 +20,25 @@ fn main() {
         return;
     }
     freed_pages_are_there_until_they_are_given_back();
-    for (frequency, budget) in [(10, 2), (32, 3), (100, 8)] {
-        no_sample_of_a_study_faults(frequency, budget);
+    for (frequency, seconds) in [(10, 2), (32, 3), (100, 8)] {
+        with_time_enough(seconds, |budget| {
+            no_sample_of_a_study_faults(frequency, budget)
+        });
     }
-    no_sample_of_a_pick_faults();
+    with_time_enough(3, no_sample_of_a_pick_faults);
     assert_eq!(pages::put_in_force(Policy::System).policy, Policy::System);
 }
 
-/// The page faults of filling so many bytes.
+/// Calls `test` with a budget of `seconds`, doubled until it is enough for the samples that it needs: other
+/// programs may run on this machine.
+fn with_time_enough(seconds: u64, test: impl Fn(Duration) -> bool) {
+    let mut budgets = [1, 2, 4, 8, 16]
+        .map(|times| Duration::from_secs(times * seconds))
+        .into_iter();
+    assert!(budgets.any(test), "too few samples in the longest budget");
+}
+
+/// The page faults of filling a block of `bytes`.
 fn faults_of(bytes: usize, start: Start<'_>) -> u64 {
     let clock = MachineClock::start();
     let series = Series {
@@ -48,12 +59,13 @@ fn freed_pages_are_there_until_they_are_given_back() {
     assert_eq!(faults_of(bytes, Start::Warm), 0, "kept again");
 }
 
-fn no_sample_of_a_study_faults(frequency: usize, seconds: u64) {
+/// Returns whether the budget was enough for more than a few samples.
+fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> bool {
     let polygons = shapes::geodesic(frequency).expect("a sphere");
     let specimen = Specimen::new("sphere", polygons);
     let settings = Settings {
         backends: STRUCTURES.map(str::to_owned).to_vec(),
-        budget: Duration::from_secs(seconds),
+        budget,
         ..Settings::default()
     };
     let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ());
@@ -78,18 +90,19 @@ fn no_sample_of_a_study_faults(frequency: usize, seconds: u64) {
         assert!(row.first_faults > Some(0), "{row:?}");
     }
     let faces = report.mesh.facts.faces;
-    println!("{faces} faces: no fault in {samples} samples");
-    assert!(samples > 20, "{samples}");
+    println!("{faces} faces, {budget:?}: no fault in {samples} samples");
+    samples > 20
 }
 
-fn no_sample_of_a_pick_faults() {
+/// Returns whether the budget was enough.
+fn no_sample_of_a_pick_faults(budget: Duration) -> bool {
     let specimen = Specimen::new("sphere", shapes::geodesic(24).expect("a sphere"));
     let question = Question {
         workload: built_in("remeshing").expect("it is built in"),
         backends: STRUCTURES.map(str::to_owned).to_vec(),
         needs: Vec::new(),
         max_memory: None,
-        budget: Duration::from_secs(3),
+        budget,
         seed: 1,
         heap: Policy::Kept,
     };
@@ -99,9 +112,13 @@ fn no_sample_of_a_pick_faults() {
         &AtomicBool::new(false),
         &mut |_, _| (),
     );
-    let answer = answer.expect("time enough");
+    let answer = match answer {
+        Err(PickError::BudgetTooSmall { .. }) => return false,
+        answer => answer.expect("all four hold it"),
+    };
     for ranked in &answer.ranking {
         assert_eq!(ranked.faults, Some(0), "{}", ranked.backend);
         assert!(ranked.first_build_ns > Some(0.0), "{}", ranked.backend);
     }
+    true
 }
