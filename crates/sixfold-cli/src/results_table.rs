@@ -15,9 +15,6 @@ use ::study::numbers::{duration, figure};
 pub(crate) const STYLE: TableStyle =
     TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
-/// The name of the line below an operation whose first time differs.
-const FIRST_TIME: &str = "  first time";
-
 /// The table of times and bytes, and what its signs mean.
 pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     let columns: Vec<&BackendReport> = report.backends.iter().filter(|b| b.holds).collect();
@@ -33,6 +30,8 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
         table.force_no_tty();
     }
     let mut signs = Signs::default();
+    // What is said below a row of the table.
+    let mut doubts: Vec<(usize, String)> = Vec::new();
     let mut header = vec![Cell::new("nanoseconds"), Cell::new("per")];
     header.extend(columns.iter().map(|backend| {
         let mut name = match intervals {
@@ -65,24 +64,26 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
             });
         }
         table.add_row(line);
-        if let Some(line) = first_times(&rows, &columns, intervals, &mut signs) {
+        if let Some(line) = first_times(&rows, &columns, intervals) {
+            signs.first_times = true;
             table.add_row(line);
         }
+        let row = table.row_count() - 1;
+        doubts.extend(doubt(report, operation).map(|doubt| (row, doubt)));
     }
     add_bytes(&mut table, &columns, intervals, bold, &mut signs);
     // All six and their names fit into a hundred columns.
     if let Some(names) = table.column_mut(0) {
         names.set_padding((0, 1));
     }
+    let table_text = table.trim_fmt();
+    // Each row is one line; the header may be several.
+    let header = table_text.lines().count() - table.row_count();
     let mut lines: Vec<String> = Vec::new();
-    let mut doubted = None;
-    for line in table.trim_fmt().lines() {
-        // Below both lines of an operation.
-        if !line.starts_with(FIRST_TIME) {
-            lines.extend(doubted.take());
-            doubted = doubt(report, line).map(|doubt| hanging("  ↑ ", &doubt));
-        }
+    for (number, line) in table_text.lines().enumerate() {
         lines.push(line.to_owned());
+        let below = doubts.iter().filter(|(row, _)| header + row == number);
+        lines.extend(below.map(|(_, doubt)| hanging("  ↑ ", doubt)));
     }
     let mut text = lines.join("\n");
     for line in signs.legend(report) {
@@ -97,15 +98,13 @@ fn first_times(
     rows: &[&ResultRow],
     columns: &[&BackendReport],
     intervals: bool,
-    signs: &mut Signs,
 ) -> Option<Vec<Cell>> {
     let differs = |row: &&&ResultRow| {
         let ratio = row.first_ratio().unwrap_or(1.0);
         ratio.max(ratio.recip()) > FIRST_TIME_SHOWN
     };
     rows.iter().find(differs)?;
-    signs.note('1');
-    let mut line = vec![Cell::new(FIRST_TIME), Cell::new("")];
+    let mut line = vec![Cell::new("  first time"), Cell::new("")];
     line.extend(columns.iter().map(|backend| {
         let row = rows.iter().find(|row| row.backend == backend.name);
         let first = row.and_then(|row| Some(row.first_ns? / row.elements?.max(1) as f64));
@@ -116,10 +115,10 @@ fn first_times(
 }
 
 /// What is said below the line of an operation whose control differs from itself.
-fn doubt(report: &Report, line: &str) -> Option<String> {
+fn doubt(report: &Report, operation: Operation) -> Option<String> {
     let control = report.control.as_ref()?;
-    let of_line = |row: &&ControlRow| line.split(' ').next() == Some(row.operation.name());
-    let row = { control.operations.iter() }.find(of_line)?;
+    let of_it = |row: &&ControlRow| row.operation == operation;
+    let row = control.operations.iter().find(of_it)?;
     row.is_unsteady().then(|| {
         format!(
             "{}, measured twice, differs from itself by {:.0} % here: smaller differences are no result. Measure again, with a longer --budget or --operations {} alone.",
@@ -232,12 +231,16 @@ fn spread(row: &ResultRow, signs: &mut Signs) -> String {
 
 /// The signs that occur, for the legend to explain them and no others.
 #[derive(Default)]
-struct Signs(Vec<char>);
+struct Signs {
+    noted: Vec<char>,
+    /// There are lines of first times.
+    first_times: bool,
+}
 
 impl Signs {
     fn note(&mut self, sign: char) -> char {
-        if !self.0.contains(&sign) {
-            self.0.push(sign);
+        if !self.noted.contains(&sign) {
+            self.noted.push(sign);
         }
         sign
     }
@@ -250,10 +253,6 @@ impl Signs {
                 "tied for best: no difference beyond the noise, or less than 2 % (2 × below three samples)",
             ),
             (
-                '1',
-                "first time: a run on fresh pages, with tables of exact size",
-            ),
-            (
                 'h',
                 "own heap: this program's allocator is not told to keep pages",
             ),
@@ -263,14 +262,15 @@ impl Signs {
             ('m', "of a mesh with merged vertices"),
             ('!', "WRONG: differs from the other backends"),
         ];
-        let there = meanings.iter().filter(|(sign, _)| self.0.contains(sign));
+        let there = meanings
+            .iter()
+            .filter(|(sign, _)| self.noted.contains(sign));
+        let first_times = "first time: a run on fresh pages, with tables of exact size";
+        let first_times = self.first_times.then(|| first_times.to_owned());
+        let parts = there.map(|(sign, meaning)| format!("{sign} {meaning}"));
         // Broken between meanings only.
         let mut lines: Vec<String> = Vec::new();
-        for (sign, meaning) in there {
-            let part = match sign {
-                '1' => (*meaning).to_owned(),
-                _ => format!("{sign} {meaning}"),
-            };
+        for part in first_times.into_iter().chain(parts) {
             match lines.last_mut() {
                 Some(line) if line.chars().count() + 2 + part.chars().count() <= WIDTH => {
                     *line += "; ";
@@ -359,36 +359,20 @@ mod tests {
     fn row(name: &str, operation: &str, median_ns: f64, standing: Standing) -> ResultRow {
         let operation: Operation = operation.parse().expect("a name");
         ResultRow {
-            backend: name.into(),
-            operation,
             median_ns: Some(median_ns),
             min_ns: Some(median_ns * 0.99),
             ci_low_ns: Some(median_ns * 0.995),
             ci_high_ns: Some(median_ns * 1.03),
             elements: Some(100),
-            per: operation.per().into(),
             ns_per_element: Some(median_ns / 100.0),
             wall_median_ns: Some(median_ns),
             wall_min_ns: Some(median_ns),
-            sampled: false,
-            sample_size: None,
-            estimated_ns: None,
             checksum: Some(1.0),
             agreement: Agreement::Same,
             standing: Some(standing),
             ratio_to_best: Some(1.0),
-            ratio_ci_low: None,
-            ratio_ci_high: None,
             samples: 9,
-            runs_per_sample: 1,
-            warm_up_only: false,
-            by_name_only: false,
-            faults: None,
-            retaken: 0,
-            disturbed: 0,
-            first_ns: None,
-            first_samples: 0,
-            first_faults: None,
+            ..ResultRow::new(name, operation)
         }
     }
 

@@ -91,8 +91,8 @@ impl Memory {
         self.heap.policy == Policy::Kept
     }
 
-    /// Touches more pages than are in use, if they are kept and there is room: what is allocated from
-    /// then on finds its pages there.
+    /// Touches the pages of freed blocks, and more than are in use, if they are kept and there is room:
+    /// what is allocated from then on finds its pages there.
     pub(crate) fn reserve(&self) {
         self.reserve_for(pages::resident_bytes().unwrap_or(0) / RESERVE);
     }
@@ -102,6 +102,14 @@ impl Memory {
         if let Some(free) = free_memory().filter(|_| self.keeps_pages()) {
             let most = free.saturating_sub(least_free()) / RESERVE;
             pages::reserve(usize::try_from(bytes.min(most)).unwrap_or(0));
+        }
+    }
+
+    /// Returns the pages of freed blocks, if they are kept: until [`Memory::reserve`] what is allocated
+    /// finds fresh ones.
+    pub(crate) fn give_back(&self) {
+        if self.keeps_pages() {
+            pages::give_back();
         }
     }
 

@@ -4,11 +4,13 @@
 //! drawn anew: whatever drifts (frequency, heat, neighbours on the machine) hits all alike, and the
 //! ratios formed within a round are nearly free of it. A sample repeats a short operation until the
 //! clock can resolve it, after one run that is not timed, so that caches hold what this structure
-//! would have there. What allocates is measured a second time at the end, on fresh pages.
+//! would have there. Between rounds all structures are built again, elsewhere in memory, so that the
+//! places of their tables differ from round to round. What allocates is measured a second time at the end, on fresh pages.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
@@ -25,6 +27,10 @@ const MOST_ROUNDS: u32 = 200;
 const FIRST_TIMES: f64 = 0.15;
 /// No figure gets much better by more samples on fresh pages than these.
 const MOST_FIRST_TIMES: u32 = 9;
+/// What building the structures again and again may take of the time.
+const REBUILDING: f64 = 0.04;
+/// A structure is built behind a gap of up to this many bytes.
+const LARGEST_GAP: usize = 64 << 10;
 /// Runs longer than this fill the caches by themselves.
 pub(crate) const LONG_RUN_NS: f64 = 10_000_000.0;
 
@@ -88,12 +94,12 @@ impl Entry {
         }
     }
 
-    /// How often it is run before the clock starts: once, so that caches hold what they would have there
-    /// and tables have their size; not where a run fills the caches by itself, and no tables grow.
+    /// How often it is run before the clock starts.
     pub(crate) fn untimed(&self) -> u32 {
-        let long = self.warm_up.is_some_and(|time| time.ns() > LONG_RUN_NS);
-        let needed = self.job.sample.is_none() && (!long || self.job.operation.grows_tables());
-        u32::from(needed)
+        match self.job.sample {
+            None => untimed_runs(self.job.operation, self.warm_up.map(Time::ns)),
+            Some(_) => 0,
+        }
     }
 
     /// The time of the first run: the median, times the median of how much longer the first run takes.
@@ -134,6 +140,14 @@ impl Entry {
             false => sample,
         })
     }
+}
+
+/// How often `operation` is run before the clock starts: once, so that caches hold what they would have
+/// there and tables have their size; not where a run, of `ns` if that is known, fills the caches by itself,
+/// and no tables grow.
+pub(crate) fn untimed_runs(operation: Operation, ns: Option<f64>) -> u32 {
+    let long = ns.is_some_and(|ns| ns > LONG_RUN_NS);
+    u32::from(!long || operation.grows_tables())
 }
 
 /// Where a study stands: shown on a terminal.
@@ -224,8 +238,17 @@ impl Bench<'_, '_> {
     fn rounds(&mut self, entries: &mut [Entry], start: f64, deadline: f64) {
         let mut groups = groups(entries);
         let mut gauge = Gauge::new(self.budget.as_nanos() as f64);
+        // Until one is timed: a structure is built and touched at about one byte in a nanosecond.
+        let mut rebuild_ns: f64 = self.subjects.iter().map(|s| s.bytes() as f64).sum();
+        let mut rebuilding_ns = 0.0;
         for round in 0..MOST_ROUNDS {
             self.memory.watch();
+            let now = self.clock.now().wall_ns;
+            if round > 0 && rebuilding_ns + rebuild_ns <= REBUILDING * (now - start) {
+                self.rebuild();
+                rebuild_ns = self.clock.now().wall_ns - now;
+                rebuilding_ns += rebuild_ns;
+            }
             let costs = entries.iter().filter(|e| takes_part(e, round));
             let cost: f64 = costs.map(|e| e.cost_ns).sum();
             let now = self.clock.now().wall_ns;
@@ -257,6 +280,20 @@ impl Bench<'_, '_> {
                 }
             }
         }
+    }
+
+    /// Builds all structures again, each elsewhere in memory, on pages that the kernel chooses anew. Tables
+    /// stay where they are between two such moments, and with them whatever their places cost or save.
+    fn rebuild(&mut self) {
+        let mut order: Vec<usize> = (0..self.subjects.len()).collect();
+        order.shuffle(&mut self.random);
+        for subject in order {
+            self.memory.give_back();
+            let gap: Vec<u8> = Vec::with_capacity(self.random.random_range(0..LARGEST_GAP));
+            self.subjects[subject].rebuild();
+            drop(gap);
+        }
+        self.memory.reserve();
     }
 
     /// Takes a sample. An external program may refuse at any time.

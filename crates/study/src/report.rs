@@ -215,6 +215,42 @@ pub struct ResultRow {
 }
 
 impl ResultRow {
+    /// A row of `operation` on `backend` with nothing measured: to be filled.
+    pub fn new(backend: &str, operation: Operation) -> Self {
+        Self {
+            backend: backend.into(),
+            operation,
+            median_ns: None,
+            min_ns: None,
+            ci_low_ns: None,
+            ci_high_ns: None,
+            elements: None,
+            per: operation.per().into(),
+            ns_per_element: None,
+            wall_median_ns: None,
+            wall_min_ns: None,
+            sampled: false,
+            sample_size: None,
+            estimated_ns: None,
+            checksum: None,
+            agreement: Agreement::Unchecked,
+            standing: None,
+            ratio_to_best: None,
+            ratio_ci_low: None,
+            ratio_ci_high: None,
+            samples: 0,
+            runs_per_sample: 1,
+            warm_up_only: false,
+            by_name_only: false,
+            faults: None,
+            retaken: 0,
+            disturbed: 0,
+            first_ns: None,
+            first_samples: 0,
+            first_faults: None,
+        }
+    }
+
     /// By how much the first time takes longer than the median, where both are known.
     pub fn first_ratio(&self) -> Option<f64> {
         let (first, median) = self.first_ns.zip(self.median_ns)?;

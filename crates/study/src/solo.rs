@@ -3,6 +3,7 @@
 use sixfold::{Facts, PolygonMesh};
 
 use crate::gauge::{Gauge, Verdict};
+use crate::measure::untimed_runs;
 use crate::study::{StudyError, put_on_the_bench};
 use workload::Backend;
 use workload::Draw;
@@ -16,8 +17,8 @@ use workload::{Job, Series, Subject};
 /// Freed pages stay with the process, as in a study.
 pub struct Solo<'a> {
     subject: Box<dyn Subject + 'a>,
-    /// The operation of the last run, and how many runs make a sample of it.
-    last: Option<(Operation, u32)>,
+    /// The operation of the last run, and how many untimed and timed runs make a sample of it.
+    last: Option<(Operation, [u32; 2])>,
     gauge: Gauge,
 }
 
@@ -74,7 +75,7 @@ impl<'a> Solo<'a> {
     }
 
     /// Runs `operation` on the whole mesh: repeatedly until 200 µs have passed if it is short, after an
-    /// untimed run if its tables grow by it, and again if other work disturbs the machine. The time is that
+    /// untimed run as in a study, and again if other work disturbs the machine. The time is that
     /// of one run.
     pub fn run(&mut self, operation: Operation, clock: &dyn Clock) -> SoloRun {
         let runs = match self.last {
@@ -88,37 +89,36 @@ impl<'a> Solo<'a> {
         gauge.take(clock, sample, verdict).value
     }
 
-    /// How many runs take long enough together.
-    fn runs_of(&mut self, operation: Operation, clock: &dyn Clock) -> u32 {
+    /// How many runs take long enough together, and how many go before them.
+    fn runs_of(&mut self, operation: Operation, clock: &dyn Clock) -> [u32; 2] {
         let mut runs = 1;
         loop {
-            let ns = self.run_times(operation, runs, clock).time.ns() * f64::from(runs);
+            let each = self.run_times(operation, runs, clock).time.ns();
+            let ns = each * f64::from(runs);
             if ns >= SHORTEST_SAMPLE_NS || runs >= MOST_RUNS {
-                return runs;
+                return [untimed_runs(operation, Some(each)), runs];
             }
             let wanted = f64::from(runs) * SHORTEST_SAMPLE_NS / ns.max(1.0);
             runs = (wanted * 1.1).ceil().min(f64::from(runs) * 16.0) as u32;
         }
     }
 
-    /// Runs `operation` `runs` times, after an untimed run if its tables grow by it. The time is that of one
-    /// run.
+    /// Runs `operation` `runs` times, after an untimed run. The time is that of one run.
     pub fn run_times(&mut self, operation: Operation, runs: u32, clock: &dyn Clock) -> SoloRun {
-        run_times(self.subject.as_mut(), operation, runs, clock)
+        run_times(self.subject.as_mut(), operation, [1, runs], clock)
     }
 }
 
 fn run_times(
     subject: &mut dyn Subject,
     operation: Operation,
-    runs: u32,
+    [untimed, runs]: [u32; 2],
     clock: &dyn Clock,
 ) -> SoloRun {
     let job = Job {
         operation,
         sample: None,
     };
-    let untimed = u32::from(operation.grows_tables());
     let run = subject.run(&job, &Series::of_runs(runs, clock).after(untimed).checked());
     SoloRun {
         time: run.time,

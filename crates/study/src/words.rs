@@ -186,36 +186,14 @@ pub(crate) fn row(
     standing: Standing,
 ) -> ResultRow {
     ResultRow {
-        backend: backend.into(),
-        operation,
         median_ns: Some(100.0 * ratio),
-        min_ns: None,
-        ci_low_ns: None,
-        ci_high_ns: None,
         elements: Some(1),
-        per: operation.per().into(),
         ns_per_element: Some(100.0 * ratio),
-        wall_median_ns: None,
-        wall_min_ns: None,
-        sampled: false,
-        sample_size: None,
-        estimated_ns: None,
-        checksum: None,
         agreement: Agreement::Same,
         standing: Some(standing),
         ratio_to_best: Some(ratio),
-        ratio_ci_low: None,
-        ratio_ci_high: None,
         samples: 9,
-        runs_per_sample: 1,
-        warm_up_only: false,
-        by_name_only: false,
-        faults: None,
-        retaken: 0,
-        disturbed: 0,
-        first_ns: None,
-        first_samples: 0,
-        first_faults: None,
+        ..ResultRow::new(backend, operation)
     }
 }
 

@@ -9,7 +9,7 @@ use crate::editing::Editing;
 use crate::operation::{Kind, Operation};
 use crate::refining::Refining;
 use crate::sample::{Draw, Side};
-use crate::series::{KeptCopies, Series};
+use crate::series::{KeptCopies, Series, time_making};
 use crate::subdividing::{patch, subdivide};
 use crate::sweeps::{All, Elements, Outputs, Tally, field_sum, share};
 
@@ -78,6 +78,9 @@ pub trait Subject {
     fn merged_vertices(&self) -> usize;
     /// The bytes held.
     fn bytes(&self) -> usize;
+    /// Builds it again from the same polygons, elsewhere in memory: for the time of some operations depends a
+    /// little on which addresses and pages the tables have. Nothing where there is nothing to build.
+    fn rebuild(&mut self) {}
     /// Runs `job` as `series` says, once if it has a sample; the time is that of one run.
     fn run(&mut self, job: &Job, series: &Series<'_>) -> Run;
 }
@@ -89,7 +92,6 @@ pub(crate) struct Candidate<'a, M: Representation> {
     mesh: M,
     outputs: Outputs<M>,
     chosen: Chosen<M>,
-    built: KeptCopies<Option<M>>,
     merged_vertices: usize,
 }
 
@@ -101,34 +103,18 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
             draw,
             outputs: Outputs::for_mesh(&mesh),
             chosen: Chosen::default(),
-            built: KeptCopies::default(),
             merged_vertices: polygons.vertex_count().saturating_sub(mesh.vertex_count()),
             mesh,
         }
     }
 
-    /// What a run builds is dropped while the clock stands still.
-    fn build(&mut self, series: &Series<'_>) -> Run {
-        let Self {
-            polygons,
-            built,
-            mesh,
-            ..
-        } = self;
-        let time = built.time(
-            series,
-            mesh.memory().total(),
-            || None,
-            |last| *last = None,
-            |built| *built = black_box(M::from_polygons(black_box(polygons)).ok()),
-        );
-        let mesh = built.last().and_then(Option::as_ref);
-        let outcome = mesh.map(|mesh| Outcome {
+    fn build(&self, series: &Series<'_>) -> Run {
+        let build = || M::from_polygons(black_box(self.polygons)).ok();
+        let (time, built) = time_making(series, self.mesh.memory().total(), build);
+        let outcome = built.flatten().map(|mesh| Outcome {
             checksum: (mesh.vertex_count() + mesh.face_count()) as f64,
             elements: mesh.face_count() as u64,
         });
-        // The room of the results is for the others.
-        *built = KeptCopies::default();
         Run::done(time, outcome)
     }
 
@@ -148,7 +134,7 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
                 moved = copy.set_positions(&outputs.vertices);
             },
         );
-        let outcome = copies.last().filter(|_| series.check).map(|smoothed| {
+        let outcome = copies.changed().filter(|_| series.check).map(|smoothed| {
             let after = smoothed.vertices().map(|v| smoothed.position(v));
             let means = mesh.vertices().map(|v| outputs.vertices[v]);
             // Where a vertex is its coordinates, two may have moved to one place, or two corners
@@ -306,6 +292,13 @@ impl<M: Representation + 'static> Subject for Candidate<'_, M> {
 
     fn bytes(&self) -> usize {
         self.mesh.memory().total()
+    }
+
+    fn rebuild(&mut self) {
+        if let Ok(mesh) = M::from_polygons(self.polygons) {
+            self.outputs = Outputs::for_mesh(&mesh);
+            self.mesh = mesh;
+        }
     }
 
     fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {

@@ -165,7 +165,7 @@ impl<M: Representation + MeshEdit + 'static> Editor for Edited<M> {
     }
 
     fn result(&self) -> Edits {
-        let Some(Changed { mesh, edits, .. }) = self.copies.last() else {
+        let Some(Changed { mesh, edits, .. }) = self.copies.changed() else {
             return Edits::default();
         };
         let lengths = mesh.edges().map(|e| {

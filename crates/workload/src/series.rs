@@ -102,7 +102,7 @@ impl<'c> Series<'c> {
         }
     }
 
-    /// So many timed runs.
+    /// `runs` timed runs, with none before them.
     pub fn of_runs(runs: u32, clock: &'c dyn Clock) -> Self {
         Self {
             runs,
@@ -118,7 +118,7 @@ impl<'c> Series<'c> {
         }
     }
 
-    /// The same after so many runs that are not timed.
+    /// The same after `untimed` runs.
     pub fn after(self, untimed: u32) -> Self {
         Self { untimed, ..self }
     }
@@ -157,8 +157,7 @@ impl<'c> Series<'c> {
 /// One copy is used unless a run is too short for the clock; then as many in turn as make a stretch of
 /// 60 µs and fit half of the second-level cache together, so that a run finds its copy as warm as if it
 /// were alone. The copies stay from one series to the next, and with them the capacity that their tables
-/// have grown to. What a run makes, rather than changes, is kept in the same way: the copy is then the
-/// room for the result, and putting back drops the last one.
+/// have grown to.
 #[derive(Debug)]
 pub(crate) struct KeptCopies<T> {
     copies: Vec<T>,
@@ -189,45 +188,74 @@ impl<T> KeptCopies<T> {
     ) -> Time {
         let untimed = Series {
             start: Start::Warm,
+            runs: series.untimed,
             ..*series
         };
+        self.run_all(&untimed, bytes, &new, &mut put_back, &mut run);
+        self.run_all(series, bytes, &new, &mut put_back, &mut run)
+    }
+
+    /// The time of the timed runs of `series`, on as many copies in turn as [`in_turn`] allows.
+    fn run_all(
+        &mut self,
+        series: &Series<'_>,
+        bytes: usize,
+        new: &impl Fn() -> T,
+        put_back: &mut impl FnMut(&mut T),
+        run: &mut impl FnMut(&mut T),
+    ) -> Time {
+        let fresh = matches!(series.start, Start::FreshPages);
         let mut total = Time::none_like(series.clock.now());
-        for (runs, phase) in [(series.untimed, &untimed), (series.runs, series)] {
-            total = Time::none_like(total);
-            let mut left = runs as usize;
-            while left > 0 {
-                let count = in_turn(self.last_ns, bytes).min(left);
-                // Those that are made now need not be put back.
-                let used = self.copies.len().min(count);
-                self.copies[..used].iter_mut().for_each(&mut put_back);
-                while self.copies.len() < count {
-                    let mut copy = new();
-                    let fresh = matches!(series.start, Start::FreshPages);
-                    if !self.copies.is_empty() && !fresh {
-                        // Its tables grow to what a run needs, as those of the first copy have.
-                        run(&mut copy);
-                        put_back(&mut copy);
-                    }
-                    self.copies.push(copy);
+        let mut left = series.runs as usize;
+        while left > 0 {
+            let count = in_turn(self.last_ns, bytes).min(left);
+            // Those that are made now need not be put back.
+            let used = self.copies.len().min(count);
+            self.copies[..used].iter_mut().for_each(&mut *put_back);
+            while self.copies.len() < count {
+                let mut copy = new();
+                if !self.copies.is_empty() && !fresh {
+                    // Its tables grow to what a run needs, as those of the first copy have.
+                    run(&mut copy);
+                    put_back(&mut copy);
                 }
-                let copies = &mut self.copies[..count];
-                let time = phase.timed(|| {
-                    for copy in &mut *copies {
-                        run(black_box(copy));
-                    }
-                });
-                self.last_ns = time.ns() / count as f64;
-                total = total.plus(time);
-                left -= count;
+                self.copies.push(copy);
             }
+            let copies = &mut self.copies[..count];
+            let time = series.timed(|| {
+                for copy in &mut *copies {
+                    run(black_box(copy));
+                }
+            });
+            self.last_ns = time.ns() / count as f64;
+            total = total.plus(time);
+            left -= count;
         }
         total
     }
 
-    /// The copy that was changed last, if there was a run.
-    pub(crate) fn last(&self) -> Option<&T> {
+    /// A copy as a run has left it, if there was one: all runs do the same.
+    pub(crate) fn changed(&self) -> Option<&T> {
         self.copies.first()
     }
+}
+
+/// Makes results of `bytes` as often as `series` says, each dropped while the clock stands still. The time
+/// is that of all timed runs together; with it comes one of the results, if there was a run.
+pub(crate) fn time_making<T>(
+    series: &Series<'_>,
+    bytes: usize,
+    make: impl Fn() -> T,
+) -> (Time, Option<T>) {
+    let mut places = KeptCopies::default();
+    let time = places.time(
+        series,
+        bytes,
+        || None,
+        |made| *made = None,
+        |made| *made = Some(black_box(make())),
+    );
+    (time, places.copies.pop().flatten())
 }
 
 /// How many copies of `bytes` each are used in turn, for runs of `ns`.
@@ -250,21 +278,19 @@ mod tests {
 
     use super::*;
 
-    /// A clock that shows what it is told, and counts its readings.
+    /// A clock that shows what it is told.
     #[derive(Default)]
-    struct Told(Mutex<(f64, u32)>);
+    struct Told(Mutex<f64>);
 
     impl Told {
         fn work(&self, ns: f64) {
-            self.0.lock().expect("no panics").0 += ns;
+            *self.0.lock().expect("no panics") += ns;
         }
     }
 
     impl Clock for Told {
         fn now(&self) -> Time {
-            let (ns, readings) = &mut *self.0.lock().expect("no panics");
-            *readings += 1;
-            Time::of_wall(*ns)
+            Time::of_wall(*self.0.lock().expect("no panics"))
         }
     }
 
@@ -293,7 +319,7 @@ mod tests {
                 assert_eq!(time.wall_ns, ns * f64::from(runs));
             }
             assert_eq!(copies.copies.len(), in_turn(ns, bytes));
-            assert_eq!(copies.last(), Some(&1));
+            assert_eq!(copies.changed(), Some(&1));
         }
     }
 

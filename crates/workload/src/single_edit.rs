@@ -99,7 +99,7 @@ impl<M: Representation + MeshEdit + 'static> Editor for AtPlaces<M> {
     }
 
     fn result(&self) -> Edits {
-        let Some((mesh, edits)) = self.copies.last() else {
+        let Some((mesh, edits)) = self.copies.changed() else {
             return Edits::default();
         };
         Edits {

@@ -127,42 +127,15 @@ pub(super) fn cache_ends(
 mod tests {
     use super::*;
     use crate::growth::Weight;
-    use crate::report::{Agreement, ResultRow};
+    use crate::report::ResultRow;
     use sixfold::{Facts, shapes};
 
     fn size(faces: usize, bytes: usize, ns: f64, estimated: bool) -> SizeReport {
         let operation = Operation::Boundary;
         let row = ResultRow {
-            backend: "half-edge".into(),
-            operation,
             median_ns: (!estimated).then_some(ns),
-            min_ns: None,
-            ci_low_ns: None,
-            ci_high_ns: None,
-            elements: None,
-            per: operation.per().into(),
-            ns_per_element: None,
-            wall_median_ns: None,
-            wall_min_ns: None,
-            sampled: false,
-            sample_size: None,
             estimated_ns: estimated.then_some(ns),
-            checksum: None,
-            agreement: Agreement::Same,
-            standing: None,
-            ratio_to_best: None,
-            ratio_ci_low: None,
-            ratio_ci_high: None,
-            samples: 1,
-            runs_per_sample: 1,
-            warm_up_only: false,
-            by_name_only: false,
-            faults: None,
-            retaken: 0,
-            disturbed: 0,
-            first_ns: None,
-            first_samples: 0,
-            first_faults: None,
+            ..ResultRow::new("half-edge", operation)
         };
         SizeReport {
             vertices: 0,

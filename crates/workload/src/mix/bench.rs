@@ -21,7 +21,7 @@ use crate::mix::{MixRun, Mixer};
 use crate::operation::Operation;
 use crate::place::{Place, perform, prepare};
 use crate::sample::Draw;
-use crate::series::{KeptCopies, Series};
+use crate::series::{KeptCopies, Series, time_making};
 use crate::sweeps::Outputs;
 use crate::workload::{Action, Part};
 
@@ -286,7 +286,7 @@ impl<'a, M: Representation + 'static, W: Writing<M>> Bench<'a, M, W> {
         prepared
     }
 
-    /// Runs `work` on the mesh, or, where there are edits, so many times on copies that are put back
+    /// Runs `work` once on the mesh, or, where there are edits, `runs` times on copies that are put back
     /// while the clock stands still.
     fn run_timed(
         &mut self,
@@ -315,7 +315,7 @@ impl<'a, M: Representation + 'static, W: Writing<M>> Bench<'a, M, W> {
                     |(copy, counts)| *counts = work(doing, copy),
                 );
                 // All runs do the same.
-                counts = copies.last().map_or(counts, |(_, counts)| *counts);
+                counts = copies.changed().map_or(counts, |(_, counts)| *counts);
                 time
             }
         };
@@ -423,13 +423,8 @@ impl<M: Representation + 'static, W: Writing<M>> Mixer for Bench<'_, M, W> {
     }
 
     fn build(&self, series: &Series<'_>) -> Time {
-        let time = KeptCopies::default().time(
-            series,
-            self.bytes(),
-            || None,
-            |last| *last = None,
-            |built| *built = black_box(M::from_polygons(black_box(self.polygons)).ok()),
-        );
+        let build = || M::from_polygons(black_box(self.polygons)).ok();
+        let (time, _) = time_making(series, self.bytes(), build);
         time.scaled(1.0 / f64::from(series.runs))
     }
 }

@@ -16,7 +16,7 @@ use crate::mix::script::Script;
 use crate::mix::streams::Streams;
 use crate::mix::{MixRun, Mixer};
 use crate::operation::Operation;
-use crate::series::{KeptCopies, Series};
+use crate::series::{Series, time_making};
 use crate::sweeps::Outputs;
 use crate::workload::Action;
 
@@ -227,16 +227,11 @@ fn build<M: Representation>(
     bytes: usize,
     series: &Series<'_>,
 ) -> Time {
-    KeptCopies::default().time(
-        series,
-        bytes,
-        || None,
-        |last| *last = None,
-        |built| {
-            let mesh = M::from_polygons(black_box(polygons)).ok();
-            *built = black_box(mesh.map(|mesh| Tables::of(&mesh, relations)));
-        },
-    )
+    let build = || {
+        let mesh = M::from_polygons(black_box(polygons)).ok();
+        mesh.map(|mesh| Tables::of(&mesh, relations))
+    };
+    time_making(series, bytes, build).0
 }
 
 /// Tables on which a mix is run.
