@@ -193,8 +193,9 @@ impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> Iterator for DistinctWalk<W,
         }
     }
 
-    /// The whole answer at once, which for triangles needs three comparisons and no state.
-    #[inline]
+    /// The whole answer at once, which for triangles needs three comparisons and no state. Always inlined:
+    /// handed to a function in memory, the walk takes twice as long, depending on where the stack lies.
+    #[inline(always)]
     fn fold<B, F: FnMut(B, H) -> B>(self, init: B, mut f: F) -> B {
         let mut folded = init;
         if let Some([a, b, c]) = self.whole_of_three() {
@@ -209,11 +210,17 @@ impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> Iterator for DistinctWalk<W,
             }
             return folded;
         }
-        for item in self {
-            folded = f(folded, item);
-        }
-        folded
+        fold_by_steps(self, folded, f)
     }
+}
+
+#[inline(never)]
+fn fold_by_steps<T, B>(items: impl Iterator<Item = T>, init: B, mut f: impl FnMut(B, T) -> B) -> B {
+    let mut folded = init;
+    for item in items {
+        folded = f(folded, item);
+    }
+    folded
 }
 
 #[cfg(test)]

@@ -71,6 +71,7 @@ mod tests {
         Counters.restart_peak();
         assert!(about(Counters.peak(), 0), "{}", Counters.peak());
     }
+
     #[test]
     fn freed_blocks_stay_counted_and_growth_counts_once() {
         let before = Counters.allocated();

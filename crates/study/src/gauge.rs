@@ -199,13 +199,16 @@ mod tests {
         }
     }
 
-    /// A clock that advances by 200 ns with each reading.
+    /// A clock that advances by [`TICK_NS`] with each reading.
+    #[derive(Default)]
     struct Ticking(Mutex<f64>);
+
+    const TICK_NS: f64 = 1e6;
 
     impl Clock for Ticking {
         fn now(&self) -> Time {
             let now = &mut *self.0.lock().expect("no panics");
-            *now += 200.0;
+            *now += TICK_NS;
             Time::of_wall(*now)
         }
     }
@@ -223,9 +226,13 @@ mod tests {
 
         // Without patience a disturbed moment is taken as it is.
         gauge.patience_ns = 0.0;
-        let slow = Ticking(Mutex::new(0.0));
+        let slow = Ticking::default();
         assert!(gauge.wait(&slow) > 1.9);
-        assert_eq!(*slow.0.lock().expect("no panics"), 4.0 * 200.0, "one look");
+        assert_eq!(
+            *slow.0.lock().expect("no panics"),
+            4.0 * TICK_NS,
+            "one look"
+        );
     }
 
     #[test]
@@ -237,11 +244,11 @@ mod tests {
             };
             gauge.patience_ns = patience_ns;
             let mut tries = 0;
-            let taken = gauge.take(&Ticking(Mutex::new(0.0)), || tries += 1, |()| verdict);
+            let taken = gauge.take(&Ticking::default(), || tries += 1, |()| verdict);
             assert_eq!(taken.retaken + 1, tries);
             (tries, taken.disturbed)
         };
-        let (quiet, disturbed) = (&[200.0; 40], &[100.0; 400]);
+        let (quiet, disturbed) = (&[TICK_NS; 40], &[TICK_NS / 2.0; 4000]);
         assert_eq!(tries(Verdict::Good, quiet, 1e9), (1, false));
         assert_eq!(tries(Verdict::Again, quiet, 1e9), (4, false));
         assert_eq!(tries(Verdict::Good, disturbed, 1e9), (4, true));

@@ -97,7 +97,7 @@ impl Memory {
         self.reserve_for(pages::resident_bytes().unwrap_or(0) / RESERVE);
     }
 
-    /// Touches so many bytes at once, if pages are kept and there is room.
+    /// Touches a block of `bytes`, or less if there is little room, and the pages of freed blocks.
     pub(crate) fn reserve_for(&self, bytes: u64) {
         if let Some(free) = free_memory().filter(|_| self.keeps_pages()) {
             let most = free.saturating_sub(least_free()) / RESERVE;

@@ -31,6 +31,8 @@ const MOST_FIRST_TIMES: u32 = 9;
 const REBUILDING: f64 = 0.04;
 /// A structure is built behind a gap of up to this many bytes.
 const LARGEST_GAP: usize = 64 << 10;
+/// More runs than these make no sample better.
+pub(crate) const MOST_RUNS: f64 = 1e7;
 /// Runs longer than this fill the caches by themselves.
 pub(crate) const LONG_RUN_NS: f64 = 10_000_000.0;
 
@@ -41,6 +43,8 @@ pub(crate) struct Entry {
     pub(crate) subject: usize,
     /// What is run.
     pub(crate) job: Job,
+    /// How often it is run before the clock starts.
+    pub(crate) untimed: u32,
     /// How often in a row, for one sample.
     pub(crate) runs: u32,
     /// It takes part in every n-th round; in none if 0.
@@ -78,6 +82,7 @@ impl Entry {
         Self {
             subject,
             job,
+            untimed: 1,
             runs: 1,
             every: 1,
             cost_ns: 0.0,
@@ -94,14 +99,6 @@ impl Entry {
         }
     }
 
-    /// How often it is run before the clock starts.
-    pub(crate) fn untimed(&self) -> u32 {
-        match self.job.sample {
-            None => untimed_runs(self.job.operation, self.warm_up.map(Time::ns)),
-            Some(_) => 0,
-        }
-    }
-
     /// The time of the first run: the median, times the median of how much longer the first run takes.
     pub(crate) fn first_ns(&self) -> Option<f64> {
         let median = Median::of(self.times().iter().map(|(_, time)| time.ns()))?;
@@ -111,7 +108,7 @@ impl Entry {
 
     /// What measuring one first time is expected to take: three runs with what is set up for them.
     fn first_time_cost_ns(&self) -> f64 {
-        3.0 * self.cost_ns / f64::from(self.runs + self.untimed())
+        3.0 * self.cost_ns / f64::from(self.runs + self.untimed)
     }
 
     /// Whether what it allocates is new to the process the first time.
@@ -142,12 +139,14 @@ impl Entry {
     }
 }
 
-/// How often `operation` is run before the clock starts: once, so that caches hold what they would have
-/// there and tables have their size; not where a run, of `ns` if that is known, fills the caches by itself,
-/// and no tables grow.
-pub(crate) fn untimed_runs(operation: Operation, ns: Option<f64>) -> u32 {
-    let long = ns.is_some_and(|ns| ns > LONG_RUN_NS);
-    u32::from(!long || operation.grows_tables())
+/// How often `operation`, of which a run takes `ns`, is run before the clock starts: at least once, and for
+/// up to `most_ns`, so that caches and branch predictors are as in a program that does nothing else, and
+/// tables have their size; not at all where a run does all that by itself, and no tables grow.
+pub(crate) fn untimed_runs(operation: Operation, ns: f64, most_ns: f64) -> u32 {
+    match ns > LONG_RUN_NS {
+        true => u32::from(operation.grows_tables()),
+        false => (most_ns / ns.max(0.1)).clamp(1.0, MOST_RUNS) as u32,
+    }
 }
 
 /// Where a study stands: shown on a terminal.
@@ -299,7 +298,7 @@ impl Bench<'_, '_> {
     /// Takes a sample. An external program may refuse at any time.
     fn sample(&mut self, gauge: &mut Gauge, entry: &mut Entry, round: u32) {
         let (stop, kept) = (self.stop, self.memory.keeps_pages());
-        let runs = [entry.untimed(), entry.runs];
+        let runs = [entry.untimed, entry.runs];
         let taken = gauge.take(
             self.clock,
             || self.run(entry.subject, &entry.job, runs, false),

@@ -1,6 +1,6 @@
 //! The warm-up: everything once, and from that a plan of samples that fit the budget.
 
-use crate::measure::{Bench, Entry};
+use crate::measure::{Bench, Entry, MOST_RUNS, untimed_runs};
 use workload::Time;
 use workload::{Job, Run, Sample};
 use workload::{Kind, Operation};
@@ -11,10 +11,13 @@ const ROUNDS: u32 = 20;
 const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
 /// Longer samples are no better; more of them are.
 const LONGEST_SAMPLE_NS: f64 = 2_000_000.0;
+/// What takes up to this many times its share takes part in every second round only.
+const SOMETIMES_SHARES: f64 = 6.0;
+const SOMETIMES: u32 = 2;
 /// What those that scan get of the time left, beside others: they are hundreds of times slower, and no
 /// interval need be narrow to show it.
 const SCANS: f64 = 0.25;
-/// A run this slow takes part in every fourth round only.
+/// What takes longer still takes part in every fourth.
 const SELDOM: u32 = 4;
 /// A sample stands on at least so many elements, whatever the budget says.
 pub(crate) const FEWEST_ELEMENTS: usize = 16;
@@ -24,8 +27,6 @@ const ONCE: f64 = 0.5;
 const SMALL_SHARE: f64 = 0.02;
 /// So many faces, cut out of the mesh, tell for the first time what subdividing or editing it takes.
 const FIRST_PATCH: usize = 1024;
-/// More runs than these make no sample better.
-const MOST_RUNS: f64 = 1e7;
 
 impl Bench<'_, '_> {
     /// Runs everything once and plans samples that fit the budget: first what does not scan, then,
@@ -122,15 +123,17 @@ impl Bench<'_, '_> {
         if ns < SHORTEST_SAMPLE_NS {
             // The first run paid for cold caches and page faults; a second series says more.
             let runs = (SHORTEST_SAMPLE_NS / 4.0 / ns).clamp(1.0, MOST_RUNS);
-            let (run, besides) = self.run_and_look(entry, [entry.untimed(), runs as u32], false);
+            let (run, besides) = self.run_and_look(entry, [1, runs as u32], false);
             (ns, outside) = (run.time.ns().max(0.1), besides);
         }
+        // Half of the share is for the untimed runs.
         let target = (share / 2.0).clamp(SHORTEST_SAMPLE_NS, LONGEST_SAMPLE_NS);
         entry.runs = match self.memory.is_cold() {
             true => 1,
             false => (target / ns).ceil().clamp(1.0, MOST_RUNS) as u32,
         };
-        let cost = ns * f64::from(entry.runs + entry.untimed()) + outside;
+        entry.untimed = untimed_runs(entry.job.operation, ns, target);
+        let cost = ns * f64::from(entry.runs + entry.untimed) + outside;
         self.plan_rounds(entry, cost, share);
     }
 
@@ -149,7 +152,11 @@ impl Bench<'_, '_> {
         // What makes a mesh is long: where nobody asked for them the others keep their rounds.
         let unasked = entry.job.operation.makes_a_mesh() && !self.named;
         let most = if unasked { 1.0 } else { 4.0 };
-        entry.every = if cost_ns > most * share { SELDOM } else { 1 };
+        entry.every = match cost_ns / share {
+            shares if shares <= most => 1,
+            shares if shares <= SOMETIMES_SHARES => SOMETIMES,
+            _ => SELDOM,
+        };
     }
 
     /// Asks for few elements, then more, until the cost of the whole is known; then decides.
@@ -181,6 +188,7 @@ impl Bench<'_, '_> {
         let each = cost / size.min(all).max(1) as f64;
         let size = ((share / each) as usize).clamp(FEWEST_ELEMENTS, all.max(FEWEST_ELEMENTS));
         entry.job.sample = Some(Sample { scanned, size });
+        entry.untimed = 0;
         let start = self.clock.now().wall_ns;
         let run = self.run(entry.subject, &entry.job, [0, 1], true);
         keep(entry, run);
@@ -250,7 +258,7 @@ impl Bench<'_, '_> {
         }
     }
 
-    /// Runs the operation of `entry` on a patch of so many faces, with tables as in a later run.
+    /// Runs the operation of `entry` on a patch of `size` faces, with tables as in a later run.
     fn run_grown(&mut self, entry: &Entry, size: usize) -> Run {
         let untimed = u32::from(entry.job.operation.grows_tables());
         self.run(entry.subject, &of_a_patch(entry, size), [untimed, 1], false)
@@ -307,7 +315,7 @@ struct Probe {
     size: usize,
 }
 
-/// The operation of `entry` on a patch of so many faces.
+/// The operation of `entry` on a patch of `size` faces.
 fn of_a_patch(entry: &Entry, size: usize) -> Job {
     let scanned = [false; 3];
     Job {

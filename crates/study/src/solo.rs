@@ -3,7 +3,7 @@
 use sixfold::{Facts, PolygonMesh};
 
 use crate::gauge::{Gauge, Verdict};
-use crate::measure::untimed_runs;
+use crate::measure::{MOST_RUNS, untimed_runs};
 use crate::study::{StudyError, put_on_the_bench};
 use workload::Backend;
 use workload::Draw;
@@ -25,10 +25,11 @@ pub struct Solo<'a> {
 /// A short operation is repeated until this much time has passed between two readings of the clock.
 const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
 
+/// How long an operation is run before each sample, with the clock stopped.
+const UNTIMED_NS: f64 = 2_000_000.0;
+
 /// The budget that the patience of the gauge is a part of, in nanoseconds.
 const BUDGET_NS: f64 = 10e9;
-/// More runs than these are not needed for any operation.
-const MOST_RUNS: u32 = 1 << 20;
 
 /// What one run came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,8 +75,8 @@ impl<'a> Solo<'a> {
         self.subject.bytes()
     }
 
-    /// Runs `operation` on the whole mesh: repeatedly until 200 µs have passed if it is short, after an
-    /// untimed run as in a study, and again if other work disturbs the machine. The time is that
+    /// Runs `operation` on the whole mesh: repeatedly until 200 µs have passed if it is short, after
+    /// untimed runs as in a study, and again if other work disturbs the machine. The time is that
     /// of one run.
     pub fn run(&mut self, operation: Operation, clock: &dyn Clock) -> SoloRun {
         let runs = match self.last {
@@ -95,8 +96,8 @@ impl<'a> Solo<'a> {
         loop {
             let each = self.run_times(operation, runs, clock).time.ns();
             let ns = each * f64::from(runs);
-            if ns >= SHORTEST_SAMPLE_NS || runs >= MOST_RUNS {
-                return [untimed_runs(operation, Some(each)), runs];
+            if ns >= SHORTEST_SAMPLE_NS || f64::from(runs) >= MOST_RUNS {
+                return [untimed_runs(operation, each, UNTIMED_NS), runs];
             }
             let wanted = f64::from(runs) * SHORTEST_SAMPLE_NS / ns.max(1.0);
             runs = (wanted * 1.1).ceil().min(f64::from(runs) * 16.0) as u32;

@@ -12,7 +12,7 @@ pub struct Time {
     pub cpu_ns: Option<f64>,
     /// Wall time, in nanoseconds.
     pub wall_ns: f64,
-    /// Page faults of this thread meanwhile; `None` where nobody counted them.
+    /// Page faults of this thread meanwhile; `None` where they were not counted.
     pub faults: Option<u64>,
 }
 
@@ -104,7 +104,7 @@ pub trait Clock: Sync {
 const READINGS: usize = 301;
 /// Words that the work between two readings goes through: more than a first-level cache holds.
 const WORDS: usize = 8192;
-/// Reading the clock takes at most so many times as long in use as in a loop that does nothing else.
+/// Reading the clock in use takes at most this multiple of what it takes in a loop that does nothing else.
 const MOST_TIMES_HOT: f64 = 3.0;
 
 /// The clocks of this machine, and its counter of page faults.

@@ -52,11 +52,11 @@ pub trait Mixer {
     /// By part of the mix: whether it looks at all faces.
     fn scans(&self) -> Vec<bool>;
 
-    /// Runs the element operations of so many turns from `turn` on. If there are edits, it does so
+    /// Runs the element operations of `turns` turns, from `turn` on. If there are edits, it does so
     /// `copies` times, each time on a copy that is put back while the clock stands still.
     fn run(&mut self, turn: u64, turns: u64, copies: usize, clock: &dyn Clock) -> MixRun;
 
-    /// Runs so many operations of one part alone, from a place on its route; edits at fresh places.
+    /// Runs `operations` operations of one part alone, from a place on its route; edits at fresh places.
     fn run_part(&mut self, part: usize, first: u64, operations: u64, clock: &dyn Clock) -> MixRun;
 
     /// How many operations of `part` go through each of its elements once, or are done at all places.

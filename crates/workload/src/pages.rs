@@ -173,7 +173,7 @@ pub fn reserve(bytes: usize) {
     drop((block, blocks));
 }
 
-/// Allocates `bytes` and writes to each page; `None` if there is not so much memory.
+/// Allocates `bytes` and writes to each page; `None` where there is too little memory.
 fn touched_block(bytes: usize) -> Option<Vec<u8>> {
     let mut block: Vec<u8> = Vec::new();
     block.try_reserve_exact(bytes).ok()?;
@@ -274,7 +274,7 @@ mod platform {
 
     /// A block that no other thread allocates by chance between two looks.
     const WITNESS: usize = (1 << 20) + 4096 * 3;
-    /// The heap grows by so much at a time.
+    /// The heap grows by at least this much at a time.
     const STEP: libc::c_int = 1 << 20;
 
     /// Tells the allocator to map no block by itself, never to trim its heap, and to have one heap for

@@ -7,8 +7,8 @@ use crate::caches::{caches, last_level, level_bytes};
 use crate::clock::{Clock, Time, timed};
 use crate::pages;
 
-/// Between two readings of the clock there is about so much work at the least, where copies that fit the
-/// caches allow it.
+/// The clock is stopped after work of at least about this length, where copies that fit the caches allow
+/// it.
 pub const LONG_ENOUGH_NS: f64 = 60_000.0;
 /// The second-level cache where the platform does not tell its size.
 const USUAL_SECOND_LEVEL: usize = 512 << 10;

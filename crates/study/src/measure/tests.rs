@@ -22,6 +22,26 @@ struct Synthetic {
     elements: usize,
     costs: [QueryCost; 9],
     asked: Rc<Cell<usize>>,
+    place: Place,
+}
+
+/// Where the tables of a structure lie.
+#[derive(Clone, Default)]
+struct Place {
+    /// What building them elsewhere takes, in nanoseconds.
+    rebuild_ns: f64,
+    /// How often they were.
+    rebuilt: Rc<Cell<u32>>,
+    /// By how much everything takes longer, by place: in each the structure is as often as in any other.
+    slowdowns: Vec<f64>,
+}
+
+impl Place {
+    fn slowdown(&self) -> f64 {
+        let places = self.slowdowns.len().max(1);
+        let here = self.slowdowns.get(self.rebuilt.get() as usize % places);
+        here.copied().unwrap_or(1.0)
+    }
 }
 
 impl Subject for Synthetic {
@@ -37,18 +57,23 @@ impl Subject for Synthetic {
     fn bytes(&self) -> usize {
         1
     }
+    fn rebuild(&mut self) {
+        self.machine.work(self.place.rebuild_ns);
+        self.place.rebuilt.set(self.place.rebuilt.get() + 1);
+    }
     fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
         let Series { runs, clock, .. } = *series;
         let size = job
             .sample
             .map_or(self.elements, |s| s.size.min(self.elements));
         self.asked.set(self.asked.get().max(size));
+        let ns = self.ns_per_element * size as f64 * self.place.slowdown();
         for _ in 0..series.untimed {
-            self.machine.work(self.ns_per_element * size as f64);
+            self.machine.work(ns);
         }
         let start = clock.now();
         for _ in 0..runs {
-            self.machine.work(self.ns_per_element * size as f64);
+            self.machine.work(ns);
         }
         let scale = self.elements as f64 / size as f64 / f64::from(runs);
         Run::done((clock.now() - start).scaled(scale), None)
@@ -82,16 +107,28 @@ fn bench(
             elements: 10_000,
             costs: [cost; 9],
             asked: Rc::default(),
+            place: Place::default(),
         }) as Box<dyn Subject>
     };
     let mut subjects: Vec<_> = costs_ns.iter().map(subject).collect();
+    run(&machine, &mut subjects, budget, stop, skewed)
+}
+
+/// What was measured of `subjects`, and how long that took.
+fn run(
+    machine: &Machine,
+    subjects: &mut [Box<dyn Subject>],
+    budget: Duration,
+    stop: bool,
+    skewed: bool,
+) -> (Vec<Entry>, Duration) {
     let stop = AtomicBool::new(stop);
     let mut bench = Bench {
-        subjects: &mut subjects,
+        subjects,
         control: None,
         population: [10_000; 3],
         skewed,
-        clock: &machine,
+        clock: machine,
         memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
         budget,
         named: false,
@@ -120,6 +157,63 @@ fn a_cost_that_depends_on_the_place_is_seen_by_the_control() {
     let entries = measured(&[7.0, 10.0, 7.0], false, Duration::from_secs(2), false);
     let steady = control(&entries, 0, 2, "synthetic").expect("samples");
     assert!(steady.operations.iter().all(|row| !row.is_unsteady()));
+}
+
+#[test]
+fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget() {
+    let budget = Duration::from_secs(2);
+    let placed = |rebuild_ns: f64| {
+        let machine = Machine::default();
+        let rebuilt: [Rc<Cell<u32>>; 2] = Default::default();
+        let subject = |i: usize, slowdowns: [f64; 2]| {
+            Box::new(Synthetic {
+                machine: machine.clone(),
+                ns_per_element: 7.0,
+                elements: 10_000,
+                costs: [QueryCost::Local; 9],
+                asked: Rc::default(),
+                place: Place {
+                    rebuild_ns,
+                    rebuilt: rebuilt[i].clone(),
+                    slowdowns: slowdowns.to_vec(),
+                },
+            }) as Box<dyn Subject>
+        };
+        // Where one is slow the other is fast.
+        let mut subjects = vec![subject(0, [1.0, 1.2]), subject(1, [1.2, 1.0])];
+        let (entries, took) = run(&machine, &mut subjects, budget, false, false);
+        (entries, took, rebuilt[0].get())
+    };
+    // Both are in both places, and no median rests on one of them.
+    let (entries, took, rebuilt) = placed(100_000.0);
+    assert!(took <= budget);
+    assert!(
+        rebuilt >= 15 && f64::from(rebuilt) * 200_000.0 <= 0.05 * 2e9,
+        "{rebuilt}"
+    );
+    let pairs = entries[0].samples.iter().zip(&entries[1].samples);
+    let slower = pairs
+        .clone()
+        .filter(|((_, a), (_, b))| a.ns() > b.ns())
+        .count();
+    let all = pairs.count();
+    assert!(
+        all > 15 && (2 * slower).abs_diff(all) <= all / 5,
+        "{slower} of {all}"
+    );
+    // What takes long is tried once, and told by that.
+    assert_eq!(placed(1e8).2, 1);
+}
+
+#[test]
+fn untimed_runs_last_as_long_as_a_sample_may_and_are_at_least_one() {
+    assert_eq!(untimed_runs(VV, 1_000.0, 2e6), 2_000);
+    assert_eq!(untimed_runs(VV, 5e6, 2e6), 1);
+    assert_eq!(untimed_runs(VV, 11e6, 2e6), 0);
+    assert_eq!(untimed_runs(VV, 10e6, 2e6), 1);
+    let grows: Operation = "flip_all".parse().expect("an operation");
+    assert_eq!(untimed_runs(grows, 11e6, 2e6), 1);
+    assert_eq!(untimed_runs(VV, 0.0, 1e12), 10_000_000);
 }
 
 #[test]
@@ -241,6 +335,7 @@ fn a_subdivision_is_estimated_first_and_left_out_if_it_is_long_and_nobody_asked(
             elements: 10_000,
             costs: [cost; 9],
             asked: asked.clone(),
+            place: Place::default(),
         })];
         let mut bench = Bench {
             subjects: &mut subjects,
