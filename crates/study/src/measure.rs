@@ -24,7 +24,7 @@ use workload::{Job, LONG_ENOUGH_NS, Outcome, Run, Series, Start, Subject};
 /// No interval gets much better by more rounds than these.
 const MOST_ROUNDS: u32 = 200;
 /// What samples on fresh pages may take of the budget.
-const FIRST_TIMES: f64 = 0.15;
+const FIRST_TIMES: f64 = 0.1;
 /// No figure gets much better by more samples on fresh pages than these.
 const MOST_FIRST_TIMES: u32 = 9;
 /// What building the structures again and again may take of the time.

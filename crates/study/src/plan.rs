@@ -126,8 +126,8 @@ impl Bench<'_, '_> {
             let (run, besides) = self.run_and_look(entry, [1, runs as u32], false);
             (ns, outside) = (run.time.ns().max(0.1), besides);
         }
-        // Half of the share is for the untimed runs.
-        let target = (share / 2.0).clamp(SHORTEST_SAMPLE_NS, LONGEST_SAMPLE_NS);
+        // As much for the untimed runs, and as much again for waiting and for what happens between runs.
+        let target = (share / 4.0).clamp(SHORTEST_SAMPLE_NS, LONGEST_SAMPLE_NS);
         entry.runs = match self.memory.is_cold() {
             true => 1,
             false => (target / ns).ceil().clamp(1.0, MOST_RUNS) as u32,
