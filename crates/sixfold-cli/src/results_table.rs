@@ -270,7 +270,7 @@ impl Signs {
         let parts = there.map(|(sign, meaning)| format!("{sign} {meaning}"));
         // Broken between meanings only.
         let mut lines: Vec<String> = Vec::new();
-        for part in first_times.into_iter().chain(parts) {
+        for part in parts.chain(first_times) {
             match lines.last_mut() {
                 Some(line) if line.chars().count() + 2 + part.chars().count() <= WIDTH => {
                     *line += "; ";

@@ -30,7 +30,7 @@ const ENOUGH: f64 = 0.25;
 /// The fixed work, what it has taken so far, and how long may still be spent on waiting.
 pub(crate) struct Gauge {
     words: Vec<u64>,
-    /// The times of all looks, ascending.
+    /// The times of looks: one before and one after each sample; ascending.
     looks_ns: Vec<f64>,
     patience_ns: f64,
 }
@@ -64,7 +64,7 @@ impl Gauge {
             let disturbed = slowdown > DISTURBED && self.is_patient();
             let again = match verdict(&value) {
                 Verdict::Final => false,
-                Verdict::Again => true,
+                Verdict::Again => self.is_patient(),
                 Verdict::Good => disturbed,
             };
             if !again || retaken == MOST_RETAKEN {
@@ -89,11 +89,13 @@ impl Gauge {
     fn wait(&mut self, clock: &dyn Clock) -> f64 {
         let start = clock.now().wall_ns;
         loop {
-            let slowdown = self.slowdown(clock);
+            let ns = self.look(clock);
             let waited = clock.now().wall_ns - start;
-            if slowdown <= DISTURBED || waited > LONGEST_WAIT_NS || !self.is_patient() {
+            let disturbed = self.slowdown_at(ns) > DISTURBED;
+            if !disturbed || waited > LONGEST_WAIT_NS || !self.is_patient() {
                 self.patience_ns -= waited;
-                return slowdown;
+                // Of a wait one look is kept: hundreds of disturbed ones would become the undisturbed time.
+                return self.note(ns);
             }
         }
     }
@@ -101,21 +103,36 @@ impl Gauge {
     /// Returns the time of the fixed work now, divided by its undisturbed time; 1 if the clock does not
     /// advance meanwhile.
     fn slowdown(&mut self, clock: &dyn Clock) -> f64 {
+        let ns = self.look(clock);
+        self.note(ns)
+    }
+
+    /// The time of the fixed work now.
+    fn look(&self, clock: &dyn Clock) -> f64 {
         // The first pass brings the table into the cache.
         black_box(self.pass());
-        let ns = timed(clock, || {
+        let time = timed(clock, || {
             for _ in 0..PASSES {
                 black_box(self.pass());
             }
-        })
-        .ns();
-        if ns <= 0.0 {
-            return 1.0;
-        }
+        });
+        time.ns()
+    }
+
+    /// Keeps a look, and returns its slowdown.
+    fn note(&mut self, ns: f64) -> f64 {
         let place = self.looks_ns.partition_point(|&look| look < ns);
         self.looks_ns.insert(place, ns);
+        self.slowdown_at(ns)
+    }
+
+    /// A look divided by the undisturbed time; 1 if it took no time, or is the first.
+    fn slowdown_at(&self, ns: f64) -> f64 {
         let undisturbed = (self.looks_ns.len() as f64 * UNDISTURBED) as usize;
-        ns / self.looks_ns[undisturbed]
+        match self.looks_ns.get(undisturbed) {
+            Some(&undisturbed) if ns > 0.0 && undisturbed > 0.0 => ns / undisturbed,
+            _ => 1.0,
+        }
     }
 
     /// Four sums that do not wait for each other: work that fills the core, and so takes longer if another
@@ -248,12 +265,13 @@ mod tests {
             assert_eq!(taken.retaken + 1, tries);
             (tries, taken.disturbed)
         };
-        let (quiet, disturbed) = (&[TICK_NS; 40], &[TICK_NS / 2.0; 4000]);
+        let (quiet, disturbed) = (&[TICK_NS; 40], &[TICK_NS / 2.0; 400]);
         assert_eq!(tries(Verdict::Good, quiet, 1e9), (1, false));
         assert_eq!(tries(Verdict::Again, quiet, 1e9), (4, false));
         assert_eq!(tries(Verdict::Good, disturbed, 1e9), (4, true));
         assert_eq!(tries(Verdict::Final, disturbed, 1e9), (1, true));
         assert_eq!(tries(Verdict::Good, disturbed, 0.0), (1, false));
+        assert_eq!(tries(Verdict::Again, quiet, 0.0), (1, false));
     }
 
     #[test]

@@ -91,7 +91,7 @@ impl Memory {
         self.heap.policy == Policy::Kept
     }
 
-    /// Touches the pages of freed blocks, and more than are in use, if they are kept and there is room:
+    /// Touches the pages of freed blocks, and a quarter of what is resident, if they are kept and there is room:
     /// what is allocated from then on finds its pages there.
     pub(crate) fn reserve(&self) {
         self.reserve_for(pages::resident_bytes().unwrap_or(0) / RESERVE);
@@ -103,6 +103,11 @@ impl Memory {
             let most = free.saturating_sub(least_free()) / RESERVE;
             pages::reserve(usize::try_from(bytes.min(most)).unwrap_or(0));
         }
+    }
+
+    /// Whether `bytes` more leave enough memory free, as far as the platform tells.
+    pub(crate) fn has_room_for(&self, bytes: u64) -> bool {
+        free_memory().is_none_or(|free| free > least_free().saturating_add(bytes))
     }
 
     /// Returns the pages of freed blocks, if they are kept: until [`Memory::reserve`] what is allocated
@@ -120,7 +125,6 @@ impl Memory {
         }
         if let Some(free) = free_memory().filter(|&free| free < least_free()) {
             self.heap = pages::put_in_force(Policy::System);
-            pages::give_back();
             self.heap.reason = Some(format!(
                 "only {} of memory were free while pages were kept, so the later samples are on the system's heap",
                 shown(free)
@@ -172,10 +176,13 @@ fn least_free() -> u64 {
 pub fn free_memory() -> Option<u64> {
     let mut system = System::new();
     system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
-    let free = system.available_memory();
-    let group = system.cgroup_limits().map(|limits| limits.free_memory);
-    let rooms = [Some(free), group, pages::address_space_left()];
-    rooms.into_iter().flatten().min().filter(|&free| free > 0)
+    // 0 where the system does not tell.
+    let free = Some(system.available_memory()).filter(|&free| free > 0);
+    // Files that the group has read count as used there, and yet are given up when memory is needed.
+    let group = system.cgroup_limits();
+    let group = group.map(|limits| limits.total_memory.saturating_sub(limits.rss));
+    let rooms = [free, group, pages::address_space_left()];
+    rooms.into_iter().flatten().min()
 }
 
 #[cfg(test)]

@@ -3,10 +3,11 @@
 //! In every round each operation runs on every structure, one right after the other, in an order
 //! drawn anew: whatever drifts (frequency, heat, neighbours on the machine) hits all alike, and the
 //! ratios formed within a round are nearly free of it. A sample repeats a short operation until the
-//! clock can resolve it, after one run that is not timed, so that caches hold what this structure
-//! would have there. Between rounds all structures are built again, elsewhere in memory, so that the
-//! places of their tables differ from round to round. What allocates is measured a second time at the end, on fresh pages.
+//! clock can resolve it, after about as much work that is not timed, so that caches hold what this
+//! structure would have there. Between rounds, as far as time allows, all structures are built again
+//! elsewhere in memory, so that the places of their tables differ. What allocates is measured a second time at the end, on fresh pages.
 
+use std::hint::black_box;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -18,6 +19,7 @@ use crate::gauge::{Gauge, Verdict, undisturbed};
 use crate::heap::Memory;
 use crate::statistics::Median;
 use workload::Operation;
+use workload::pages;
 use workload::{Clock, Time};
 use workload::{Job, LONG_ENOUGH_NS, Outcome, Run, Series, Start, Subject};
 
@@ -198,7 +200,8 @@ impl Bench<'_, '_> {
         self.warm_up(&mut entries, deadline);
         self.memory.reserve();
         let allocates = operations.iter().any(|operation| operation.allocates());
-        let for_first_times = match allocates && !self.memory.is_cold() {
+        let fresh_pages = pages::can_give_back() && !self.memory.is_cold();
+        let for_first_times = match allocates && fresh_pages {
             true => FIRST_TIMES * self.budget.as_nanos() as f64,
             false => 0.0,
         };
@@ -242,17 +245,19 @@ impl Bench<'_, '_> {
         let mut rebuilding_ns = 0.0;
         for round in 0..MOST_ROUNDS {
             self.memory.watch();
-            let now = self.clock.now().wall_ns;
-            if round > 0 && rebuilding_ns + rebuild_ns <= REBUILDING * (now - start) {
-                self.rebuild();
-                rebuild_ns = self.clock.now().wall_ns - now;
-                rebuilding_ns += rebuild_ns;
-            }
             let costs = entries.iter().filter(|e| takes_part(e, round));
             let cost: f64 = costs.map(|e| e.cost_ns).sum();
             let now = self.clock.now().wall_ns;
-            if now >= deadline || (round > 0 && now + cost > deadline) {
+            let over = now >= deadline || (round > 0 && now + cost > deadline);
+            if over || self.stopped() || !entries.iter().any(can_take_part) {
                 return;
+            }
+            let in_time = now + rebuild_ns + cost <= deadline;
+            let affordable = rebuilding_ns + rebuild_ns <= REBUILDING * (now - start);
+            if round > 0 && in_time && affordable && self.has_room_to_rebuild() {
+                self.rebuild();
+                rebuild_ns = self.clock.now().wall_ns - now;
+                rebuilding_ns += rebuild_ns;
             }
             groups.shuffle(&mut self.random);
             for group in &mut groups {
@@ -281,16 +286,26 @@ impl Bench<'_, '_> {
         }
     }
 
-    /// Builds all structures again, each elsewhere in memory, on pages that the kernel chooses anew. Tables
-    /// stay where they are between two such moments, and with them whatever their places cost or save.
+    /// Whether another copy of the largest structure, with its outputs, fits into the free memory.
+    fn has_room_to_rebuild(&self) -> bool {
+        let largest = self.subjects.iter().map(|subject| subject.bytes()).max();
+        self.memory.has_room_for(2 * largest.unwrap_or(0) as u64)
+    }
+
+    /// Builds all structures again, each elsewhere in memory, where pages are kept on pages that the kernel
+    /// chooses anew. Tables stay where they are between two such moments, and with them whatever their places
+    /// cost or save.
     fn rebuild(&mut self) {
         let mut order: Vec<usize> = (0..self.subjects.len()).collect();
         order.shuffle(&mut self.random);
         for subject in order {
+            if self.stopped() {
+                return;
+            }
             self.memory.give_back();
             let gap: Vec<u8> = Vec::with_capacity(self.random.random_range(0..LARGEST_GAP));
             self.subjects[subject].rebuild();
-            drop(gap);
+            drop(black_box(gap));
         }
         self.memory.reserve();
     }
@@ -314,7 +329,10 @@ impl Bench<'_, '_> {
                 entry.slowdowns.push(taken.slowdown);
                 entry.owed = taken.disturbed;
             }
-            refusal => entry.refusal = refusal,
+            refusal => {
+                entry.refusal = refusal;
+                entry.owed = false;
+            }
         }
     }
 

@@ -14,12 +14,14 @@ use workload::{Job, Series, Subject};
 
 /// One backend, built and ready: the same code that a study runs, without its rounds.
 ///
-/// Freed pages stay with the process, as in a study.
+/// Freed pages stay with the process, as in a study, where the allocator can be told so.
 pub struct Solo<'a> {
     subject: Box<dyn Subject + 'a>,
     /// The operation of the last run, and how many untimed and timed runs make a sample of it.
     last: Option<(Operation, [u32; 2])>,
     gauge: Gauge,
+    /// Whether freed pages stay: samples should have no page faults then.
+    kept: bool,
 }
 
 /// A short operation is repeated until this much time has passed between two readings of the clock.
@@ -50,7 +52,7 @@ impl<'a> Solo<'a> {
     ///
     /// A name that no backend has, and a mesh that this one cannot hold.
     pub fn new(backend: &str, polygons: &'a PolygonMesh) -> Result<Self, StudyError> {
-        pages::put_in_force(Policy::Kept);
+        let kept = pages::put_in_force(Policy::Kept).policy == Policy::Kept;
         let name = backend.to_owned();
         let found = Backend::roster()
             .into_iter()
@@ -67,6 +69,7 @@ impl<'a> Solo<'a> {
             subject,
             last: None,
             gauge: Gauge::new(BUDGET_NS),
+            kept,
         })
     }
 
@@ -86,7 +89,8 @@ impl<'a> Solo<'a> {
         self.last = Some((operation, runs));
         let Self { subject, gauge, .. } = self;
         let sample = || run_times(subject.as_mut(), operation, runs, clock);
-        let verdict = |run: &SoloRun| Verdict::on_faults(run.time, true);
+        let kept = self.kept;
+        let verdict = |run: &SoloRun| Verdict::on_faults(run.time, kept);
         gauge.take(clock, sample, verdict).value
     }
 

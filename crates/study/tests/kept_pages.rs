@@ -1,4 +1,4 @@
-//! Where freed pages are kept, no sample has a page fault: in a study and in a pick, on three sizes.
+//! Where freed pages are kept, no sample has a page fault: in studies of three sizes and in a pick.
 //!
 //! A program of its own with one thread: the policy has to be in force before other threads start.
 

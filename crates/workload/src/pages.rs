@@ -155,20 +155,22 @@ const LARGEST_FREED: usize = 1 << 20;
 
 /// Touches `bytes` in one block and the pages of all freed blocks, so that what is allocated later finds
 /// its pages there: those that [`give_back`] returned are taken from the kernel again. Of no use unless
-/// pages are kept. O(`bytes` + bytes of freed blocks).
+/// pages are kept. O(`bytes` + bytes of freed blocks), and a walk over the list of freed blocks for each
+/// MiB of them.
 pub fn reserve(bytes: usize) {
     let block = touched_block(bytes);
     // All at once, so that no two are the same; larger ones first, for the small ones fit anywhere.
     let mut blocks = Vec::new();
     let mut size = LARGEST_FREED;
-    while size >= LEAST_PAGE {
-        let before = platform::heap_bytes();
-        match touched_block(size) {
-            Some(block) if platform::heap_bytes() == before && before.is_some() => {
-                blocks.push(block)
-            }
+    let mut heap = platform::heap_bytes();
+    while size >= LEAST_PAGE && heap.is_some() {
+        let block = touched_block(size);
+        let now = platform::heap_bytes();
+        match block {
+            Some(block) if now == heap => blocks.push(block),
             _ => size /= 2,
         }
+        heap = now;
     }
     drop((block, blocks));
 }
@@ -187,6 +189,11 @@ fn touched_block(bytes: usize) -> Option<Vec<u8>> {
 /// ones. Nothing where the allocator cannot be asked to.
 pub fn give_back() {
     platform::give_back();
+}
+
+/// Whether [`give_back`] can: whether the allocator is one that it knows.
+pub fn can_give_back() -> bool {
+    platform::is_ours()
 }
 
 /// Bytes of this process that are in memory, where the platform tells.
@@ -274,6 +281,8 @@ mod platform {
 
     /// A block that no other thread allocates by chance between two looks.
     const WITNESS: usize = (1 << 20) + 4096 * 3;
+    /// How often the allocator is looked at before it is taken for another one.
+    const LOOKS: usize = 16;
     /// The heap grows by at least this much at a time.
     const STEP: libc::c_int = 1 << 20;
 
@@ -289,12 +298,13 @@ mod platform {
         set(&options)
     }
 
-    /// The values that glibc starts with; its thresholds no longer adapt themselves afterwards.
+    /// The values that glibc comes to in a program that has freed large blocks: its thresholds, once set, no
+    /// longer adapt themselves. All threads still share one heap.
     pub(super) fn restore() {
         let options = [
             (libc::M_MMAP_MAX, 65536),
-            (libc::M_MMAP_THRESHOLD, 128 << 10),
-            (libc::M_TRIM_THRESHOLD, 128 << 10),
+            (libc::M_MMAP_THRESHOLD, 32 << 20),
+            (libc::M_TRIM_THRESHOLD, 64 << 20),
             (libc::M_TOP_PAD, 128 << 10),
         ];
         set(&options);
@@ -331,13 +341,17 @@ mod platform {
         info.uordblks.wrapping_add(info.hblkhd).cast_unsigned()
     }
 
-    /// Whether what Rust allocates comes from the GNU C library: its own count shows it.
+    /// Whether what Rust allocates comes from the GNU C library: its own count shows it. Other threads may
+    /// allocate meanwhile, so that one look out of a few has to show it.
     pub(super) fn is_ours() -> bool {
-        let before = used();
-        let block: Vec<u8> = Vec::with_capacity(WITNESS);
-        let grown = used().wrapping_sub(before) as usize;
-        std::hint::black_box(&block);
-        (WITNESS..2 * WITNESS).contains(&grown)
+        let shows = || {
+            let before = used();
+            let block: Vec<u8> = Vec::with_capacity(WITNESS);
+            let grown = used().wrapping_sub(before) as usize;
+            std::hint::black_box(&block);
+            (WITNESS..2 * WITNESS).contains(&grown)
+        };
+        (0..LOOKS).any(|_| shows())
     }
 
     pub(super) fn allocator() -> String {

@@ -342,18 +342,26 @@ impl Contest<'_> {
         let taken = gauge.take(
             self.clock,
             || self.sample_once(entrant, round, slices),
-            |time| match self.stopped() {
+            |(time, _)| match self.stopped() {
                 true => Verdict::Final,
                 false => Verdict::on_faults(*time, kept),
             },
         );
         if !self.stopped() {
-            entrant.samples.push((round, taken.value));
+            let (time, build) = taken.value;
+            entrant.builds.extend(build);
+            entrant.samples.push((round, time));
             entrant.slowdowns.push(taken.slowdown);
         }
     }
 
-    fn sample_once(&self, entrant: &mut Entrant<'_>, round: u32, slices: Slices) -> Time {
+    /// The time of the mix, and that of building where it was built.
+    fn sample_once(
+        &self,
+        entrant: &mut Entrant<'_>,
+        round: u32,
+        slices: Slices,
+    ) -> (Time, Option<Time>) {
         let mut total = Time::none_like(self.clock.now());
         if self.script.on_elements > 0.0 {
             total = total.plus(if entrant.scans() {
@@ -367,12 +375,12 @@ impl Contest<'_> {
             total = total.plus(self.pass(entrant, part).scaled(share));
         }
         let rebuilds = self.question.workload.rebuilds_per_operation(&self.counts);
-        if rebuilds > 0.0 || entrant.builds.len() < BUILDS {
-            let time = entrant.mixer.build(&Series::once(self.clock));
-            entrant.builds.push(time);
+        let builds = rebuilds > 0.0 || entrant.builds.len() < BUILDS;
+        let build = builds.then(|| entrant.mixer.build(&Series::once(self.clock)));
+        if let Some(time) = build {
             total = total.plus(time.scaled(rebuilds));
         }
-        total
+        (total, build)
     }
 
     /// All parts on elements in one loop; the turns before these run first, untimed, so that caches
