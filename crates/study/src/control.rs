@@ -35,7 +35,10 @@ pub(crate) fn control(
         let Some(once) = of(first, operation) else {
             continue;
         };
-        if let Some(ratio) = ratio(&again.times(), &once.times()) {
+        // A time of zero, on a coarse clock, has no ratio.
+        let ratio = ratio(&again.times(), &once.times());
+        let known = |ratio: &Median| ratio.value.is_finite() && ratio.value > 0.0;
+        if let Some(ratio) = ratio.filter(known) {
             operations.push(ControlRow {
                 operation,
                 ratio: ratio.value,

@@ -217,6 +217,17 @@ fn untimed_runs_last_as_long_as_a_sample_may_and_are_at_least_one() {
 }
 
 #[test]
+fn a_control_leaves_out_times_of_zero() {
+    let mut entries = measured(&[7.0, 7.0], false, Duration::from_secs(1), false);
+    for (_, time) in &mut entries[1].samples {
+        *time = Time::of_wall(0.0);
+    }
+    let control = control(&entries, 0, 1, "synthetic").expect("two operations");
+    assert_eq!(control.operations.len(), 2);
+    assert!(control.worst.is_finite());
+}
+
+#[test]
 fn a_control_tells_the_noise_of_a_drifting_machine() {
     let entries = measured(&[7.0, 10.0, 7.0], false, Duration::from_secs(2), false);
     let control = control(&entries, 0, 2, "synthetic").expect("samples");
