@@ -58,7 +58,7 @@ def main():
     print(f"control within its limits in {chosen.times - outside} of {chosen.times} studies")
     print(f"largest median by smallest: worst {spread[worst]:.2f} ({worst[0]} on {worst[1]}), "
           f"median of {len(spread)} rows {statistics.median(spread.values()):.2f}")
-    print(f"intervals that reach further than 10 %: {min(wide)} to {max(wide)} of {len(spread)} rows")
+    print(f"intervals that reach further than 10 %: {min(wide)} to {max(wide)} of {len(known)} rows")
     print(f"page faults in kept samples: {faults}")
     for cell in sorted(spread, key=spread.get, reverse=True)[:5]:
         print(f"  {cell[0]:<22} {cell[1]:<13} {spread[cell]:.2f}  {min(figures[cell]):.2f} to {max(figures[cell]):.2f}")

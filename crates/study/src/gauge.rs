@@ -24,6 +24,8 @@ const UNDISTURBED: f64 = 0.05;
 const LONGEST_WAIT_NS: f64 = 10_000_000.0;
 /// What waiting and disturbed samples may take of a budget.
 const PATIENCE: f64 = 0.3;
+/// What samples that are taken again for their page faults may take of a budget.
+const FOR_FAULTS: f64 = 0.1;
 /// Undisturbed samples stand for all if they are at least this part of them.
 const ENOUGH: f64 = 0.25;
 
@@ -33,6 +35,8 @@ pub(crate) struct Gauge {
     /// The times of looks: one before and one after each sample; ascending.
     looks_ns: Vec<f64>,
     patience_ns: f64,
+    /// How long may still be spent on taking samples again for their page faults.
+    for_faults_ns: f64,
 }
 
 impl Gauge {
@@ -43,11 +47,12 @@ impl Gauge {
             words: (0..WORDS as u64).map(word).collect(),
             looks_ns: Vec::new(),
             patience_ns: PATIENCE * budget_ns,
+            for_faults_ns: FOR_FAULTS * budget_ns,
         }
     }
 
     /// Takes a sample by `sample`, and takes it again if `verdict` asks for it or if the machine was
-    /// disturbed before or after it: three times at most, and for disturbances while patience lasts.
+    /// disturbed before or after it: three times at most, and within what each of the two may take of the budget.
     pub(crate) fn take<T>(
         &mut self,
         clock: &dyn Clock,
@@ -62,21 +67,22 @@ impl Gauge {
             let took = clock.now().wall_ns - start;
             let slowdown = self.slowdown(clock).max(before);
             let disturbed = slowdown > DISTURBED && self.is_patient();
-            let again = match verdict(&value) {
-                Verdict::Final => false,
-                Verdict::Again => self.is_patient(),
-                Verdict::Good => disturbed,
+            let left_ns = match verdict(&value) {
+                Verdict::Good if disturbed => Some(&mut self.patience_ns),
+                Verdict::Again => Some(&mut self.for_faults_ns),
+                Verdict::Good | Verdict::Final => None,
             };
-            if !again || retaken == MOST_RETAKEN {
+            let left_ns = left_ns.filter(|left_ns| **left_ns > 0.0 && retaken < MOST_RETAKEN);
+            let Some(left_ns) = left_ns else {
                 return Taken {
                     value,
                     slowdown,
                     retaken,
                     disturbed,
                 };
-            }
+            };
             retaken += 1;
-            self.patience_ns -= took;
+            *left_ns -= took;
         }
     }
 
@@ -154,7 +160,7 @@ impl Gauge {
 pub(crate) enum Verdict {
     /// Keeps it, unless the machine was disturbed.
     Good,
-    /// Takes it again.
+    /// Takes it again: pages faulted.
     Again,
     /// Keeps it in any case: it was refused, or the study was told to stop.
     Final,
@@ -260,6 +266,7 @@ mod tests {
                 ..Gauge::new(1.0)
             };
             gauge.patience_ns = patience_ns;
+            gauge.for_faults_ns = 1e9;
             let mut tries = 0;
             let taken = gauge.take(&Ticking::default(), || tries += 1, |()| verdict);
             assert_eq!(taken.retaken + 1, tries);
@@ -271,7 +278,8 @@ mod tests {
         assert_eq!(tries(Verdict::Good, disturbed, 1e9), (4, true));
         assert_eq!(tries(Verdict::Final, disturbed, 1e9), (1, true));
         assert_eq!(tries(Verdict::Good, disturbed, 0.0), (1, false));
-        assert_eq!(tries(Verdict::Again, quiet, 0.0), (1, false));
+        // Page faults have a budget of their own.
+        assert_eq!(tries(Verdict::Again, quiet, 0.0), (4, false));
     }
 
     #[test]

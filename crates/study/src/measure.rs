@@ -5,7 +5,8 @@
 //! ratios formed within a round are nearly free of it. A sample repeats a short operation until the
 //! clock can resolve it, after about as much work that is not timed, so that caches hold what this
 //! structure would have there. Between rounds, as far as time allows, all structures are built again
-//! elsewhere in memory, so that the places of their tables differ. What allocates is measured a second time at the end, on fresh pages.
+//! elsewhere in memory, so that the places of their tables differ. What allocates is measured a second
+//! time at the end, on fresh pages.
 
 use std::hint::black_box;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -8,7 +8,7 @@ use workload::{Kind, Operation};
 /// How many rounds the plan aims at.
 const ROUNDS: u32 = 20;
 /// A sample lasts at least this long, or the clock shows in it.
-const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
+pub(crate) const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
 /// Longer samples are no better; more of them are.
 const LONGEST_SAMPLE_NS: f64 = 2_000_000.0;
 /// What takes up to this many times its share takes part in every second round only.
@@ -126,7 +126,7 @@ impl Bench<'_, '_> {
             let (run, besides) = self.run_and_look(entry, [1, runs as u32], false);
             (ns, outside) = (run.time.ns().max(0.1), besides);
         }
-        // As much for the untimed runs, and as much again for waiting and for what happens between runs.
+        // As much for the untimed runs; the other half is for waiting and for what happens between runs.
         let target = (share / 4.0).clamp(SHORTEST_SAMPLE_NS, LONGEST_SAMPLE_NS);
         entry.runs = match self.memory.is_cold() {
             true => 1,

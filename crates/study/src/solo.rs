@@ -4,6 +4,7 @@ use sixfold::{Facts, PolygonMesh};
 
 use crate::gauge::{Gauge, Verdict};
 use crate::measure::{MOST_RUNS, untimed_runs};
+use crate::plan::SHORTEST_SAMPLE_NS;
 use crate::study::{StudyError, put_on_the_bench};
 use workload::Backend;
 use workload::Draw;
@@ -23,9 +24,6 @@ pub struct Solo<'a> {
     /// Whether freed pages stay: samples should have no page faults then.
     kept: bool,
 }
-
-/// A short operation is repeated until this much time has passed between two readings of the clock.
-const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
 
 /// How long an operation is run before each sample, with the clock stopped.
 const UNTIMED_NS: f64 = 2_000_000.0;

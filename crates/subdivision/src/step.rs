@@ -27,7 +27,7 @@ pub(crate) struct Outline {
 }
 
 impl Outline {
-    /// Nothing yet, with room for what `mesh` will be split into. Its faces have so many `corners`
+    /// Nothing yet, with room for what `mesh` will be split into. Its faces have `corners` corners
     /// together.
     pub(crate) fn of<M: MeshQuery>(split: Split, mesh: &M, corners: usize) -> Self {
         let (vertices, faces) = (mesh.vertex_count(), mesh.face_count());
