@@ -16,8 +16,10 @@ const MOST_RETAKEN: u32 = 3;
 const WORDS: usize = 2048;
 /// Passes over the table in one look: some 10 µs.
 const PASSES: usize = 12;
-/// The machine is disturbed if the fixed work takes more than this multiple of its undisturbed time.
-const DISTURBED: f64 = 1.08;
+/// The machine is disturbed if the fixed work takes more than this multiple of its undisturbed time. A lower
+/// limit would mostly find phases of another processor frequency: they last longer than a round and so
+/// affect all backends alike, and samples that are taken again cost rounds.
+const DISTURBED: f64 = 1.3;
 /// The undisturbed time is this quantile of the times of all looks.
 const UNDISTURBED: f64 = 0.05;
 /// How long to wait for an undisturbed moment before a sample, at most, in nanoseconds.
@@ -240,7 +242,7 @@ mod tests {
     fn a_disturbed_moment_is_seen_and_waited_for_as_long_as_there_is_patience() {
         let looks = |script: &[f64]| Scripted(Mutex::new((0.0, script.to_vec(), false)));
         let mut gauge = Gauge::new(1e9);
-        let clock = looks(&[100.0, 101.0, 160.0, 99.0, 106.0, 112.0]);
+        let clock = looks(&[100.0, 101.0, 160.0, 99.0, 106.0, 132.0]);
         let slowdowns: Vec<f64> = (0..6).map(|_| gauge.slowdown(&clock)).collect();
         let disturbed: Vec<bool> = slowdowns.iter().map(|s| *s > DISTURBED).collect();
         assert_eq!(disturbed, [false, false, true, false, false, true]);
@@ -289,9 +291,9 @@ mod tests {
             let counted = undisturbed(&samples, &slowdowns);
             counted.iter().map(|(round, _)| *round).collect()
         };
-        assert_eq!(rounds([1.0, 1.5, 1.0, 1.07, 2.0, 1.0]), [0, 2, 3, 5]);
+        assert_eq!(rounds([1.0, 1.5, 1.0, 1.29, 2.0, 1.0]), [0, 2, 3, 5]);
         assert_eq!(rounds([1.0, 1.5, 1.0, 1.5, 2.0, 1.5]), [0, 2]);
-        assert_eq!(rounds([1.0, 1.5, 1.1, 1.5, 2.0, 1.5]), [0, 1, 2, 3, 4, 5]);
+        assert_eq!(rounds([1.0, 1.5, 1.4, 1.5, 2.0, 1.5]), [0, 1, 2, 3, 4, 5]);
         // Results of older versions have no slowdowns.
         assert_eq!(undisturbed(&samples, &[]).len(), 6);
     }

@@ -7,18 +7,20 @@ use workload::{Kind, Operation};
 
 /// How many rounds the plan aims at.
 const ROUNDS: u32 = 20;
-/// A sample lasts at least this long, or the clock shows in it.
+/// The shortest sample. In shorter ones the resolution of the clock shows.
 pub(crate) const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
-/// Longer samples are no better; more of them are.
+/// The longest sample of several runs. Time is better spent on more samples.
 const LONGEST_SAMPLE_NS: f64 = 2_000_000.0;
-/// What takes up to this many times its share takes part in every second round only.
+/// An entry whose sample costs up to this many shares takes part in every third round.
 const SOMETIMES_SHARES: f64 = 6.0;
-const SOMETIMES: u32 = 2;
-/// What those that scan get of the time left, beside others: they are hundreds of times slower, and no
-/// interval need be narrow to show it.
+const SOMETIMES: u32 = 3;
+/// An entry whose sample costs more than that takes part in every sixth round.
+const SELDOM: u32 = 6;
+/// The longest run that takes part in rounds, as a part of the time left, if it was asked for by name.
+const LONGEST_IN_ROUNDS: f64 = 0.1;
+/// The part of the time left for backends that scan, if others do not. They are hundreds of times slower,
+/// which wide intervals show as well.
 const SCANS: f64 = 0.25;
-/// What takes longer still takes part in every fourth.
-const SELDOM: u32 = 4;
 /// A sample stands on at least so many elements, whatever the budget says.
 pub(crate) const FEWEST_ELEMENTS: usize = 16;
 /// What an operation that cannot be sampled may take of the time left, to be run just once.
@@ -126,13 +128,19 @@ impl Bench<'_, '_> {
             let (run, besides) = self.run_and_look(entry, [1, runs as u32], false);
             (ns, outside) = (run.time.ns().max(0.1), besides);
         }
-        // As much for the untimed runs; the other half is for waiting and for what happens between runs.
+        // A quarter for the sample, a quarter for the untimed runs before it, the rest for waiting and for
+        // what happens between runs.
         let target = (share / 4.0).clamp(SHORTEST_SAMPLE_NS, LONGEST_SAMPLE_NS);
         entry.runs = match self.memory.is_cold() {
             true => 1,
             false => (target / ns).ceil().clamp(1.0, MOST_RUNS) as u32,
         };
-        entry.untimed = untimed_runs(entry.job.operation, ns, target);
+        // The branches of an operation that makes or changes a mesh are many, and take longer to learn.
+        let before = match entry.job.operation.makes_a_mesh() {
+            true => LONGEST_SAMPLE_NS,
+            false => target,
+        };
+        entry.untimed = untimed_runs(entry.job.operation, ns, before);
         let cost = ns * f64::from(entry.runs + entry.untimed) + outside;
         self.plan_rounds(entry, cost, share);
     }
@@ -172,7 +180,7 @@ impl Bench<'_, '_> {
         let fits = match operation.can_be_sampled() {
             true => whole.ns() <= share || all <= FEWEST_ELEMENTS,
             // What takes no longer than one sample is run whatever is left.
-            false => whole.ns() <= longest_in_rounds(left).max(LONGEST_SAMPLE_NS),
+            false => whole.ns() <= (LONGEST_IN_ROUNDS * left).max(LONGEST_SAMPLE_NS),
         };
         if self.stopped() {
             return;
@@ -249,7 +257,7 @@ impl Bench<'_, '_> {
         let most = match (searches, self.named) {
             (true, _) => share,
             (false, false) => SMALL_SHARE * left,
-            (false, true) => longest_in_rounds(left),
+            (false, true) => LONGEST_IN_ROUNDS * left,
         };
         let fits = |whole: &Time| whole.ns() <= most.max(LONGEST_SAMPLE_NS);
         match estimate.filter(|whole| !fits(whole)) {
@@ -298,11 +306,6 @@ impl Bench<'_, '_> {
         }
         None
     }
-}
-
-/// How long a run may take that is worth a place in every fourth round, of the time left.
-fn longest_in_rounds(left: f64) -> f64 {
-    left * f64::from(SELDOM) / f64::from(ROUNDS) / 2.0
 }
 
 /// What asking for some elements has told.

@@ -80,7 +80,7 @@ pub struct RawSamples {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub faults: Option<Vec<u64>>,
     /// For each sample the time of a small fixed piece of work before or after it, whichever is longer,
-    /// divided by the undisturbed time of that work. A sample above 1.08 does not count if at least a
+    /// divided by the undisturbed time of that work. A sample above 1.3 does not count if at least a
     /// quarter of the samples are below.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub slowdowns: Vec<f64>,
