@@ -1,7 +1,7 @@
-//! What does it cost to build each structure from flat arrays?
+//! How much time does it take to build each structure from flat arrays?
 
 use criterion::Criterion;
-use study::Operation;
+use sixfold_study::Operation;
 
 use crate::input::{every_backend, inputs};
 

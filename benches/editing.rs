@@ -1,22 +1,23 @@
-//! What does each edit, and what does a whole workload of edits, cost on each structure as the mesh grows?
+//! How much time do single edits and edit workloads take on each structure as the mesh grows?
 //!
-//! A figure of `edit/` is one edit: the time of a run over many places, divided by them. A structure
-//! that scans is asked at few places, and not on the largest meshes.
+//! A time in `edit/` is that of one edit: the time of a run over many places, divided by their
+//! number. A structure that scans is measured at few places, and not on the largest meshes.
 
 use std::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput};
 use sixfold::{Edit, QueryCost, roster, shapes};
-use study::{Editing, Editor, MachineClock, Series, SingleEdit};
+use sixfold_study::{Editing, Editor, MachineClock, Series, SingleEdit};
 
 use crate::input::inputs;
 
-/// Sides of triangle tori: about 1,000, 10,000 and 100,000 faces.
+/// Cells per side of triangle tori: about 1,000, 10,000 and 100,000 faces.
 const SIDES: [usize; 3] = [23, 71, 224];
 
-/// How many faces a structure that scans is given at most, for an edit and for a whole workload.
+/// Maximum number of faces for single edits on a structure that scans.
 const MOST_SCANNED: usize = 20_000;
+/// Maximum number of faces for edit workloads on a structure that scans.
 const MOST_SCANNED_BY_WORKLOADS: usize = 2_000;
 
 pub(crate) fn define(criterion: &mut Criterion) {
@@ -31,7 +32,7 @@ fn edits(criterion: &mut Criterion) {
             let polygons = shapes::triangle_torus(side, side).expect("a small torus");
             for backend in roster() {
                 let Some(cost) = backend.edits[edit as usize] else {
-                    continue; // the table of edits says so
+                    continue; // it does not support the edit
                 };
                 let scans = cost == QueryCost::Scan;
                 if scans && polygons.face_count() > MOST_SCANNED {
@@ -78,7 +79,7 @@ fn workloads(criterion: &mut Criterion) {
     }
 }
 
-/// Times runs on a copy that is put back before each, divided by `parts`.
+/// Measures runs on a copy that is reset before each run; the reported time is divided by `parts`.
 fn timed(
     group: &mut BenchmarkGroup<'_, WallTime>,
     id: BenchmarkId,

@@ -1,24 +1,24 @@
-//! What the benchmarks run on, and how one backend is put under criterion's clock.
+//! The meshes of the benchmarks, and the code that measures one backend with criterion.
 
 use std::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Throughput};
 use sixfold::{Facts, PolygonMesh, roster, shapes};
-use study::{MachineClock, Operation, Solo};
+use sixfold_study::{MachineClock, Operation, Solo};
 
 /// Frequencies of the geodesic spheres: 320, 1,280 and 5,120 triangles.
 const FREQUENCIES: [usize; 3] = [4, 8, 16];
 
-/// A mesh and what a benchmark calls it.
+/// A mesh and its name in a benchmark.
 pub(crate) struct Input {
-    /// `regular/320`.
+    /// The name: `regular/320`.
     pub(crate) name: String,
     /// The mesh.
     pub(crate) mesh: PolygonMesh,
 }
 
-/// Closed triangle meshes of three sizes: regular in order, irregular, and in random order.
+/// Returns closed triangle meshes of three sizes: regular in order, irregular, and in random order.
 pub(crate) fn inputs() -> Vec<Input> {
     let mut inputs = Vec::new();
     for frequency in FREQUENCIES {
@@ -41,9 +41,9 @@ pub(crate) fn inputs() -> Vec<Input> {
     inputs
 }
 
-/// A closed surface of about so many triangles whose valences vary.
+/// Builds a closed surface of about `faces` triangles with varying valences.
 fn irregular(faces: usize) -> PolygonMesh {
-    let blobs = shapes::recipe("blobs").expect("a shape of that name");
+    let blobs = shapes::recipe("blobs").expect("the shape exists");
     let mesh = blobs
         .make(&[("faces", faces as f64)])
         .expect("a size within its range");
@@ -52,7 +52,7 @@ fn irregular(faces: usize) -> PolygonMesh {
     mesh
 }
 
-/// Times `operation` on every backend that holds `input`, by the very code of a study.
+/// Times `operation` on every backend that holds `input`, with the same code as a study.
 pub(crate) fn every_backend(
     group: &mut BenchmarkGroup<'_, WallTime>,
     operation: Operation,
@@ -61,7 +61,7 @@ pub(crate) fn every_backend(
     let clock = MachineClock::start();
     for backend in roster() {
         let Ok(mut solo) = Solo::new(backend.name, &input.mesh) else {
-            continue; // the capability table says so; conformance holds it to that
+            continue; // it cannot hold the mesh; the conformance tests check that this is right
         };
         let elements = solo.run(operation, &clock).elements;
         group.throughput(Throughput::Elements(elements));

@@ -1,4 +1,5 @@
-//! How many instructions do the hot loops take? Counted by callgrind, free of the clock's noise.
+//! How many instructions do the hot loops take? Callgrind counts them, without the noise of a
+//! clock.
 //!
 //! ```text
 //! apt-get install valgrind
@@ -6,12 +7,13 @@
 //! cargo bench -p sixfold-benches --bench instructions
 //! ```
 //!
-//! It builds everywhere and runs where valgrind does. A plain `cargo bench` leaves it out
-//! (`bench = false`), for it would not understand criterion's flags.
+//! It builds on every platform and runs on those that valgrind supports. A plain `cargo bench`
+//! leaves it out (`bench = false`), because it does not understand the options of criterion.
 //!
-//! A loop fails that takes 2 % more than in the run before, or more than its ceiling: about 1.3 ×
-//! what rustc 1.95 made of it on x86-64. Baselines belong to one compiler and one machine, so none
-//! are committed. To judge a change, name the state before it:
+//! A loop fails if it takes 2 % more instructions than in the previous run, or more than its limit.
+//! The limit is about 1.3 times the count with rustc 1.95 on x86-64. Baselines depend on the
+//! compiler and the machine, so they are not committed. To measure the effect of a change, save a
+//! baseline before it:
 //!
 //! ```text
 //! cargo bench -p sixfold-benches --bench instructions -- --save-baseline=before
@@ -29,13 +31,14 @@ use sixfold::{
     TwinPairs, WingedEdgeMesh, shapes,
 };
 
-/// Some 5,120 triangles in random order, so that no loop profits from the order of a formula.
+/// Builds 5,120 triangles in random order, so that no loop profits from a regular order.
 fn polygons() -> PolygonMesh {
     let sphere = shapes::geodesic(16).expect("a small frequency");
     shapes::shuffled(&sphere, 1)
 }
 
-/// What a loop may take at most, and how much more than in the run before.
+/// Sets the limits of a loop: at most `instructions`, and at most 2 % more than in the previous
+/// run.
 fn at_most(instructions: u64) -> LibraryBenchmarkConfig {
     let mut callgrind = Callgrind::default();
     callgrind.soft_limits([(EventKind::Ir, 2.0)]);
@@ -47,13 +50,13 @@ fn at_most(instructions: u64) -> LibraryBenchmarkConfig {
     config
 }
 
-/// The mesh that a loop goes through; never freed, or that would be counted too.
+/// Builds the mesh for a loop. It is never freed, because freeing would be counted too.
 fn built<M: Representation>() -> &'static M {
     let mesh = M::from_polygons(&polygons()).expect("a closed manifold of triangles");
     Box::leak(Box::new(mesh))
 }
 
-/// The sum of all neighbours' positions, over all vertices.
+/// Sums the positions of all neighbours, over all vertices.
 fn sweep_vertex_vertices<M: MeshQuery>(mesh: &M) -> Point {
     let mut sum = Point::ZERO;
     mesh.vertices().for_each(|v| {
@@ -63,7 +66,7 @@ fn sweep_vertex_vertices<M: MeshQuery>(mesh: &M) -> Point {
     sum
 }
 
-/// The sum of all neighbours' rows, over all faces.
+/// Sums the rows of all adjacent faces, over all faces.
 fn sweep_face_faces<M: MeshQuery<Face = FaceId>>(mesh: &M) -> usize {
     let mut sum = 0;
     mesh.faces().for_each(|f| {
@@ -72,7 +75,7 @@ fn sweep_face_faces<M: MeshQuery<Face = FaceId>>(mesh: &M) -> usize {
     sum
 }
 
-/// The normals of all faces, stored, and the sum over all vertices of the normals around each.
+/// Stores the normals of all faces, and sums the vertex normals that they give.
 fn vertex_normals<M: MeshQuery>(mesh: &M) -> Point {
     let mut by_face = mesh.face_map(Point::ZERO);
     mesh.faces().for_each(|f| {
@@ -90,7 +93,7 @@ fn vertex_normals<M: MeshQuery>(mesh: &M) -> Point {
     total
 }
 
-/// The faces around the first vertices: each a scan of all.
+/// Queries the faces of the first 16 vertices; each query scans all faces.
 fn scan_vertex_faces<M: MeshQuery<Face = FaceId>>(mesh: &M) -> usize {
     let mut sum = 0;
     mesh.vertices().take(16).for_each(|v| {

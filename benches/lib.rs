@@ -1,1 +1,1 @@
-//! Benchmarks only; see `main.rs`.
+//! Empty library; the benchmarks are in `main.rs`.

@@ -1,6 +1,7 @@
-//! The repository's own benchmarks; one module asks one question.
+//! The benchmarks of this repository; each module answers one question.
 //!
-//! `cargo bench -p sixfold-benches -- zero_cost/` runs those whose name has the filter in it.
+//! `cargo bench -p sixfold-benches -- zero_cost/` runs only benchmarks whose name contains
+//! `zero_cost/`.
 
 mod construction;
 mod editing;
@@ -13,11 +14,11 @@ mod zero_cost;
 use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use study::{Policy, pages};
+use sixfold_study::{Policy, pages};
 
-/// Freed pages stay with the process, as in a study: what allocates is measured without page faults.
-///
-/// Short measurements: there are hundreds of benchmarks, and the ratios within a group settle early.
+/// Configures criterion. Freed pages stay in the process, as in a study, so that allocations cause
+/// no page faults. Measurements are short: there are hundreds of benchmarks, and the ratios within
+/// a group become stable early.
 fn short() -> Criterion {
     pages::put_in_force(Policy::Kept);
     Criterion::default()

@@ -1,8 +1,9 @@
-//! What does each relation cost on each structure, as the mesh grows and loses its order?
+//! How much time does each relation take on each structure, for growing meshes in regular and
+//! random order?
 
 use criterion::Criterion;
 use sixfold::Relation;
-use study::Operation;
+use sixfold_study::Operation;
 
 use crate::input::{every_backend, inputs};
 

@@ -1,7 +1,7 @@
-//! What does a subdivision cost on each structure, by each method, level by level?
+//! How much time does a subdivision take on each structure, by each method, level by level?
 //!
-//! One figure is one run of all levels, from a control mesh that stands built; its throughput is in
-//! faces of the last level. Native runs on one thread and on two.
+//! Each time is one run of all levels, starting from a built control mesh. The throughput is in
+//! faces of the last level. Native methods run on one thread and on two.
 
 use std::hint::black_box;
 
@@ -9,9 +9,9 @@ use criterion::{BenchmarkId, Criterion, Throughput};
 use rayon::ThreadPoolBuilder;
 use sixfold::subdivision::{Method, Scheme};
 use sixfold::{Creases, roster, shapes};
-use study::{Refining, Way};
+use sixfold_study::{Refining, Way};
 
-/// The most levels: the last has about 300,000 triangles, or 250,000 quads.
+/// Maximum number of levels: the last has about 300,000 triangles, or 250,000 quads.
 const LEVELS: u32 = 3;
 
 pub(crate) fn define(criterion: &mut Criterion) {
@@ -31,8 +31,8 @@ pub(crate) fn define(criterion: &mut Criterion) {
                     };
                     for threads in threads_of(way) {
                         let pool = ThreadPoolBuilder::new().num_threads(*threads).build();
-                        let pool = pool.expect("two threads can be had");
-                        // What does not fit, or does not run this way, is refused here.
+                        let pool = pool.expect("two threads can be started");
+                        // Skips subdivisions that the structure or the scheme refuses.
                         if pool.install(|| refiner.run()).is_err() {
                             continue;
                         }
@@ -50,8 +50,8 @@ pub(crate) fn define(criterion: &mut Criterion) {
     }
 }
 
-/// Whether the way asks what the structure has to search all faces for: seconds a run, which the
-/// report of a study shows on a smaller mesh.
+/// Returns whether the way makes queries for which the structure scans all faces. A run would take
+/// seconds; the report of a study shows it on a smaller mesh.
 fn searches(backend: &str, way: Way) -> bool {
     way == Way::Gather && matches!(backend, "polygon-soup" | "indexed-face-set")
 }

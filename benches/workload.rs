@@ -1,7 +1,7 @@
-//! What does each whole workload cost on each structure?
+//! How much time does each operation take on each structure?
 
 use criterion::Criterion;
-use study::Operation;
+use sixfold_study::Operation;
 
 use crate::input::{every_backend, inputs};
 
@@ -17,7 +17,7 @@ const WORKLOADS: [Operation; 8] = [
 ];
 
 pub(crate) fn define(criterion: &mut Criterion) {
-    // The largest only: growth is what `query` shows.
+    // Only the largest meshes; `query` shows how times grow.
     let inputs = inputs().split_off(6);
     for operation in WORKLOADS {
         let mut group = criterion.benchmark_group(format!("workload/{}", operation.name()));

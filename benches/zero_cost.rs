@@ -1,6 +1,7 @@
-//! Does the trait cost anything? Generic code against the same loops by hand over the raw tables.
+//! Does the trait cost time? Compares generic code with hand-written loops over the raw tables.
 //!
-//! Both do the same arithmetic on polygons of any degree; by hand, nothing is asked of the trait.
+//! Both do the same arithmetic on polygons of any degree. The hand-written loops do not use the
+//! trait.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -12,7 +13,7 @@ use sixfold::{
     RowMap, VertexId, VertexMap, WingedEdgeMesh, shapes,
 };
 
-/// The mean of each vertex's neighbours, on any structure.
+/// Computes the mean of each vertex's neighbours, on any structure.
 fn means<M: MeshQuery>(mesh: &M, means: &mut VertexMap<M, Point>) {
     mesh.vertices().for_each(|v| {
         let (mut sum, mut valence) = (Point::ZERO, 0_u32);
@@ -24,7 +25,8 @@ fn means<M: MeshQuery>(mesh: &M, means: &mut VertexMap<M, Point>) {
     });
 }
 
-/// The normals of all faces, and the normalised sums of them around each vertex, on any structure.
+/// Computes the normals of all faces, and for each vertex the normalised sum over its faces, on any
+/// structure.
 fn normals<M: MeshQuery>(
     mesh: &M,
     by_face: &mut FaceMap<M, Point>,
@@ -43,7 +45,7 @@ fn normals<M: MeshQuery>(
     });
 }
 
-/// The cross products of a fan of triangles, corner by corner.
+/// The sum of cross products of a fan of triangles, computed corner by corner.
 #[derive(Default)]
 struct Fan {
     first: Point,
@@ -66,11 +68,11 @@ impl Fan {
     }
 }
 
-/// The same two workloads by hand.
+/// The same two operations as hand-written loops.
 trait ByHand: Representation<Vertex = VertexId, Face = FaceId> {
-    /// As [`means`].
+    /// Computes the same as [`means`].
     fn means_by_hand(&self, means: &mut [Point]);
-    /// As [`normals`].
+    /// Computes the same as [`normals`].
     fn normals_by_hand(&self, by_face: &mut [Point], by_vertex: &mut [Point]);
 }
 
@@ -127,9 +129,9 @@ impl ByHand for HalfEdgeMesh {
 
 impl ByHand for CornerTable {
     fn means_by_hand(&self, means: &mut [Point]) {
-        let (positions, vertex) = (self.positions(), CornerTable::vertex_rows(self));
-        let opposite = self.opposite_rows();
-        for (mean, corner) in means.iter_mut().zip(self.corner_rows()) {
+        let (positions, vertex) = (self.positions(), CornerTable::corner_vertices(self));
+        let opposite = self.opposite_corners();
+        for (mean, corner) in means.iter_mut().zip(self.vertex_corners()) {
             let Some(first) = corner.get().map(|c| c.next()) else {
                 continue;
             };
@@ -141,7 +143,7 @@ impl ByHand for CornerTable {
                     Some(turned) if turned != first => n = turned,
                     Some(_) => break,
                     None => {
-                        // An open fan ends at one neighbour more.
+                        // An open fan has one more neighbour than faces.
                         sum += positions[vertex[n.next().index()].index()];
                         valence += 1;
                         break;
@@ -153,8 +155,8 @@ impl ByHand for CornerTable {
     }
 
     fn normals_by_hand(&self, by_face: &mut [Point], by_vertex: &mut [Point]) {
-        let (positions, opposite) = (self.positions(), self.opposite_rows());
-        let triangles = CornerTable::vertex_rows(self).as_chunks::<3>().0;
+        let (positions, opposite) = (self.positions(), self.opposite_corners());
+        let triangles = CornerTable::corner_vertices(self).as_chunks::<3>().0;
         for (normal, triangle) in by_face.iter_mut().zip(triangles) {
             let mut fan = Fan::default();
             for v in triangle {
@@ -162,7 +164,7 @@ impl ByHand for CornerTable {
             }
             *normal = fan.normal;
         }
-        for (normal, corner) in by_vertex.iter_mut().zip(self.corner_rows()) {
+        for (normal, corner) in by_vertex.iter_mut().zip(self.vertex_corners()) {
             let Some(first) = corner.get().map(|c| c.next()) else {
                 continue;
             };
@@ -281,7 +283,8 @@ where
     );
 }
 
-/// Both under criterion's clock; then by turns, for a ratio that a noisy machine does not blur.
+/// Measures both with criterion. Then runs both alternately, for a ratio that is robust against
+/// noise.
 fn in_turn(
     group: &mut BenchmarkGroup<'_, WallTime>,
     mut generic: impl FnMut(),
@@ -308,7 +311,7 @@ fn in_turn(
     ratios.sort_unstable_by(f64::total_cmp);
     if let Some(median) = ratios.get(ratios.len() / 2) {
         let rounds = ratios.len();
-        println!("generic / by hand: {median:.3}, the median of {rounds} rounds by turns");
+        println!("generic / by hand: {median:.3}, the median of {rounds} alternating rounds");
     }
 }
 

@@ -1,29 +1,31 @@
-//! All six edited by the same scripts, in step: they accept and refuse alike, and stay the same mesh.
+//! Edits all six structures with the same scripts, step by step. Checks that they accept and refuse
+//! the same edits, and that they stay the same mesh.
 
 use std::fmt::{Debug, Write as _};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use conformance::edit::{Action, Model, Rules, Step, Trial, script};
-use conformance::strategy::{any_mesh, manifold_mesh};
-use mesh_core::{Edit, MeshEdit, PolygonMesh, Representation};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestCaseError, TestRunner};
 use sixfold::{
     EditableCornerTable, EditableFaceVertexMesh, EditableHalfEdgeMesh, EditableIndexedFaceSet,
     EditablePolygonSoup, EditableWingedEdgeMesh,
 };
+use sixfold_conformance::edit::{Action, Model, Rules, Step, Trial, script};
+use sixfold_conformance::strategy::{any_mesh, manifold_mesh};
+use sixfold_core::{Edit, MeshEdit, PolygonMesh, Representation};
 
-/// How many scripts for each kind of start, and how many steps each.
+/// Number of scripts for each kind of initial mesh.
 const SCRIPTS: u32 = 40;
+/// Number of steps of a script.
 const STEPS: usize = 240;
 
-/// A structure that takes part in a script, whatever its type.
+/// A structure of any type that runs a script.
 trait Player {
     fn name(&self) -> &'static str;
     fn rules(&self) -> Rules;
     fn model(&self) -> &Model;
     fn legal(&self, action: &Action) -> bool;
-    /// Does the action on a copy, for the checks alone.
+    /// Does the action on a copy, only to run the checks.
     fn try_out(&self, action: &Action) -> bool;
     fn take(&mut self, action: &Action) -> bool;
     fn inspect(&mut self);
@@ -55,7 +57,8 @@ impl<M: Representation + MeshEdit + Debug> Player for Named<M> {
     }
 }
 
-/// Those that hold `start`; of the soup only where no vertex is isolated, which it would lose.
+/// Returns the structures that hold `start`. The soup takes part only if no vertex is isolated,
+/// because it would lose such a vertex.
 fn players(start: &PolygonMesh) -> Vec<Box<dyn Player>> {
     fn player<M: Representation + MeshEdit + Debug + 'static>(
         start: &PolygonMesh,
@@ -73,17 +76,17 @@ fn players(start: &PolygonMesh) -> Vec<Box<dyn Player>> {
     all.into_iter().flatten().collect()
 }
 
-/// What structures did with all scripts.
+/// The counts of all scripts.
 #[derive(Default)]
 struct Shares {
-    /// By edit: how many steps were done by all, and how many not.
+    /// By edit: the numbers of steps that all structures did, and that not all did.
     steps: [[usize; 2]; Edit::ALL.len()],
-    /// By script: how many structures took part.
+    /// By script: the number of structures that took part.
     players: Vec<usize>,
 }
 
-/// Runs a script on all of them. A step that one of them refuses is tried out by the others on copies
-/// and then left out, so that all go on with the same mesh.
+/// Runs a script on all structures that hold `start`. If one of them refuses a step, the others do
+/// it only on copies, so that all continue with the same mesh.
 fn play(start: &PolygonMesh, steps: &[Step], shares: &mut Shares) -> Result<(), String> {
     let mut players = players(start);
     shares.players.push(players.len());
@@ -107,7 +110,7 @@ fn play(start: &PolygonMesh, steps: &[Step], shares: &mut Shares) -> Result<(), 
             }));
             done.map_err(|fault| {
                 let fault = fault.downcast_ref::<String>().cloned().unwrap_or_default();
-                format!("{name} departs at {action:?} after{told}\n{fault}")
+                format!("{name} fails at {action:?} after{told}\n{fault}")
             })?;
         }
         let mark = if all { "" } else { "(not by all) " };
@@ -120,8 +123,9 @@ fn play(start: &PolygonMesh, steps: &[Step], shares: &mut Shares) -> Result<(), 
     Ok(())
 }
 
-/// The three manifold structures judge alike, but for what the corner table does not offer or hold;
-/// the others accept at least what these accept, but for what their rows exclude.
+/// Checks the verdicts. The three manifold structures give the same verdict, except on actions that
+/// the corner table does not support. The others accept every action that a manifold structure
+/// accepts, unless they do not support it, merge coincident vertices, or hold only triangles.
 fn agree(players: &[Box<dyn Player>], verdicts: &[bool], action: &Action) -> Result<(), String> {
     let judged = players.iter().zip(verdicts);
     let manifold = judged
@@ -134,7 +138,7 @@ fn agree(players: &[Box<dyn Player>], verdicts: &[bool], action: &Action) -> Res
         match accepted_by_manifold {
             Some(others) if others != legal && whole => {
                 return Err(format!(
-                    "{} judges {action:?} unlike its siblings",
+                    "{} gives another verdict on {action:?} than the other manifold structures",
                     player.name()
                 ));
             }
@@ -149,7 +153,7 @@ fn agree(players: &[Box<dyn Player>], verdicts: &[bool], action: &Action) -> Res
             || !rules.capabilities.polygons;
         if accepted_by_manifold == Some(true) && !legal && !excused {
             return Err(format!(
-                "{} refuses {action:?}, which a manifold takes",
+                "{} refuses {action:?}, which a manifold structure accepts",
                 player.name()
             ));
         }
@@ -157,15 +161,16 @@ fn agree(players: &[Box<dyn Player>], verdicts: &[bool], action: &Action) -> Res
     Ok(())
 }
 
-/// Whether triangles are all that the action makes of triangles.
+/// Returns whether the structure supports the action, and the action makes only triangles from
+/// triangles.
 fn is_offered_to_triangles(action: &Action, rules: &Rules) -> bool {
     let makes_polygons = matches!(action, Action::AddFace { corners } if corners.len() > 3);
     rules.offers[action.edit() as usize] && !makes_polygons
 }
 
-/// Plays random scripts from `starts` with `wanted` structures, in a fifth of the scripts or more (a
-/// third was missed by chance, with 13 of 40); at
-/// least one step in `one_in` of each edit is done by all.
+/// Runs random scripts on meshes from `starts`. Checks that `wanted` structures take part in more
+/// than a fifth of the scripts, and that all of them do more than one step in `one_in` of each
+/// edit. (A third of the scripts was too much: it was missed by chance, with 13 of 40.)
 fn play_all(
     starts: impl Strategy<Value = PolygonMesh>,
     edits: &[Edit],
@@ -211,7 +216,7 @@ struct Printed(PolygonMesh);
 
 impl Debug for Printed {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&conformance::compact(&self.0))
+        f.write_str(&sixfold_conformance::compact(&self.0))
     }
 }
 
@@ -223,7 +228,7 @@ impl Debug for Steps {
     }
 }
 
-/// What makes triangles of triangles, and every structure has.
+/// The edits that make triangles from triangles and that every structure supports.
 const OF_TRIANGLES: [Edit; 11] = [
     Edit::SetPosition,
     Edit::AddFace,
@@ -238,20 +243,20 @@ const OF_TRIANGLES: [Edit; 11] = [
     Edit::Compact,
 ];
 
-/// Without isolated vertices: a soup loses them.
+/// Returns the mesh without isolated vertices, which a soup would lose.
 fn used(polygons: &PolygonMesh) -> PolygonMesh {
-    conformance::welded(polygons).expect("every vertex of a manifold has a place of its own")
+    sixfold_conformance::welded(polygons).expect("a manifold has distinct positions")
 }
 
 #[test]
-fn all_six_keep_in_step_on_triangles() {
+fn all_six_agree_on_triangles() {
     let starts = manifold_mesh().prop_map(|m| used(&m).fan_triangulated().expect("small"));
     play_all(starts, &OF_TRIANGLES, 6, 8);
 }
 
 #[test]
-fn five_keep_in_step_on_polygons() {
-    // Quads keep the corner table out.
+fn five_agree_on_polygons() {
+    // A corner table cannot hold quads.
     let starts = manifold_mesh().prop_filter_map("only triangles", |mesh| {
         let mesh = used(&mesh);
         let polygons = mesh.faces().iter().any(|(_, face)| face.len() > 3);
@@ -265,9 +270,9 @@ fn five_keep_in_step_on_polygons() {
 }
 
 #[test]
-fn three_keep_in_step_where_nothing_is_manifold() {
+fn three_agree_on_non_manifold_meshes() {
     let starts = any_mesh().prop_filter_map("two corners at one point", |mesh| {
-        conformance::welded(&mesh).ok()
+        sixfold_conformance::welded(&mesh).ok()
     });
     let edits: Vec<Edit> = Edit::ALL
         .into_iter()

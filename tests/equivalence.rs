@@ -1,15 +1,16 @@
-//! All representations are the same mesh: those that hold it answer alike, and those that do not
-//! say why in the words of the contract.
+//! Checks that all structures represent the same mesh: those that hold it give the same answers,
+//! and the others refuse it with the reason that the contract defines.
 
-use conformance::strategy::{any_mesh, faulty_mesh, manifold_mesh};
-use conformance::{answers, compact, gallery, verdict, welded};
 use proptest::prelude::*;
 use sixfold::{PolygonMesh, Representation, for_each_representation};
+use sixfold_conformance::strategy::{any_mesh, faulty_mesh, manifold_mesh};
+use sixfold_conformance::{answers, compact, gallery, verdict, welded};
 
-/// Every refusal is the one that brute force finds, and the others answer every query alike.
+/// Checks that every refusal is the one that brute force finds, and that the structures that hold
+/// the mesh give the same answer to every query.
 ///
-/// Structures that keep coincident vertices apart are compared on the mesh itself, and all of them
-/// on the mesh welded: there, names are given in an order in which even the soup can give them.
+/// Structures that keep coincident vertices apart are compared on the mesh itself. All structures
+/// are compared on the welded mesh, whose vertices are numbered in the order that the soup uses.
 pub(crate) fn agree(polygons: &PolygonMesh) {
     for_each_representation!(M => {
         let expected = verdict(&M::CAPABILITIES, polygons).err();
@@ -22,7 +23,7 @@ pub(crate) fn agree(polygons: &PolygonMesh) {
     }
 }
 
-/// Compares each structure that holds `polygons` with the first that does.
+/// Compares the answers of each structure that holds `polygons` with those of the first one.
 fn answer_alike(polygons: &PolygonMesh, welded: bool) {
     let mut first = None;
     for_each_representation!(M => {
@@ -40,13 +41,13 @@ fn answer_alike(polygons: &PolygonMesh, welded: bool) {
 }
 
 #[test]
-fn gallery_meshes_are_answered_alike() {
+fn all_give_the_same_answers_on_the_gallery() {
     for specimen in gallery() {
         agree(&specimen.polygons);
     }
 }
 
-/// A comparison of one structure with itself would prove nothing.
+/// Without this check, the comparisons could compare a structure only with itself.
 #[test]
 fn every_representation_holds_a_closed_triangle_mesh() {
     let icosahedron = sixfold::shapes::icosahedron();
@@ -63,17 +64,17 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn manifolds_are_answered_alike(polygons in manifold_mesh()) {
+    fn all_give_the_same_answers_on_manifolds(polygons in manifold_mesh()) {
         agree(&polygons);
     }
 
     #[test]
-    fn faulty_meshes_are_answered_or_refused_alike(faulty in faulty_mesh()) {
+    fn all_give_the_same_answers_or_refusals_on_faulty_meshes(faulty in faulty_mesh()) {
         agree(&faulty.polygons);
     }
 
     #[test]
-    fn chaos_is_answered_or_refused_alike(polygons in any_mesh()) {
+    fn all_give_the_same_answers_or_refusals_on_any_mesh(polygons in any_mesh()) {
         agree(&polygons);
     }
 }

@@ -1,12 +1,12 @@
-//! [`sixfold::Facts`] against brute force on small meshes. (On real ones `truth.json` is the judge,
-//! in the tests of `mesh-io`.)
+//! Compares [`sixfold::Facts`] with brute force on small meshes. (For real meshes, the tests of
+//! `io` compare with `truth.json`.)
 
 mod brute_force;
 
-use conformance::strategy::{any_mesh, faulty_mesh, manifold_mesh};
-use conformance::{compact, gallery};
 use proptest::prelude::*;
 use sixfold::{Facts, PolygonMesh};
+use sixfold_conformance::strategy::{any_mesh, faulty_mesh, manifold_mesh};
+use sixfold_conformance::{compact, gallery};
 
 fn same(polygons: &PolygonMesh) {
     let expected = brute_force::facts(polygons);
@@ -16,7 +16,7 @@ fn same(polygons: &PolygonMesh) {
 }
 
 #[test]
-fn gallery_meshes_have_their_facts() {
+fn facts_of_the_gallery_equal_brute_force() {
     for specimen in gallery() {
         same(&specimen.polygons);
     }
@@ -26,17 +26,17 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn manifolds_have_their_facts(polygons in manifold_mesh()) {
+    fn facts_of_manifolds_equal_brute_force(polygons in manifold_mesh()) {
         same(&polygons);
     }
 
     #[test]
-    fn faulty_meshes_have_their_facts(faulty in faulty_mesh()) {
+    fn facts_of_faulty_meshes_equal_brute_force(faulty in faulty_mesh()) {
         same(&faulty.polygons);
     }
 
     #[test]
-    fn chaos_has_its_facts(polygons in any_mesh()) {
+    fn facts_of_any_mesh_equal_brute_force(polygons in any_mesh()) {
         same(&polygons);
     }
 }

@@ -1,1 +1,1 @@
-//! Tests only; see `main.rs`.
+//! Empty library; the tests are in `main.rs`.

@@ -1,4 +1,4 @@
-//! What needs several crates at once.
+//! Tests that need several crates.
 
 mod editing;
 mod equivalence;

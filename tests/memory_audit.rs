@@ -1,6 +1,7 @@
-//! What a structure says it weighs is what the allocator counts: to the byte, on every shape.
+//! Checks that the memory that a structure reports equals the memory that the allocator counts: to
+//! the byte, on every shape.
 //!
-//! A program of its own, for its allocator counts every byte. It runs on one thread.
+//! This is a separate program, because its allocator counts every byte. It runs on one thread.
 
 use std::cell::Cell;
 use std::path::PathBuf;
@@ -9,10 +10,10 @@ use std::{env, fs};
 use peak_alloc::PeakAlloc;
 use sixfold::remeshing::{Boundary, Decimation, Target, decimate};
 use sixfold::{
-    MeshEdit, MeshQuery, Point, PolygonMesh, Representation, for_each_editable, mesh_io, roster,
-    shapes,
+    Measured, MeshEdit, MeshQuery, Point, PolygonMesh, Representation, for_each_editable, io,
+    roster, shapes,
 };
-use study::{Audit, Backend, Heap, Specimen, audit};
+use sixfold_study::{Audit, Backend, Heap, Specimen, audit};
 
 #[path = "../crates/conformance/tests/all/face_and_edge_lists.rs"]
 mod face_and_edge_lists;
@@ -22,7 +23,7 @@ use face_and_edge_lists::FaceAndEdgeLists;
 #[global_allocator]
 static HEAP: PeakAlloc = PeakAlloc;
 
-/// Other counters than those of the command.
+/// Counters that are independent of those of the `sixfold` command.
 #[derive(Default)]
 struct Counters {
     before: Cell<usize>,
@@ -45,12 +46,12 @@ impl Heap for Counters {
 
 fn main() {
     the_counters_count();
-    generated_shapes_weigh_what_is_said();
-    corner_cases_weigh_what_is_said();
-    real_meshes_weigh_what_is_said();
-    words_are_those_of_the_literature();
-    what_is_not_in_a_table_is_found();
-    tables_own_up_to_everything_after_edits();
+    reported_bytes_are_right_on_generated_shapes();
+    reported_bytes_are_right_on_the_gallery();
+    reported_bytes_are_right_on_real_meshes();
+    words_per_vertex_equal_the_literature();
+    bytes_outside_the_formula_are_found();
+    tables_report_all_bytes_after_edits();
 }
 
 fn the_counters_count() {
@@ -71,7 +72,8 @@ fn audited(name: &str, polygons: PolygonMesh) -> Audit {
     audit(&specimen, &Backend::roster(), &heap, &mut |_| ())
 }
 
-/// Whoever can hold the mesh weighs what is said, in three ways; how many can.
+/// Checks that the bytes agree in three ways for each structure that holds the mesh. Returns the
+/// number of these structures.
 fn weighed(name: &str, polygons: &PolygonMesh) -> usize {
     let audit = audited(name, polygons.clone());
     assert_eq!(audit.faults(), Vec::<String>::new(), "{name}");
@@ -86,8 +88,8 @@ fn weighed(name: &str, polygons: &PolygonMesh) -> usize {
         };
         held += 1;
         assert!(peak >= counted, "{backend} on {name}: {peak} < {counted}");
-        // Beside what is left there may be a copy of the positions, marks, and the sides of all
-        // corners; never a second mesh. Of small ones a scratch list may be larger.
+        // While building, there may also be a copy of the positions, marks, and the sides of all
+        // corners, but never a second mesh. For small meshes a scratch list may be larger.
         let copy = 13 * polygons.vertex_count() + 4 * polygons.corner_count();
         assert!(
             polygons.vertex_count() < 300 || peak <= counted + copy,
@@ -97,7 +99,7 @@ fn weighed(name: &str, polygons: &PolygonMesh) -> usize {
     held
 }
 
-fn generated_shapes_weigh_what_is_said() {
+fn reported_bytes_are_right_on_generated_shapes() {
     for size in [3, 10, 37, 150] {
         let made = "a shape of this size";
         let closed = shapes::geodesic(size).expect(made);
@@ -128,14 +130,14 @@ fn generated_shapes_weigh_what_is_said() {
     }
 }
 
-/// The mesh and three vertices more that are in no face.
+/// Returns the mesh with three additional isolated vertices.
 fn with_isolated(mesh: &PolygonMesh) -> PolygonMesh {
     let far = [1, 2, 3].map(|i| Point::splat(100.0 + i as f32));
     let positions = mesh.positions().iter().copied().chain(far);
     PolygonMesh::from_faces(positions.collect(), mesh.faces().clone()).expect("the same faces")
 }
 
-/// The mesh and a triangle more, on an edge that has two already.
+/// Returns the mesh with an additional triangle on an edge that already has two.
 fn with_fin(mesh: &PolygonMesh) -> PolygonMesh {
     let sides = |face: &[_]| [[face[0], face[1]], [face[1], face[2]], [face[2], face[0]]];
     let mut all: Vec<[_; 2]> = Vec::new();
@@ -162,7 +164,7 @@ fn with_fin(mesh: &PolygonMesh) -> PolygonMesh {
     PolygonMesh::new(positions.collect::<Vec<_>>(), &faces).expect("valid")
 }
 
-/// The same faces with vertices of their own each: a soup merges them, and weighs the same.
+/// Returns the same faces, each with its own vertices. A soup merges these and has the same size.
 fn loose(mesh: &PolygonMesh) -> PolygonMesh {
     let corners = mesh.faces().corners().iter();
     let positions: Vec<Point> = corners.map(|&v| mesh.position(v)).collect();
@@ -170,16 +172,16 @@ fn loose(mesh: &PolygonMesh) -> PolygonMesh {
     PolygonMesh::new(positions, triangles.collect::<Vec<_>>()).expect("valid")
 }
 
-fn corner_cases_weigh_what_is_said() {
+fn reported_bytes_are_right_on_the_gallery() {
     let mut held = 0;
-    for specimen in conformance::gallery() {
+    for specimen in sixfold_conformance::gallery() {
         held += weighed(specimen.name, &specimen.polygons);
     }
-    assert!(held > 150, "{held} structures were weighed");
+    assert!(held > 150, "only {held} structures were measured");
 }
 
-/// Those in the folder that `SIXFOLD_MESHES` names, if it is set.
-fn real_meshes_weigh_what_is_said() {
+/// Checks the meshes in the folder that `SIXFOLD_MESHES` names, if it is set.
+fn reported_bytes_are_right_on_real_meshes() {
     let Some(folder) = env::var_os("SIXFOLD_MESHES").map(PathBuf::from) else {
         return;
     };
@@ -190,7 +192,7 @@ fn real_meshes_weigh_what_is_said() {
             if file.extension().is_none_or(|extension| extension != "obj") {
                 continue;
             }
-            let mesh = mesh_io::read_obj(&file).unwrap_or_else(|error| panic!("{error}"));
+            let mesh = io::read_obj(&file).unwrap_or_else(|error| panic!("{error}"));
             let held = weighed(&file.display().to_string(), &mesh.into_polygons().0);
             meshes += usize::from(held > 0);
         }
@@ -199,9 +201,9 @@ fn real_meshes_weigh_what_is_said() {
     println!("{meshes} real meshes");
 }
 
-/// Of a large closed mesh of triangles. Face-vertex keeps the length of each list beside its start,
-/// and has one word more than books say.
-fn words_are_those_of_the_literature() {
+/// Checks a large closed triangle mesh. Face-vertex stores the length of each list beside its
+/// start, so it has one word per vertex more than in the literature.
+fn words_per_vertex_equal_the_literature() {
     let audit = audited("closed", shapes::geodesic(100).expect("200,000 triangles"));
     let words = [18.0, 9.0, 17.0, 30.0, 24.0, 16.0];
     assert_eq!(audit.backends.len(), words.len());
@@ -213,8 +215,8 @@ fn words_are_those_of_the_literature() {
     }
 }
 
-/// A seventh structure is weighed as well; and one that keeps more than its tables say is caught.
-fn what_is_not_in_a_table_is_found() {
+/// Checks a seventh structure, and that bytes which its layout formula leaves out are reported.
+fn bytes_outside_the_formula_are_found() {
     let torus = || Specimen::new("torus", shapes::triangle_torus(20, 15).expect("a torus"));
     let seventh = Backend::of::<FaceAndEdgeLists>();
     let heap = Counters::default();
@@ -225,9 +227,8 @@ fn what_is_not_in_a_table_is_found() {
     forgetful.layout_bytes = |counts| FaceAndEdgeLists::layout_bytes(counts) - 8 * counts.edges;
     let audit = audit_of(forgetful);
     assert_eq!(audit.backends[0].agrees, Some(false));
-    // 300 vertices, 900 edges, 600 faces; the ends of the edges are left out.
-    let expected =
-        "its tables hold 18000 bytes, 7200 bytes more than its layout has by the formula, 10800";
+    // 300 vertices, 900 edges, 600 faces; the formula leaves out the ends of the edges.
+    let expected = "its tables hold 18000 bytes, 7200 bytes more than its layout formula (10800)";
     assert!(
         audit.faults()[0].ends_with(expected),
         "{:?}",
@@ -235,8 +236,8 @@ fn what_is_not_in_a_table_is_found() {
     );
 }
 
-/// Edits leave room to spare, and the formula says nothing of it; the tables do.
-fn tables_own_up_to_everything_after_edits() {
+/// Edits leave spare capacity. The formula does not include it, but the reported tables do.
+fn tables_report_all_bytes_after_edits() {
     let polygons = shapes::geodesic(12).expect("2,880 triangles");
     let decimation = Decimation {
         target: Target::Ratio(0.3),
@@ -250,7 +251,7 @@ fn tables_own_up_to_everything_after_edits() {
         let faces: Vec<_> = mesh.faces().step_by(2).collect();
         for (i, &f) in faces.iter().enumerate() {
             let at = Point::splat(2.0 + i as f32);
-            mesh.poke_face(f, at, &mut ()).expect("nothing is there");
+            mesh.poke_face(f, at, &mut ()).expect("no vertex is there");
         }
         drop(faces);
         assert_eq!(counted(), mesh.memory().total(), "{}, poked", M::NAME);

@@ -1,18 +1,21 @@
-//! Catmull–Clark and Loop with creases are what OpenSubdiv makes of the same meshes.
+//! Compares Catmull–Clark and Loop with creases with the results of OpenSubdiv on the same meshes.
 //!
-//! The variable `SIXFOLD_OPENSUBDIV` names the built program `opensubdiv/refine.cpp`; without it
-//! these tests pass without looking. Vertices are matched by what they are the point of, never by
-//! where they are. Seeds are fixed: a case that differs differs every time.
+//! The environment variable `SIXFOLD_OPENSUBDIV` names the program built from
+//! `opensubdiv/refine.cpp`. If it is not set, these tests do nothing. Vertices are matched by their
+//! origin (the vertex, edge or face of the level above), never by position. Seeds are fixed, so
+//! failures are reproducible.
 //!
-//! What is left out, and why:
+//! Not compared:
 //!
-//! - Chaikin steps in which OpenSubdiv extrapolates, or rounding decides: `Level::is_no_judge`.
-//! - The limit of a smooth vertex of valence 2: OpenSubdiv leaves it where it is, which is not where
-//!   the levels go.
+//! - Chaikin steps in which OpenSubdiv extrapolates, or the result depends on rounding:
+//!   `Level::is_no_judge`.
+//! - The limit of a smooth vertex of valence 2: OpenSubdiv returns the vertex itself, but the
+//!   levels converge to another point.
 //! - Loop on two triangles with the same corners: the halves of their edges have the same ends, and
-//!   are two edges to OpenSubdiv.
-//! - Normals on creases: OpenSubdiv takes the tangents of Biermann, Levin & Zorin (2000), who change
-//!   the rules beside creases; of the rules as they are, `tangent.rs` derives others.
+//!   OpenSubdiv keeps them as two edges.
+//! - Normals on creases: OpenSubdiv uses the tangents of Biermann, Levin & Zorin (2000), which
+//!   belong to changed rules near creases. `tangent.rs` derives the tangents of the unchanged
+//!   rules.
 
 #[path = "opensubdiv/cases.rs"]
 mod cases;
@@ -36,10 +39,10 @@ use sixfold::{
 use judge::{Answer, Case, Judge, Level};
 use names::{Names, upwards};
 
-/// How far apart points may be, beside the size of the control mesh.
+/// Maximum distance of two points that count as equal, relative to the size of the control mesh.
 const NEAR: f32 = 1e-5;
 
-/// Holds one level of ours to be OpenSubdiv's.
+/// Checks that one level of ours equals that of OpenSubdiv.
 fn hold_level(level: &Level, names: &Names, polygons: &PolygonMesh, creases: &Creases, near: f32) {
     for (vertex, &name) in level.vertices.iter().zip(&names.vertices) {
         let at = polygons.positions()[name];
@@ -53,7 +56,7 @@ fn hold_level(level: &Level, names: &Names, polygons: &PolygonMesh, creases: &Cr
     }
     let uses = polygons.edge_uses();
     for edge in uses.iter().filter(|edge| edge.faces != 2) {
-        // Every step sees that these are sharp.
+        // These are always sharp; no stored sharpness is needed.
         ours.insert(edge.ends.map(|v| v.index()), f32::INFINITY);
     }
     let theirs = level
@@ -65,7 +68,7 @@ fn hold_level(level: &Level, names: &Names, polygons: &PolygonMesh, creases: &Cr
     for v in polygons.faces().corners() {
         is_used[v.index()] = true;
     }
-    // Isolated vertices stay in any case; OpenSubdiv calls them corners.
+    // Isolated vertices never move; OpenSubdiv reports them as corners.
     let ours = creases.corners().iter();
     let ours = ours.map(|&(v, sharpness)| (v.index(), sharpness));
     let theirs = level.corners.iter();
@@ -90,7 +93,7 @@ fn hold_sharpness<K: Ord + std::fmt::Debug>(
     }
 }
 
-/// Holds limits to be OpenSubdiv's, where they are defined; yields how many.
+/// Checks that defined limits equal those of OpenSubdiv. Returns the number of compared limits.
 fn hold_limits<M: Representation>(
     case: &Case,
     answer: &Answer,
@@ -109,11 +112,12 @@ fn hold_limits<M: Representation>(
         let v = M::vertex_name(&polygons, v);
         let valence = mesh.vertex_edges(v).count();
         if valence == 0 {
-            // Isolated: where it is, whatever either calls it.
+            // An isolated vertex: it does not move.
             continue;
         }
         let LimitPoint::Defined { position, normal } = limits[v] else {
-            // All faces are quads by now: what is left is not for ever, or a dart.
+            // All faces are quads here, so the limit is undefined only near semi-sharp creases or
+            // at darts.
             let is_semi_sharp = {
                 let level = &answer.levels[case.levels as usize];
                 let edges = level
@@ -139,7 +143,7 @@ fn hold_limits<M: Representation>(
         );
         let [along, across] = [place[1], place[2]];
         let square = along.normalize_or_zero().cross(across.normalize_or_zero());
-        // Where the tangents are nearly one, their rounding is all that is left of the normal.
+        // If the tangents are nearly parallel, the normal is mostly rounding error.
         if let (LimitNormal::One(normal), true) = (normal, vertex.rule != "crease")
             && square.length() > 0.1
             && along.length().min(across.length()) > 100.0 * near
@@ -154,7 +158,7 @@ fn hold_limits<M: Representation>(
     compared
 }
 
-/// How many levels OpenSubdiv is a judge of.
+/// Returns the number of levels that can be compared with OpenSubdiv.
 fn judged(case: &Case, answer: &Answer) -> u32 {
     let mut levels = 0..case.levels;
     let is_no_judge =
@@ -162,9 +166,9 @@ fn judged(case: &Case, answer: &Answer) -> u32 {
     levels.find(is_no_judge).unwrap_or(case.levels)
 }
 
-/// Holds every level of `case` on a structure, of which `next` makes the step after; `all` makes all
-/// levels at once, without holes. Yields how many limits were compared; `None` where the structure
-/// does not hold the mesh.
+/// Compares every level of `case` on one structure. `next` makes the next level; `all` makes all
+/// levels at once, without holes. Returns the number of compared limits; `None` if the structure
+/// cannot hold the mesh.
 fn follow<M: Representation>(
     case: &Case,
     answer: &Answer,
@@ -202,7 +206,8 @@ fn follow<M: Representation>(
     Some(hold_limits(case, answer, &names, &mesh, &creases, near))
 }
 
-/// `polygons` without the faces that are holes to OpenSubdiv, and the vertices that they alone had.
+/// Returns `polygons` without the faces that are holes in OpenSubdiv, and without vertices that
+/// only such faces use.
 fn without_holes(level: &Level, names: &Names, polygons: &PolygonMesh) -> PolygonMesh {
     let mut is_hole = vec![false; polygons.face_count()];
     for (face, &name) in level.faces.iter().zip(&names.faces) {
@@ -221,14 +226,14 @@ fn without_holes(level: &Level, names: &Names, polygons: &PolygonMesh) -> Polygo
         .vertices()
         .filter(|v| stays.contains(v) || !goes.contains(v));
     let kept: Vec<VertexId> = kept.collect();
-    let number = |v: &VertexId| kept.binary_search(v).expect("of a face that stays") as u32;
+    let number = |v: &VertexId| kept.binary_search(v).expect("a vertex of a kept face") as u32;
     let faces = polygons.faces().iter().filter(|(f, _)| !is_hole[f.index()]);
     let faces = faces.map(|(_, face)| face.iter().map(number).collect::<Vec<u32>>());
     let points: Vec<Point> = kept.iter().map(|&v| polygons.position(v)).collect();
     PolygonMesh::new(points, faces).expect("faces of a mesh")
 }
 
-/// Whether two triangles have the same corners.
+/// Returns whether two triangles have the same corners.
 fn has_twins(polygons: &PolygonMesh) -> bool {
     let mut seen = BTreeSet::new();
     polygons.faces().iter().any(|(_, face)| {
@@ -238,7 +243,7 @@ fn has_twins(polygons: &PolygonMesh) -> bool {
     })
 }
 
-/// What was looked at, so that a test which compares nothing fails.
+/// Counts of comparisons, so that a test that compares nothing fails.
 #[derive(Default)]
 struct Seen {
     runs: Cell<usize>,
@@ -251,7 +256,7 @@ fn add(count: &Cell<usize>, more: usize) {
     count.set(count.get() + more);
 }
 
-/// Puts `case` to OpenSubdiv, and holds all ways to run it to the answer.
+/// Runs `case` in OpenSubdiv, and compares all our ways to run it with the answer.
 fn hold(judge: &Judge, case: &Case, seen: &Seen) {
     if case.subdivision.scheme == Scheme::Loop && has_twins(&case.polygons) {
         return;
@@ -286,7 +291,7 @@ fn hold(judge: &Judge, case: &Case, seen: &Seen) {
                 Method::Gather => subdivision.gather(mesh, creases, level)?,
                 _ => subdivision.scatter(mesh, creases, level)?,
             };
-            let mesh = M::from_polygons(&step.polygons).expect("it holds everything");
+            let mesh = M::from_polygons(&step.polygons).expect("it holds every mesh");
             Ok((mesh, step.creases))
         };
         let all = |levels| {
@@ -300,7 +305,8 @@ fn hold(judge: &Judge, case: &Case, seen: &Seen) {
     });
 }
 
-/// [`follow`] for native steps; `None` too where the structure does not split faces so.
+/// Runs [`follow`] with native steps. Also returns `None` if the structure does not support the
+/// split.
 fn native<M: Refine>(case: &Case, answer: &Answer) -> Option<usize> {
     let Case {
         subdivision,
@@ -324,7 +330,7 @@ fn native<M: Refine>(case: &Case, answer: &Answer) -> Option<usize> {
     follow(case, answer, next, all)
 }
 
-/// Runs `cases` of a strategy, the same ones every time.
+/// Compares `cases` random cases of a strategy; `seed` makes them the same in every run.
 fn hold_random(cases: u32, seed: u64, strategy: impl Strategy<Value = Case>) -> Option<Seen> {
     let judge = Judge::there()?;
     let mut runner = TestRunner::new(ProptestConfig {
@@ -343,9 +349,9 @@ fn hold_random(cases: u32, seed: u64, strategy: impl Strategy<Value = Case>) -> 
 }
 
 #[test]
-fn manifolds_are_opensubdivs() {
+fn manifolds_equal_those_of_opensubdiv() {
     if let Some(seen) = hold_random(300, 1998, cases::manifold()) {
-        // Two by polygons, and at least half-edge, winged-edge and face-vertex natively.
+        // For each case: two runs by polygons, and native runs of at least three structures.
         assert!(seen.runs.get() > 1200, "{} runs", seen.runs.get());
         assert!(seen.limits.get() > 100_000, "{} limits", seen.limits.get());
         assert!(seen.holes.get() > 100, "{} holes", seen.holes.get());
@@ -358,7 +364,7 @@ fn manifolds_are_opensubdivs() {
 }
 
 #[test]
-fn non_manifolds_are_opensubdivs() {
+fn non_manifolds_equal_those_of_opensubdiv() {
     if let Some(seen) = hold_random(200, 2026, cases::non_manifold()) {
         assert!(seen.runs.get() > 500, "{} runs", seen.runs.get());
         assert!(
@@ -370,7 +376,7 @@ fn non_manifolds_are_opensubdivs() {
 }
 
 #[test]
-fn creases_that_meet_are_opensubdivs() {
+fn creases_that_meet_equal_those_of_opensubdiv() {
     let Some(judge) = Judge::there() else { return };
     let seen = Seen::default();
     let cases = cases::fixed();

@@ -1,7 +1,6 @@
-//! Operators give the same mesh on every structure, and orientation repair makes meshes acceptable.
+//! Checks that operators give the same mesh on every structure, and that half-edge accepts meshes
+//! after orientation repair.
 
-use conformance::strategy::{any_mesh, manifold_mesh};
-use conformance::{compact, gallery, welded};
 use proptest::prelude::*;
 use sixfold::operators::{
     Boundary, DualError, Facing, NormalWeights, OrientationError, Smoothing, Weights, dual,
@@ -10,10 +9,10 @@ use sixfold::operators::{
 use sixfold::{
     Facts, HalfEdgeMesh, MeshQuery, Point, PolygonMesh, Representation, for_each_representation,
 };
+use sixfold_conformance::strategy::{any_mesh, manifold_mesh};
+use sixfold_conformance::{compact, gallery, welded};
 
-/// Asserts that two structures have brought one vertex, or face, to one place.
-///
-/// `size` is the length to whose last bits the two may differ.
+/// Asserts that two structures compute the same position or normal, up to 4 ulps of `size`.
 fn same_place(got: Point, expected: Point, size: f32, context: &str) {
     let off = (got - expected).abs().max_element();
     assert!(
@@ -27,7 +26,8 @@ fn size(polygons: &PolygonMesh) -> f32 {
     polygons.positions().iter().map(largest).fold(0.0, f32::max)
 }
 
-/// What `M` answers, by the vertices and then by the faces of `polygons`; `None` if `M` refuses it.
+/// Returns the results on `M`, first by vertices and then by faces of `polygons`; `None` if `M`
+/// refuses the mesh.
 fn answers<M: Representation>(
     polygons: &PolygonMesh,
     ask: impl Fn(&M) -> Option<Answer<M>>,
@@ -45,7 +45,7 @@ fn answers<M: Representation>(
 
 type Answer<M> = (sixfold::VertexMap<M, Point>, sixfold::FaceMap<M, Point>);
 
-/// Compares what `ask` finds on each structure that holds `polygons` with what the first finds.
+/// Compares the result of `ask` on each structure that holds `polygons` with that on the first one.
 macro_rules! agree {
     ($polygons:expr, $size:expr, $ask:expr) => {{
         let polygons: &PolygonMesh = $polygons;
@@ -85,9 +85,11 @@ fn smoothing() -> impl Strategy<Value = Smoothing> {
     )
 }
 
-/// The dual of `polygons` as each structure that holds it finds it: one mesh, or one refusal.
+/// Checks that all structures that hold `polygons` give the same dual, or the same refusal, and
+/// returns it.
 ///
-/// The soup numbers vertices as faces first name them, so the mesh is a welded one.
+/// `polygons` must be welded, because the soup numbers vertices in the order in which faces first
+/// use them.
 fn duals_agree(polygons: &PolygonMesh) -> Option<Result<PolygonMesh, DualError>> {
     let mut first = None;
     for_each_representation!(M => {
@@ -108,9 +110,9 @@ fn duals_agree(polygons: &PolygonMesh) -> Option<Result<PolygonMesh, DualError>>
     first
 }
 
-/// A comparison of one structure with itself would prove nothing.
+/// Without this check, the comparisons could compare a structure only with itself.
 #[test]
-fn every_representation_takes_part() {
+fn all_structures_are_compared() {
     let icosahedron = sixfold::shapes::icosahedron();
     let held = agree!(&icosahedron, size(&icosahedron), |mesh| {
         Some((
@@ -119,13 +121,13 @@ fn every_representation_takes_part() {
         ))
     });
     assert_eq!(held, sixfold::roster().len());
-    let welded = welded(&icosahedron).expect("apart");
+    let welded = welded(&icosahedron).expect("distinct positions");
     let dual = duals_agree(&welded).expect("held").expect("closed");
     assert_eq!((dual.vertex_count(), dual.face_count()), (20, 12));
 }
 
 #[test]
-fn duals_of_the_gallery_are_one_mesh_or_one_refusal() {
+fn duals_of_the_gallery_agree() {
     let mut duals = 0;
     for specimen in gallery() {
         if let Ok(welded) = welded(&specimen.polygons) {
@@ -136,7 +138,7 @@ fn duals_of_the_gallery_are_one_mesh_or_one_refusal() {
 }
 
 #[test]
-fn lecture_meshes_are_mended_and_then_accepted_by_half_edge() {
+fn half_edge_accepts_lecture_meshes_after_orientation_repair() {
     let wrong = gallery()
         .into_iter()
         .filter(|specimen| specimen.name.starts_with("lecture: indexed"));
@@ -200,7 +202,7 @@ proptest! {
 
     #[test]
     fn duals_are_the_same_on_all(polygons in manifold_mesh()) {
-        let polygons = welded(&polygons).expect("every vertex has a place of its own");
+        let polygons = welded(&polygons).expect("distinct positions");
         let facts = Facts::of(&polygons);
         let dual = duals_agree(&polygons).expect("held");
         let low = facts.valence.as_ref().is_some_and(|valence| valence.min < 3);
@@ -213,16 +215,16 @@ proptest! {
     }
 
     #[test]
-    fn duals_of_chaos_are_one_mesh_or_one_refusal(polygons in any_mesh()) {
+    fn duals_of_any_mesh_agree(polygons in any_mesh()) {
         if let Ok(welded) = welded(&polygons) {
             duals_agree(&welded);
         }
     }
 
-    /// What comes out is accepted wherever orientation was all that was wrong, and refused only
-    /// where no turning helps.
+    /// Orientation repair fails only if the mesh is not orientable. If orientation was the only
+    /// fault, half-edge accepts the result.
     #[test]
-    fn chaos_is_mended_contextit_can_be(polygons in any_mesh()) {
+    fn every_orientable_mesh_is_repaired(polygons in any_mesh()) {
         let before = Facts::of(&polygons);
         match oriented(&polygons, Facing::Majority) {
             Ok(mended) => {

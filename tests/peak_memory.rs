@@ -1,6 +1,7 @@
-//! A native step holds the mesh, its child, and next to nothing beside: no polygons, no hash table.
+//! Checks that a native step allocates almost nothing in addition to the mesh and its child: no
+//! polygons, no hash table.
 //!
-//! A program of its own, for its allocator counts every byte.
+//! This is a separate program, because its allocator counts every byte.
 
 use peak_alloc::PeakAlloc;
 use sixfold::subdivision::{Scheme, Subdivision};
@@ -9,7 +10,7 @@ use sixfold::{Creases, PolygonMesh, Refine, Representation, for_each_refinable, 
 #[global_allocator]
 static HEAP: PeakAlloc = PeakAlloc;
 
-/// The peak of one step into a mesh that is allocated for it, as a multiple of both meshes.
+/// Returns the peak memory of one step into a new mesh, relative to both meshes together.
 fn peak_of_a_step<M: Refine>(scheme: Scheme, polygons: &PolygonMesh) -> Option<f64> {
     let subdivision = Subdivision::new(scheme);
     let split = subdivision.split(0)?;
@@ -23,7 +24,7 @@ fn peak_of_a_step<M: Refine>(scheme: Scheme, polygons: &PolygonMesh) -> Option<f
     HEAP.reset_peak_usage();
     let (mut numbers, mut child) = (M::EdgeNumbers::default(), M::empty());
     let done = subdivision.refine_into(&mesh, &creases, 0, &mut numbers, &mut child);
-    done.expect("the structure knows the split");
+    done.expect("the structure supports the split");
     let peak = HEAP.peak_usage() - before;
     let [parent, child] = [&mesh, &child].map(|mesh| mesh.memory().total());
     Some((parent + peak) as f64 / (parent + child) as f64)
@@ -34,7 +35,7 @@ fn main() {
     let open = shapes::triangle_grid(150, 150).expect("45,000 triangles");
     let quads = shapes::torus(200, 200).expect("40,000 quads");
     let mixed = shapes::mixed_grid(150, 150).expect("mixed degrees");
-    // Threads have stacks and queues of their own.
+    // One thread, because each thread allocates its own stack and queues.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let mut steps = 0;
     pool.expect("a thread").install(|| {
@@ -59,5 +60,5 @@ fn main() {
             }
         }
     });
-    assert!(steps >= 20, "{steps} steps were looked at");
+    assert!(steps >= 20, "only {steps} steps were checked");
 }

@@ -1,6 +1,6 @@
-//! A copy that edits have changed is made equal to its mesh again without allocating.
+//! Checks that `clone_from` restores an edited copy to its original mesh without allocating.
 //!
-//! A program of its own, for its allocator counts every block.
+//! This is a separate program, because its allocator counts every block.
 
 use std::alloc::System;
 
@@ -26,15 +26,15 @@ impl EditVisitor for PutBack<'_> {
             copy.clone_from(&mesh);
             let blocks = HEAP.stats().allocations + HEAP.stats().reallocations - blocks;
             assert_eq!(blocks, 0, "{}, round {round}: blocks allocated", M::NAME);
-            assert_eq!(copy.to_polygons(), before, "{}: put back", M::NAME);
+            assert_eq!(copy.to_polygons(), before, "{}: restored", M::NAME);
             copy.validate().expect("every invariant");
         }
         assert!(copy.memory().total() >= bytes, "{}", M::NAME);
-        println!("{}: put back without an allocation", M::NAME);
+        println!("{}: restored without an allocation", M::NAME);
     }
 }
 
-/// Makes tables longer, and leaves holes.
+/// Pokes and removes faces, which makes tables longer and leaves holes in them.
 fn change<M: MeshEdit>(mesh: &mut M) {
     let faces: Vec<M::Face> = mesh.faces().take(40).collect();
     for (i, face) in faces.into_iter().enumerate() {

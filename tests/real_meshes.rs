@@ -1,15 +1,17 @@
-//! Real meshes: verdicts and building agree on all of them, and the small ones are answered alike.
+//! Checks on real meshes that `check` and building agree, and that all structures give the same
+//! answers on the small ones.
 //!
-//! The folder is named by the variable `SIXFOLD_MESHES`; without it these tests pass at once.
+//! The environment variable `SIXFOLD_MESHES` names the folder. If it is not set, these tests do
+//! nothing.
 
 use std::path::PathBuf;
 use std::{env, fs};
 
-use sixfold::{PolygonMesh, Representation, for_each_representation, mesh_io};
+use sixfold::{PolygonMesh, Representation, for_each_representation, io};
 
 use crate::equivalence::agree;
 
-/// Each OBJ file of the folder without its degenerate faces, by name.
+/// Reads each OBJ file of the folder, without its degenerate faces. Returns names and meshes.
 fn meshes() -> Vec<(String, PolygonMesh)> {
     let Some(folder) = env::var_os("SIXFOLD_MESHES").map(PathBuf::from) else {
         return Vec::new();
@@ -24,14 +26,14 @@ fn meshes() -> Vec<(String, PolygonMesh)> {
     files.sort();
     assert!(files.len() > 50, "only {} meshes", files.len());
     let read = files.into_iter().map(|file| {
-        let mesh = mesh_io::read_obj(&file).unwrap_or_else(|error| panic!("{error}"));
+        let mesh = io::read_obj(&file).unwrap_or_else(|error| panic!("{error}"));
         (file.display().to_string(), mesh.into_polygons().0)
     });
     read.collect()
 }
 
 #[test]
-fn verdicts_are_what_building_does() {
+fn building_fails_with_the_error_of_the_check() {
     for (name, polygons) in meshes() {
         for_each_representation!(M => {
             let built = M::from_polygons(&polygons);
@@ -44,9 +46,9 @@ fn verdicts_are_what_building_does() {
     }
 }
 
-/// Small, because scans of all faces for every element grow with the square of the mesh.
+/// Only small meshes: scanning all faces for every element takes quadratic time.
 #[test]
-fn small_meshes_are_answered_alike() {
+fn all_give_the_same_answers_on_small_meshes() {
     for (_, polygons) in meshes() {
         if polygons.face_count() <= 200 {
             agree(&polygons);

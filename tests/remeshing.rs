@@ -1,13 +1,14 @@
-//! Decimation, remeshing and Delaunay flips make the same mesh on every structure, to the bit.
+//! Checks that decimation, remeshing and Delaunay flips give bit-identical meshes on every
+//! structure.
 
-use mesh_core::{MeshEdit, Point, PolygonMesh, Representation};
 use sixfold::remeshing::{
     Boundary, Decimation, Remeshing, Target, decimate, flip_to_delaunay, remesh,
 };
 use sixfold::{for_each_editable, shapes};
+use sixfold_core::{MeshEdit, Point, PolygonMesh, Representation};
 
-/// Closed and open surfaces, and a rough one with corners on which collapses beside the boundary are
-/// among the cheapest.
+/// Returns closed and open surfaces. One is a rough surface with corners, where collapses near the
+/// boundary are among the cheapest.
 fn surfaces() -> [PolygonMesh; 4] {
     let sized = "a small shape";
     let flat = shapes::triangle_grid(12, 12).expect(sized);
@@ -24,10 +25,10 @@ fn surfaces() -> [PolygonMesh; 4] {
     ]
 }
 
-/// The faces as the bits of their corners, each from its least on, in order.
+/// Returns the faces as the bits of their corners, each starting at its least corner, sorted.
 fn faces(polygons: &PolygonMesh) -> Vec<Vec<[u32; 3]>> {
     let faces = polygons.faces().iter().map(|(_, face)| {
-        // −0 is 0 where a vertex is its coordinates.
+        // Adding zero turns −0 into 0, as structures do whose vertices are coordinates.
         let at = |v| {
             (polygons.position(v) + Point::ZERO)
                 .to_array()
@@ -73,12 +74,12 @@ impl Work for Delaunay {
 fn same_on_all(work: &impl Work, polygons: &PolygonMesh, what: &str) {
     let mut first: Option<Vec<Vec<[u32; 3]>>> = None;
     for_each_editable!(M => {
-        let mut mesh = M::from_polygons(polygons).expect("all hold a manifold of triangles");
+        let mut mesh = M::from_polygons(polygons).expect("all hold a triangle manifold");
         work.run(&mut mesh);
         assert_eq!(mesh.validate(), Ok(()));
         let made = faces(&mesh.to_polygons());
         let same = first.get_or_insert_with(|| made.clone()) == &made;
-        assert!(same, "{what} on {} makes another mesh", M::NAME);
+        assert!(same, "{what} on {} gives another mesh", M::NAME);
     });
 }
 

@@ -1,19 +1,21 @@
-//! A seventh structure, written in one file, is studied beside the six.
+//! Checks that a study can measure a seventh structure, written in one file, together with the six.
 
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use sixfold::shapes;
-use study::{Agreement, Backend, Operation, Settings, Specimen, Standing, StudyError, study};
+use sixfold_study::{
+    Agreement, Backend, Operation, Settings, Specimen, Standing, StudyError, study,
+};
 
-// The very file with which the suite shows that it bites; ARCHITECTURE.md walks through it.
+// The file in which the conformance suite tests itself with faults; ARCHITECTURE.md explains it.
 #[path = "../crates/conformance/tests/all/face_and_edge_lists.rs"]
 mod face_and_edge_lists;
 
 use face_and_edge_lists::FaceAndEdgeLists;
 
 #[test]
-fn one_line_puts_it_into_a_study() {
+fn one_line_adds_it_to_a_study() {
     let specimen = Specimen::new(
         "torus",
         shapes::triangle_torus(6, 4).expect("a small torus"),
@@ -34,7 +36,7 @@ fn one_line_puts_it_into_a_study() {
         .iter()
         .filter(|row| row.backend == seventh)
         .collect();
-    // It has no native methods and no edits; all else it does.
+    // It refuses only native subdivisions (2) and edits (4).
     let refusals = report.refusals.iter();
     let refused: Vec<_> = refusals.filter(|one| one.backend == seventh).collect();
     assert_eq!(refused.len(), 2 + 4, "{refused:?}");
@@ -51,12 +53,12 @@ fn one_line_puts_it_into_a_study() {
 }
 
 #[test]
-fn a_name_that_is_taken_is_refused() {
+fn two_backends_with_the_same_name_are_refused() {
     let twice = Settings {
         extra: vec![Backend::of::<FaceAndEdgeLists>(); 2],
         ..Settings::default()
     };
-    let refusal = twice.chosen_backends().expect_err("two of one name");
+    let refusal = twice.chosen_backends().expect_err("two with the same name");
     assert!(
         matches!(refusal, StudyError::RepeatedBackend { .. }),
         "{refusal}"

@@ -1,8 +1,5 @@
-//! One result, however it is run: every scheme by every method on every structure makes the same
-//! mesh.
+//! Checks that every scheme gives the same mesh by every method on every structure.
 
-use conformance::strategy::{any_mesh, manifold_mesh};
-use conformance::{compact, gallery, welded};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -11,12 +8,15 @@ use sixfold::{
     Creases, Point, PolygonMesh, Refine, Representation, VertexId, for_each_refinable,
     for_each_representation,
 };
+use sixfold_conformance::strategy::{any_mesh, manifold_mesh};
+use sixfold_conformance::{compact, gallery, welded};
 
-/// How far apart points may be that are one, beside the size of the mesh: a few ulps.
+/// Maximum distance of two points that count as equal, relative to the size of the mesh: a few
+/// ulps.
 const NEAR: f32 = 4e-6;
 
-/// One step by one method on a structure; `None` where the structure cannot hold the mesh, or the
-/// scheme does not run so.
+/// Runs one step by one method on a structure. Returns `None` if the structure cannot hold the
+/// mesh, or the scheme does not support the method.
 fn rebuilt<M: Representation>(
     subdivision: &Subdivision,
     method: Method,
@@ -37,7 +37,7 @@ fn rebuilt<M: Representation>(
     Some(step.map_err(|refusal| refusal.to_string()))
 }
 
-/// One native step, and the same with three threads, which must be the same to the bit.
+/// Runs one native step on one thread and on three, and checks that the results are bit-identical.
 fn native<M: Refine>(
     subdivision: &Subdivision,
     polygons: &PolygonMesh,
@@ -56,7 +56,7 @@ fn native<M: Refine>(
         let creases = subdivision
             .refine_into(&mesh, &creases, level, &mut numbers, &mut child)
             .map_err(|refusal| refusal.to_string())?;
-        child.validate().expect("a sound child");
+        child.validate().expect("a valid child");
         let polygons = child.to_polygons();
         Ok(Step { polygons, creases })
     };
@@ -66,8 +66,8 @@ fn native<M: Refine>(
     Some(one)
 }
 
-/// `step` with the vertices called as in `first`, by where they are; `None` where two vertices of
-/// `first` cannot be told apart.
+/// Returns `step` with vertices renumbered as in `first`, matched by position; `None` if two
+/// vertices of `first` have the same position.
 fn called_alike(step: &Step, first: &Step) -> Option<Step> {
     let size = extent(&first.polygons);
     let near = |a: Point, b: Point| a.distance(b) <= NEAR * size;
@@ -82,7 +82,7 @@ fn called_alike(step: &Step, first: &Step) -> Option<Step> {
                 .iter()
                 .map(|p| p.distance(point))
                 .fold(f32::MAX, f32::min);
-            panic!("a point at {point}, {least} from any other: {size} is the size")
+            panic!("no match for {point}: the nearest is {least} away, the mesh size is {size}")
         });
         if at.next().is_some() {
             return None;
@@ -104,7 +104,7 @@ fn extent(polygons: &PolygonMesh) -> f32 {
     sizes.fold(1e-30, f32::max)
 }
 
-/// Every face from its lowest vertex on, sorted.
+/// Returns the faces, each starting at its lowest vertex, sorted.
 fn faces(polygons: &PolygonMesh) -> Vec<Vec<VertexId>> {
     let from_the_lowest = |face: &[VertexId]| {
         let lowest = (0..face.len()).min_by_key(|&i| face[i]).unwrap_or(0);
@@ -118,7 +118,7 @@ fn faces(polygons: &PolygonMesh) -> Vec<Vec<VertexId>> {
     all
 }
 
-/// Holds `step` to `first`, which another structure or method made of the same mesh.
+/// Checks that `step` equals `first`, which another structure or method made from the same mesh.
 fn same(step: &Step, first: &Step, what: &str) {
     let sizes = |step: &Step| (step.polygons.vertex_count(), step.polygons.face_count());
     assert_eq!(sizes(step), sizes(first), "{what}");
@@ -142,8 +142,8 @@ fn same(step: &Step, first: &Step, what: &str) {
     }
 }
 
-/// Takes `levels` steps by all methods on all structures; each step starts from what the first made
-/// of the one before. Yields how many results were compared.
+/// Runs `levels` steps by all methods on all structures, and compares the results of each step.
+/// Each step starts from the first result of the previous step. Returns the number of comparisons.
 fn agree(
     subdivision: &Subdivision,
     polygons: &PolygonMesh,
@@ -153,7 +153,8 @@ fn agree(
     let (mut polygons, mut creases) = (polygons.clone(), creases.clone());
     let mut compared = 0;
     for level in 0..levels {
-        // A soup names vertices in the order in which faces do; after the first step it may merge some.
+        // A soup numbers vertices in the order of the faces; after the first step it may merge
+        // some.
         let Ok(mesh) = welded(&polygons) else { break };
         if mesh != polygons && level > 0 {
             break;
@@ -168,7 +169,7 @@ fn agree(
             );
             match (done, &first) {
                 (None, _) => {}
-                // Two edges with the same ends fit no table of edges; polygons are made all the same.
+                // Native edge tables cannot hold two edges with the same ends; polygons can.
                 (Some(Err(why)), Some(_)) if method == Method::Native => {
                     assert!(why.contains("share two edges"), "{what}: {why}");
                 }
@@ -190,7 +191,7 @@ fn agree(
         });
         assert!(
             refused == 0 || first.is_none(),
-            "{}: some refuse",
+            "{}: some refuse, others do not",
             compact(&polygons)
         );
         compared += made;
@@ -200,7 +201,7 @@ fn agree(
     compared
 }
 
-/// Sharpness of a few edges and vertices, several of them at one vertex.
+/// Generates the sharpness of a few edges and vertices, several of them at one vertex.
 pub(crate) fn sharpness() -> impl Strategy<Value = Vec<(Index, Index, f32)>> {
     let value = prop_oneof![
         Just(0.3_f32),
@@ -216,8 +217,8 @@ pub(crate) fn sharpness() -> impl Strategy<Value = Vec<(Index, Index, f32)>> {
     vec((any::<Index>(), any::<Index>(), value), 0..8)
 }
 
-/// The creases that `choices` make on `polygons`: every second one goes to an edge at a vertex that
-/// has been chosen before, so that creases meet.
+/// Builds creases on `polygons` from `choices`. Every second choice is an edge at a vertex of an
+/// earlier choice, so that creases meet.
 pub(crate) fn creases_on(polygons: &PolygonMesh, choices: &[(Index, Index, f32)]) -> Creases {
     let edges = polygons.edge_uses();
     if edges.is_empty() {
@@ -246,7 +247,8 @@ pub(crate) fn creases_on(polygons: &PolygonMesh, choices: &[(Index, Index, f32)]
     Creases::new(polygons, sharp, corners).expect("edges and vertices of the mesh")
 }
 
-/// The mesh for a scheme: cut into triangles where it takes nothing else, and named as a soup would.
+/// Returns the mesh for a scheme: triangulated if the scheme takes only triangles, and with
+/// vertices in the order that a soup uses.
 fn fitting(scheme: Scheme, polygons: &PolygonMesh) -> Option<PolygonMesh> {
     let polygons = match scheme.kind().takes {
         "triangles" => polygons.fan_triangulated().ok()?,
@@ -267,7 +269,7 @@ fn schemes() -> impl Strategy<Value = Subdivision> {
 }
 
 #[test]
-fn every_method_is_compared_on_the_gallery() {
+fn all_methods_agree_on_the_gallery() {
     for scheme in Scheme::ALL {
         let subdivision = Subdivision::new(scheme);
         let mut compared = 0;
@@ -276,7 +278,7 @@ fn every_method_is_compared_on_the_gallery() {
                 compared += agree(&subdivision, &polygons, &Creases::default(), 2);
             }
         }
-        assert!(compared > 50, "{scheme}: {compared} results were compared");
+        assert!(compared > 50, "{scheme}: only {compared} compared");
     }
 }
 
@@ -284,7 +286,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, cases: 96, ..ProptestConfig::default() })]
 
     #[test]
-    fn manifolds_come_out_alike(
+    fn all_methods_agree_on_manifolds(
         subdivision in schemes(),
         polygons in manifold_mesh(),
         choices in sharpness(),
@@ -299,7 +301,7 @@ proptest! {
     }
 
     #[test]
-    fn chaos_comes_out_alike(
+    fn all_methods_agree_on_any_mesh(
         subdivision in schemes(),
         polygons in any_mesh(),
         choices in sharpness(),

@@ -1,9 +1,9 @@
-//! What every scheme keeps, on random manifolds with random creases, and what it counts up to.
+//! Checks the invariants and the element counts of every scheme, on random manifolds with random
+//! creases.
 
 #[path = "subdivision_laws/regular.rs"]
 mod regular;
 
-use conformance::strategy::manifold_mesh;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use sixfold::subdivision::{
@@ -13,13 +13,14 @@ use sixfold::subdivision::{
 use sixfold::{
     Creases, Facts, HalfEdgeMesh, IndexedFaceSet, Point, PolygonMesh, Representation, VertexId,
 };
+use sixfold_conformance::strategy::manifold_mesh;
 
 use crate::subdivision::{creases_on, sharpness};
 
-/// How far apart points may be that are one, beside the size of the mesh.
+/// Maximum distance of two points that count as equal, relative to the size of the mesh.
 const NEAR: f32 = 1e-5;
 
-/// A mesh that the scheme takes, and creases if it has rules for them.
+/// A subdivision and a mesh that it accepts, with creases if the scheme supports them.
 #[derive(Clone, Debug)]
 struct Try {
     subdivision: Subdivision,
@@ -46,7 +47,7 @@ fn after(
     let method = Method::Gather;
     let step =
         subdivide::<IndexedFaceSet>(subdivision, method, polygons, creases, levels, |_, _| ());
-    step.expect("a mesh that the scheme takes")
+    step.expect("the scheme accepts the mesh")
 }
 
 fn tries_of(schemes: &[Scheme], boundaries: &[Boundary]) -> impl Strategy<Value = Try> + use<> {
@@ -58,7 +59,7 @@ fn tries_of(schemes: &[Scheme], boundaries: &[Boundary]) -> impl Strategy<Value 
     );
     let parts = (options, manifold_mesh(), sharpness());
     parts.prop_filter_map(
-        "a fan can run an edge through two polygons",
+        "triangulation can give one edge to two polygons",
         |((scheme, boundary, creasing, loop_weights), polygons, choices)| {
             let polygons = fitting(scheme, polygons)?;
             let creases = creases_for(scheme, &polygons, &choices);
@@ -88,8 +89,8 @@ fn creases_for(scheme: Scheme, polygons: &PolygonMesh, choices: &[(Index, Index,
     }
 }
 
-/// Cut into triangles where the scheme takes nothing else; `None` where that is no manifold, or two
-/// triangles have the same corners.
+/// Triangulates the mesh if the scheme takes only triangles. Returns `None` if the result is not a
+/// manifold, or two triangles have the same corners.
 fn fitting(scheme: Scheme, polygons: PolygonMesh) -> Option<PolygonMesh> {
     if scheme.kind().takes != "triangles" {
         return Some(polygons);
@@ -103,7 +104,7 @@ fn is_plain_manifold(polygons: &PolygonMesh) -> bool {
     !has_twins && HalfEdgeMesh::from_polygons(polygons).is_ok()
 }
 
-/// The same faces between other points.
+/// Returns the same faces with positions mapped by `place`.
 fn moved(polygons: &PolygonMesh, place: impl Fn(Point) -> Point) -> PolygonMesh {
     let positions = polygons.positions().iter().copied().map(place).collect();
     PolygonMesh::from_faces(positions, polygons.faces().clone()).expect("the same faces")
@@ -114,7 +115,7 @@ fn size(polygons: &PolygonMesh) -> f32 {
     sizes.fold(0.0, f32::max)
 }
 
-/// By vertex, how many edges end there, and whether one of them has a single face.
+/// Returns for each vertex its valence, and whether a boundary edge ends there.
 fn valences(polygons: &PolygonMesh) -> Vec<(usize, bool)> {
     let mut valences = vec![(0, false); polygons.vertex_count()];
     for edge in polygons.edge_uses() {
@@ -127,7 +128,7 @@ fn valences(polygons: &PolygonMesh) -> Vec<(usize, bool)> {
     valences
 }
 
-/// Vertices, edges and faces after step `level`, of a manifold.
+/// Returns the numbers of vertices, edges and faces of a manifold after step `level`.
 ///
 /// ```text
 ///                        V′             E′             F′             C corners, b boundary edges
@@ -138,7 +139,7 @@ fn valences(polygons: &PolygonMesh) -> Vec<(usize, bool)> {
 ///   Doo–Sabin            C              C + 2(E − b)   F + (E − b) + inner vertices
 /// ```
 ///
-/// An inner vertex of two faces becomes an edge by Doo–Sabin, where two edges meet.
+/// Doo–Sabin turns an inner vertex of valence 2 into an edge instead of a face.
 fn grown(scheme: Scheme, polygons: &PolygonMesh, level: u32) -> [usize; 3] {
     let facts = Facts::of(polygons);
     let (v, e, f) = (facts.vertices, facts.edges, facts.faces);
@@ -162,9 +163,9 @@ fn grown(scheme: Scheme, polygons: &PolygonMesh, level: u32) -> [usize; 3] {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, cases: 96, ..ProptestConfig::default() })]
 
-    /// Holes would change what there is to count, so that boundary edges are kept.
+    /// Without `Boundary::None`, which removes faces at the boundary and so changes the counts.
     #[test]
-    fn topology_is_kept_and_counts_are_foretold(
+    fn topology_is_kept_and_counts_follow_the_formulas(
         start in tries_of(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
     ) {
         let before = Facts::of(&start.polygons);
@@ -197,7 +198,8 @@ proptest! {
         }
     }
 
-    /// Old vertices keep their valence; new ones have that of a regular mesh, but for face points.
+    /// Old vertices keep their valence. New vertices, except face points, have that of a regular
+    /// mesh.
     #[test]
     fn valences_are_kept(
         start in tries_of(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
@@ -221,11 +223,11 @@ proptest! {
                 prop_assert!(kept.clone().all(|(old, new)| old == new));
                 prop_assert!(regular(vertices, 6, 4));
             }
-            // One edge to each face where there was one along each side: on the rim that is one more.
+            // One edge to each face at the vertex: at the boundary that is one more than before.
             Scheme::Sqrt3 => {
                 let grown = |&(valence, is_open): &(usize, bool)| (valence + usize::from(is_open), is_open);
                 prop_assert!(kept.clone().all(|(old, new)| grown(old) == *new));
-                // Three corners, and the face points across the sides that are no boundary.
+                // Three corners, and one face point across each side that is not a boundary edge.
                 prop_assert!(new[vertices..].iter().all(|&(valence, _)| (3..=6).contains(&valence)));
             }
             Scheme::DooSabin => {
@@ -258,7 +260,7 @@ proptest! {
         }
     }
 
-    /// The weights of every stencil add up to 1: where all points are one, they stay.
+    /// The weights of every stencil add up to 1: if all points are equal, they do not move.
     #[test]
     fn weights_are_a_partition_of_unity(start in tries()) {
         let place = Point::new(1.0, -3.0, 0.7);
@@ -291,7 +293,7 @@ proptest! {
         }
         for &p in points {
             let expected = other_side(p);
-            prop_assert!(points.iter().any(|p| p.distance(expected) <= near), "none at {}", expected);
+            prop_assert!(points.iter().any(|p| p.distance(expected) <= near), "no point at {}", expected);
         }
     }
 
@@ -308,7 +310,7 @@ proptest! {
     }
 
     #[test]
-    fn no_levels_are_the_mesh_itself(
+    fn zero_levels_give_the_mesh_itself(
         start in tries_of(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
     ) {
         let Try { subdivision, polygons, creases } = &start;
@@ -322,8 +324,8 @@ proptest! {
     }
 }
 
-/// A mesh and its mirror image, sewn together along the boundary, which lies in x = 0; with the
-/// vertex that each is mirrored to. `None` where that is no manifold.
+/// Returns a mesh and its mirror image, joined along the boundary, which lies in x = 0, and for
+/// each vertex its mirror vertex. `None` if the result is not a manifold.
 ///
 /// ```text
 ///       boundary

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Compares the figures of a study with those of each operation alone in a process of its own.
+"""Compares the times of a study with the times of each operation in a separate process.
 
 Usage: alone.py [--sixfold PATH] [--peer PATH] [--times 10] [--sizes 2000,20000,200000] [--json FILE]
 
-Builds nothing: run `cargo build --release -p sixfold-cli -p study --bin sixfold --example peer` first.
+Builds nothing: run `cargo build --release -p sixfold-cli -p sixfold-study --bin sixfold --example peer` first.
 
-For each size a geodesic sphere is studied, on the four structures that answer locally, and `peer` runs
-every operation of it by itself, in processes of one structure, before and after; the two alternate. The ratio of a cell (an
-operation on a structure) is study / alone; printed are the medians of the paired ratios. At 200,000 faces the
-nine relations, the sweeps, `vv_smooth` and `build` are compared, at smaller sizes all operations.
-Exit code 1 if fewer than 95 % of the cells are within 5 %, or one is beyond 15 %.
+For each size, the script studies a geodesic sphere on the four structures that answer locally. Before and
+after each study, `peer` runs every operation alone, in processes of one structure. The ratio of a cell (an
+operation on a structure) is study / alone; the script prints the medians of the paired ratios. At 200,000
+faces it compares the nine relations, the sweeps, `vv_smooth` and `build`; at smaller sizes all operations.
+The exit code is 1 if fewer than 95 % of the cells are within 5 %, or one differs by more than 15 %.
 """
 
 import argparse
@@ -23,10 +23,10 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 STRUCTURES = ["face-vertex", "winged-edge", "half-edge", "corner-table"]
-# Seconds of a study, by its number of faces.
+# Seconds of a study, by number of faces.
 BUDGETS = {2_000: 10, 20_000: 20, 200_000: 60}
-# Rounds of processes before each study, and as many after it: one that lasts a second may fall as a whole
-# into a phase in which the processor runs slower or faster.
+# Rounds of processes before each study, and as many after it. A single round of a second could lie
+# completely in a phase in which the processor runs slower or faster.
 PASSES = 3
 RELATIONS = [f"{a}_{b}" for a in ("vertex", "edge", "face") for b in ("vertices", "edges", "faces")]
 SWEEPS = ["circulate", "face_barycenter", "vertex_normal", "vv_smooth", "edge_length", "boundary",
@@ -47,7 +47,7 @@ def studied(sixfold, mesh, budget, operations, seed, folder):
     lines([sixfold, "study", mesh, "--budget", f"{budget}s", "--seed", str(seed), "--json", out,
            "--backends", ",".join(STRUCTURES), "--operations", ",".join(operations)])
     rows = json.loads(out.read_text())["results"]
-    # One sample is the warm-up, or nearly so: no figure to hold anything against.
+    # A single sample is nearly a warm-up run, so its time cannot be compared.
     return {(r["operation"], r["backend"]): r["median_ns"] for r in rows
             if r["median_ns"] and r["samples"] > 1}
 
@@ -69,7 +69,7 @@ def main():
     parser.add_argument("--times", type=int, default=10)
     parser.add_argument("--sizes", default="2000,20000,200000")
     parser.add_argument("--reps", type=int, default=7)
-    parser.add_argument("--scale", type=float, default=1.0, help="budgets times this")
+    parser.add_argument("--scale", type=float, default=1.0, help="factor for the budgets")
     parser.add_argument("--json")
     chosen = parser.parse_args()
     ratios, missing = {}, set()
@@ -100,8 +100,8 @@ def main():
     worst = max(max(ratio, 1 / ratio) for ratio in cells.values())
     share = 1 - len(off) / len(cells)
     if missing - cells.keys():
-        print(f"not measured twice in any study: {sorted(missing - cells.keys())}")
-    print(f"{len(cells)} cells; {100 * share:.1f} % within 5 %; the farthest is off by {100 * (worst - 1):.1f} %")
+        print(f"without two samples in any study: {sorted(missing - cells.keys())}")
+    print(f"{len(cells)} cells; {100 * share:.1f} % within 5 %; the largest difference is {100 * (worst - 1):.1f} %")
     for (size, operation, structure), ratio in sorted(off.items(), key=lambda item: -abs(math.log(item[1]))):
         values = sorted(ratios[size, operation, structure])
         print(f"  {size:>7} {operation:<22} {structure:<13} {ratio:.3f}  ({values[0]:.3f} to {values[-1]:.3f})")

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Repeats one study, and says how steady its control and its figures are.
+"""Repeats one study, and prints how stable its control and its medians are.
 
 Usage: steady.py [--sixfold PATH] [--times 16] [--budget 8s] [--heap kept]
 
-Studies a geodesic sphere of 20,480 triangles on the four structures that answer locally, again and again with
-the same settings. Exit code 1 if the control leaves its limits in more than one study (1.05 in what does not
-make a mesh, 1.10 in the rest), or a median differs from study to study by more than 1.25 ×.
+Repeatedly studies a geodesic sphere of 20,480 triangles, on the four structures that answer locally, with
+the same settings. The exit code is 1 if the control leaves its limits in more than one study (a ratio of
+1.10 for operations that make a mesh, 1.05 for the others), if the largest median of a row is more than 1.25
+times its smallest, or if kept samples have page faults with `--heap kept`.
 """
 
 import argparse
@@ -56,9 +57,9 @@ def main():
     spread = {cell: max(values) / min(values) for cell, values in figures.items()}
     worst = max(spread, key=spread.get)
     print(f"control within its limits in {chosen.times - outside} of {chosen.times} studies")
-    print(f"largest median by smallest: worst {spread[worst]:.2f} ({worst[0]} on {worst[1]}), "
+    print(f"largest / smallest median of a row: at most {spread[worst]:.2f} ({worst[0]} on {worst[1]}), "
           f"median of {len(spread)} rows {statistics.median(spread.values()):.2f}")
-    print(f"intervals that reach further than 10 %: {min(wide)} to {max(wide)} of {len(known)} rows")
+    print(f"intervals wider than 10 % of the median: {min(wide)} to {max(wide)} of {len(known)} rows")
     print(f"page faults in kept samples: {faults}")
     for cell in sorted(spread, key=spread.get, reverse=True)[:5]:
         print(f"  {cell[0]:<22} {cell[1]:<13} {spread[cell]:.2f}  {min(figures[cell]):.2f} to {max(figures[cell]):.2f}")

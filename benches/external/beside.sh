@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Builds the columns that can be built here, and runs `sixfold study` with each of them beside ours:
+# Builds the columns that can be built on this machine, and runs `sixfold study` with them:
 #
 #   benches/external/beside.sh bunny.obj --budget 60s --report beside
 #
-# COLUMNS="lox cgal" takes only these. What is built goes to target/columns. SIXFOLD is the program to run;
-# without it, the release build of this repository.
+# COLUMNS="lox cgal" selects columns. The programs are built in target/columns. SIXFOLD is the program to
+# run; the default is the release build of this repository.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 out=$here/../../target/columns
@@ -27,7 +27,7 @@ for name in lox alum parry3d tri-mesh; do
 done
 if wanted openmesh || wanted cgal || wanted opensubdiv; then
     if ! { cmake -S "$here/cpp" -B "$out/cpp" && cmake --build "$out/cpp"; } >"$out/cpp.log" 2>&1; then
-        echo "not all C++ columns: they need g++, cmake, nlohmann-json3-dev and the libraries; see $out/cpp.log" >&2
+        echo "cannot build the C++ columns: they need g++, cmake, nlohmann-json3-dev and the libraries; see $out/cpp.log" >&2
         rm -f "$out/cpp/openmesh" "$out/cpp/cgal" "$out/cpp/opensubdiv"
     fi
     for name in openmesh cgal opensubdiv; do

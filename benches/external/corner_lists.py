@@ -1,7 +1,7 @@
 """A column for `sixfold study --external NAME='python3 corner_lists.py {mesh}'`.
 
-Faces as lists of corners, and for each vertex the list of its faces; README.md beside this file has the
-protocol. It shows how to take part, not how to be fast.
+Stores faces as lists of corners, and for each vertex the list of its faces. README.md in this folder
+describes the protocol. This is an example of the protocol; it is not optimised.
 """
 
 import json
@@ -93,7 +93,7 @@ OPERATIONS = {
 def answer(mesh, question):
     run = OPERATIONS.get(question["run"])
     if run is None:
-        return {"refused": "this example does not do it"}
+        return {"refused": "this example does not support the operation"}
     wall, cpu = time.perf_counter_ns(), time.thread_time_ns()
     for _ in range(question["times"]):
         checksum, elements = run(mesh)

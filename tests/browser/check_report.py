@@ -1,9 +1,9 @@
-"""Opens a report in headless Chromium, and holds its figures against its data.
+"""Opens a report in headless Chromium and compares its figures with its data.
 
     python3 tests/browser/check_report.py DIR [FOLDER FOR SCREENSHOTS]
 
-DIR is what `sixfold study --report DIR` wrote. Needs chromium and chromedriver (Debian: chromium,
-chromium-driver) and nothing else: it speaks WebDriver over HTTP.
+DIR is the output folder of `sixfold study --report DIR`. Needs only chromium and chromedriver (Debian:
+chromium, chromium-driver), because it uses WebDriver over HTTP.
 """
 
 import base64
@@ -80,7 +80,7 @@ class Browser:
             self.driver.wait()
 
 
-# Every mark of a figure: what its title says, and the box of what it draws.
+# Every mark of a figure: its title and the bounding box of its shape.
 MARKS = """
 const marks = [];
 for (const group of arguments[0].querySelectorAll('svg g')) {
@@ -112,7 +112,7 @@ def close_to(a, b, what, tolerance):
 
 
 def times(ratio):
-    """A ratio as the page writes it."""
+    """Formats a ratio as the page does."""
     if ratio < 1.095:
         return f"{ratio:.2f} ×"
     if ratio < 9.95:
@@ -121,7 +121,7 @@ def times(ratio):
 
 
 def duration(ns):
-    """A time as the page writes it."""
+    """Formats a time as the page does."""
     for unit, most in [("ns", 1e3), ("µs", 1e6), ("ms", 1e9), ("s", math.inf)]:
         if ns < most:
             number = ns / {"ns": 1, "µs": 1e3, "ms": 1e6, "s": 1e9}[unit]
@@ -130,7 +130,7 @@ def duration(ns):
 
 
 def check_places(marks, values, what, axis):
-    """Marks stand where their values are on a logarithmic axis: on one straight line with these."""
+    """Checks that marks are at the positions of their values on a logarithmic axis."""
     size = "width" if axis == "x" else "height"
     places = [mark[axis] + mark[size] / 2 for mark in marks]
     logs = [math.log10(value) for value in values]
@@ -138,7 +138,7 @@ def check_places(marks, values, what, axis):
     if logs[high] - logs[low] < 1e-3:
         return
     scale = (places[high] - places[low]) / (logs[high] - logs[low])
-    assert (scale > 0) == (axis == "x"), f"{what}: the axis runs backwards"
+    assert (scale > 0) == (axis == "x"), f"{what}: the axis has the wrong direction"
     for place, log in zip(places, logs):
         close_to(place, places[low] + (log - logs[low]) * scale, what, 0.6)
 
@@ -268,7 +268,7 @@ def check_break_even(figure, columns):
 
 
 def check(figure, results):
-    """Holds one figure against the data."""
+    """Compares one figure with the data."""
     studies, labs, kind = results["studies"], results["labs"], figure["id"]
     lab = re.match(r"(orders|growth|roofline|pick)(?:-(\d+))?(?:-|$)", kind)
     if lab:
@@ -302,7 +302,7 @@ def check(figure, results):
         return check_memory(figure, study)
     if kind.endswith("break-even"):
         return check_break_even(figure, columns)
-    raise AssertionError(f"nobody knows a figure {kind}")
+    raise AssertionError(f"unknown figure {kind}")
 
 
 def main():
@@ -314,16 +314,16 @@ def main():
         start = time.monotonic()
         browser.open(folder / "report.html")
         seconds = time.monotonic() - start
-        assert seconds < 2, f"it opens in {seconds:.1f} s"
+        assert seconds < 2, f"the page takes {seconds:.1f} s to open, expected less than 2 s"
         size = (folder / "report.html").stat().st_size
-        assert size < 10e6, f"{size} bytes"
+        assert size < 10e6, f"the page has {size} bytes, expected less than 10 MB"
 
         figures = browser.run(FIGURES)
         ids = [figure["id"] for figure in figures]
-        assert len(set(ids)) == len(ids), "two figures of one name"
+        assert len(set(ids)) == len(ids), "two figures have the same name"
         for figure in figures:
             check(figure, results)
-            # By itself it has to be XML, which is stricter than a page.
+            # The file of the figure must be valid XML, which is stricter than HTML.
             xml.etree.ElementTree.parse(folder / "figures" / f"{figure['id']}.svg")
         kinds = {re.sub(r"-.*", "", figure["id"]) for figure in figures}
         expected = {name for name in ("orders", "growth") if results["labs"][name]}
@@ -331,7 +331,7 @@ def main():
         expected |= {"ranking", "heat"} if results["studies"] else set()
         assert expected <= kinds, f"{expected - kinds} is missing"
 
-        # On a telephone the page is no wider than the screen; figures are pushed about in theirs.
+        # On a phone, the page must not be wider than the screen; wide figures scroll in their boxes.
         for width, theme in [(1200, "light"), (1200, "dark"), (390, "light"), (390, "dark")]:
             browser.devtools(
                 "Emulation.setDeviceMetricsOverride",
@@ -362,10 +362,10 @@ def main():
             message = json.loads(entry["message"])["message"]
             if message["method"] == "Network.requestWillBeSent":
                 url = message["params"]["request"]["url"]
-                assert url.startswith(("file:", "data:")), f"the page asks for {url}"
+                assert url.startswith(("file:", "data:")), f"the page requests {url}"
     finally:
         browser.close()
-    print(f"{len(figures)} figures held against the data; opened in {seconds:.2f} s, {size:,} bytes")
+    print(f"{len(figures)} figures compared with the data; opened in {seconds:.2f} s, {size:,} bytes")
 
 
 main()

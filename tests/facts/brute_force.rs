@@ -1,11 +1,11 @@
-//! The facts of a small mesh by definition, each by its own loop, as TRUTH.md words them.
+//! Computes the facts of a small mesh by their definitions in TRUTH.md, each with its own loop.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use conformance::{Element, Oracle};
 use sixfold::{FaceId, Facts, PolygonMesh, Relation, Spread, VertexId};
+use sixfold_conformance::{Element, Oracle};
 
-/// What [`Facts::of`] must say of `polygons`.
+/// Returns the expected result of [`Facts::of`] for `polygons`.
 pub(crate) fn facts(polygons: &PolygonMesh) -> Facts {
     let oracle = Oracle::of(polygons);
     let mesh = Small::of(&oracle);
@@ -71,10 +71,11 @@ pub(crate) fn facts(polygons: &PolygonMesh) -> Facts {
     }
 }
 
-/// A mesh small enough for loops within loops.
+/// A mesh that is small enough for nested loops.
 struct Small<'a> {
     oracle: &'a Oracle,
-    /// By vertex: the faces there in classes under "share an edge that ends there".
+    /// By vertex: the faces there, in classes. Faces that share an edge at the vertex are in one
+    /// class.
     fans: BTreeMap<VertexId, Vec<Vec<FaceId>>>,
 }
 
@@ -88,7 +89,7 @@ impl<'a> Small<'a> {
         mesh
     }
 
-    /// The faces along `e`.
+    /// Returns the faces on `e`.
     fn along(&self, e: Element) -> Vec<FaceId> {
         faces_of(self.oracle.answer(Relation::EdgeFaces, e))
     }
@@ -104,7 +105,7 @@ impl<'a> Small<'a> {
         })
     }
 
-    /// The faces in classes under "share an edge".
+    /// Returns the faces in classes; faces that share an edge are in one class.
     fn components(&self) -> Vec<Vec<FaceId>> {
         let faces: Vec<FaceId> = self.oracle.faces().collect();
         classes(&faces, |f, g| {
@@ -113,7 +114,7 @@ impl<'a> Small<'a> {
         })
     }
 
-    /// Whether `f` runs along the edge from its lower to its higher end.
+    /// Returns whether `f` runs along the edge from its lower to its higher end.
     fn runs_up(&self, f: FaceId, edge: Element) -> bool {
         let corners = self.oracle.corners(f);
         (0..corners.len()).any(|i| {
@@ -122,7 +123,7 @@ impl<'a> Small<'a> {
         })
     }
 
-    /// Whether `e` has two faces, which run along it in the same direction.
+    /// Returns whether `e` has exactly two faces and both run along it in the same direction.
     fn inconsistent(&self, e: Element) -> bool {
         match self.along(e)[..] {
             [f, g] => self.runs_up(f, e) == self.runs_up(g, e),
@@ -130,7 +131,7 @@ impl<'a> Small<'a> {
         }
     }
 
-    /// Whether faces can be turned over so that no edge of two faces is inconsistent.
+    /// Returns whether faces can be flipped so that no edge with two faces is inconsistent.
     fn orientable(&self, components: &[Vec<FaceId>]) -> bool {
         let pairs: Vec<([FaceId; 2], bool)> = self
             .oracle
@@ -142,7 +143,7 @@ impl<'a> Small<'a> {
             .collect();
         let mut turned: BTreeMap<FaceId, bool> = BTreeMap::new();
         for &start in components.iter().flatten() {
-            // What is not reached from here yet starts as it is; then turn until nothing changes.
+            // A face that was not reached before is not flipped. Propagate until nothing changes.
             turned.entry(start).or_insert(false);
             let mut changed = true;
             while changed {
@@ -164,7 +165,7 @@ impl<'a> Small<'a> {
             .all(|&([f, g], differ)| turned[&f] ^ turned[&g] == differ)
     }
 
-    /// The boundary edges in classes: two follow each other if they meet in one fan.
+    /// Returns the boundary edges in classes; two edges are adjacent if they meet in one fan.
     fn loops(&self, boundary: &[Element]) -> Vec<Vec<Element>> {
         classes(boundary, |e, g| {
             let (Element::Edge(a, b), Element::Edge(c, d)) = (e, g) else {
@@ -179,7 +180,8 @@ impl<'a> Small<'a> {
         })
     }
 
-    /// The genus of an orientable component, its vertices cut apart where fans meet.
+    /// Returns the genus of an orientable component; a vertex with several fans counts once for
+    /// each fan.
     fn genus(&self, component: &[FaceId], loops: &[Vec<Element>]) -> i64 {
         let inside = |f: &FaceId| component.contains(f);
         let fans = self.oracle.vertices().flat_map(|v| &self.fans[&v]);
@@ -194,7 +196,7 @@ impl<'a> Small<'a> {
             .filter(|l| inside(&self.along(l[0])[0]))
             .count() as i64;
         let twice = 2 - (fans - edges + component.len() as i64) - loops;
-        assert_eq!(twice % 2, 0, "an orientable surface has a whole genus");
+        assert_eq!(twice % 2, 0, "the genus must be an integer");
         twice / 2
     }
 }
@@ -207,7 +209,7 @@ fn faces_of(elements: &[Element]) -> Vec<FaceId> {
     faces.collect()
 }
 
-/// `items` in classes under "can be reached through `linked`".
+/// Partitions `items` into the connected components of the relation `linked`.
 fn classes<T: Copy + PartialEq>(items: &[T], linked: impl Fn(T, T) -> bool) -> Vec<Vec<T>> {
     let mut rest = items.to_vec();
     let mut classes = Vec::new();

@@ -1,26 +1,28 @@
-//! What is put to OpenSubdiv: random meshes with random creases, and some that are made for a rule.
+//! The cases to compare with OpenSubdiv: random meshes with random creases, and meshes for special
+//! rules.
 
 use std::f32::consts::TAU;
 
-use conformance::strategy::{any_mesh, manifold_mesh};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::Index;
 use sixfold::subdivision::{Boundary, Creasing, Scheme, Subdivision};
 use sixfold::{Creases, Point, PolygonMesh, shapes};
+use sixfold_conformance::strategy::{any_mesh, manifold_mesh};
 
 use super::judge::Case;
 use crate::subdivision::{creases_on, sharpness};
 
-/// Corners of the finest mesh: more take time and tell nothing new.
+/// Maximum number of corners of the finest mesh. Larger meshes only take more time.
 const ENOUGH: usize = 12_000;
 
-/// Manifolds, open and closed, of mixed degrees.
+/// Generates manifolds, open and closed, of mixed degrees.
 pub(crate) fn manifold() -> impl Strategy<Value = Case> {
     case_of(manifold_mesh())
 }
 
-/// Meshes with edges of three faces, vertices of several fans, faces turned over, and any mess.
+/// Generates meshes with edges of three faces, vertices with several fans, flipped faces, and
+/// arbitrary meshes.
 pub(crate) fn non_manifold() -> impl Strategy<Value = Case> {
     let made = prop_oneof![
         (3..6_u32, 2..4_u32).prop_map(|(pages, length)| book(pages, length)),
@@ -68,8 +70,9 @@ fn fitting(scheme: Scheme, polygons: PolygonMesh) -> PolygonMesh {
     }
 }
 
-/// Creases of all sorts that meet in the middle of a wheel, closed and open, and vertices of two
-/// faces inside; three levels each, so that sharpness wears off one edge after another.
+/// Returns cases with different creases that meet at the hub of a closed or open wheel, and cases
+/// with inner vertices of two faces. Each has three levels, so that sharpness ends at different
+/// levels.
 pub(crate) fn fixed() -> Vec<Case> {
     let inf = f32::INFINITY;
     let hubs: [(f32, &[f32]); 12] = [
@@ -109,14 +112,14 @@ pub(crate) fn fixed() -> Vec<Case> {
             }
         }
     }
-    // Two quads back to back: nothing but smooth vertices of two faces, or two faces of a crease.
+    // Two quads back to back: every vertex has two faces, and is smooth or on a crease.
     for s in [0.0, 0.5, 1.5] {
         let corners = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.3), Point::Y];
         let polygons = PolygonMesh::new(corners, [[0, 1, 2, 3], [3, 2, 1, 0]]).expect("two quads");
         let creases = Creases::new(&polygons, [([0, 1], s), ([1, 2], s)], []);
         cases.push(Case {
             subdivision: Subdivision::new(Scheme::CatmullClark),
-            creases: creases.expect("edges of it"),
+            creases: creases.expect("edges of the quads"),
             polygons,
             levels: 3,
         });
@@ -136,7 +139,7 @@ fn around(i: u32, n: u32, z: f32) -> Point {
     Point::new(cos, sin, z)
 }
 
-/// Triangles around vertex 0, with one of them missing if it is not closed.
+/// Builds triangles around vertex 0; if `is_closed` is false, one of them is missing.
 fn wheel(n: u32, is_closed: bool) -> PolygonMesh {
     let rim = (0..n).map(|i| around(i, n, (i % 3) as f32 * 0.25));
     let points: Vec<Point> = std::iter::once(Point::Z).chain(rim).collect();
@@ -145,11 +148,11 @@ fn wheel(n: u32, is_closed: bool) -> PolygonMesh {
     PolygonMesh::new(points, faces).expect("a wheel")
 }
 
-/// Pages of quads on one spine.
+/// Builds strips of quads ("pages") that share one chain of edges ("spine").
 ///
 /// ```text
-///    2 ─── ·      the spine runs 0, 1, 2 …, each page from there to its own rim;
-///    │     │      the vertex 1 is inside the spine
+///    2 ─── ·      the spine is 0, 1, 2 …; each page goes from the spine to its own rim;
+///    │     │      vertex 1 is an inner vertex of the spine
 ///    1 ─── ·
 ///    │     │
 ///    0 ─── ·
@@ -165,7 +168,7 @@ fn book(pages: u32, length: u32) -> PolygonMesh {
     PolygonMesh::new(points, quads.collect::<Vec<_>>()).expect("a book")
 }
 
-/// Polygons of one degree that share vertex 0 alone.
+/// Builds polygons of one degree that share only vertex 0.
 fn bow_tie(fans: u32, degree: u32) -> PolygonMesh {
     let rim = fans * (degree - 1);
     let points = (0..rim).map(|i| around(i, rim, (i % 2) as f32 * 0.5));
@@ -177,7 +180,7 @@ fn bow_tie(fans: u32, degree: u32) -> PolygonMesh {
     PolygonMesh::new(points, faces.collect::<Vec<_>>()).expect("a bow-tie")
 }
 
-/// Two closed pyramids that touch with their tips, vertex 0.
+/// Builds two closed pyramids that share their apex, vertex 0.
 fn two_cones(n: u32) -> PolygonMesh {
     let rings = (0..2 * n).map(|i| around(i, n, if i < n { 1.0 } else { -1.0 }));
     let points: Vec<Point> = std::iter::once(Point::ZERO).chain(rings).collect();
@@ -191,7 +194,7 @@ fn two_cones(n: u32) -> PolygonMesh {
     PolygonMesh::new(points, faces).expect("two cones")
 }
 
-/// A grid with one more quad on an inner edge.
+/// Builds a grid with an additional quad on an inner edge.
 fn with_fin(edge: usize) -> PolygonMesh {
     let grid = shapes::grid(3, 3).expect("a small grid");
     let uses = grid.edge_uses();
@@ -205,7 +208,7 @@ fn with_fin(edge: usize) -> PolygonMesh {
     PolygonMesh::new(points, faces).expect("a grid with a fin")
 }
 
-/// The mesh without some faces, but for one at least, and with some turned over.
+/// Removes some faces of the mesh (at least one stays) and flips some others.
 fn torn(mesh: &PolygonMesh, lost: &[Index], turned: &[Index]) -> PolygonMesh {
     let mut faces = face_rows(mesh);
     for index in lost {

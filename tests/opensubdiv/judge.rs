@@ -1,4 +1,4 @@
-//! The program `refine` as judge: a case goes in, what OpenSubdiv makes of it comes out.
+//! Runs the program `refine`: it reads a case and prints OpenSubdiv's levels and limits.
 
 use std::env;
 use std::fmt::{self, Write as _};
@@ -10,7 +10,7 @@ use std::str::{FromStr, SplitWhitespace};
 use sixfold::subdivision::{Creasing, Subdivision};
 use sixfold::{Creases, Point, PolygonMesh, SHARP_FOR_EVER};
 
-/// What is to be refined, and how.
+/// A mesh to refine, with the subdivision and the number of levels.
 #[derive(Clone)]
 pub(crate) struct Case {
     pub(crate) subdivision: Subdivision,
@@ -19,7 +19,7 @@ pub(crate) struct Case {
     pub(crate) levels: u32,
 }
 
-/// As `refine` reads it, so that a failure can be fed to it by hand.
+/// Writes the input of `refine`, so that a failing case can be run by hand.
 impl fmt::Display for Case {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "scheme {}", self.subdivision.scheme)?;
@@ -52,20 +52,20 @@ impl fmt::Debug for Case {
     }
 }
 
-/// All that OpenSubdiv says of a case, by its own numbers.
+/// OpenSubdiv's result of a case, in OpenSubdiv's numbering.
 pub(crate) struct Answer {
-    /// From the control mesh on.
+    /// The levels, starting with the control mesh.
     pub(crate) levels: Vec<Level>,
-    /// By vertex of the last level: the limit, and two tangents.
+    /// By vertex of the last level: the limit position and two tangents.
     pub(crate) limits: Vec<[Point; 3]>,
 }
 
-/// A mesh, and what of it is sharp.
+/// A mesh with its sharp edges and vertices.
 #[derive(Default)]
 pub(crate) struct Level {
     pub(crate) vertices: Vec<Vertex>,
     pub(crate) faces: Vec<Face>,
-    /// Boundaries included; [`SHARP_FOR_EVER`] is the most there is.
+    /// Sharp edges, including boundary edges. The maximum sharpness is [`SHARP_FOR_EVER`].
     pub(crate) edges: Vec<([usize; 2], f32)>,
     pub(crate) corners: Vec<(usize, f32)>,
 }
@@ -77,7 +77,7 @@ pub(crate) struct Vertex {
     pub(crate) origin: Origin,
 }
 
-/// What a vertex is the point of, in the level above.
+/// The vertex, edge or face of the level above from which a vertex comes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
     Given(usize),
@@ -91,32 +91,33 @@ pub(crate) struct Face {
     pub(crate) corners: Vec<usize>,
 }
 
-/// The built program.
+/// The path of the built program.
 pub(crate) struct Judge(PathBuf);
 
 impl Judge {
-    /// The program that `SIXFOLD_OPENSUBDIV` names, if it does.
+    /// Returns the program that `SIXFOLD_OPENSUBDIV` names, if it is set.
     pub(crate) fn there() -> Option<Self> {
         let program = env::var_os("SIXFOLD_OPENSUBDIV").map(|program| Self(program.into()));
         if program.is_none() {
-            eprintln!("not compared with OpenSubdiv: SIXFOLD_OPENSUBDIV names no program");
+            eprintln!("not compared with OpenSubdiv: SIXFOLD_OPENSUBDIV is not set");
         }
         program
     }
 
-    /// What OpenSubdiv makes of `case`.
+    /// Returns OpenSubdiv's result of `case`.
     pub(crate) fn answer(&self, case: &Case) -> Answer {
         let child = Command::new(&self.0)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn();
         let mut child = child.unwrap_or_else(|error| panic!("{}: {error}", self.0.display()));
-        // It prints nothing before it has read everything; and the pipe closes with the statement.
+        // The program reads all input before it prints, so writing cannot block. `drop` closes the
+        // pipe.
         let text = case.to_string();
         let mut input = child.stdin.take().expect("a pipe");
-        input.write_all(text.as_bytes()).expect("it reads");
+        input.write_all(text.as_bytes()).expect("the program reads");
         drop(input);
-        let output = child.wait_with_output().expect("it ends");
+        let output = child.wait_with_output().expect("the program ends");
         assert!(output.status.success(), "{}", output.status);
         let answer = String::from_utf8(output.stdout).expect("plain text");
         let mut said = Answer {
@@ -141,7 +142,7 @@ impl Answer {
             "p" => self.limits.push([0, 1, 2].map(|_| point(&mut words))),
             _ => {
                 let level = self.levels.last_mut();
-                let level = level.unwrap_or_else(|| panic!("before the first level: {line}"));
+                let level = level.unwrap_or_else(|| panic!("line before the first level: {line}"));
                 level.read(keyword, &mut words);
             }
         }
@@ -158,7 +159,7 @@ impl Level {
                     "vertex" => Origin::Vertex(next(words)),
                     "edge" => Origin::Edge([next(words), next(words)]),
                     "face" => Origin::Face(next(words)),
-                    other => panic!("an origin called {other}"),
+                    other => panic!("unknown origin {other}"),
                 };
                 self.vertices.push(Vertex { at, rule, origin });
             }
@@ -171,16 +172,16 @@ impl Level {
                 self.edges.push((ends, next(words)));
             }
             "corner" => self.corners.push((next(words), next(words))),
-            other => panic!("a line that begins with {other}"),
+            other => panic!("unknown line keyword {other}"),
         }
     }
 
-    /// Whether the step from here is one in which OpenSubdiv is no judge of Chaikin's creases:
+    /// Returns whether the next step with Chaikin creases cannot be compared with OpenSubdiv:
     ///
-    /// - An edge of sharpness above 1 has a half that is not sharp any more: it extrapolates beyond the
-    ///   midpoint, where its own masks, and ours, make a full crease.
-    /// - A half comes so near to zero that the last bit of a sum decides whether it is sharp: both
-    ///   add up in 32 bits, but in orders of their own.
+    /// - An edge of sharpness above 1 has a half that is not sharp any more. OpenSubdiv then
+    ///   extrapolates beyond the midpoint, but its own masks, and ours, make a full crease.
+    /// - The sharpness of a half is so near to zero that rounding decides whether it is sharp: both
+    ///   programs add in 32 bits, but in different orders.
     pub(crate) fn is_no_judge(&self, creasing: Creasing) -> bool {
         creasing == Creasing::Chaikin
             && self.semi_sharp().any(|(ends, s)| {
@@ -195,7 +196,8 @@ impl Level {
         edges.map(|&(ends, s)| (ends, f64::from(s)))
     }
 
-    /// The sharpness of the half of an edge at `v`, negative where the rule floors it.
+    /// Returns the sharpness of the half of an edge at `v`. It is negative if the rule sets it to
+    /// zero.
     fn half(&self, v: usize, edge: [usize; 2], sharpness: f64) -> f64 {
         let at = self.semi_sharp().filter(|(ends, _)| ends.contains(&v));
         let others: Vec<f64> = at
@@ -213,7 +215,7 @@ impl Level {
 fn next<T: FromStr>(words: &mut SplitWhitespace<'_>) -> T {
     let word = words.next().unwrap_or_default();
     word.parse()
-        .unwrap_or_else(|_| panic!("{word:?} is not what README.md says"))
+        .unwrap_or_else(|_| panic!("{word:?} does not follow the format in README.md"))
 }
 
 fn point(words: &mut SplitWhitespace<'_>) -> Point {

@@ -1,4 +1,4 @@
-//! Which of OpenSubdiv's vertices and faces is which of ours.
+//! Maps the vertices and faces of OpenSubdiv to ours.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,14 +7,14 @@ use sixfold::subdivision::Scheme;
 
 use super::judge::{Level, Origin};
 
-/// What OpenSubdiv's vertices and faces of a level are called in ours.
+/// Our numbers of OpenSubdiv's vertices and faces, on one level.
 pub(crate) struct Names {
     pub(crate) vertices: Vec<usize>,
     pub(crate) faces: Vec<usize>,
 }
 
 impl Names {
-    /// Of the control mesh, which both know by the same numbers.
+    /// Makes the map of the control mesh, where both use the same numbers.
     pub(crate) fn given(polygons: &PolygonMesh) -> Self {
         Self {
             vertices: (0..polygons.vertex_count()).collect(),
@@ -22,7 +22,7 @@ impl Names {
         }
     }
 
-    /// Of the level after, whose mesh `child` is: by the origin of each vertex.
+    /// Makes the map of the next level, whose mesh is `child`, from the origin of each vertex.
     pub(crate) fn after(&self, scheme: Scheme, level: &Level, child: &PolygonMesh) -> Self {
         let (old, faces) = (self.vertices.len(), self.faces.len());
         let first_edge = match scheme {
@@ -31,7 +31,7 @@ impl Names {
         };
         let edge_points = edge_points(child, old, first_edge);
         let name = |origin: Origin| match origin {
-            Origin::Given(v) => panic!("vertex {v} is said to be of the control mesh"),
+            Origin::Given(v) => panic!("vertex {v} has an origin in the control mesh"),
             Origin::Vertex(v) => self.vertices[v],
             Origin::Edge(ends) => {
                 let [a, b] = ends.map(|v| self.vertices[v]);
@@ -67,12 +67,13 @@ fn from_the_lowest(corners: impl Iterator<Item = usize>) -> Vec<usize> {
     corners
 }
 
-/// The lower one first.
+/// Sorts the two numbers, the lower first.
 pub(crate) fn upwards([a, b]: [usize; 2]) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The points of edges, by the two old vertices beside each; these are those before `old`.
+/// Returns the edge points, by the two old vertices adjacent to each. Old vertices are those before
+/// `old`.
 fn edge_points(child: &PolygonMesh, old: usize, first_edge: usize) -> BTreeMap<[usize; 2], usize> {
     let mut ends = vec![Vec::new(); child.vertex_count()];
     for edge in child.edge_uses() {
@@ -84,7 +85,7 @@ fn edge_points(child: &PolygonMesh, old: usize, first_edge: usize) -> BTreeMap<[
     let points = ends.iter().enumerate().skip(first_edge);
     let by_ends = points.map(|(point, ends)| match ends[..] {
         [a, b] => (upwards([a, b]), point),
-        _ => panic!("{point} is beside the old vertices {ends:?}"),
+        _ => panic!("edge point {point} is adjacent to the old vertices {ends:?}, expected two"),
     });
     by_ends.collect()
 }

@@ -1,5 +1,5 @@
-// Refines one case by OpenSubdiv and prints every level: the judge of our crease and boundary rules.
-// README.md describes what it reads and prints.
+// Refines one case with OpenSubdiv and prints every level: the reference for our crease and boundary rules.
+// README.md describes the input and the output.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -21,12 +21,12 @@ namespace sdc = OpenSubdiv::Sdc;
 struct Point {
     double x = 0, y = 0, z = 0;
 
-    // What PrimvarRefiner asks of a value.
+    // The interface that PrimvarRefiner needs.
     void Clear(void* = nullptr) { x = y = z = 0; }
     void AddWithWeight(const Point& p, double w) { x += w * p.x; y += w * p.y; z += w * p.z; }
 };
 
-// A case that is not answered, and why.
+// The reason why a case is refused.
 struct Refusal : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -38,7 +38,7 @@ struct Case {
     bool limit = false;
     std::vector<Point> positions;
     std::vector<int> degrees, corners;      // face by face
-    std::vector<int> crease_ends, cornered; // two ends an edge; one vertex a corner
+    std::vector<int> crease_ends, cornered; // two ends per edge; one vertex per corner
     std::vector<float> crease_sharpness, corner_sharpness;
 };
 
@@ -78,7 +78,7 @@ static void read_line(Case& c, const std::string& keyword, std::istringstream& w
         c.options.SetCreasingMethod(choose<O::CreasingMethod>(word, {{"uniform", O::CREASE_UNIFORM}, {"chaikin", O::CREASE_CHAIKIN}}));
     } else if (keyword == "levels") {
         c.levels = integer();
-        if (c.levels < 0 || c.levels > 10) throw Refusal("levels go from 0 to 10");
+        if (c.levels < 0 || c.levels > 10) throw Refusal("levels must be 0 to 10");
     } else if (keyword == "limit") {
         c.limit = true;
     } else if (keyword == "v") {
@@ -102,10 +102,10 @@ static void read_line(Case& c, const std::string& keyword, std::istringstream& w
         throw Refusal("unknown keyword '" + keyword + "'");
     }
     std::string rest;
-    if (words.fail() || words >> rest) throw Refusal("'" + keyword + "' does not end where it should");
+    if (words.fail() || words >> rest) throw Refusal("'" + keyword + "' has a wrong or an extra word");
 }
 
-// Refuses what OpenSubdiv would read out of bounds.
+// Refuses cases in which OpenSubdiv would read out of bounds.
 static void check(const Case& c) {
     if (c.degrees.empty()) throw Refusal("no faces");
     for (auto* list : {&c.corners, &c.crease_ends, &c.cornered})
@@ -134,7 +134,7 @@ static Case read_case(std::istream& in) {
 
 // --- refining
 
-// The first thing OpenSubdiv complained of; it reports to a callback and goes on or returns null.
+// The first message of OpenSubdiv, which reports to a callback and then continues or returns null.
 static std::string complaint;
 static void complain(const char* message) {
     if (complaint.empty()) complaint = message;
@@ -178,7 +178,7 @@ static const char* rule_name(sdc::Crease::Rule rule) {
     }
 }
 
-// Where each vertex of a level comes from: "vertex 3", "edge 0 1" or "face 2" of the level above.
+// Returns the origin of each vertex of a level: "vertex 3", "edge 0 1" or "face 2" of the level above.
 static std::vector<std::string> origins(const far::TopologyRefiner& r, int level) {
     std::vector<std::string> names(r.GetLevel(level).GetNumVertices());
     if (level == 0) {

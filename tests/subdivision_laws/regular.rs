@@ -1,4 +1,5 @@
-//! What is known of meshes that are the same everywhere: the surface they go to, and their sharpness.
+//! Checks on regular meshes: convergence to the limit surface, symmetry, and the decrease of
+//! sharpness.
 
 use std::collections::BTreeMap;
 
@@ -23,9 +24,10 @@ fn control_grids() -> impl Strategy<Value = ControlGrid> {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, cases: 24, ..ProptestConfig::default() })]
 
-    /// With no coordinate above 1, a vertex is away from its limit by a sixth of the second difference
-    /// along rows and one along columns, each at most 4, and by a 36th of that of both, at most 16. A
-    /// step makes these differences a quarter, and that of both a sixteenth. So after k steps
+    /// If no coordinate is above 1, the distance of a vertex to its limit is at most a sixth of the
+    /// second difference along rows, plus a sixth of that along columns, plus a 36th of the mixed
+    /// second difference. The first two are at most 4, the mixed one at most 16. A step divides the
+    /// first two by 4, and the mixed one by 16. So after k steps
     ///
     /// ```text
     ///   |vertex − limit| ≤ 4/3 · 4⁻ᵏ + 4/9 · 16⁻ᵏ
@@ -39,7 +41,7 @@ proptest! {
         let mut compared = BTreeMap::new();
         for levels in 0..=4 {
             let refined = after(&subdivision, &polygons, &Creases::default(), levels).polygons;
-            // Control vertices keep their numbers, and so do the first face points.
+            // Control vertices keep their numbers in later levels, and so do the first face points.
             let old = (0..vertices).map(|v| (v, (v % columns) as f64, (v / columns) as f64, levels));
             let faces = (0..polygons.face_count()).filter(|_| levels > 0).map(|f| {
                 let (i, j) = (f % across, f / across);
@@ -58,9 +60,9 @@ proptest! {
     }
 }
 
-/// A step is not told from which side a mesh is numbered: the torus is the same from every vertex.
+/// Subdivision does not depend on the numbering, so a torus keeps its rotational symmetry.
 #[test]
-fn a_regular_torus_stays_as_regular() {
+fn a_regular_torus_keeps_its_symmetry() {
     let torus = shapes::torus(6, 5).expect("a small torus");
     let step = after(
         &Subdivision::new(Scheme::CatmullClark),
@@ -71,7 +73,7 @@ fn a_regular_torus_stays_as_regular() {
     let facts = Facts::of(&step.polygons);
     assert_eq!([facts.vertices, facts.faces], [480, 480]);
     assert_eq!(facts.genus, Some(1));
-    // Turned by one of the six, it is itself.
+    // A rotation by a sixth of a turn maps it to itself.
     let turn = std::f32::consts::TAU / 6.0;
     let (sin, cos) = turn.sin_cos();
     let points = step.polygons.positions();
@@ -81,14 +83,14 @@ fn a_regular_torus_stays_as_regular() {
         let off = points.iter().map(|q| q.distance(turned));
         assert!(
             off.fold(f32::MAX, f32::min) <= NEAR * size,
-            "none at {turned}"
+            "no point at {turned}"
         );
     }
 }
 
-/// What is sharp for ever stays so; just below, it wears off.
+/// A sharpness of 10 or more is infinite and stays; a lower sharpness decreases by 1 in each step.
 #[test]
-fn sharpness_of_ten_stays_and_less_wears_off() {
+fn sharpness_of_ten_stays_and_less_decreases() {
     let grid = shapes::grid(2, 2).expect("a small grid");
     for (scheme, mesh) in [
         (Scheme::CatmullClark, grid.clone()),

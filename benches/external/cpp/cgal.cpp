@@ -1,4 +1,4 @@
-// CGAL as a column: Surface_mesh over Simple_cartesian<float>.
+// The column of CGAL: Surface_mesh over Simple_cartesian<float>.
 #include "column.hpp"
 
 #include <CGAL/Simple_cartesian.h>

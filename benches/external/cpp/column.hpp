@@ -1,14 +1,15 @@
-// A library as a column of `sixfold study`: an adapter says how the library answers, and this header
-// speaks the protocol and runs the operations. ../README.md has both; ../rust/column is the same in Rust.
+// Runs a library as a column of `sixfold study`. An adapter implements the queries with the library; this
+// header implements the protocol and the operations. ../README.md describes both; ../rust/column is the
+// same in Rust.
 //
 // An adapter has
 //   Vertex, Edge, Face                    handles, cheap to copy
 //   library()                             its name and version
 //   Adapter(const Input&)                 builds, or throws std::runtime_error with the reason
 //   each_vertex(f), each_edge(f), each_face(f)
-//   index(v), index(e), index(f)          numbers; of vertices and faces those of the input
-//   face(i)                               the face of that number
-//   vertex_vertices(v, f) … face_faces(x, f), but edge_edges, which is made of the others
+//   index(v), index(e), index(f)          numbers; for vertices and faces those of the input
+//   face(i)                               the face with that number
+//   vertex_vertices(v, f) … face_faces(x, f), except edge_edges, which is computed from the others
 //   edge_ends(e)                          a pair of vertices
 //   position(v), set_position(v, p)
 #pragma once
@@ -60,11 +61,11 @@ struct Input {
             words >> kind;
             if (kind == "v") {
                 Vector p;
-                if (!(words >> p.x >> p.y >> p.z)) throw std::runtime_error("no vertex: " + line);
+                if (!(words >> p.x >> p.y >> p.z)) throw std::runtime_error("not a vertex: " + line);
                 positions.push_back(p);
             } else if (kind == "f") {
                 for (int corner; words >> corner;) {
-                    if (corner < 1 || corner > int(positions.size())) throw std::runtime_error("no face: " + line);
+                    if (corner < 1 || corner > int(positions.size())) throw std::runtime_error("not a face: " + line);
                     corners.push_back(corner - 1);
                 }
                 starts.push_back(int(corners.size()));
@@ -78,7 +79,7 @@ struct Found {
     uint64_t elements;
 };
 
-// What is added up here is looked at by nobody, and no compiler may leave it out.
+// The sum of handle numbers. It is not used, but because it is volatile the compiler cannot omit it.
 inline volatile uint64_t sink;
 
 inline uint64_t nanoseconds(clockid_t clock) {
@@ -95,25 +96,25 @@ class Running {
         check();
     }
 
-    // The time of so many runs, and what one found; nothing for an operation that is not known.
+    // Returns the time of `times` runs and the result of one, or a refusal if the operation is unknown.
     nlohmann::json run(const std::string& name, uint64_t times) {
         uint64_t wall = 0, cpu = 0;
         std::optional<Found> found;
-        // Positions that are moved are put back outside the timing; all else is timed in one go, for reading
-        // the clocks takes as long as a run on a small mesh.
+        // Moved positions are reset outside the timing. All other operations are timed together, because
+        // reading the clocks takes as long as a run on a small mesh.
         const bool moves = name == "vv_smooth";
         const uint64_t turns = moves ? times : 1, each = moves ? 1 : times;
         for (uint64_t turn = 0; turn < turns; ++turn) {
             const uint64_t start[] = {nanoseconds(CLOCK_MONOTONIC), nanoseconds(CLOCK_THREAD_CPUTIME_ID)};
             for (uint64_t i = 0; i < each; ++i) {
                 found = once(name);
-                if (!found) return {{"refused", "the adapter does not do it"}};
+                if (!found) return {{"refused", "the adapter does not support the operation"}};
             }
             cpu += nanoseconds(CLOCK_THREAD_CPUTIME_ID) - start[1];
             wall += nanoseconds(CLOCK_MONOTONIC) - start[0];
             if (moves) put(input.positions);
         }
-        if (!found) return {{"refused", "asked for no run"}};
+        if (!found) return {{"refused", "zero runs were requested"}};
         return {{"wall_ns", wall}, {"cpu_ns", cpu}, {"checksum", found->checksum}, {"elements", found->elements}};
     }
 
@@ -126,7 +127,7 @@ class Running {
     std::unique_ptr<Adapter> adapter;
     std::vector<Vector> of_faces, of_vertices;
 
-    // Refuses a mesh that the structure took and does not hold as it is.
+    // Refuses a mesh that the structure accepted but does not represent correctly.
     void check() {
         std::set<std::pair<int, int>> sides;
         for (int f = 0; f < input.faces(); ++f) {
@@ -138,9 +139,9 @@ class Running {
         auto expect = [&](const char* relation, uint64_t answers, uint64_t elements) {
             const auto found = *ask(relation);
             if (found.first != answers || found.second != elements)
-                throw std::runtime_error("it took the mesh, and finds " + std::to_string(found.first) + " answers to " + relation +
-                                         " of " + std::to_string(found.second) + " elements in the place of " +
-                                         std::to_string(answers) + " of " + std::to_string(elements));
+                throw std::runtime_error(std::string("it accepted the mesh, but ") + relation + " has " + std::to_string(found.first) +
+                                         " results for " + std::to_string(found.second) + " elements, expected " +
+                                         std::to_string(answers) + " for " + std::to_string(elements));
         };
         expect("vertex_vertices", 2 * edges, vertices);
         expect("vertex_edges", 2 * edges, vertices);
@@ -152,7 +153,7 @@ class Running {
             std::set<size_t> around;
             size_t answers = 0;
             adapter->face_faces(f, [&](Face g) { around.insert(adapter->index(g)); ++answers; });
-            if (around.size() != answers) throw std::runtime_error("it hands out a face twice where two share more than one edge");
+            if (around.size() != answers) throw std::runtime_error("it returns a face twice if two faces share more than one edge");
         });
     }
 
@@ -183,7 +184,7 @@ class Running {
         return Found{double(asked->first), asked->second};
     }
 
-    // How many neighbours one relation hands out, and of how many elements.
+    // Queries one relation of every element. Returns the numbers of results and of elements.
     std::optional<std::pair<uint64_t, uint64_t>> ask(const std::string& relation) {
         const Adapter& a = *adapter;
         uint64_t count = 0, sum = 0, elements = 0;
@@ -288,7 +289,7 @@ class Running {
         return {double(boundary), edges};
     }
 
-    // Breadth first over faces, from the lowest that is not yet seen.
+    // Traverses faces breadth first, each time from the lowest unvisited face.
     Found ff_bfs() {
         std::vector<uint32_t> depths(of_faces.size(), UINT32_MAX);
         std::deque<Face> queue;
@@ -316,11 +317,11 @@ class Running {
 
 inline void say(const nlohmann::json& what) { std::cout << what.dump() << std::endl; }
 
-// The whole program: reads the mesh that it is called with, and answers until its input ends.
+// Runs the whole program: reads the mesh that the first argument names, and answers until standard input ends.
 template <class Adapter>
 int serve(int argc, char** argv) {
     try {
-        if (argc < 2) throw std::runtime_error("say which mesh");
+        if (argc < 2) throw std::runtime_error("the path of a mesh is missing");
         const Input input(argv[1]);
         std::unique_ptr<Running<Adapter>> running;
         try {
@@ -329,7 +330,7 @@ int serve(int argc, char** argv) {
             say({{"protocol", 1}, {"holds", false}, {"library", Adapter::library()}, {"reason", refusal.what()}});
             return 0;
         }
-        // The allocator is that of the C library: Sixfold's environment can tell that of GNU to keep pages.
+        // The allocator of the GNU C library: Sixfold can make it keep pages by an environment variable.
 #ifdef __GLIBC__
         say({{"protocol", 1}, {"holds", true}, {"library", Adapter::library()}, {"heap", "glibc"}});
 #else

@@ -1,4 +1,4 @@
-// OpenMesh as a column: PolyMesh_ArrayKernelT, without status, as it is for who only asks.
+// The column of OpenMesh: PolyMesh_ArrayKernelT without status attributes, which queries do not need.
 #include "column.hpp"
 
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>

@@ -1,4 +1,4 @@
-// OpenSubdiv as a column: the topology of the base level, which keeps six relations as flat tables.
+// The column of OpenSubdiv: the topology of the base level, which stores six relations as flat tables.
 #include "column.hpp"
 
 #include <opensubdiv/far/topologyDescriptor.h>
@@ -75,7 +75,7 @@ struct Adapter {
     void set_position(Vertex v, Vector p) { positions[v.number] = p; }
 
   private:
-    // A row of a table, for loops.
+    // A row of a table as a range for `for` loops.
     struct Row {
         far::ConstIndexArray of;
         const int* begin() const { return of.begin(); }

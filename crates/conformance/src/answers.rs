@@ -1,18 +1,18 @@
-//! Everything a mesh answers, in a form that two structures can be compared by.
+//! All answers of a mesh, in a form in which two structures can be compared.
 
 use std::collections::BTreeMap;
 
-use mesh_core::{PolygonMesh, Relation, Representation};
+use sixfold_core::{PolygonMesh, Relation, Representation};
 
 use crate::element::Element;
 use crate::subject::Subject;
 
-/// Every relation of every element, and every one-ring, as `M` answers them; `None` if `M` cannot
-/// hold `polygons`.
+/// Returns every relation of every element, and every one-ring, as `M` answers them; `None` if `M`
+/// cannot hold `polygons`.
 ///
-/// Names are the input's own, sets ascend and cycles start at their lowest element, so that equal
-/// meshes have equal answers. The ring of a vertex is the line `one_ring v7`; it is left out where
-/// there is none.
+/// Elements have the numbers of the input. Sets are sorted, and cycles start at their lowest
+/// element, so that equal meshes have equal answers. The ring of a vertex has a key such as
+/// `one_ring v7`; the key is missing if the vertex has no ring.
 pub fn answers<M: Representation>(
     polygons: &PolygonMesh,
 ) -> Option<BTreeMap<String, Vec<Element>>> {
@@ -40,7 +40,7 @@ pub fn answers<M: Representation>(
     Some(answers)
 }
 
-/// Turns a cycle until its lowest element is the first.
+/// Rotates a cycle so that its lowest element is first.
 fn lowest_first(cycle: &mut [Element]) {
     let lowest = (0..cycle.len()).min_by_key(|&i| cycle[i]);
     cycle.rotate_left(lowest.unwrap_or(0));

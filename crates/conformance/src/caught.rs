@@ -1,4 +1,4 @@
-//! Panics that are expected: caught, and not printed.
+//! Catches expected panics without printing them.
 
 use std::any::Any;
 use std::cell::RefCell;
@@ -9,9 +9,9 @@ use std::sync::Once;
 /// A panic that was caught.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Caught {
-    /// What it says.
+    /// Message of the panic.
     pub(crate) message: String,
-    /// The file and line it comes from.
+    /// File and line of the panic.
     place: String,
 }
 
@@ -22,14 +22,14 @@ impl fmt::Display for Caught {
 }
 
 thread_local! {
-    /// Where the last panic of this thread was, while it is being listened to.
+    /// Place of the last panic of this thread; `None` outside [`caught`].
     static PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Does `action`, and catches its panic without printing it.
+/// Calls `action`, and catches a panic without printing it.
 ///
-/// While a mesh shrinks, a law fails a hundred times; a hundred backtraces would bury the one
-/// message that counts. Panics of other threads are printed as ever.
+/// While a mesh shrinks, a law fails a hundred times, and a hundred backtraces would hide the
+/// relevant message. Panics of other threads are printed as usual.
 pub(crate) fn caught<T>(action: impl FnOnce() -> T) -> Result<T, Caught> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -58,7 +58,7 @@ pub(crate) fn caught<T>(action: impl FnOnce() -> T) -> Result<T, Caught> {
     })
 }
 
-/// What a panic says.
+/// Returns the message of a panic.
 fn message(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<String>().cloned();
     let text = text.or_else(|| payload.downcast_ref::<&str>().map(ToString::to_string));
@@ -70,7 +70,7 @@ mod tests {
     use super::{Caught, caught};
 
     #[test]
-    fn a_panic_is_told_with_its_place() {
+    fn a_caught_panic_has_its_message_and_place() {
         assert_eq!(caught(|| 7), Ok(7));
         let told: Result<(), Caught> = caught(|| {
             let inner: Result<(), Caught> = caught(|| panic!("inner"));

@@ -1,9 +1,9 @@
-//! Edits on trial: a model that does them on plain lists, random scripts, and a structure beside it.
+//! Tests of edits: a structure and a model execute the same random scripts and are compared.
 //!
-//! The model knows no structure: faces are lists of numbers, and every rule of
-//! [`MeshEdit`](mesh_core::MeshEdit) is written out by brute force. A script is a list of steps that
-//! find their elements in whatever mesh they meet, so that a script with steps left out is a script
-//! still, and a failing one shrinks.
+//! The model is independent of any structure: faces are lists of numbers, and every rule of
+//! [`MeshEdit`](sixfold_core::MeshEdit) is implemented by brute force. A step of a script selects
+//! its elements from the current mesh. So a script remains valid if steps are left out, and a
+//! failing script can be shrunk.
 
 mod action;
 mod model;

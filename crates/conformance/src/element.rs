@@ -1,22 +1,22 @@
-//! One vertex, edge or face, in the numbers of the input.
+//! One vertex, edge or face, with the numbers of the input.
 
 use std::fmt;
 
-use mesh_core::{FaceId, VertexId};
+use sixfold_core::{FaceId, VertexId};
 
-/// An element of a mesh, named by the input's own numbers, whatever a structure calls it.
+/// An element of a mesh, identified by the numbers of the input instead of a structure's handle.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Element {
     /// A vertex.
     Vertex(VertexId),
-    /// An edge by its ends, the lower first; made by [`Element::edge`].
+    /// An edge by its ends, the lower one first; built by [`Element::edge`].
     Edge(VertexId, VertexId),
     /// A face.
     Face(FaceId),
 }
 
 impl Element {
-    /// The edge between `a` and `b`, in whichever order they come.
+    /// Returns the edge between `a` and `b`, which may be given in either order.
     pub fn edge(a: VertexId, b: VertexId) -> Self {
         Self::Edge(a.min(b), a.max(b))
     }

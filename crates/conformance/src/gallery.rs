@@ -1,6 +1,6 @@
 //! Small meshes made by hand, one for each corner case.
 
-use mesh_core::PolygonMesh;
+use sixfold_core::PolygonMesh;
 
 mod lectures;
 mod make;
@@ -14,13 +14,14 @@ pub(crate) use make::{double_cone, spot, strip};
 /// A mesh with a name.
 #[derive(Clone, Debug)]
 pub struct Specimen {
-    /// What it shows.
+    /// Name, which describes the special case.
     pub name: &'static str,
     /// The mesh.
     pub polygons: PolygonMesh,
 }
 
-/// All of them: solids, surfaces of every kind, corner cases of the contract, lecture fixtures.
+/// Returns all meshes: solids, surfaces of every kind, corner cases of the contract, faulty meshes,
+/// and the meshes of the lectures.
 pub fn gallery() -> Vec<Specimen> {
     let parts = [
         solids(),
@@ -38,45 +39,58 @@ type Named = (&'static str, PolygonMesh);
 
 fn solids() -> Vec<Named> {
     vec![
-        ("tetrahedron", shapes::tetrahedron()),
-        ("cube", shapes::cube()),
-        ("octahedron", shapes::octahedron()),
-        ("dodecahedron", shapes::dodecahedron()),
-        ("icosahedron", shapes::icosahedron()),
-        ("pentagonal prism", sized(shapes::prism(5))),
-        ("square antiprism", sized(shapes::antiprism(4))),
+        ("tetrahedron", sixfold_shapes::tetrahedron()),
+        ("cube", sixfold_shapes::cube()),
+        ("octahedron", sixfold_shapes::octahedron()),
+        ("dodecahedron", sixfold_shapes::dodecahedron()),
+        ("icosahedron", sixfold_shapes::icosahedron()),
+        ("pentagonal prism", sized(sixfold_shapes::prism(5))),
+        ("square antiprism", sized(sixfold_shapes::antiprism(4))),
         (
             "shuffled icosahedron",
-            shapes::shuffled(&shapes::icosahedron(), 7),
+            sixfold_shapes::shuffled(&sixfold_shapes::icosahedron(), 7),
         ),
     ]
 }
 
 fn surfaces() -> Vec<Named> {
     vec![
-        ("grid of quads", sized(shapes::grid(3, 4))),
-        ("grid of triangles", sized(shapes::triangle_grid(4, 3))),
+        ("grid of quads", sized(sixfold_shapes::grid(3, 4))),
+        (
+            "grid of triangles",
+            sized(sixfold_shapes::triangle_grid(4, 3)),
+        ),
         (
             "grid of triangles and quads",
-            sized(shapes::mixed_grid(4, 4)),
+            sized(sixfold_shapes::mixed_grid(4, 4)),
         ),
-        ("grid with a hole", sized(shapes::grid_with_hole(4, 5))),
-        ("torus of quads", sized(shapes::torus(3, 4))),
-        ("torus of triangles", sized(shapes::triangle_torus(4, 3))),
+        (
+            "grid with a hole",
+            sized(sixfold_shapes::grid_with_hole(4, 5)),
+        ),
+        ("torus of quads", sized(sixfold_shapes::torus(3, 4))),
+        (
+            "torus of triangles",
+            sized(sixfold_shapes::triangle_torus(4, 3)),
+        ),
         ("genus 2", voxels(&[".....", ".o.o.", "....."])),
-        ("Möbius strip", sized(shapes::moebius(5))),
+        ("Möbius strip", sized(sixfold_shapes::moebius(5))),
         ("Klein bottle", klein_bottle(4, 5)),
         ("projective plane", mesh(6, &PROJECTIVE_PLANE)),
         (
             "two cubes and a grid",
-            union(&[shapes::cube(), sized(shapes::grid(2, 2)), shapes::cube()]),
+            union(&[
+                sixfold_shapes::cube(),
+                sized(sixfold_shapes::grid(2, 2)),
+                sixfold_shapes::cube(),
+            ]),
         ),
         ("double cone", double_cone(8)),
         ("double cone of valence 200", double_cone(200)),
     ]
 }
 
-/// The contract's own cases, all of them oriented manifolds.
+/// Returns the corner cases of the contract; all are oriented manifolds.
 fn corner_cases() -> Vec<Named> {
     let hundred: Vec<u32> = (0..100).collect();
     vec![
@@ -114,25 +128,25 @@ fn corner_cases() -> Vec<Named> {
             mesh(7, &[&[0, 1, 2][..], &[2, 1, 3], &[2, 3, 4, 5, 6]]),
         ),
         (
-            "a wheel without a rim",
+            "open fan of three triangles",
             mesh(5, &[[0, 1, 2], [0, 2, 3], [0, 3, 4]]),
         ),
-        ("cube of loose faces", loose(&shapes::cube())),
-        ("minus nought is nought", minus_nought()),
+        ("cube of loose faces", loose(&sixfold_shapes::cube())),
+        ("negative zero equals zero", minus_nought()),
         (
             "one face with two corners at one point",
             coincident_corners(),
         ),
         (
-            "two triangles on one place",
+            "two triangles with equal positions",
             place_at(&mesh(6, &[[0, 1, 2], [3, 4, 5]]), &[0, 1, 2, 0, 1, 2]),
         ),
     ]
 }
 
-/// Meshes that the oriented structures refuse.
+/// Returns meshes that are not oriented manifolds.
 fn faulty() -> Vec<Named> {
-    let mut turned = shapes::cube()
+    let mut turned = sixfold_shapes::cube()
         .faces()
         .iter()
         .map(|(_, f)| numbers(f))
@@ -163,7 +177,7 @@ fn faulty() -> Vec<Named> {
         ),
         ("cube with a face turned over", mesh(8, &turned)),
         (
-            "two triangles that run one way",
+            "two triangles with the same side",
             mesh(4, &[[0, 1, 2], [0, 1, 3]]),
         ),
         (
@@ -181,7 +195,7 @@ fn faulty() -> Vec<Named> {
     ]
 }
 
-/// The projective plane on six vertices, every two of them adjacent.
+/// The projective plane with six vertices; all pairs of vertices are adjacent.
 const PROJECTIVE_PLANE: [[u32; 3]; 10] = [
     [0, 1, 2],
     [0, 2, 3],
@@ -195,7 +209,7 @@ const PROJECTIVE_PLANE: [[u32; 3]; 10] = [
     [5, 1, 3],
 ];
 
-/// Vertices 0 and 1 are in both, and so is the edge between them.
+/// Vertices 0 and 1, and the edge between them, belong to both tetrahedra.
 const TETRAHEDRA_ON_AN_EDGE: [[u32; 3]; 8] = [
     [0, 2, 1],
     [0, 1, 3],
@@ -211,18 +225,18 @@ const TETRAHEDRA_ON_AN_EDGE: [[u32; 3]; 8] = [
 mod tests {
     use std::collections::BTreeSet;
 
-    use mesh_core::{Capabilities, Facts};
+    use sixfold_core::{Capabilities, Facts};
 
     use super::*;
 
     #[test]
-    fn names_are_names() {
+    fn names_are_distinct() {
         let names: BTreeSet<&str> = gallery().iter().map(|specimen| specimen.name).collect();
         assert_eq!(names.len(), gallery().len());
     }
 
     #[test]
-    fn specimens_are_what_they_are_called() {
+    fn specimens_have_the_properties_of_their_names() {
         for Specimen { name, polygons } in gallery() {
             let facts = Facts::of(&polygons);
             let (genus, orientable) = (facts.genus, facts.orientable);
@@ -244,7 +258,7 @@ mod tests {
                 }
                 "double cone of valence 200" => assert_eq!(facts.valence.map(|v| v.max), Some(200)),
                 "two cubes and a grid" => assert_eq!(facts.components, 3),
-                "lecture: half-edge cube" | "lecture: face-vertex box, mended" => {
+                "lecture: half-edge cube" | "lecture: face-vertex box, corrected" => {
                     assert_eq!((genus, facts.closed), (Some(0), true), "{name}");
                 }
                 _ => {}
@@ -252,9 +266,9 @@ mod tests {
         }
     }
 
-    /// Only what is filed under faults, and what is no manifold by its nature, is refused.
+    /// Only the faulty meshes and the non-orientable surfaces are refused.
     #[test]
-    fn manifolds_and_faults_are_told_apart() {
+    fn exactly_faulty_and_non_orientable_meshes_are_refused() {
         let refused =
             |polygons: &PolygonMesh| Capabilities::ORIENTED_MANIFOLDS.check(polygons).is_err();
         for (name, polygons) in [solids(), surfaces(), corner_cases()].concat() {
@@ -265,7 +279,7 @@ mod tests {
             assert!(refused(&polygons), "{name}");
         }
         for (name, polygons) in lectures::fixtures() {
-            let faulty = name.contains("wrong way") || name.contains("misplaced");
+            let faulty = name.contains("reversed") || name.contains("misplaced");
             assert_eq!(refused(&polygons), faulty, "{name}");
         }
     }

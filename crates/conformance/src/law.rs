@@ -1,11 +1,11 @@
-//! What every representation keeps: one plain function a law.
+//! The requirements on every structure, one function per law.
 //!
-//! A law builds the structure from the mesh it is given and panics where the law is broken; the
-//! message names structure, element and relation. A mesh that the structure's capabilities exclude
-//! says nothing about it, but for [`verdict`], which holds the exclusion itself to account.
+//! A law builds the structure from a given mesh, and panics if the structure breaks the law. The
+//! message contains the structure, the element and the relation. A law skips a mesh that the
+//! capabilities of the structure exclude. Only [`verdict`] tests the exclusion itself.
 #![expect(
     clippy::missing_panics_doc,
-    reason = "a law panics where it is broken: that is what it is for"
+    reason = "every law panics if it is broken"
 )]
 
 mod corner_cases;
@@ -23,13 +23,14 @@ pub use elements::{elements, maps, missing_handles, names, positions};
 pub use refine::{refine, refine_in_parallel};
 pub use relations::{
     edge_edges, edge_faces, edge_vertices, face_edges, face_faces, face_vertices, one_ring,
-    symmetry, vertex_edges, vertex_faces, vertex_vertices,
+    predicates, symmetry, vertex_edges, vertex_faces, vertex_vertices,
 };
 pub use structure::{invariants, probed, round_trip, set_positions, verdict};
 
 /// Calls a macro with the name of every law: `for_each_law!(callback! { … })`.
 ///
-/// The callback gets `[laws about a mesh] [laws about a structure] …`, the one list of them.
+/// The callback receives `[laws about a mesh] [laws about a structure] …`. This is the only list of
+/// laws.
 #[macro_export]
 macro_rules! for_each_law {
     ($callback:ident! { $($arguments:tt)* }) => {
@@ -38,7 +39,7 @@ macro_rules! for_each_law {
                 vertex_vertices vertex_edges vertex_faces
                 edge_vertices edge_edges edge_faces
                 face_vertices face_edges face_faces
-                symmetry one_ring
+                symmetry one_ring predicates
                 elements names positions maps missing_handles
                 verdict round_trip set_positions invariants probed
             ]

@@ -1,19 +1,20 @@
-//! The proof that every representation holds the same mesh.
+//! Tests that every structure implements the traits correctly.
 //!
-//! - [`Oracle`]: every answer, worked out from the input faces alone by brute force.
-//! - [`law`]: what each representation must keep, one plain function a law.
+//! - [`Oracle`]: the expected answers, computed by brute force from the input faces only.
+//! - [`law`]: the requirements on every structure, one function per law.
 //! - [`gallery`]: small meshes made by hand, one for each corner case.
-//! - [`strategy`]: random meshes that shrink: manifolds of any topology, known faults, chaos.
-//! - [`edit`]: the model, the random scripts and the trial that hold edits to account.
-//! - [`suite!`]: one line that makes one `#[test]` of each law.
+//! - [`strategy`]: random meshes that shrink: manifolds of any topology, known faults, random
+//!   faces.
+//! - [`edit`]: the model, the random scripts and the trial that test edits.
+//! - [`suite!`]: a macro that makes one `#[test]` from each law.
 //!
-//! A representation takes part with one line in its `tests/conformance.rs`:
+//! A structure is tested with one line in its `tests/conformance.rs`:
 //!
 //! ```text
-//! conformance::suite!(half_edge::HalfEdgeMesh);
+//! sixfold_conformance::suite!(half_edge::HalfEdgeMesh);
 //! ```
 //!
-//! Nothing here uses the incidence code of `mesh-core`, which is on trial as well.
+//! This crate does not use the incidence code of `sixfold-core`, because that code is tested too.
 
 mod answers;
 mod caught;

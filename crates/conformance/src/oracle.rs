@@ -1,16 +1,16 @@
-//! Every answer, from the input faces alone.
+//! All expected answers, computed from the input faces only.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use mesh_core::{FaceId, PolygonMesh, Relation, VertexId};
+use sixfold_core::{FaceId, PolygonMesh, Relation, VertexId};
 
 use crate::element::Element;
 
-/// What each query must answer, worked out by brute force from lists of corners.
+/// The expected answer of each query, computed by brute force from lists of corners.
 ///
-/// Slow and plain on purpose: FV is copied from the input, the sides follow from it, and the other
-/// seven relations are collected from sides and corners into ordered sets. No structure and none
-/// of `mesh-core`'s incidence code has a hand in it.
+/// The code is slow and simple on purpose. FV is copied from the input, the sides follow from FV,
+/// and the other seven relations are collected from sides and corners into ordered sets. It uses no
+/// structure and no incidence code of `sixfold-core`.
 #[derive(Clone, Debug)]
 pub struct Oracle {
     vertices: usize,
@@ -20,7 +20,7 @@ pub struct Oracle {
 }
 
 impl Oracle {
-    /// Works out all nine relations of `polygons`.
+    /// Computes all nine relations of `polygons`.
     pub fn of(polygons: &PolygonMesh) -> Self {
         let faces: Vec<Vec<VertexId>> = polygons
             .faces()
@@ -75,31 +75,31 @@ impl Oracle {
         }
     }
 
-    /// Every vertex, isolated ones included.
+    /// Iterates over all vertices, including isolated ones.
     pub fn vertices(&self) -> impl Iterator<Item = VertexId> + Clone {
         (0..self.vertices as u32).map(VertexId::new)
     }
 
-    /// Every edge, by its ends.
+    /// Iterates over all edges.
     pub fn edges(&self) -> impl Iterator<Item = Element> + Clone {
         self.edges.iter().copied()
     }
 
-    /// Every face.
+    /// Iterates over all faces.
     pub fn faces(&self) -> impl Iterator<Item = FaceId> + Clone {
         (0..self.faces.len() as u32).map(FaceId::new)
     }
 
-    /// The corners of `f`, as the input gives them.
+    /// Returns the corners of `f`, in the order of the input.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// Panics if the face does not exist.
     pub fn corners(&self, f: FaceId) -> &[VertexId] {
         &self.faces[f.index()]
     }
 
-    /// The elements of the kind that `relation` is asked of.
+    /// Returns the elements to which `relation` applies.
     pub fn domain(&self, relation: Relation) -> Vec<Element> {
         use Relation::*;
         match relation {
@@ -111,13 +111,14 @@ impl Oracle {
         }
     }
 
-    /// What `relation` answers for `element`; FV and FE as the input runs, the others ascending.
+    /// Returns the answer of `relation` for `element`: FV and FE in the order of the input, the
+    /// others sorted.
     pub fn answer(&self, relation: Relation, element: Element) -> &[Element] {
         let answer = self.answers.get(&(relation, element));
         answer.map_or(&[], Vec::as_slice)
     }
 
-    /// Whether `v` is the end of an edge with one face.
+    /// Returns whether `v` is the end of a boundary edge.
     pub fn is_boundary(&self, v: VertexId) -> bool {
         let edges = self.answer(Relation::VertexEdges, Element::Vertex(v));
         edges
@@ -125,11 +126,12 @@ impl Oracle {
             .any(|&edge| self.answer(Relation::EdgeFaces, edge).len() == 1)
     }
 
-    /// The ring of `v`, counter-clockwise, and whether it is closed; `None` without one.
+    /// Returns the one-ring of `v`, counter-clockwise, and whether it is closed; `None` if the
+    /// faces at `v` are not one oriented fan.
     ///
-    /// A closed ring starts at its lowest vertex. An isolated vertex has the empty, open ring.
+    /// A closed ring starts at its lowest vertex. An isolated vertex has an empty, open ring.
     pub fn one_ring(&self, v: VertexId) -> Option<(Vec<VertexId>, bool)> {
-        // Each face at v leads from the corner after v to the corner before v.
+        // Each face at v is a step from the corner after v to the corner before v.
         let mut steps = BTreeMap::new();
         let mut targets = BTreeSet::new();
         for corners in self.faces.iter().filter(|corners| corners.contains(&v)) {
@@ -161,14 +163,15 @@ impl Oracle {
     }
 }
 
-/// Answers while they are collected.
+/// The answers while they are collected.
 type Sets = BTreeMap<(Relation, Element), BTreeSet<Element>>;
 
 fn add(sets: &mut Sets, relation: Relation, of: Element, item: Element) {
     sets.entry((relation, of)).or_default().insert(item);
 }
 
-/// What `there` and then `back` lead to from each element, without the element itself.
+/// Applies the relation `there` and then `back` to each element, and removes the element itself
+/// from the result.
 fn through(
     from: &Sets,
     sets: &Sets,
@@ -184,7 +187,7 @@ fn through(
     joined.collect()
 }
 
-/// The sides of a face, each from its start to its end.
+/// Returns the sides of a face, each from its start to its end.
 pub(crate) fn sides_of(corners: &[VertexId]) -> Vec<(VertexId, VertexId)> {
     let next = corners.iter().cycle().skip(1);
     corners.iter().copied().zip(next.copied()).collect()
@@ -193,7 +196,7 @@ pub(crate) fn sides_of(corners: &[VertexId]) -> Vec<(VertexId, VertexId)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mesh_core::Point;
+    use sixfold_core::Point;
 
     #[test]
     fn two_triangles_by_hand() {

@@ -1,12 +1,12 @@
-//! Meshes in the fewest characters that make them again.
+//! Meshes in a short form, from which they can be rebuilt.
 
 use std::fmt::Write;
 
-use mesh_core::PolygonMesh;
+use sixfold_core::PolygonMesh;
 
-/// The mesh on one line: `5 vertices, faces [0 1 2] [2 1 3], v4 at v0`.
+/// Formats the mesh on one line: `5 vertices, faces [0 1 2] [2 1 3], v4 at v0`.
 ///
-/// Coordinates are left out; which vertices share them is said.
+/// Coordinates are left out, but vertices with equal positions are listed.
 pub fn compact(polygons: &PolygonMesh) -> String {
     let mut line = format!("{} vertices, faces", polygons.vertex_count());
     for (_, corners) in polygons.faces().iter() {

@@ -1,15 +1,16 @@
-//! A failing mesh, face by face made smaller.
+//! Shrinks a failing mesh face by face.
 
-use mesh_core::{Point, PolygonMesh, VertexId};
+use sixfold_core::{Point, PolygonMesh, VertexId};
 
-/// A smallest mesh that still `fails`: no face can be taken away from it.
+/// Shrinks `polygons` to a mesh that still `fails`, but does not if any single face is removed.
 ///
-/// Proptest shrinks how a mesh was made, which can get stuck on a large one; this goes on from there.
+/// Proptest shrinks the way in which a mesh was made, and can stop at a large mesh. This function
+/// continues from there.
 pub(crate) fn smallest(polygons: PolygonMesh, fails: impl Fn(&PolygonMesh) -> bool) -> PolygonMesh {
     let mut smallest = polygons;
     let mut at = 0;
     let mut kept = 0;
-    // Around and around, until every face in turn has had to stay.
+    // Cycles through the faces until none of them can be removed.
     while kept < smallest.face_count() {
         at %= smallest.face_count();
         let fewer = without_face(&smallest, at);
@@ -26,7 +27,7 @@ pub(crate) fn smallest(polygons: PolygonMesh, fails: impl Fn(&PolygonMesh) -> bo
 fn without_face(polygons: &PolygonMesh, gone: usize) -> PolygonMesh {
     let faces = polygons.faces().iter().filter(|(f, _)| f.index() != gone);
     let faces = faces.map(|(_, corners)| rows(corners, |v| v.index() as u32));
-    PolygonMesh::new(polygons.positions(), faces).expect("the other faces are as they were")
+    PolygonMesh::new(polygons.positions(), faces).expect("the other faces are unchanged")
 }
 
 fn without_isolated(polygons: &PolygonMesh) -> PolygonMesh {
@@ -37,7 +38,7 @@ fn without_isolated(polygons: &PolygonMesh) -> PolygonMesh {
     let faces = polygons.faces().iter();
     let faces = faces.map(|(_, corners)| rows(corners, name));
     let points: Vec<Point> = used.iter().map(|&v| polygons.position(v)).collect();
-    PolygonMesh::new(points, faces).expect("the corners keep apart")
+    PolygonMesh::new(points, faces).expect("the corners of a face stay distinct")
 }
 
 fn rows(corners: &[VertexId], name: impl Fn(&VertexId) -> u32) -> Vec<u32> {

@@ -1,7 +1,7 @@
 //! Random meshes that shrink towards a single triangle.
 //!
-//! Manifolds are made, not filtered: shapes side by side, then surgery that keeps them manifolds
-//! (`surgery`), then new names for everything (`draft`).
+//! Manifolds are constructed, not filtered. Shapes are placed side by side, then operations change
+//! them and keep them manifold (`surgery`), then all elements are renumbered (`draft`).
 
 mod draft;
 mod faults;
@@ -9,9 +9,9 @@ mod surgery;
 
 use std::ops::RangeInclusive;
 
-use mesh_core::PolygonMesh;
 use proptest::prelude::*;
 use proptest::{collection, sample};
+use sixfold_core::PolygonMesh;
 
 use crate::gallery::spot;
 use draft::Draft;
@@ -22,12 +22,13 @@ pub use faults::Fault;
 pub struct Faulty {
     /// The mesh.
     pub polygons: PolygonMesh,
-    /// What is wrong with it; at least one.
+    /// Faults of the mesh; at least one.
     pub faults: Vec<Fault>,
 }
 
-/// Oriented manifolds of random topology: open and closed, with handles, several components, mixed
-/// degrees, isolated vertices, and names in no order. Every vertex has a place of its own.
+/// Generates oriented manifolds of random topology: open and closed, of any genus, with several
+/// components, mixed degrees, isolated vertices, and random numbering. No two vertices share a
+/// position.
 pub fn manifold_mesh() -> impl Strategy<Value = PolygonMesh> {
     let isolated = prop_oneof![4 => Just(0_u32), 1 => 1..4_u32];
     let parts = (seed(), any::<bool>(), isolated, draft(1..=3));
@@ -40,7 +41,7 @@ pub fn manifold_mesh() -> impl Strategy<Value = PolygonMesh> {
     })
 }
 
-/// A manifold into which one to three faults have been put.
+/// Generates a manifold with one to three faults.
 pub fn faulty_mesh() -> impl Strategy<Value = Faulty> {
     let faults = sample::subsequence(Fault::ALL.to_vec(), 1..=3);
     let parts = (seed(), faults, 0..1000_usize, draft(1..=2));
@@ -53,7 +54,8 @@ pub fn faulty_mesh() -> impl Strategy<Value = Faulty> {
     })
 }
 
-/// Any faces over a few vertices, most of them a mess; at times vertices share their places.
+/// Generates random faces over a few vertices, which are rarely a manifold; sometimes vertices
+/// share their positions.
 pub fn any_mesh() -> impl Strategy<Value = PolygonMesh> {
     let size = (3..9_u32, 0..10_usize, any::<[bool; 2]>());
     let faces = size.prop_flat_map(|(vertices, faces, shared)| {
@@ -70,19 +72,21 @@ pub fn any_mesh() -> impl Strategy<Value = PolygonMesh> {
     faces.prop_map(|(places, faces)| made_of(places, faces))
 }
 
-/// A mesh whose faces are choices of its vertices, one for each of `places`.
+/// Builds a mesh with one vertex for each of `places`; the faces are lists of its vertices.
 fn made_of(places: Vec<u32>, faces: Vec<Vec<u32>>) -> PolygonMesh {
     let points: Vec<_> = places.into_iter().map(spot).collect();
-    PolygonMesh::new(points, faces).expect("a choice names no vertex twice")
+    PolygonMesh::new(points, faces).expect("no face uses a vertex twice")
 }
 
-/// Shapes side by side, after some surgery.
+/// Generates shapes side by side, changed by some operations.
 ///
-/// A quarter are triangulated in the end: some structures hold nothing else.
+/// A quarter of the meshes are triangulated at the end, because some structures hold only
+/// triangles.
 fn draft(pieces: RangeInclusive<usize>) -> impl Strategy<Value = Draft> {
     let pieces = collection::vec(piece(), pieces);
     let surgeries = collection::vec(surgery::surgery(), 0..12);
-    // What comes first shrinks first: pieces go when nothing is done to them any more.
+    // Proptest shrinks the first part first, so pieces are removed only after the operations on
+    // them.
     let parts = (prop::bool::weighted(0.25), surgeries, pieces);
     parts.prop_map(|(triangulated, surgeries, pieces)| {
         let mut draft = Draft::of(&pieces);
@@ -96,28 +100,28 @@ fn draft(pieces: RangeInclusive<usize>) -> impl Strategy<Value = Draft> {
     })
 }
 
-/// One shape, of few faces.
+/// Generates one shape with few faces.
 fn piece() -> impl Strategy<Value = PolygonMesh> {
     let polygon = (3..8_u32).prop_map(|n| {
         let all: Vec<u32> = (0..n).collect();
         made_of(all.clone(), vec![all])
     });
-    let small = "a shape of this size can be made";
+    let small = "a shape of this size can be built";
     prop_oneof![
         3 => polygon,
-        1 => Just(shapes::tetrahedron()),
-        1 => Just(shapes::cube()),
-        1 => (3..7_usize).prop_map(move |n| shapes::prism(n).expect(small)),
-        1 => (3..6_usize).prop_map(move |n| shapes::antiprism(n).expect(small)),
-        1 => (3..5_usize, 3..5_usize).prop_map(move |(m, n)| shapes::uv_sphere(m, n).expect(small)),
-        1 => (1..4_usize, 1..5_usize).prop_map(move |(m, n)| shapes::grid(m, n).expect(small)),
-        1 => (1..4_usize, 1..4_usize).prop_map(move |(m, n)| shapes::mixed_grid(m, n).expect(small)),
-        1 => (3..5_usize, 3..5_usize).prop_map(move |(m, n)| shapes::torus(m, n).expect(small)),
-        1 => (3..5_usize, 3..5_usize).prop_map(move |(m, n)| shapes::triangle_torus(m, n).expect(small)),
+        1 => Just(sixfold_shapes::tetrahedron()),
+        1 => Just(sixfold_shapes::cube()),
+        1 => (3..7_usize).prop_map(move |n| sixfold_shapes::prism(n).expect(small)),
+        1 => (3..6_usize).prop_map(move |n| sixfold_shapes::antiprism(n).expect(small)),
+        1 => (3..5_usize, 3..5_usize).prop_map(move |(m, n)| sixfold_shapes::uv_sphere(m, n).expect(small)),
+        1 => (1..4_usize, 1..5_usize).prop_map(move |(m, n)| sixfold_shapes::grid(m, n).expect(small)),
+        1 => (1..4_usize, 1..4_usize).prop_map(move |(m, n)| sixfold_shapes::mixed_grid(m, n).expect(small)),
+        1 => (3..5_usize, 3..5_usize).prop_map(move |(m, n)| sixfold_shapes::torus(m, n).expect(small)),
+        1 => (3..5_usize, 3..5_usize).prop_map(move |(m, n)| sixfold_shapes::triangle_torus(m, n).expect(small)),
     ]
 }
 
-/// What names are drawn from; zero keeps those there are.
+/// Generates a seed for the renumbering; zero keeps the numbers.
 fn seed() -> impl Strategy<Value = u64> {
     prop_oneof![1 => Just(0), 4 => 0..1000_u64]
 }

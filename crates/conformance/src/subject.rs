@@ -1,36 +1,35 @@
-//! A mesh on trial: the structure, the oracle, and a dictionary between their names.
+//! A mesh under test: the structure, the oracle, and maps between handles and input numbers.
 
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 
-use mesh_core::{FaceId, MeshQuery, PolygonMesh, Relation, Representation, VertexId};
+use sixfold_core::{FaceId, MeshQuery, PolygonMesh, Relation, Representation, VertexId};
 
 use crate::element::Element;
 use crate::oracle::Oracle;
 use crate::weld::{weld_numbers, welded};
 
-/// A structure built from polygons, and what it must answer.
+/// A structure built from polygons, and its expected answers.
 pub(crate) struct Subject<M: Representation> {
     pub(crate) mesh: M,
-    /// What the structure holds: the input, welded where a vertex is its coordinates.
+    /// The input, welded if the structure identifies vertices by their coordinates.
     pub(crate) input: PolygonMesh,
     pub(crate) oracle: Oracle,
     pub(crate) names: Names<M>,
 }
 
 impl<M: Representation> Subject<M> {
-    /// Builds `M` from `polygons`; `None` where its capabilities exclude them.
+    /// Builds `M` from `polygons`; `None` if its capabilities exclude them.
     ///
-    /// A refusal of what the capabilities include is a failure, not a skip.
+    /// An error for a mesh that the capabilities include is a failure of the test.
     pub(crate) fn of(polygons: &PolygonMesh) -> Option<Self> {
         M::CAPABILITIES.check(polygons).ok()?;
         let mesh = M::from_polygons(polygons);
-        let mesh =
-            mesh.unwrap_or_else(|e| panic!("{} refuses what it declares to hold: {e}", M::NAME));
+        let mesh = mesh.unwrap_or_else(|e| panic!("{} refuses a supported mesh: {e}", M::NAME));
         Some(Self::built(mesh, polygons))
     }
 
-    /// `mesh`, which claims to hold `polygons`.
+    /// Wraps `mesh`, which should hold `polygons`.
     pub(crate) fn built(mesh: M, polygons: &PolygonMesh) -> Self {
         let input = held::<M>(polygons);
         Self {
@@ -41,21 +40,22 @@ impl<M: Representation> Subject<M> {
         }
     }
 
-    /// What the structure answers when `relation` is asked of `element`.
+    /// Queries `relation` of `element`.
     pub(crate) fn ask(&self, relation: Relation, element: Element) -> Vec<Element> {
         self.names.ask(&self.mesh, relation, element)
     }
 }
 
-/// What `M` holds of `polygons`, which its capabilities include.
+/// Returns the mesh that `M` holds after it was built from `polygons`, which its capabilities
+/// include.
 pub(crate) fn held<M: Representation>(polygons: &PolygonMesh) -> PolygonMesh {
     if M::CAPABILITIES.coincident_vertices {
         return polygons.clone();
     }
-    welded(polygons).expect("the verdict excludes faces with two corners at one point")
+    welded(polygons).expect("the capabilities exclude faces with two corners at one point")
 }
 
-/// What the structure calls each element of the input, both ways.
+/// Maps from the elements of the input to the handles of the structure, and back.
 pub(crate) struct Names<M: MeshQuery> {
     vertices: BTreeMap<VertexId, M::Vertex>,
     edges: BTreeMap<Element, M::Edge>,
@@ -97,39 +97,40 @@ impl<M: Representation> Names<M> {
         names
     }
 
-    /// What the structure calls `v`.
+    /// Returns the handle of `v`.
     pub(crate) fn vertex(&self, v: VertexId) -> M::Vertex {
         known(self.vertices.get(&v), M::NAME, v)
     }
 
-    /// What the structure calls `edge`.
+    /// Returns the handle of `edge`.
     pub(crate) fn edge(&self, edge: Element) -> M::Edge {
         known(self.edges.get(&edge), M::NAME, edge)
     }
 
-    /// What the structure calls `f`.
+    /// Returns the handle of `f`.
     pub(crate) fn face(&self, f: FaceId) -> M::Face {
         known(self.faces.get(&f), M::NAME, f)
     }
 
-    /// The input's number of the vertex that the structure calls `name`.
+    /// Returns the vertex of the input with the handle `name`.
     pub(crate) fn vertex_id(&self, name: M::Vertex) -> VertexId {
         known(self.vertex_ids.get(&name), M::NAME, name)
     }
 
-    /// The edge of the input that the structure calls `name`.
+    /// Returns the edge of the input with the handle `name`.
     pub(crate) fn edge_id(&self, name: M::Edge) -> Element {
         known(self.edge_ids.get(&name), M::NAME, name)
     }
 
-    /// The input's number of the face that the structure calls `name`.
+    /// Returns the face of the input with the handle `name`.
     pub(crate) fn face_id(&self, name: M::Face) -> FaceId {
         known(self.face_ids.get(&name), M::NAME, name)
     }
 
-    /// Asks `relation` of `element` and translates the answer, in the order in which it comes.
+    /// Queries `relation` of `element`, and converts the answer to input numbers, in the order of
+    /// the structure.
     ///
-    /// An element of another kind than the relation is asked of has no answer.
+    /// The answer is empty if `relation` does not apply to this kind of element.
     pub(crate) fn ask<Q>(&self, mesh: &Q, relation: Relation, element: Element) -> Vec<Element>
     where
         Q: MeshQuery<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face>,
@@ -170,7 +171,7 @@ impl<M: Representation> Names<M> {
         }
     }
 
-    /// The one-ring of `v`, translated.
+    /// Returns the one-ring of `v`, converted to input numbers.
     pub(crate) fn ring<Q>(&self, mesh: &Q, v: VertexId) -> Option<Vec<VertexId>>
     where
         Q: MeshQuery<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face>,

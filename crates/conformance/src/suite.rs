@@ -1,8 +1,8 @@
-//! One line that puts a representation on trial.
+//! The macros and functions that run the laws on a structure.
 
-use mesh_core::{PolygonMesh, Representation};
 use proptest::strategy::{Strategy, Union};
 use proptest::test_runner::{Config, TestCaseError, TestError, TestRunner};
+use sixfold_core::{PolygonMesh, Representation};
 
 use crate::caught::caught;
 use crate::gallery::gallery;
@@ -10,10 +10,10 @@ use crate::print::compact;
 use crate::shrink::smallest;
 use crate::strategy::{any_mesh, faulty_mesh, manifold_mesh};
 
-/// Makes one `#[test]` of each law: `conformance::suite!(half_edge::HalfEdgeMesh);`
+/// Makes one `#[test]` from each law: `sixfold_conformance::suite!(half_edge::HalfEdgeMesh);`
 ///
-/// Laws about a mesh run over the gallery and over random meshes; a failing random mesh shrinks
-/// and is printed on one line. `PROPTEST_CASES` sets the number of random meshes of each kind.
+/// Laws about a mesh run on the gallery and on random meshes. A failing random mesh is shrunk and
+/// printed on one line. `PROPTEST_CASES` sets the number of random meshes per law.
 #[macro_export]
 macro_rules! suite {
     ($mesh:ty) => {
@@ -41,7 +41,8 @@ macro_rules! suite_of_laws {
     };
 }
 
-/// The laws of structures that refine themselves: `conformance::refine_suite!(half_edge::HalfEdgeMesh);`
+/// Makes the tests of structures that refine their own tables:
+/// `sixfold_conformance::refine_suite!(half_edge::HalfEdgeMesh);`
 #[macro_export]
 macro_rules! refine_suite {
     ($mesh:ty) => {
@@ -57,7 +58,8 @@ macro_rules! refine_suite {
     };
 }
 
-/// The laws of structures that can be edited: `conformance::edit_suite!(half_edge::EditableHalfEdgeMesh);`
+/// Makes the tests of structures that can be edited:
+/// `sixfold_conformance::edit_suite!(half_edge::EditableHalfEdgeMesh);`
 #[macro_export]
 macro_rules! edit_suite {
     ($mesh:ty) => {
@@ -78,14 +80,15 @@ macro_rules! edit_suite {
     };
 }
 
-/// How many random meshes a law sees where the environment does not say.
+/// Number of random meshes per law if `PROPTEST_CASES` is not set.
 const CASES: u32 = 192;
 
-/// Holds `M` to `law` on every mesh of the gallery and on random manifold, faulty and chaotic meshes.
+/// Runs `law` of `M` on every mesh of the gallery, and on random manifold, faulty and arbitrary
+/// meshes.
 ///
 /// # Panics
 ///
-/// If the law is broken; the message shows the mesh, of random ones the smallest found.
+/// Panics if the law is broken. The message shows the mesh; a random mesh is shrunk first.
 pub fn hold<M: Representation>(name: &str, law: impl Fn(&PolygonMesh)) {
     let name = format!("{}: {name}", M::NAME);
     for specimen in gallery() {
@@ -112,11 +115,11 @@ pub fn hold<M: Representation>(name: &str, law: impl Fn(&PolygonMesh)) {
             let fault = fails(&mesh).map_or(fault.to_string(), |fault| fault.to_string());
             panic!("{name} fails on {}\n{fault}", compact(&mesh))
         }
-        Err(TestError::Abort(reason)) => panic!("{name}: no verdict: {reason}"),
+        Err(TestError::Abort(reason)) => panic!("{name}: the test was aborted: {reason}"),
     }
 }
 
-/// Manifolds half of the time, else known faults or chaos.
+/// Generates manifolds in half of the cases, otherwise meshes with known faults or random faces.
 fn random_mesh() -> impl Strategy<Value = Printed> {
     let faulty = faulty_mesh().prop_map(|faulty| faulty.polygons);
     Union::new_weighted(vec![
@@ -127,7 +130,7 @@ fn random_mesh() -> impl Strategy<Value = Printed> {
     .prop_map(Printed)
 }
 
-/// A mesh that proptest prints on one line.
+/// A mesh whose debug output is one line.
 struct Printed(PolygonMesh);
 
 impl std::fmt::Debug for Printed {

@@ -1,19 +1,19 @@
-//! The refusal that a mesh deserves, by brute force.
+//! The expected error for a mesh, by brute force.
 
 use std::collections::BTreeMap;
 
-use mesh_core::{BuildError, Capabilities, FaceId, PolygonMesh, VertexId};
+use sixfold_core::{BuildError, Capabilities, FaceId, PolygonMesh, VertexId};
 
 use crate::oracle::sides_of;
 use crate::weld::place;
 
-/// What [`Capabilities::check`] must say of `polygons`, worked out another way.
+/// Computes the expected result of [`Capabilities::check`] for `polygons` in another way.
 ///
-/// Faults of size are left out: no mesh in a test has too many elements.
+/// Errors of size are not covered: no mesh in a test has too many elements.
 ///
 /// # Errors
 ///
-/// The first fault, in the order that [`BuildError`] fixes.
+/// Returns the first fault, in the order documented at [`BuildError`].
 pub fn verdict(capabilities: &Capabilities, polygons: &PolygonMesh) -> Result<(), BuildError> {
     let fault = None
         .or_else(|| not_a_triangle(polygons).filter(|_| !capabilities.polygons))
@@ -25,10 +25,11 @@ pub fn verdict(capabilities: &Capabilities, polygons: &PolygonMesh) -> Result<()
     fault.map_or(Ok(()), Err)
 }
 
-/// One side of a face: where it starts and ends, and whose it is.
+/// One side of a face: its start, its end, and the face.
 type Side = (VertexId, VertexId, FaceId);
 
-/// The sides along each edge, by its ends in order; of each edge in the order of the faces.
+/// Returns the sides along each edge, in the order of the faces. The key of an edge is the sorted
+/// pair of its ends.
 pub(crate) fn sides_by_edge(polygons: &PolygonMesh) -> BTreeMap<[VertexId; 2], Vec<Side>> {
     let mut edges: BTreeMap<[VertexId; 2], Vec<Side>> = BTreeMap::new();
     for (f, corners) in polygons.faces().iter() {
@@ -88,9 +89,9 @@ fn non_manifold_vertex(polygons: &PolygonMesh) -> Option<BuildError> {
     })
 }
 
-/// The faces at `v` in classes: two are in one if they share an edge that ends at `v`.
+/// Groups the faces at `v` into fans: faces that share an edge at `v` are in the same fan.
 pub(crate) fn fans_at(polygons: &PolygonMesh, v: VertexId) -> Vec<Vec<FaceId>> {
-    // Faces with their two neighbours of v; classes grow by merging whatever shares a neighbour.
+    // The faces of each fan, and their corners next to v. Fans that share such a corner are merged.
     let mut fans: Vec<(Vec<FaceId>, Vec<VertexId>)> = Vec::new();
     for (f, corners) in polygons.faces().iter() {
         let sides = sides_of(corners);

@@ -1,16 +1,17 @@
-//! What a mesh is to a structure in which a vertex is its coordinates.
+//! The conversion of a mesh for structures in which a vertex is identified by its coordinates.
 
 use std::collections::BTreeMap;
 
-use mesh_core::{Point, PolygonError, PolygonMesh, VertexId};
+use sixfold_core::{Point, PolygonError, PolygonMesh, VertexId};
 
-/// The mesh with vertices at one point made one, in the order in which faces first name them.
+/// Merges vertices with equal positions. Vertices are numbered in the order of their first use in a
+/// face.
 ///
-/// −0 is 0. Isolated vertices are gone, for no face names them.
+/// −0 equals 0. Isolated vertices are dropped, because no face uses them.
 ///
 /// # Errors
 ///
-/// [`PolygonError::RepeatedVertex`] where two corners of one face are at one point.
+/// Returns [`PolygonError::RepeatedVertex`] if two corners of one face have equal positions.
 pub fn welded(polygons: &PolygonMesh) -> Result<PolygonMesh, PolygonError> {
     let numbers = weld_numbers(polygons);
     let mut positions = vec![Point::ZERO; numbers.values().max().map_or(0, |n| *n as usize + 1)];
@@ -24,7 +25,7 @@ pub fn welded(polygons: &PolygonMesh) -> Result<PolygonMesh, PolygonError> {
     PolygonMesh::new(positions, faces)
 }
 
-/// What [`welded`] calls each vertex that a face names.
+/// Returns the number that [`welded`] gives to each vertex with a face.
 pub(crate) fn weld_numbers(polygons: &PolygonMesh) -> BTreeMap<VertexId, u32> {
     let mut at: BTreeMap<[u32; 3], u32> = BTreeMap::new();
     let mut numbers = BTreeMap::new();
@@ -36,7 +37,7 @@ pub(crate) fn weld_numbers(polygons: &PolygonMesh) -> BTreeMap<VertexId, u32> {
     numbers
 }
 
-/// The bits of the coordinates, with −0 as 0.
+/// Returns the bits of the coordinates, with −0 as 0.
 pub(crate) fn place(point: Point) -> [u32; 3] {
     let bits = |x: f32| if x == 0.0 { 0 } else { x.to_bits() };
     point.to_array().map(bits)
@@ -47,11 +48,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn vertices_at_one_point_become_one_in_order_of_naming() {
+    fn vertices_with_equal_positions_are_merged_in_order_of_first_use() {
         let minus = Point::new(-0.0, 0.0, 0.0);
         let points = [Point::Y, Point::ZERO, Point::X, minus, Point::Z];
         let mesh = PolygonMesh::new(points, [[2, 1, 0], [4, 0, 3]]).expect("valid");
-        let one = welded(&mesh).expect("no face has two corners at one point");
+        let one = welded(&mesh).expect("no face has two corners with equal positions");
         let expected = PolygonMesh::new(
             [Point::X, Point::ZERO, Point::Y, Point::Z],
             [[0, 1, 2], [3, 2, 1]],

@@ -1,14 +1,14 @@
-//! Walks around a vertex and around an edge: ordinary iterators that end after one turn.
+//! Walks around a vertex and around an edge, as iterators that end after one turn.
 //!
 //! ```text
-//!        b                 The walk around v holds n, the corner after the one at v. One row of
-//!       / \                each table is all that a step needs: vertex(n) is the neighbour a,
-//!   …  / t \   a = V(n)    opposite(n) leads across the edge v–b, which n faces, and the corner
-//!     /     \  n           before that is the next n.
+//!        b                 The walk around v stores n, the corner after the one at v. A step needs
+//!       / \                one row of each table: vertex(n) is the neighbour a, and opposite(n) is
+//!   …  / t \   a = V(n)    the corner across the edge v–b, which n faces. The corner before that
+//!     /     \  n           one is the next n.
 //!    b ───── v
 //! ```
 
-use mesh_core::{Editing, Probe, Slot, VertexId};
+use sixfold_core::{Editing, Probe, Slot, VertexId};
 
 use crate::mesh::{AnyCornerTable, CornerId, EdgeCorner, edge_between};
 
@@ -32,11 +32,12 @@ impl<P: Probe, E: Editing> Iterator for CornersAt<'_, P, E> {
 }
 
 impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
-    /// The corners at `v`, counter-clockwise; from one boundary edge to the other, if `v` is on one.
+    /// Returns the corners at `v`, counter-clockwise; on a boundary, from one boundary edge to the
+    /// other.
     ///
     /// # Panics
     ///
-    /// If there is no such vertex.
+    /// Panics if there is no vertex `v`.
     #[inline]
     pub fn corners_at(&self, v: VertexId) -> CornersAt<'_, P, E> {
         CornersAt(self.fan(v))
@@ -53,7 +54,8 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
     }
 }
 
-/// For each corner at a vertex, counter-clockwise: the corner after it, and the one opposite to that.
+/// For each corner at a vertex, counter-clockwise: the next corner in its triangle, and its
+/// opposite.
 #[derive(Clone, Debug)]
 pub(crate) struct Fan<'a, P: Probe, E: Editing> {
     mesh: &'a AnyCornerTable<P, E>,
@@ -90,11 +92,11 @@ impl<P: Probe, E: Editing> Iterator for Fan<'_, P, E> {
     }
 }
 
-/// The neighbours of a vertex: one for each corner, and at the end of an open fan one more.
+/// The neighbours of a vertex: one for each corner, and one more at the end of an open fan.
 #[derive(Clone, Debug)]
 pub(crate) struct Neighbours<'a, P: Probe, E: Editing> {
     fan: Fan<'a, P, E>,
-    /// The last corner of an open fan, once the fan has ended there.
+    /// The last corner of an open fan, set when the fan has ended.
     last: Option<CornerId>,
 }
 
@@ -125,7 +127,7 @@ impl<P: Probe, E: Editing> Iterator for Neighbours<'_, P, E> {
         Some(self.fan.mesh.vertex(at))
     }
 
-    /// One loop of its own: over the fan's, whether it is open would be asked twice a step.
+    /// Uses its own loop: the loop of the fan would test twice per step whether the fan is open.
     #[inline]
     fn fold<B, F: FnMut(B, VertexId) -> B>(self, init: B, mut f: F) -> B {
         let Fan { mesh, at, first } = self.fan;
@@ -147,7 +149,7 @@ impl<P: Probe, E: Editing> Iterator for Neighbours<'_, P, E> {
     }
 }
 
-/// The edges at a vertex: one for each corner, and at the end of an open fan the one it began with.
+/// The edges at a vertex: one for each corner, and at the end of an open fan its first edge.
 #[derive(Clone, Debug)]
 pub(crate) struct Spokes<'a, P: Probe, E: Editing> {
     fan: Fan<'a, P, E>,
@@ -163,7 +165,7 @@ impl<'a, P: Probe, E: Editing> Spokes<'a, P, E> {
         }
     }
 
-    /// The boundary edge at which an open fan begins.
+    /// Returns the boundary edge at which an open fan begins.
     #[inline]
     fn first_edge(&self) -> Option<EdgeCorner> {
         self.fan.first.map(|n| edge_between(n.next(), Slot::NONE))
@@ -202,15 +204,15 @@ impl<P: Probe, E: Editing> Iterator for Spokes<'_, P, E> {
     }
 }
 
-/// The edges at both ends of an edge, but for itself, read from `opposite` alone.
+/// The other edges at both ends of an edge, read from `opposite` alone.
 ///
 /// ```text
-///        c              Around a, counter-clockwise from the edge: the corners that face the
-///       / \             edges are prev(c) and on, until one is d. Around b likewise from prev(d)
-///      /   \            until c.
+///        c              Around a, counter-clockwise from the edge: the first corner that faces
+///       / \             an edge at a is prev(c); the walk ends at d. Around b likewise: from
+///      /   \            prev(d), the walk ends at c.
 ///     a ─e─ b
-///      \   /            Where a walk ends at a boundary, the rest of the fan lies clockwise: from
-///       \ /             next(d) around a, from next(c) around b.
+///      \   /            If a walk ends at a boundary, the rest of the fan is walked clockwise:
+///       \ /             from next(d) around a, from next(c) around b.
 ///        d
 /// ```
 #[derive(Clone, Debug)]
@@ -219,15 +221,15 @@ pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
     /// The corner that faces the next edge.
     at: Option<CornerId>,
     turn: Turn,
-    /// The corner on the side of the edge where the walk began.
+    /// The corner that faces the edge, on the side where the walk began.
     near: Slot<CornerId>,
-    /// The one on the other side: what faces the edge at the end of the walk.
+    /// The corner that faces the edge on the other side: the walk ends there.
     far: Slot<CornerId>,
-    /// Whether the walk around the other end is still to come.
+    /// Whether the walk around the other end has not started.
     more: bool,
 }
 
-/// Which way round a walk goes.
+/// The direction of a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Turn {
     Counterclockwise,
@@ -250,7 +252,8 @@ impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
 }
 
 impl<P: Probe, E: Editing> EdgeEdges<'_, P, E> {
-    /// The edge that the walk has come to, if it has not ended, and the corner across it.
+    /// Returns the edge that the walk is at and the corner across it; `None` at the end of the
+    /// walk.
     #[inline]
     fn here(&self) -> Option<(EdgeCorner, Option<CornerId>)> {
         let at = self.at.filter(|&at| Slot::some(at) != self.far)?;
@@ -258,10 +261,11 @@ impl<P: Probe, E: Editing> EdgeEdges<'_, P, E> {
         Some((edge_between(at, across), across.get()))
     }
 
-    /// Begins the walk after one that has ended; false if that was the last.
+    /// Starts the next walk; returns false if there is none.
     #[inline]
     fn begin_next_walk(&mut self) -> bool {
-        // A walk that came back to the edge has seen the whole fan; one that ended has not.
+        // A walk that returned to the edge has visited the whole fan; one that met a boundary has
+        // not.
         if self.at.is_none() && self.turn == Turn::Counterclockwise {
             self.turn = Turn::Clockwise;
             self.at = self.far.get().map(CornerId::next);
@@ -300,7 +304,7 @@ impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
     fn fold<B, F: FnMut(B, EdgeCorner) -> B>(mut self, init: B, mut f: F) -> B {
         let mut folded = init;
         loop {
-            // Two loops, so that neither asks at each step which way it goes.
+            // Two loops, so that the inner steps do not test the direction.
             match self.turn {
                 Turn::Counterclockwise => {
                     while let Some((edge, across)) = self.here() {
@@ -327,13 +331,12 @@ mod tests {
     use std::fmt::Debug;
     use std::iter::from_fn;
 
-    use mesh_core::{MeshQuery, Representation};
+    use sixfold_core::{MeshQuery, Representation};
 
     use super::*;
     use crate::mesh::CornerTable;
 
-    /// `fold` is written apart from `next` where speed asks for it: they must agree, from the start
-    /// and from any place that `next` has come to.
+    /// Checks that `fold` agrees with `next`, from the start and after any number of steps.
     fn folds_as_it_steps<I>(items: I, of: impl Debug)
     where
         I: Iterator<Item: Debug + PartialEq> + Clone,
@@ -345,7 +348,7 @@ mod tests {
             stepped.extend(from_fn(|| steps.next()));
             rest.clone().for_each(|item| folded.push(item));
             assert_eq!(folded, stepped, "at {of:?}");
-            assert!(steps.next().is_none(), "at {of:?}: an end is an end");
+            assert!(steps.next().is_none(), "at {of:?}: next() after the end");
             if rest.next().is_none() {
                 return;
             }
@@ -354,9 +357,9 @@ mod tests {
 
     #[test]
     fn walks_fold_as_they_step() {
-        let open = shapes::grid_with_hole(4, 4).expect("a size that is there");
+        let open = sixfold_shapes::grid_with_hole(4, 4).expect("a valid size");
         for polygons in [
-            shapes::octahedron(),
+            sixfold_shapes::octahedron(),
             open.fan_triangulated().expect("small"),
         ] {
             let mesh = CornerTable::from_polygons(&polygons).expect("manifold");

@@ -1,9 +1,9 @@
-//! In from polygons, and out again.
+//! Building from polygons, and conversion to polygons.
 
-use mesh_core::{
+use sixfold_core::{
     BuildError, Capabilities, Counts, Editing, FACE_HOLES, FaceId, FaceList, HoleSet,
-    InvariantError, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost,
-    Representation, RowId, RowMap, Slot, Table, Untraced, VERTEX_HOLES, VertexId,
+    InvariantError, Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe,
+    QueryCost, Representation, RowId, RowMap, Slot, Table, Untraced, VERTEX_HOLES, VertexId,
     pair_triangle_sides,
 };
 
@@ -19,9 +19,14 @@ impl<E: Editing> Representation for AnyCornerTable<Untraced, E> {
 
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
 
-    type Probed<P: Probe> = AnyCornerTable<P, E>;
+    fn type_path() -> &'static str {
+        match E::DELETES {
+            true => "sixfold_corner_table::EditableCornerTable",
+            false => "sixfold_corner_table::CornerTable",
+        }
+    }
 
-    /// Pairs the sides, lets the corners that face a pair know each other, then enters every fan;
+    /// Pairs the sides, links the corners that face a pair, then sets `corner` of each vertex.
     /// O(corners + vertices), without hashing.
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let refusal = || Self::CAPABILITIES.refusal(polygons);
@@ -29,7 +34,7 @@ impl<E: Editing> Representation for AnyCornerTable<Untraced, E> {
         if !faces.is_empty() && faces.uniform_degree() != Some(3) {
             return Err(refusal());
         }
-        // The scratch of the pairing, until it is filled.
+        // Scratch memory for the pairing first; then filled with the vertices.
         let mut vertex = vec![VertexId::new(0); faces.corners().len()];
         let links = Links::between(vertices, faces, &mut vertex).ok_or_else(refusal)?;
         vertex.copy_from_slice(faces.corners());
@@ -49,7 +54,7 @@ impl<E: Editing> Representation for AnyCornerTable<Untraced, E> {
 
     fn to_polygons(&self) -> PolygonMesh {
         let (positions, corners) = if self.vertex_holes.is_empty() && self.face_holes.is_empty() {
-            (self.positions().to_vec(), self.vertex_rows().to_vec())
+            (self.positions().to_vec(), self.corner_vertices().to_vec())
         } else {
             let new = self.vertex_holes.new_rows(self.positions.len());
             let corners = self.faces().flat_map(|t| self.vertices_of(t));
@@ -95,12 +100,16 @@ impl<E: Editing> Representation for AnyCornerTable<Untraced, E> {
             .collect()
     }
 
-    fn layout_bytes(counts: &Counts) -> usize {
-        16 * counts.vertices + 8 * counts.corners
-    }
-
     fn validate(&self) -> Result<(), InvariantError> {
         crate::validate::validate(self)
+    }
+}
+
+impl<E: Editing> Measured for AnyCornerTable<Untraced, E> {
+    type Probed<P: Probe> = AnyCornerTable<P, E>;
+
+    fn layout_bytes(counts: &Counts) -> usize {
+        16 * counts.vertices + 8 * counts.corners
     }
 
     fn probed<P: Probe>(self, probe: P) -> AnyCornerTable<P, E> {
@@ -115,19 +124,19 @@ impl<E: Editing> Representation for AnyCornerTable<Untraced, E> {
     }
 }
 
-/// What building needs to know of every corner.
+/// What building needs for every corner.
 struct Links {
     /// The corner that faces the same edge from the other side.
     opposite: Vec<Slot<CornerId>>,
-    /// The row of the corner after it around its vertex; at the end of an open fan, of none.
+    /// The row of the next corner around its vertex; `u32::MAX` at the end of an open fan.
     swing: Vec<u32>,
-    /// Whether there is no boundary.
+    /// Whether the mesh has no boundary.
     closed: bool,
 }
 
 impl Links {
-    /// Writes into each corner which corner faces the same edge from the other side; O(corners +
-    /// vertices). `None` if the sides cannot be paired. `scratch` has a row for each corner.
+    /// Finds for each corner the one that faces the same edge from the other side; O(corners +
+    /// vertices). Returns `None` if the sides cannot be paired. `scratch` has one row per corner.
     fn between(vertices: usize, faces: &FaceList, scratch: &mut [VertexId]) -> Option<Self> {
         let mut opposite = vec![Slot::some(CornerId::new(0)); faces.corners().len()];
         let (mut swing, edges) = pair_triangle_sides(vertices, faces, scratch, |own, across| {
@@ -138,11 +147,11 @@ impl Links {
         let closed = opposite.len() == 2 * edges;
         let mut first = 0;
         let triangles = opposite.as_chunks_mut::<3>().0.iter_mut();
-        // The scratch of the pairing has a row for each corner: its place is free for the swings. The
-        // walks around all vertices take half the time when no step has to work them out.
+        // The scratch memory of the pairing has one row per corner and is free again: it stores the
+        // swings. With stored swings the walks around all vertices take half the time.
         for (triangle, swing) in triangles.zip(swing.as_chunks_mut::<3>().0) {
             if !closed {
-                // A corner that faces a boundary has been paired with itself.
+                // The pairing has paired a corner that faces a boundary edge with itself.
                 for (corner, across) in (first..).zip(&mut *triangle) {
                     if *across == Slot::some(CornerId::new(corner)) {
                         *across = Slot::NONE;
@@ -163,7 +172,7 @@ impl Links {
         })
     }
 
-    /// By vertex: a corner there, on a boundary the one that has no `unswing`.
+    /// Returns a corner for each vertex; on a boundary, the one that has no `unswing`.
     fn first_corners(&self, vertices: usize, vertex: &[VertexId]) -> Vec<Slot<CornerId>> {
         let mut first = vec![Slot::NONE; vertices];
         for (c, v) in (0..).zip(vertex) {
@@ -174,7 +183,7 @@ impl Links {
         }
         for (c, across) in (0..).zip(&self.opposite) {
             if across.get().is_none() {
-                // Swinging back from the next corner would cross the edge that c faces.
+                // Unswinging the next corner would cross the edge that c faces.
                 let start = CornerId::new(c).next();
                 first[vertex[start.index()].index()] = Slot::some(start);
             }
@@ -182,7 +191,7 @@ impl Links {
         first
     }
 
-    /// Whether the walks from `first` meet every corner.
+    /// Returns whether the walks from `first` visit every corner.
     fn every_vertex_is_one_fan(&self, first: &[Slot<CornerId>]) -> bool {
         let mut met = 0;
         for first in first.iter().filter_map(|first| first.get()) {

@@ -1,7 +1,7 @@
-//! Changing the mesh in place.
+//! Edits in place.
 //!
-//! Every edit is about one triangle, about the two along an edge, or about the fan of a vertex. They
-//! are named so throughout:
+//! Every edit changes one triangle, the two triangles at an edge, or the fan of a vertex, named
+//! thus:
 //!
 //! ```text
 //!            C
@@ -9,8 +9,9 @@
 //!          /   \             T  corners c at C, n = next(c) at A, p = prev(c) at B
 //!    op   /  T  \   on       R  corners o at D, q = next(o) at B, r = prev(o) at A
 //!        /       \
-//!       / n     p \          What is opposite to n is called on, and so on: on lies across B–C,
-//!      A─────e─────B         op across C–A, oq across A–D, or across D–B.
+//!        /       \
+//!       / n     p \          on is the opposite of n, and so on: on lies across B–C, op across
+//!      A─────e─────B         C–A, oq across A–D, or across D–B.
 //!       \ r     q /
 //!        \       /
 //!    oq   \  R  /   or
@@ -19,8 +20,8 @@
 //!            D
 //! ```
 //!
-//! An edge is called by the lower corner of the two that face it, so wherever another corner comes to
-//! face an edge, its name may change; new triangles have the highest rows and take no name away.
+//! The handle of an edge is the lower of the two corners that face it. If another corner comes to
+//! face an edge, the handle may change. New triangles have the highest rows and change no handle.
 
 mod collapse;
 mod compact;
@@ -28,7 +29,7 @@ mod faces;
 mod flip;
 mod split;
 
-use mesh_core::{
+use sixfold_core::{
     Edit, EditError, EditLog, FaceId, HoleSet, MAX_ROWS, MeshEdit, NoHoles, Point, Probe,
     QueryCost, Representation, RowId, Slot, VertexId, row,
 };
@@ -37,16 +38,16 @@ use crate::mesh::{
     AnyCornerTable, CornerId, CornerTable, EdgeCorner, EditableCornerTable, NOWHERE, names_edge,
 };
 
-/// Why an edit is refused; the same whatever the probe.
-type Refusal = mesh_core::Refusal<EditableCornerTable>;
+/// The error of an edit; the same type for every probe.
+type Refusal = sixfold_core::Refusal<EditableCornerTable>;
 
-/// The most corners that a mesh may have to be built again from its polygons.
+/// Maximum number of corners, so that the mesh can be rebuilt from its polygons.
 const MAX_CORNERS: usize = MAX_ROWS / 2;
 
 impl<P: Probe> MeshEdit for EditableCornerTable<P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
         let mut costs = Edit::LOCAL_COSTS;
-        // They make polygons.
+        // These three make polygons.
         costs[Edit::SplitEdge as usize] = None;
         costs[Edit::SplitFace as usize] = None;
         costs[Edit::DissolveEdge as usize] = None;
@@ -108,7 +109,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
         self.remove_star(v, log)
     }
 
-    /// Reads `corner` once through.
+    /// Reads `corner` once; O(vertices).
     fn remove_isolated_vertices(&mut self, log: &mut impl EditLog<Self>) -> usize {
         let before = self.vertex_holes.len();
         for v in (0..row(self.corner.len())).map(VertexId::new) {
@@ -121,7 +122,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
         self.vertex_holes.len() - before
     }
 
-    /// Never: it makes polygons.
+    /// Always returns an error: this edit makes polygons.
     fn split_edge(
         &mut self,
         _: EdgeCorner,
@@ -152,7 +153,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
         self.poke(f, at, log)
     }
 
-    /// Never: it needs polygons.
+    /// Always returns an error: this edit makes polygons.
     fn split_face(
         &mut self,
         _: FaceId,
@@ -162,7 +163,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
         Err(makes_polygons(Edit::SplitFace))
     }
 
-    /// Never: it makes polygons.
+    /// Always returns an error: this edit makes polygons.
     fn dissolve_edge(
         &mut self,
         _: EdgeCorner,
@@ -171,7 +172,8 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
         Err(makes_polygons(Edit::DissolveEdge))
     }
 
-    /// O(valence of a third corner) to find that the new edge is none yet, and O(1) to make it.
+    /// O(valence of a third corner) to check that the new edge does not exist; O(1) to change the
+    /// rows.
     #[inline]
     fn flip_edge(
         &mut self,
@@ -218,9 +220,9 @@ fn makes_polygons(edit: Edit) -> Refusal {
     }
 }
 
-/// What every edit asks before it writes.
+/// Checks before an edit writes.
 impl<P: Probe> EditableCornerTable<P> {
-    /// The corner at `v`, if it is there and not isolated.
+    /// Returns the corner at `v` (empty if `v` is isolated), or an error if `v` does not exist.
     #[inline]
     fn check_vertex(&self, v: VertexId) -> Result<Slot<CornerId>, Refusal> {
         if v.index() < self.corner.len() {
@@ -232,7 +234,7 @@ impl<P: Probe> EditableCornerTable<P> {
         Err(EditError::NoSuchVertex { vertex: v })
     }
 
-    /// The corner across `e`, if that is the name of an edge.
+    /// Returns the corner across `e`, or an error if `e` is not the handle of an edge.
     #[inline]
     fn check_edge(&self, e: EdgeCorner) -> Result<Slot<CornerId>, Refusal> {
         if e.index() < self.opposite.len() {
@@ -244,7 +246,7 @@ impl<P: Probe> EditableCornerTable<P> {
         Err(EditError::NoSuchEdge { edge: e })
     }
 
-    /// The vertices of `f`, if it is there.
+    /// Returns the vertices of `f`, or an error if `f` does not exist.
     #[inline]
     fn check_face(&self, f: FaceId) -> Result<[VertexId; 3], Refusal> {
         let first = 3 * f.index();
@@ -257,7 +259,7 @@ impl<P: Probe> EditableCornerTable<P> {
         Err(EditError::NoSuchFace { face: f })
     }
 
-    /// Whether handles can name so many vertices and triangles more.
+    /// Checks that handles can name this number of additional vertices and triangles.
     #[inline]
     fn check_room(&self, vertices: usize, triangles: usize) -> Result<(), Refusal> {
         let (elements, limit) = if self.positions.len() + vertices > MAX_ROWS {
@@ -270,7 +272,7 @@ impl<P: Probe> EditableCornerTable<P> {
         Err(EditError::TooMany { elements, limit })
     }
 
-    /// Whether `v`, which has a corner, is on a boundary: by I5 its corner then is the first.
+    /// Returns whether `v`, which has a corner, is on a boundary. Relies on I5.
     #[inline]
     fn is_on_boundary(&self, v: VertexId) -> bool {
         let first = self.corner.read(v.index()).get();
@@ -278,7 +280,7 @@ impl<P: Probe> EditableCornerTable<P> {
     }
 }
 
-/// The steps that edits are made of.
+/// Steps that several edits share.
 impl<P: Probe> EditableCornerTable<P> {
     #[inline]
     fn push_vertex(&mut self, at: Point, corner: Slot<CornerId>) -> VertexId {
@@ -288,7 +290,7 @@ impl<P: Probe> EditableCornerTable<P> {
         v
     }
 
-    /// The corners of the `i`-th triangle to be pushed from now on.
+    /// Returns the corners of the `i`-th triangle that will be pushed next.
     #[inline]
     fn new_corners(&self, i: u32) -> [CornerId; 3] {
         let first = row(self.vertex.len()) + 3 * i;
@@ -301,7 +303,7 @@ impl<P: Probe> EditableCornerTable<P> {
         self.opposite.extend(opposites);
     }
 
-    /// Lets `across`, if it is there, be opposite to `c`: the other half of a link.
+    /// Sets the opposite of `across` to `c`, if `across` is not empty: the second half of a link.
     #[inline]
     fn answer(&mut self, across: Slot<CornerId>, c: Slot<CornerId>) {
         if let Some(across) = across.get() {
@@ -309,7 +311,7 @@ impl<P: Probe> EditableCornerTable<P> {
         }
     }
 
-    /// Lets the fan of `v` be entered at `new`, if it was at `old`.
+    /// Sets `corner(v)` to `new`, if it was `old`.
     #[inline]
     fn reenter(&mut self, v: VertexId, old: CornerId, new: CornerId) {
         if *self.corner.read(v.index()) == Slot::some(old) {
@@ -317,7 +319,7 @@ impl<P: Probe> EditableCornerTable<P> {
         }
     }
 
-    /// Marks `f` as I8 says. Nobody is opposite to its corners any more.
+    /// Marks `f` as deleted (I8). No other corner may be opposite to its corners any more.
     #[inline]
     fn delete_triangle(&mut self, f: FaceId) {
         let first = 3 * f.row();
@@ -328,7 +330,7 @@ impl<P: Probe> EditableCornerTable<P> {
         self.face_holes.dig(f.index());
     }
 
-    /// Deletes `v`, which has no triangle any more.
+    /// Deletes `v`, which has no triangles any more.
     #[inline]
     fn delete_vertex(&mut self, v: VertexId) {
         *self.corner.write(v.index()) = Slot::NONE;
@@ -336,13 +338,13 @@ impl<P: Probe> EditableCornerTable<P> {
     }
 }
 
-/// The edge that `c` faces, called by it.
+/// Returns the handle of the edge that `c` faces, if `c` is the lower of the two corners.
 #[inline]
 fn faced_by(c: CornerId) -> EdgeCorner {
     EdgeCorner::new(c.row())
 }
 
-/// Tells a new name, if it is one.
+/// Reports the new handle of an edge to the log, if it changed.
 #[inline]
 fn tell_renamed<P: Probe>(
     log: &mut impl EditLog<EditableCornerTable<P>>,
@@ -356,7 +358,7 @@ fn tell_renamed<P: Probe>(
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{MeshQuery, PolygonMesh};
+    use sixfold_core::{MeshQuery, PolygonMesh};
 
     use super::*;
 
@@ -366,19 +368,19 @@ mod tests {
         EditableCornerTable::from_polygons(&polygons).expect("manifold")
     }
 
-    /// Two triangles and a third apart; the third, v4 and all that is theirs are deleted.
+    /// Returns two triangles and a separate third one; the third triangle and v4 are deleted.
     fn with_holes() -> EditableCornerTable {
         let mut mesh = table(8, &[[0, 1, 2], [0, 2, 3], [4, 5, 6]]);
         mesh.remove_face(FaceId::new(2), &mut ())
-            .expect("it is there");
+            .expect("the face exists");
         mesh.remove_vertex(VertexId::new(4), &mut ())
-            .expect("it is isolated");
+            .expect("the vertex exists");
         assert_eq!(mesh.validate(), Ok(()));
         mesh
     }
 
     #[test]
-    fn deleted_elements_are_nowhere() {
+    fn deleted_elements_are_not_listed_or_counted() {
         let mesh = with_holes();
         assert_eq!(
             [mesh.vertex_count(), mesh.edge_count(), mesh.face_count()],
@@ -395,14 +397,14 @@ mod tests {
     }
 
     #[test]
-    fn names_of_nothing_are_refused() {
+    fn handles_of_missing_elements_are_refused() {
         let mut mesh = with_holes();
         for row in [4, 8, u32::MAX] {
             let vertex = VertexId::new(row);
             let refused = mesh.set_position(vertex, Point::ZERO, &mut ());
             assert_eq!(refused, Err(EditError::NoSuchVertex { vertex }));
         }
-        // c5 faces the edge of c1, which names it; c7 is a deleted corner, c9 none.
+        // c5 faces the same edge as c1, which names it; c7 is a deleted corner; c9 does not exist.
         for row in [5, 7, 9, u32::MAX] {
             let edge = EdgeCorner::new(row);
             let refused = mesh.flip_edge(edge, &mut ());
@@ -417,37 +419,37 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "no vertex v4: it was deleted")]
-    fn a_deleted_vertex_panics_by_name() {
+    fn listing_the_edges_of_a_deleted_vertex_panics() {
         let _ = with_holes().vertex_edges(VertexId::new(4)).count();
     }
 
     #[test]
     #[should_panic(expected = "no vertex v4: it was deleted")]
-    fn a_deleted_vertex_is_at_no_place() {
+    fn the_position_of_a_deleted_vertex_panics() {
         with_holes().position(VertexId::new(4));
     }
 
     #[test]
     #[should_panic(expected = "no face f2: it was deleted")]
-    fn a_deleted_face_has_no_corners() {
+    fn listing_the_vertices_of_a_deleted_face_panics() {
         let _ = with_holes().face_vertices(FaceId::new(2)).count();
     }
 
     #[test]
     #[should_panic(expected = "no face f2: it was deleted")]
-    fn a_deleted_face_has_no_neighbours() {
+    fn listing_the_neighbours_of_a_deleted_face_panics() {
         let _ = with_holes().face_faces(FaceId::new(2)).count();
     }
 
     #[test]
     #[should_panic(expected = "no edge e7: the triangle of that corner was deleted")]
-    fn a_deleted_edge_has_no_ends() {
+    fn the_ends_of_a_deleted_edge_panic() {
         with_holes().edge_vertices(EdgeCorner::new(7));
     }
 
     #[test]
     #[should_panic(expected = "no edge e7: the triangle of that corner was deleted")]
-    fn a_deleted_edge_has_no_neighbours() {
+    fn listing_the_neighbours_of_a_deleted_edge_panics() {
         let _ = with_holes().edge_edges(EdgeCorner::new(7)).count();
     }
 }

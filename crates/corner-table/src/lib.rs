@@ -1,81 +1,82 @@
-//! Corner table: triangles as two columns, the vertex of each corner and the corner opposite to it.
+//! Corner table: a triangle mesh in two arrays, the vertex and the opposite corner of each corner.
 //!
-//! Choose it for large triangle meshes that must know their neighbours: it is the smallest of the
-//! structures that answer everything in place, and its column of vertices is the index list that a
-//! renderer takes as it is. Not for polygons, nor for input with three faces on an edge; both are
-//! refused. Start at [`AnyCornerTable`], whose numbered invariants explain the rest. After Rossignac,
-//! Safonova & Szymczak, *3D compression made simple* (2001).
+//! Use it for large triangle meshes with neighbour queries. It is the smallest structure that
+//! answers every query without a search of the whole mesh. Its `vertex` table is an index list that
+//! a renderer accepts unchanged. It does not hold polygons or edges with three faces: building from
+//! them returns an error. Start at [`AnyCornerTable`]; its numbered invariants define the tables.
+//! After Rossignac, Safonova & Szymczak, *3D compression made simple* (2001).
 //!
 //! | holds | |
 //! |---|---|
 //! | triangles, boundaries, isolated vertices | yes |
-//! | polygons, edges with three faces, vertices with two fans, faces that disagree about the side | no: refused by name |
+//! | polygons, edges with three faces, vertices with two fans, faces with inconsistent orientation | no: the error names the elements |
 //!
 //! # Complexity
 //!
 //! | query | cost | reads |
 //! |---|---|---|
-//! | VV | O(valence) | `corner`, then one row of `vertex` and one of `opposite` a neighbour |
-//! | VE, VF | O(valence) | `corner`, then one row of `opposite` a triangle |
+//! | VV | O(valence) | `corner`, then one row of `vertex` and one of `opposite` per neighbour |
+//! | VE, VF | O(valence) | `corner`, then one row of `opposite` per triangle |
 //! | EV | O(1) | two rows of `vertex`, of one triangle |
-//! | EE | O(valence) of both ends | one row of `opposite` an edge |
+//! | EE | O(valence) of both ends | one row of `opposite` per edge |
 //! | EF | O(1) | one row of `opposite` |
-//! | FV | O(1) | three rows of `vertex`, side by side |
-//! | FE, FF | O(1) | three rows of `opposite`, side by side |
-//! | the edges, their number | O(corners) | `opposite` once through |
+//! | FV | O(1) | three rows of `vertex`, adjacent in memory |
+//! | FE, FF | O(1) | three rows of `opposite`, adjacent in memory |
+//! | listing or counting edges | O(corners) | `opposite`, once |
 //! | building | O(corners + vertices) | |
-//! | refining (triangles, √3) | O(corners + vertices) | each row once, in closed form |
+//! | refining (triangles, √3) | O(corners + vertices) | each row once; every new row has a closed formula |
 //!
 //! # Edits
 //!
-//! [`MeshEdit`](mesh_core::MeshEdit), in place. The rows of what is deleted stay holes until `compact`.
+//! [`MeshEdit`](sixfold_core::MeshEdit) works in place. Deleted rows stay as holes until `compact`.
 //!
-//! | edit | cost | which records change |
+//! | edit | cost | rows that change |
 //! |---|---|---|
 //! | `set_position` | O(1) | one row of `positions` |
-//! | `add_vertex` | O(1) | one more of `positions` and `corner` |
+//! | `add_vertex` | O(1) | a new row of `positions` and of `corner` |
 //! | `add_face` | O(valence) to find the place | a new triangle; `opposite` across its sides, `corner` of its vertices |
 //! | `remove_face` | O(1) | its rows; `opposite` across its sides, `corner` of its vertices |
-//! | `remove_vertex` | O(valence) | the same of all its triangles |
-//! | `remove_isolated_vertices` | O(vertices) | a bit for each of them |
-//! | `bisect_edge` | O(1) | two rows of `vertex`, two triangles more, `opposite` across four corners |
-//! | `poke_face` | O(1) | one row of `vertex`, two triangles more, `opposite` across four corners |
-//! | `flip_edge` | O(valence) to be legal | two rows of `vertex`, six of `opposite`; no position |
-//! | `collapse_edge` | O(valence) | `vertex` around the end that goes, four rows of `opposite`, two triangles deleted |
-//! | `split_vertex` | O(valence) | `vertex` around the new vertex, two triangles more, `opposite` across four corners |
-//! | `split_edge`, `split_face`, `dissolve_edge` | | not offered: they make polygons |
+//! | `remove_vertex` | O(valence) | as for `remove_face`, for all its triangles |
+//! | `remove_isolated_vertices` | O(vertices) | one bit per removed vertex |
+//! | `bisect_edge` | O(1) | two rows of `vertex`, two new triangles, `opposite` across four corners |
+//! | `poke_face` | O(1) | one row of `vertex`, two new triangles, `opposite` across four corners |
+//! | `flip_edge` | O(valence) to check, O(1) to change | two rows of `vertex`, six of `opposite`; no position |
+//! | `collapse_edge` | O(valence) | `vertex` around the removed end, four rows of `opposite`, two triangles deleted |
+//! | `split_vertex` | O(valence) | `vertex` around the new vertex, two new triangles, `opposite` across four corners |
+//! | `split_edge`, `split_face`, `dissolve_edge` | | not supported: they make polygons |
 //! | `compact` | O(corners + vertices) | every row |
 //!
-//! Where a corner comes to face another edge, the edge may be called by another corner from then on;
-//! the [`EditLog`](mesh_core::EditLog) is told.
+//! An edit can change which corner has the lower row of the two that face an edge. The edge then
+//! has a new handle, which the edit reports to the [`EditLog`](sixfold_core::EditLog).
 //!
-//! Corner `c` belongs to triangle `c / 3`, and `next` and `prev` are arithmetic: what a half-edge
-//! mesh stores for each half, this one computes. An edge is named by the corner that faces it, of
-//! two the lower, so that data by edge is a vector with a row for each corner: no hashing, but half
-//! of the rows are idle.
+//! Corner `c` belongs to triangle `c / 3`. `next` and `prev` are computed; a half-edge mesh stores
+//! them. An edge is named by the lower of the corners that face it. Data by edge is a vector with
+//! one row per corner, without hashing; half of the rows are unused.
 //!
-//! # What the sweeps wait for
+//! # What limits the speed of the sweeps
 //!
-//! Around a vertex each step needs the row that the last one read: a load, then the corner before
-//! (a multiplication to find `c % 3`, a comparison, a choice), about ten cycles in all with the
-//! tables in the nearest cache. That chain is the price of storing no `next`, and it bounds VV, VE,
-//! VF and EE in order, not the bytes: smoothing 2,562 vertices took 18 ns each and 40,962 took 27,
-//! with 76 bytes to move (icospheres, one core of a shared AMD EPYC). In random order it is the
-//! latency of the cache or memory behind each step: 58 ns a vertex on 82,000 triangles, and 390 on
-//! 1.3 million, one trip to memory a neighbour. FV, FE and FF read three rows in sequence and are
-//! bound by what is done with the answer; so are the edges and EF, at 1.5 ns an edge.
+//! Around a vertex, each step needs the row that the step before it read. A step is a load and the
+//! computation of `prev`: a multiplication for `c % 3`, a comparison and a selection. It takes
+//! about ten cycles if the tables are in the nearest cache. This chain of dependent steps is the
+//! price of not storing `next`. It limits VV, VE, VF and EE if the vertices are visited in order;
+//! the number of bytes does not. Smoothing took 18 ns per vertex on 2,562 vertices and 27 ns on
+//! 40,962, and moved 76 bytes per vertex (icospheres, one core of a shared AMD EPYC). In random
+//! order, the limit is the latency of the cache or memory at each step: 58 ns per vertex on 82,000
+//! triangles, and 390 ns on 1.3 million, which is one memory access per neighbour. FV, FE and FF
+//! read three rows in sequence; their limit is the work done with the result. The same holds for
+//! listing the edges and for EF, at 1.5 ns per edge.
 //!
 //! # Examples
 //!
 //! ```
-//! use corner_table::CornerTable;
-//! use mesh_core::{MeshQuery, Point, PolygonMesh, Representation, VertexId};
+//! use sixfold_corner_table::CornerTable;
+//! use sixfold_core::{MeshQuery, Point, PolygonMesh, Representation, VertexId};
 //!
 //! let square = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
 //! let polygons = PolygonMesh::new(square, [[0, 1, 2], [0, 2, 3]])?;
 //! let mesh = CornerTable::from_polygons(&polygons)?;
 //!
-//! // Counter-clockwise, from one boundary edge to the other.
+// Counter-clockwise, from one boundary edge to the other.
 //! let v = VertexId::new(0);
 //! assert!(mesh.vertex_vertices(v).eq([1, 2, 3].map(VertexId::new)));
 //!
@@ -97,3 +98,21 @@ mod validate;
 pub use circulate::CornersAt;
 pub use mesh::{AnyCornerTable, CornerId, CornerTable, EdgeCorner, EditableCornerTable};
 pub use refine::EdgeNumbers;
+
+/// The traits and types that all structures share: `PolygonMesh`, `MeshQuery`, handles, errors.
+pub use sixfold_core;
+
+/// Imports for a program: the types of this structure, and the traits of its queries and edits.
+///
+/// ```
+/// use sixfold_corner_table::prelude::*;
+///
+/// let triangle = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]])?;
+/// let mesh = CornerTable::from_polygons(&triangle)?;
+/// assert_eq!(mesh.edge_count(), 3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub mod prelude {
+    pub use crate::{CornerTable, EditableCornerTable};
+    pub use sixfold_core::prelude::*;
+}

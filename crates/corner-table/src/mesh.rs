@@ -1,41 +1,41 @@
-//! The tables, their invariants, and the classic operators.
+//! The tables, their invariants, and the corner operators.
 
-use mesh_core::{
+use sixfold_core::{
     Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe, Slot, Table, Untraced,
     VERTEX_HOLES, VertexId, Whole, row_id,
 };
 
 row_id! {
-    /// The name of one corner, `c7`; the corners of triangle `t` are `3t`, `3t + 1` and `3t + 2`.
+    /// The handle of one corner, `c7`; the corners of triangle `t` are `3t`, `3t + 1` and `3t + 2`.
     pub struct CornerId, "c"
 }
 
 row_id! {
-    /// The name of one edge, `e7`: the corner that faces it, of two the lower.
+    /// The handle of one edge, `e7`: the corner that faces it, the lower of the two.
     ///
-    /// Data by edge is a vector with a row for every corner, of which a closed mesh uses half.
+    /// Data by edge is a vector with one row per corner; a closed mesh uses half of the rows.
     pub struct EdgeCorner, "e"
 }
 
 impl CornerId {
-    /// The corner after this one in its triangle, counter-clockwise.
+    /// Returns the next corner in its triangle, counter-clockwise.
     ///
-    /// Written with a comparison: `3 * (c / 3) + (c + 1) % 3` has two divisions where this has one
-    /// multiplication, and every step around a vertex waits for it.
+    /// Uses a comparison: `3 * (c / 3) + (c + 1) % 3` has two divisions, this code one
+    /// multiplication. Every step around a vertex depends on the result.
     #[inline]
     pub const fn next(self) -> Self {
         let c = self.index() as u32;
         Self::new(if c % 3 == 2 { c - 2 } else { c + 1 })
     }
 
-    /// The corner before this one in its triangle: the next of the next.
+    /// Returns the previous corner in its triangle, which is the next of the next.
     #[inline]
     pub const fn prev(self) -> Self {
         let c = self.index() as u32;
         Self::new(if c.is_multiple_of(3) { c + 2 } else { c - 1 })
     }
 
-    /// The triangle that has this corner.
+    /// Returns the triangle of this corner.
     #[inline]
     pub const fn triangle(self) -> FaceId {
         FaceId::new(self.index() as u32 / 3)
@@ -43,14 +43,14 @@ impl CornerId {
 }
 
 impl EdgeCorner {
-    /// The corner that faces the edge, of two the lower.
+    /// Returns the corner that faces the edge, the lower of the two.
     #[inline]
     pub const fn corner(self) -> CornerId {
         CornerId::new(self.index() as u32)
     }
 }
 
-/// A mesh of triangles as two columns: the vertex of each corner, and the corner opposite to it.
+/// A mesh of triangles in two arrays: the vertex and the opposite corner of each corner.
 ///
 /// ```text
 ///   left(c) ─────── v ─────── right(c)      c = 3t + i is corner i of triangle t, here at v
@@ -64,29 +64,30 @@ impl EdgeCorner {
 ///              opposite(c)
 /// ```
 ///
-/// Across a boundary edge there is no corner: `opposite`, and all that goes through it, has none.
+/// There is no corner across a boundary edge: `opposite` and operators that use it return `None`.
 ///
 /// # Invariants
 ///
 /// - I1  Triangle `t` has the corners `3t`, `3t + 1`, `3t + 2`, at three vertices of the mesh.
-/// - I2  `opposite(opposite(c))` is `c`; none where `c` faces a boundary edge.
-/// - I3  `c` and `opposite(c)` face one edge from its two sides: `vertex(next(c))` is
+/// - I2  `opposite(opposite(c))` is `c`; `opposite(c)` is `None` if `c` faces a boundary edge.
+/// - I3  `c` and `opposite(c)` face the same edge from its two sides: `vertex(next(c))` is
 ///   `vertex(prev(opposite(c)))`, and `vertex(prev(c))` is `vertex(next(opposite(c)))`.
-/// - I4  `corner(v)` is a corner at `v`; none if `v` is isolated.
-/// - I5  If `v` is on a boundary, `corner(v)` has no `unswing`: the fan is entered at its start.
-/// - I6  Swinging from `corner(v)` meets all corners at `v`: every vertex is manifold.
+/// - I4  `corner(v)` is a corner at `v`, or `None` if `v` is isolated.
+/// - I5  If `v` is on a boundary, `corner(v)` has no `unswing`: it is the first corner of the fan.
+/// - I6  Swinging from `corner(v)` visits all corners at `v`: every vertex is manifold.
 /// - I7  No two edges have the same ends.
-/// - I8  The corners of a deleted triangle are at no vertex (the row `u32::MAX`), and each is opposite
-///   to itself, as no other corner is; a deleted vertex has no corner. `face_holes` and `vertex_holes`
-///   have just these rows.
+/// - I8  The corners of a deleted triangle have the vertex row `u32::MAX`, and each is its own
+///   opposite. No other corner is its own opposite. A deleted vertex has no corner. `face_holes`
+///   and `vertex_holes` contain exactly these rows.
 ///
-/// I1 to I7 are about what is not deleted. By I8 a corner names an edge exactly where what is opposite
-/// comes after it, or is none: a deleted corner names none, and nobody has to ask the holes.
+/// I1 to I7 are about elements that are not deleted. I8 makes the test for an edge handle simple: a
+/// corner names an edge if and only if its opposite has a higher row or is `None`. A corner of a
+/// deleted triangle thus names no edge, and the test need not read `face_holes`.
 ///
 /// # Memory
 ///
-/// 12 bytes a vertex for its position and 4 for `corner`, 24 a triangle: 64 bytes, or 16 words, per
-/// vertex of a large closed mesh. Once something was deleted, a bit a row besides.
+/// 12 bytes per vertex for its position and 4 for `corner`, 24 per triangle: 64 bytes, or 16 words,
+/// per vertex of a large closed mesh. After the first deletion, also one bit per row.
 #[derive(Debug)]
 pub struct AnyCornerTable<P: Probe, E: Editing> {
     pub(crate) positions: Table<Point, P>,
@@ -97,12 +98,13 @@ pub struct AnyCornerTable<P: Probe, E: Editing> {
     pub(crate) face_holes: E::Holes<P>,
 }
 
-mesh_core::clone_by_field!(AnyCornerTable<P: Probe, E: Editing> { positions, corner, vertex, opposite, vertex_holes, face_holes });
+sixfold_core::clone_by_field!(AnyCornerTable<P: Probe, E: Editing> { positions, corner, vertex, opposite, vertex_holes, face_holes });
 
-/// A corner table of which nothing can be deleted: [`AnyCornerTable`] whose rows are all elements.
+/// A corner table that cannot delete elements: an [`AnyCornerTable`] without holes.
 pub type CornerTable<P = Untraced> = AnyCornerTable<P, Whole>;
 
-/// A corner table that can be edited ([`MeshEdit`](mesh_core::MeshEdit)): [`AnyCornerTable`] with holes.
+/// A corner table that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an [`AnyCornerTable`]
+/// with holes.
 pub type EditableCornerTable<P = Untraced> = AnyCornerTable<P, Editable>;
 
 impl<P: Probe> From<CornerTable<P>> for EditableCornerTable<P> {
@@ -119,70 +121,73 @@ impl<P: Probe> From<CornerTable<P>> for EditableCornerTable<P> {
     }
 }
 
-/// The vertex that the corners of a deleted triangle are at: a row that no table has.
+/// The vertex row of the corners of a deleted triangle; no table has this row.
 pub(crate) const NOWHERE: VertexId = VertexId::new(u32::MAX);
 
-/// The classic operators, each O(1). One that reads a table panics, and names the row, if there is none.
-/// They do not look whether a triangle was deleted: what they say of its corners is I8.
+/// The operators of the corner table (Rossignac et al.), each O(1). An operator that reads a table
+/// panics with the row if the row does not exist. The operators do not check for deleted triangles:
+/// for their corners they return what I8 states.
 impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
-    /// The vertex that `c` is at.
+    /// Returns the vertex at the corner `c`.
     #[inline]
     pub fn vertex(&self, c: CornerId) -> VertexId {
         *self.vertex.read(c.index())
     }
 
-    /// The corner across the edge that `c` faces; none across a boundary edge.
+    /// Returns the corner across the edge that `c` faces, or `None` if it is a boundary edge.
     #[inline]
     pub fn opposite(&self, c: CornerId) -> Option<CornerId> {
         self.opposite.read(c.index()).get()
     }
 
-    /// The next corner of the triangle, counter-clockwise; no table is read.
+    /// Returns the next corner in the triangle, counter-clockwise; reads no table.
     #[inline]
     pub fn next(&self, c: CornerId) -> CornerId {
         c.next()
     }
 
-    /// The corner before `c`, which is the next of its next; no table is read.
+    /// Returns the previous corner in the triangle, which is the next of the next; reads no table.
     #[inline]
     pub fn prev(&self, c: CornerId) -> CornerId {
         c.prev()
     }
 
-    /// The triangle that has the corner `c`; no table is read.
+    /// Returns the triangle of the corner `c`; reads no table.
     #[inline]
     pub fn triangle(&self, c: CornerId) -> FaceId {
         c.triangle()
     }
 
-    /// The far corner of the triangle across the edge from `vertex(c)` to the next corner.
+    /// Returns the corner across the edge from `vertex(c)` to `vertex(next(c))`.
     #[inline]
     pub fn left(&self, c: CornerId) -> Option<CornerId> {
         self.opposite(c.prev())
     }
 
-    /// The far corner of the triangle across the edge from `vertex(c)` to the corner before.
+    /// Returns the corner across the edge from `vertex(c)` to `vertex(prev(c))`.
     #[inline]
     pub fn right(&self, c: CornerId) -> Option<CornerId> {
         self.opposite(c.next())
     }
 
-    /// The corner after `c` around its vertex, counter-clockwise; none at the end of an open fan.
+    /// Returns the next corner around the vertex of `c`, counter-clockwise; `None` at the end of a
+    /// fan.
     #[inline]
     pub fn swing(&self, c: CornerId) -> Option<CornerId> {
         self.right(c).map(CornerId::next)
     }
 
-    /// The corner before `c` around its vertex; none at the start of an open fan.
+    /// Returns the previous corner around the vertex of `c`, or `None` at the start of an open fan.
     #[inline]
     pub fn unswing(&self, c: CornerId) -> Option<CornerId> {
         self.left(c).map(CornerId::prev)
     }
 }
 
-/// From vertices, triangles and edges to corners, and back. Panics as the operators do.
+/// Conversions between vertices, triangles, edges and corners. Each panics as the operators do.
 impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
-    /// A corner at `v`, the first of the fan if `v` is on a boundary; none if `v` is isolated; O(1).
+    /// Returns a corner at `v`, the first of the fan on a boundary; `None` if `v` is isolated.
+    /// O(1).
     #[inline]
     pub fn corner_at(&self, v: VertexId) -> Option<CornerId> {
         let corner = self.corner.read(v.index()).get();
@@ -192,7 +197,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
         corner
     }
 
-    /// The three corners of `t`, counter-clockwise; O(1).
+    /// Returns the three corners of `t`, counter-clockwise; O(1).
     #[inline]
     pub fn corners_of(&self, t: FaceId) -> [CornerId; 3] {
         if 3 * t.index() >= self.vertex.len() || *self.vertex.read(3 * t.index()) == NOWHERE {
@@ -201,28 +206,28 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
         corners_of(t)
     }
 
-    /// The edge that `c` faces; O(1).
+    /// Returns the edge that `c` faces; O(1).
     #[inline]
     pub fn edge(&self, c: CornerId) -> EdgeCorner {
         edge_between(c, *self.opposite.read(c.index()))
     }
 
-    /// Whether `c` faces a boundary edge; O(1).
+    /// Returns whether `c` faces a boundary edge; O(1).
     #[inline]
     pub fn is_boundary(&self, c: CornerId) -> bool {
         self.opposite(c).is_none()
     }
 
-    /// How many corners there are: three for each triangle.
+    /// Returns the number of corners: three for each triangle.
     #[inline]
     pub fn corner_count(&self) -> usize {
         self.vertex.len() - 3 * self.face_holes.len()
     }
 }
 
-/// The rows of a triangle or an edge that must be there.
+/// Rows of a triangle or an edge; each panics if the element does not exist.
 impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
-    /// The vertices of `t`.
+    /// Returns the vertices of `t`.
     #[inline]
     pub(crate) fn vertices_of(&self, t: FaceId) -> [VertexId; 3] {
         let [a, b, c] = self.rows_of(&self.vertex, t);
@@ -232,7 +237,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
         [a, b, c]
     }
 
-    /// The corners of `t`, each with the one opposite to it.
+    /// Returns the corners of `t`, each with its opposite corner.
     #[inline]
     pub(crate) fn opposites_of(&self, t: FaceId) -> [(CornerId, Slot<CornerId>); 3] {
         let [i, j, k] = corners_of(t);
@@ -243,7 +248,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
         [(i, a), (j, b), (k, c)]
     }
 
-    /// The vertices at the two corners after the one that `e` is named by: its ends.
+    /// Returns the ends of `e`: the vertices at the next and the previous corner.
     #[inline]
     pub(crate) fn ends_of(&self, e: EdgeCorner) -> [VertexId; 2] {
         if e.index() >= self.vertex.len() {
@@ -256,7 +261,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
         [a, b]
     }
 
-    /// The corner across `e`; none if `e` is a boundary edge.
+    /// Returns the corner across `e`; an empty slot if `e` is a boundary edge.
     #[inline]
     pub(crate) fn across(&self, e: EdgeCorner) -> Slot<CornerId> {
         let across = *self.opposite.read(e.index());
@@ -266,7 +271,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
         across
     }
 
-    /// Panics if `v` was deleted: for where there is no corner at it.
+    /// Panics if `v` was deleted. Called only if there is no corner at `v`.
     #[cold]
     #[inline(never)]
     pub(crate) fn expect_vertex(&self, v: VertexId) {
@@ -281,7 +286,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
         panic!("no vertex {v}: it was deleted")
     }
 
-    /// The three rows of a triangle in a table by corner.
+    /// Returns the three rows of a triangle in a table by corner.
     #[inline]
     fn rows_of<T: Copy>(&self, table: &Table<T, P>, t: FaceId) -> [T; 3] {
         let start = 3 * t.index();
@@ -294,7 +299,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
         }
     }
 
-    /// Panics if `t` was deleted: for a mesh with holes.
+    /// Panics if `t` was deleted. Called only for meshes that can have holes.
     #[inline(never)]
     fn expect_triangle(&self, t: FaceId) {
         if self.face_holes.has(t.index()) {
@@ -319,67 +324,67 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
         if e.index() < corners {
             panic!("no edge {e}: the triangle of that corner was deleted");
         }
-        panic!("no edge {e}: it is named by one of {corners} corners")
+        panic!("no edge {e}: the mesh has {corners} corners")
     }
 }
 
-/// The corners of a triangle that is there.
+/// Returns the three corners of `t`, without a check that `t` exists.
 #[inline]
 fn corners_of(t: FaceId) -> [CornerId; 3] {
     let c = 3 * t.index() as u32;
     [c, c + 1, c + 2].map(CornerId::new)
 }
 
-/// The edge that `c` and `across` face: the lower of the two names it.
+/// Returns the edge that `c` and `across` face: the lower of the two names it.
 #[inline]
 pub(crate) fn edge_between(c: CornerId, across: Slot<CornerId>) -> EdgeCorner {
     let lower = Slot::some(c).min(across).get().unwrap_or(c);
     EdgeCorner::new(lower.index() as u32)
 }
 
-/// Whether `c`, with `across` opposite to it, is the corner that names the edge; of a deleted
-/// triangle no corner is, being its own opposite.
+/// Returns whether `c`, with `across` opposite to it, is the corner that names the edge. False for
+/// a deleted triangle, whose corners are their own opposites.
 #[inline(always)]
 pub(crate) fn names_edge(c: CornerId, across: Slot<CornerId>) -> bool {
-    // An empty slot comes after every corner.
+    // An empty slot is greater than every corner.
     Slot::some(c) < across
 }
 
-/// The tables as they lie in memory, for export and for loops of one's own; with their holes (I8),
-/// if something was deleted and [`compact`](mesh_core::MeshEdit::compact) has not been called since.
+/// The tables as they are in memory, for export and for the caller's own loops. They contain holes
+/// (I8) if something was deleted since the last [`compact`](sixfold_core::MeshEdit::compact).
 impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
-    /// Positions by vertex.
+    /// Returns the positions by vertex.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
     }
 
-    /// A corner by vertex.
-    pub fn corner_rows(&self) -> &[Slot<CornerId>] {
+    /// Returns one corner for each vertex (I4).
+    pub fn vertex_corners(&self) -> &[Slot<CornerId>] {
         self.corner.rows()
     }
 
-    /// Vertices by corner: three by three, the triangles as an index list.
-    pub fn vertex_rows(&self) -> &[VertexId] {
+    /// Returns the vertices by corner: three rows per triangle, as in an index list.
+    pub fn corner_vertices(&self) -> &[VertexId] {
         self.vertex.rows()
     }
 
-    /// Opposite corners by corner.
-    pub fn opposite_rows(&self) -> &[Slot<CornerId>] {
+    /// Returns the opposite corners by corner.
+    pub fn opposite_corners(&self) -> &[Slot<CornerId>] {
         self.opposite.rows()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{MeshQuery, PolygonMesh, Representation};
+    use sixfold_core::{MeshQuery, PolygonMesh, Representation};
 
     use super::*;
 
     fn tables() -> [CornerTable; 3] {
-        let hole = shapes::grid_with_hole(4, 4).expect("a size that is there");
+        let hole = sixfold_shapes::grid_with_hole(4, 4).expect("a valid size");
         [
-            shapes::icosahedron(),
-            shapes::triangle_grid(3, 2).expect("a size that is there"),
+            sixfold_shapes::icosahedron(),
+            sixfold_shapes::triangle_grid(3, 2).expect("a valid size"),
             hole.fan_triangulated().expect("small"),
         ]
         .map(|polygons| CornerTable::from_polygons(&polygons).expect("manifold"))
@@ -390,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn the_steps_within_a_triangle_are_those_of_the_paper() {
+    fn next_and_prev_agree_with_the_formulas_of_the_paper() {
         for c in 0..30 {
             let (id, t) = (CornerId::new(c), c / 3);
             assert_eq!(id.triangle(), FaceId::new(t));
@@ -400,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn the_operators_keep_their_laws() {
+    fn the_operators_agree_with_each_other() {
         for mesh in tables() {
             for c in corners(&mesh) {
                 let (next, prev) = (mesh.next(c), mesh.prev(c));
@@ -417,7 +422,7 @@ mod tests {
                 } else {
                     assert_eq!(mesh.edge(c).corner(), c);
                 }
-                // A swing crosses the edge to the corner before, which then is the corner after.
+                // A swing crosses the edge to the previous vertex, which is then the next vertex.
                 if let Some(turned) = mesh.swing(c) {
                     assert_eq!(mesh.vertex(turned), mesh.vertex(c));
                     assert_eq!(mesh.vertex(mesh.next(turned)), mesh.vertex(prev));
@@ -437,14 +442,14 @@ mod tests {
     }
 
     #[test]
-    fn a_tetrahedron_has_the_table_worked_out_by_hand() {
+    fn a_tetrahedron_has_the_expected_tables() {
         // Each triangle lacks one vertex: v3, v2, v0, v1. The corner across is at that vertex.
         let corners = [Point::ZERO, Point::X, Point::Y, Point::Z];
         let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
         let polygons = PolygonMesh::new(corners, triangles).expect("valid");
         let mesh = CornerTable::from_polygons(&polygons).expect("closed");
         let opposite: Vec<usize> = mesh
-            .opposite_rows()
+            .opposite_corners()
             .iter()
             .map(|o| o.get().unwrap().index())
             .collect();
@@ -455,31 +460,31 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "no vertex 12: table `corner` has 12 rows")]
-    fn a_vertex_that_is_not_there_panics_by_name() {
+    fn a_missing_vertex_panics_with_its_row() {
         let _ = tables()[0].vertex_vertices(VertexId::new(12)).count();
     }
 
     #[test]
     #[should_panic(expected = "no face f20: there are 20 triangles")]
-    fn a_triangle_that_is_not_there_panics_by_name() {
+    fn a_missing_triangle_panics_with_its_handle() {
         let _ = tables()[0].face_vertices(FaceId::new(20)).count();
     }
 
     #[test]
     #[should_panic(expected = "no face f4294967295: there are 20 triangles")]
-    fn no_triangle_is_too_far_out_to_be_named() {
+    fn the_largest_triangle_handle_panics_with_its_handle() {
         tables()[0].corners_of(FaceId::new(u32::MAX));
     }
 
     #[test]
-    #[should_panic(expected = "no edge e60: it is named by one of 60 corners")]
-    fn an_edge_that_is_not_there_panics_by_name() {
+    #[should_panic(expected = "no edge e60: the mesh has 60 corners")]
+    fn a_missing_edge_panics_with_its_handle() {
         tables()[0].edge_vertices(EdgeCorner::new(60));
     }
 
     #[test]
     #[should_panic(expected = "no corner 60: table `opposite` has 60 rows")]
-    fn a_corner_that_is_not_there_panics_by_name() {
+    fn a_missing_corner_panics_with_its_row() {
         tables()[0].opposite(CornerId::new(60));
     }
 }

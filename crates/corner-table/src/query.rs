@@ -1,6 +1,6 @@
 //! The nine relations.
 
-use mesh_core::{Editing, FaceId, HoleSet, MeshQuery, Point, Probe, Slot, VertexId, row};
+use sixfold_core::{Editing, FaceId, HoleSet, MeshQuery, Point, Probe, Slot, VertexId, row};
 
 use crate::circulate::{EdgeEdges, Neighbours, Spokes};
 use crate::mesh::{AnyCornerTable, CornerId, EdgeCorner, edge_between};
@@ -15,16 +15,16 @@ impl<P: Probe, E: Editing> MeshQuery for AnyCornerTable<P, E> {
         self.vertex_holes.handles(self.positions.len())
     }
 
-    /// Every corner that has none opposite, or a higher one; reads `opposite` once through.
+    /// Lists every corner whose opposite is missing or has a higher row; reads `opposite` once.
     #[inline]
     fn edges(&self) -> impl Iterator<Item = EdgeCorner> {
-        // Every second corner is passed over, in no order to be foreseen. To gather the edges of 64
-        // corners without a branch, and then to visit them, was slower all the same.
+        // About every second corner is skipped, in an unpredictable order. A variant that first
+        // gathered the edges of 64 corners without a branch was slower.
         let corners = (0..row(self.opposite.len())).map(CornerId::new);
         corners.filter_map(|c| {
             let across = *self.opposite.read(c.index());
             let edge = edge_between(c, across);
-            // The corners of a deleted triangle are across from themselves.
+            // The corners of a deleted triangle are their own opposites.
             let is_there = !E::DELETES || across != Slot::some(c);
             (edge.corner() == c && is_there).then_some(edge)
         })
@@ -39,7 +39,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyCornerTable<P, E> {
         self.positions.len() - self.vertex_holes.len()
     }
 
-    /// No table has edges, so they are counted; O(corners).
+    /// Counts the edges, because no table has one row per edge; O(corners).
     fn edge_count(&self) -> usize {
         let opposite = self.opposite.read_range(0..self.opposite.len());
         let boundary = opposite.iter().filter(|across| across.get().is_none());
@@ -99,7 +99,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyCornerTable<P, E> {
 
     #[inline]
     fn face_edges(&self, f: FaceId) -> impl Iterator<Item = EdgeCorner> {
-        // Side i runs from corner i to the next; the third corner faces it.
+        // Side i runs from corner i to the next corner; the third corner faces it.
         let [a, b, c] = self.opposites_of(f);
         [c, a, b]
             .into_iter()
@@ -108,13 +108,32 @@ impl<P: Probe, E: Editing> MeshQuery for AnyCornerTable<P, E> {
 
     #[inline]
     fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
-        // Two triangles may share two sides, or three.
+        // Two triangles may share two or three sides.
         let [a, b, c] = self
             .opposites_of(f)
             .map(|(_, across)| across.get().map(CornerId::triangle));
         let b = if b == a { None } else { b };
         let c = if c == a || c == b { None } else { c };
         [a, b, c].into_iter().flatten()
+    }
+
+    #[inline]
+    fn contains_vertex(&self, v: VertexId) -> bool {
+        v.index() < self.vertex_rows() && !self.vertex_holes.has(v.index())
+    }
+
+    #[inline]
+    fn contains_edge(&self, e: EdgeCorner) -> bool {
+        let c = e.corner();
+        if c.index() >= self.opposite.len() || self.face_holes.has(c.triangle().index()) {
+            return false;
+        }
+        edge_between(c, *self.opposite.read(c.index())) == e
+    }
+
+    #[inline]
+    fn contains_face(&self, f: FaceId) -> bool {
+        f.index() < self.face_rows() && !self.face_holes.has(f.index())
     }
 
     fn vertex_rows(&self) -> usize {
@@ -129,7 +148,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyCornerTable<P, E> {
         self.vertex.len() / 3
     }
 
-    /// The walk around `v` as it is: neighbours come counter-clockwise, from the boundary.
+    /// Returns `vertex_vertices`, which are in order: counter-clockwise, from the boundary.
     fn one_ring(&self, v: VertexId) -> Option<impl Iterator<Item = VertexId>> {
         Some(self.vertex_vertices(v))
     }

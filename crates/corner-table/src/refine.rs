@@ -1,72 +1,72 @@
-//! Every triangle split in the structure's own tables, in closed form.
+//! Splits of every triangle in the structure's own tables; every new row has a closed formula.
 //!
-//! In four, by the middles of the edges. Triangle `t` becomes 4t + i, which keeps its corner i, and
-//! 4t + 3 in the middle. Corner j of each lies towards corner j of `t`; so for two corners a and b of
-//! `t`, the child corner 3a + b is the one of a's triangle towards b, and 12t + 9 + i is that of the
-//! middle triangle at the middle of the edge that corner i faces.
+//! The split in four uses the middles of the edges. The children of triangle `t` are 4t + i, which
+//! keeps corner i of `t`, and 4t + 3 in the middle. Corner j of each lies towards corner j of `t`.
+//! For two corners a and b of `t`, the child corner 3a + b is thus the one towards b in the child
+//! of a. 12t + 9 + i is the corner of the middle triangle on the edge that corner i faces.
 //!
 //! ```text
 //!             b             vertex(3a + a)      vertex(a)
 //!            ╱ ╲            vertex(3a + b)      the middle of the edge that c faces
 //!           ╱3b+b           vertex(12t + 9 + i) the middle of the edge that corner i faces
 //!          ╱     ╲
-//!       3b+c──────3b+a      opposite(3a + a)    12t + 9 + i, a being corner i, and back
-//!        ╱ ╲     ╱ ╲        opposite(3a + b)    3a′ + b′, where b′ is opposite(b) and a′ the corner
-//!       ╱3c+b╲ ╱3a+b╲                           at the vertex of a there: the one before b′ if a
-//!      ╱     ╱ ╲     ╲                          is the one after b, else the one after b′
+//!       3b+c──────3b+a      opposite(3a + a)    12t + 9 + i if a is corner i, and vice versa
+//!        ╱ ╲     ╱ ╲        opposite(3a + b)    3a′ + b′, if b′ is opposite(b) and a′ is the
+//!       ╱3c+b╲ ╱3a+b╲                           corner at the vertex of a there: prev(b′) if a
+//!      ╱     ╱ ╲     ╲                          is next(b), else next(b′)
 //!     c───3c+a──3a+c──a
 //!                           corner(v)           4 corner(v), which is 3a + a
-//!                           corner(middle)      3 prev(c) + next(c), of the edge that c faces
+//!                           corner(middle)      3 prev(c) + next(c), if c faces the edge
 //! ```
 //!
-//! In three, by a point in each, and with every old inner edge flipped (√3). Each corner c of `t`
-//! makes the triangle c of the edge that it faces: from that edge's first end, a, to the point p′ of
-//! the triangle across and to the own point p. On a boundary the other end, b, stands in for p′; or
-//! where it is cut in three, its triangles are c, x and x + 1, with x = 3F + 2k for the k-th of the
-//! boundary edges.
+//! The split in three (√3) adds a point to each triangle and flips every old inner edge. Each
+//! corner c of `t` makes the child triangle c at the edge that it faces. Its vertices are the first
+//! end a of that edge, the point p′ of the triangle across, and the point p of `t`. On a boundary,
+//! the other end b replaces p′. If the boundary edge is cut in three, its triangles are c, x and
+//! x + 1, with x = 3F + 2k for the k-th boundary edge of a mesh of F triangles.
 //!
 //! ```text
 //!     p ─────── b           inner edge                boundary edge     cut: c      x       x + 1
 //!     │╲   c   ╱   vertex   a, p′, p                  a, b, p           a, m, p m, m′, p m′, b, p
-//!     │ ╲     ╱    opposite of corner 3c + 0 and on:
+//!     │ ╲     ╱    opposite of the corners 3c, 3c + 1 and 3c + 2:
 //!     │  ╲   ╱            0 3 o                       3 next(c) + 1     3x + 1  3x + 4  3 next(c) + 1
-//!     │ c ╲ ╱             1 that of the half-edge p–a, which the triangle of prev(c) has: 3 o₋ + 2,
+//!     │ c ╲ ╱             1 across p–a, in the triangle of prev(c): 3 o₋ + 2,
 //!     a ─── p′              3 prev(c) or 3x₋ + 3                                3c      3x
 //!                         2 3 next(o) + 1             none              none    none    none
 //! ```
 //!
-//! Here o is opposite(c), o₋ that of prev(c) and x₋ the first piece of the edge that prev(c) faces.
-//! A vertex keeps 3 prev(corner(v)); the point of `t` has 9t + 2.
+//! Here o is opposite(c), o₋ is opposite(prev(c)), and x₋ is the x of the edge that prev(c) faces.
+//! In the child, corner(v) is 3 prev(corner(v)), and the corner of the point of `t` is 9t + 2.
 
-use mesh_core::{
+use sixfold_core::{
     Counts, FaceId, MeshQuery, NoHoles, PART, Point, Ranks, Refine, RefineError, RowId, Slot,
     Split, Table, VertexId, all_rows, check_split, in_given_parts, in_parts, row,
 };
 
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
 
-/// How many corners a part of the edges has: whole triangles.
+/// Number of corners in one part of the edges: whole triangles.
 const CORNERS: usize = 3 * PART;
 
-/// The edges among the corners: which corners name one, and which face another triangle.
+/// Numbers of the edges: which corners name an edge, and which face another triangle.
 ///
-/// No table by corner: the number of an edge is the rank of the corner that names it.
+/// It stores no table by corner: the number of an edge is the rank of the corner that names it.
 #[derive(Clone, Debug, Default)]
 pub struct EdgeNumbers {
     /// The corners that name an edge.
     names: Ranks,
-    /// The corners with one opposite: on a closed mesh all of them.
+    /// The corners that have an opposite: all of them if the mesh is closed.
     inner: Ranks,
 }
 
 impl EdgeNumbers {
-    /// Of the edge that `c` faces, with `across` opposite to it.
+    /// Returns the number of the edge that `c` faces, with `across` opposite to it.
     #[inline(always)]
     fn number(&self, c: CornerId, across: Slot<CornerId>) -> u32 {
         self.names.rank(edge_between(c, across).index()) as u32
     }
 
-    /// Of the boundary edge that `c` faces, among the boundary edges.
+    /// Returns the number, among the boundary edges, of the boundary edge that `c` faces.
     #[inline]
     fn boundary_number(&self, c: CornerId) -> u32 {
         c.row() - self.inner.rank(c.index()) as u32
@@ -91,7 +91,7 @@ impl Refine for CornerTable {
 
     /// O(corners).
     fn number_edges(&self, numbers: &mut EdgeNumbers) {
-        let opposite = self.opposite_rows();
+        let opposite = self.opposite_corners();
         numbers.names.fill_by_row(opposite, |c, &across| {
             [names_edge(CornerId::new(c as u32), across)]
         });
@@ -115,7 +115,7 @@ impl Refine for CornerTable {
         })
     }
 
-    /// The rank of the corner that names it; O(1).
+    /// Returns the rank of the corner that names the edge; O(1).
     #[inline]
     fn edge_number(&self, numbers: &EdgeNumbers, e: EdgeCorner) -> usize {
         numbers.names.rank(e.index())
@@ -132,7 +132,7 @@ impl Refine for CornerTable {
         assert_eq!(
             numbers.names.items(),
             corners,
-            "the numbers are of another mesh"
+            "the edge numbers belong to another mesh"
         );
         let counts = Counts {
             vertices: self.positions.len(),
@@ -159,7 +159,7 @@ impl Refine for CornerTable {
         Ok(())
     }
 
-    /// O(1); O(log corners) for what the √3 split cuts off boundary edges.
+    /// O(1); O(log corners) for the triangles that the √3 split cuts off boundary edges.
     fn parent(&self, numbers: &EdgeNumbers, split: Split, child: FaceId) -> FaceId {
         match (split, child.index().checked_sub(self.corner_count())) {
             (Split::Sqrt3 { .. }, Some(cut)) => {
@@ -181,12 +181,13 @@ impl Refine for CornerTable {
 }
 
 impl CornerTable {
-    /// Refuses two triangles with the same edges. No two can share just two, for their third edges
-    /// would have the same ends: so it is enough to look across two sides of each.
+    /// Returns an error if two triangles have the same edges. Two triangles cannot share exactly
+    /// two edges, because their third edges would have the same ends. It is thus sufficient to look
+    /// across two sides of each triangle.
     fn check_double_edges(&self) -> Result<(), RefineError> {
         let across = |o: Slot<CornerId>| o.get().map(CornerId::triangle);
         let twofold = |&[a, b, _]: &[Slot<CornerId>; 3]| a != Slot::NONE && across(a) == across(b);
-        let opposites = self.opposite_rows().as_chunks().0;
+        let opposites = self.opposite_corners().as_chunks().0;
         if all_rows(opposites, |triangle| !twofold(triangle)) {
             return Ok(());
         }
@@ -198,15 +199,15 @@ impl CornerTable {
     }
 }
 
-/// Every triangle into four.
+/// The split of every triangle into four.
 impl CornerTable {
     fn split_in_four(&self, numbers: &EdgeNumbers, child: &mut Self) {
         let count = self.positions.len();
         let middle = |c, across| VertexId::new(count as u32 + numbers.number(c, across));
         let four = 12 * PART;
         in_parts(child.vertex.rows_mut(), four, |first, rows| {
-            let vertices = triangles(self.vertex_rows(), first / 4);
-            let opposites = triangles(self.opposite_rows(), first / 4);
+            let vertices = triangles(self.corner_vertices(), first / 4);
+            let opposites = triangles(self.opposite_corners(), first / 4);
             let mut c = first as u32 / 4;
             for ((&v, &across), rows) in vertices.zip(opposites).zip(rows.as_chunks_mut().0) {
                 let m = [0, 1, 2].map(|i| middle(CornerId::new(c + i), across[i as usize]));
@@ -217,7 +218,7 @@ impl CornerTable {
             }
         });
         in_parts(child.opposite.rows_mut(), four, |first, rows| {
-            let opposites = triangles(self.opposite_rows(), first / 4);
+            let opposites = triangles(self.opposite_corners(), first / 4);
             let mut c = first as u32;
             for (&across, rows) in opposites.zip(rows.as_chunks_mut().0) {
                 *rows = opposites_of_four(c, across);
@@ -226,7 +227,7 @@ impl CornerTable {
         });
         let (old, new) = child.corner.rows_mut().split_at_mut(count);
         in_parts(old, PART, |first, corners| {
-            for (corner, parent) in corners.iter_mut().zip(&self.corner_rows()[first..]) {
+            for (corner, parent) in corners.iter_mut().zip(&self.vertex_corners()[first..]) {
                 let kept = |c: CornerId| CornerId::new(4 * c.row());
                 *corner = Slot::from(parent.get().map(kept));
             }
@@ -234,13 +235,14 @@ impl CornerTable {
         in_given_parts(new, &self.edge_parts(numbers), |part, _, corners| {
             let mut first = (part * CORNERS) as u32;
             let mut edge = 0;
-            for across in triangles(self.opposite_rows(), part * CORNERS).take(PART) {
+            for across in triangles(self.opposite_corners(), part * CORNERS).take(PART) {
                 let [a, b, c] = [first, first + 1, first + 2].map(CornerId::new);
                 let seen_from = [towards(c, b), towards(a, c), towards(b, a)];
                 for ((corner, &across), middle) in [a, b, c].into_iter().zip(across).zip(seen_from)
                 {
-                    // Not every corner names an edge, in no order to be foreseen: without a branch,
-                    // the next one writes over the row of one that does not.
+                    // Not every corner names an edge, in an unpredictable order. To avoid a branch,
+                    // every corner writes; the next one overwrites the row of a corner that names
+                    // no edge.
                     if let Some(row) = corners.get_mut(edge) {
                         *row = Slot::some(middle);
                     }
@@ -252,29 +254,29 @@ impl CornerTable {
     }
 }
 
-/// Whether `c`, with `across` opposite to it, is the corner that names the edge.
+/// Returns whether `c`, with `across` opposite to it, is the corner that names the edge.
 #[inline(always)]
 fn names_edge(c: CornerId, across: Slot<CornerId>) -> bool {
-    // An empty slot comes after every corner.
+    // An empty slot is greater than every corner.
     Slot::some(c) < across
 }
 
-/// The three rows of each triangle, from the one on that has the corner `first`.
+/// Iterates over the three rows of each triangle, from the triangle of corner `first`.
 fn triangles<T>(rows: &[T], first: usize) -> std::slice::Iter<'_, [T; 3]> {
     rows[first..].as_chunks().0.iter()
 }
 
-/// The corner 3a + b of a mesh split in four.
+/// Returns the corner 3a + b of a mesh split in four.
 #[inline(always)]
 fn towards(a: CornerId, b: CornerId) -> CornerId {
     CornerId::new(3 * a.row() + b.row())
 }
 
-/// What is opposite to the corners of the four parts, whose first corner is `first`.
+/// Returns the opposites of the corners of the four children; `first` is the first of the corners.
 #[inline(always)]
 fn opposites_of_four(first: u32, across: [Slot<CornerId>; 3]) -> [Slot<CornerId>; 12] {
     let own = |i: u32| Slot::some(CornerId::new(first + i));
-    // By corner b: what is opposite in the triangle of the corner after it, and of the one before.
+    // By corner b: the opposite in the triangle of next(b), and in the triangle of prev(b).
     let after = across.map(|o| Slot::from(o.get().map(|o| towards(o.prev(), o))));
     let before = across.map(|o| Slot::from(o.get().map(|o| towards(o.next(), o))));
     [
@@ -288,7 +290,7 @@ fn opposites_of_four(first: u32, across: [Slot<CornerId>; 3]) -> [Slot<CornerId>
     .expect("twelve")
 }
 
-/// Every triangle into three, and every old inner edge flipped.
+/// The split of every triangle into three, with every old inner edge flipped.
 #[derive(Clone, Copy)]
 struct Sqrt3<'a> {
     mesh: &'a CornerTable,
@@ -297,7 +299,7 @@ struct Sqrt3<'a> {
 }
 
 impl Sqrt3<'_> {
-    /// Overwrites the tables of `child`, which have their lengths already.
+    /// Overwrites the tables of `child`, which already have their final lengths.
     fn fill(self, child: &mut CornerTable) {
         let split = 3 * self.mesh.corner_count();
         let (vertex, cut_vertex) = child.vertex.rows_mut().split_at_mut(split);
@@ -342,7 +344,7 @@ impl Sqrt3<'_> {
         let (old, new) = child.split_at_mut(self.mesh.positions.len());
         let (of_faces, of_cuts) = new.split_at_mut(self.mesh.face_count());
         in_parts(old, PART, |first, corners| {
-            for (corner, parent) in corners.iter_mut().zip(&self.mesh.corner_rows()[first..]) {
+            for (corner, parent) in corners.iter_mut().zip(&self.mesh.vertex_corners()[first..]) {
                 *corner = parent.get().map_or(Slot::NONE, |c| part(c.prev(), 0));
             }
         });
@@ -358,7 +360,7 @@ impl Sqrt3<'_> {
         });
     }
 
-    /// The triangle `c`.
+    /// Returns the vertices of the child triangle `c`.
     #[inline(always)]
     fn vertices(self, c: CornerId) -> [VertexId; 3] {
         let far = match self.mesh.opposite(c) {
@@ -369,7 +371,7 @@ impl Sqrt3<'_> {
         [self.mesh.vertex(c.next()), far, self.point(c)]
     }
 
-    /// What is opposite to the corners of the triangle `c`.
+    /// Returns the opposites of the corners of the child triangle `c`.
     #[inline(always)]
     fn opposites(self, c: CornerId) -> [Slot<CornerId>; 3] {
         let [own, before] = [c, c.prev()].map(|c| self.mesh.opposite(c));
@@ -387,36 +389,36 @@ impl Sqrt3<'_> {
         [ahead, behind, across]
     }
 
-    /// The point of the triangle that has `c`.
+    /// Returns the new point of the triangle of `c`.
     #[inline(always)]
     fn point(self, c: CornerId) -> VertexId {
         VertexId::new(self.mesh.positions.len() as u32 + c.triangle().row())
     }
 
-    /// The corner that faces the `k`-th of the boundary edges.
+    /// Returns the corner that faces the `k`-th boundary edge.
     fn boundary_corner(self, k: usize) -> CornerId {
         CornerId::new(row(self.numbers.inner.select_missing(k)))
     }
 
-    /// The two points that cut the boundary edge that `c` faces, in the order of the side.
+    /// Returns the two points that cut the boundary edge that `c` faces, in the order of the side.
     fn cuts(self, c: CornerId) -> [VertexId; 2] {
         let points = self.mesh.positions.len() + self.mesh.face_count();
         let first = points as u32 + 2 * self.numbers.boundary_number(c);
         [first, first + 1].map(VertexId::new)
     }
 
-    /// Of the six corners in both pieces cut off along the boundary edge that `c` faces.
+    /// Returns one of the six corners in the two pieces at the boundary edge that `c` faces.
     fn cut(self, c: CornerId, corner: u32) -> Slot<CornerId> {
         self.cut_corner(6 * self.numbers.boundary_number(c) + corner)
     }
 
-    /// Of the corners in all pieces.
+    /// Returns one of the corners in all pieces.
     fn cut_corner(self, corner: u32) -> Slot<CornerId> {
         Slot::some(CornerId::new(3 * self.mesh.corner_count() as u32 + corner))
     }
 }
 
-/// Corner `i` of triangle `c` of a mesh split in three.
+/// Returns corner `i` of the child triangle `c` of a mesh split in three.
 #[inline(always)]
 fn part(c: CornerId, i: u32) -> Slot<CornerId> {
     Slot::some(CornerId::new(3 * c.row() + i))
@@ -424,12 +426,12 @@ fn part(c: CornerId, i: u32) -> Slot<CornerId> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{PolygonMesh, Representation};
+    use sixfold_core::{PolygonMesh, Representation};
 
     use super::*;
 
-    /// Two triangles with an edge between them: c1 and c5 are opposite. The five edges are those that
-    /// c0, c1, c2, c3 and c4 face; all but the second are boundary edges.
+    /// Splits two triangles that share an edge: c1 and c5 are opposite. The five edges are those
+    /// that c0, c1, c2, c3 and c4 face; all except the second are boundary edges.
     fn split(split: Split) -> CornerTable {
         let positions = [0.0, 1.0, 2.0, 3.0].map(Point::splat);
         let polygons = PolygonMesh::new(positions, [[0, 1, 2], [0, 2, 3]]).expect("valid");
@@ -450,25 +452,28 @@ mod tests {
     }
 
     #[test]
-    fn two_triangles_in_four_are_as_drawn() {
+    fn splitting_two_triangles_in_four_gives_the_expected_tables() {
         let child = split(Split::Triangles);
         let vertices = [
             [0, 6, 5, 6, 1, 4, 5, 4, 2, 4, 5, 6],
             [0, 5, 8, 5, 2, 7, 8, 7, 3, 7, 8, 5],
         ];
-        let got = child.vertex_rows().iter().map(|v| v.row());
+        let got = child.corner_vertices().iter().map(|v| v.row());
         assert!(got.eq(vertices.into_iter().flatten()));
         let opposites = [
             [9, 14, NONE, NONE, 10, NONE, NONE, 17, 11, 0, 4, 8],
             [21, NONE, 1, NONE, 22, 7, NONE, NONE, 23, 12, 16, 20],
         ];
-        assert_eq!(rows(child.opposite_rows()), opposites.as_flattened());
-        assert_eq!(rows(child.corner_rows()), [0, 4, 16, 20, 7, 2, 3, 19, 14]);
+        assert_eq!(rows(child.opposite_corners()), opposites.as_flattened());
+        assert_eq!(
+            rows(child.vertex_corners()),
+            [0, 4, 16, 20, 7, 2, 3, 19, 14]
+        );
     }
 
     #[test]
-    fn two_triangles_in_three_are_as_drawn() {
-        // v4 and v5 are the points of the triangles, v6 and on those of the boundary edges.
+    fn splitting_two_triangles_in_three_gives_the_expected_tables() {
+        // v4 and v5 are the points of the triangles, v6 to v13 those of the boundary edges.
         let child = split(Split::Sqrt3 { trisect: true });
         let vertices = [
             [1, 6, 4],
@@ -486,7 +491,7 @@ mod tests {
             [12, 13, 5],
             [13, 0, 5],
         ];
-        let got = child.vertex_rows().iter().map(|v| v.row());
+        let got = child.corner_vertices().iter().map(|v| v.row());
         assert!(got.eq(vertices.into_iter().flatten()));
         let opposites = [
             [19, 27, NONE],
@@ -504,10 +509,10 @@ mod tests {
             [40, 12, NONE],
             [16, 36, NONE],
         ];
-        assert_eq!(rows(child.opposite_rows()), opposites.as_flattened());
-        // v0 keeps the triangle of c2, v1 that of c0, v2 that of c3 and v3 that of c4.
+        assert_eq!(rows(child.opposite_corners()), opposites.as_flattened());
+        // v0 keeps the triangle of c2, v1 that of c0, v2 that of c3, and v3 that of c4.
         let corners = [6, 0, 9, 12, 2, 11, 18, 21, 24, 27, 30, 33, 36, 39];
-        assert_eq!(rows(child.corner_rows()), corners);
+        assert_eq!(rows(child.vertex_corners()), corners);
         let whole = split(Split::Sqrt3 { trisect: false });
         let opposites = [
             [4, 6, NONE],
@@ -517,7 +522,7 @@ mod tests {
             [16, 9, NONE],
             [3, 12, 7],
         ];
-        assert_eq!(rows(whole.opposite_rows()), opposites.as_flattened());
-        assert_eq!(rows(whole.corner_rows()), [6, 0, 9, 12, 2, 11]);
+        assert_eq!(rows(whole.opposite_corners()), opposites.as_flattened());
+        assert_eq!(rows(whole.vertex_corners()), [6, 0, 9, 12, 2, 11]);
     }
 }

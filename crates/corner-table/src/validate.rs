@@ -2,12 +2,12 @@
 
 use std::collections::HashSet;
 
-use mesh_core::{Editing, HoleSet, InvariantError, MeshQuery, Slot, Untraced, VertexId, row};
+use sixfold_core::{Editing, HoleSet, InvariantError, MeshQuery, Slot, Untraced, VertexId, row};
 
 use crate::mesh::{AnyCornerTable, CornerId, NOWHERE};
 
-/// Checks that the columns fit each other, what was deleted, and I1 to I7 in turn; the later ones rely
-/// on the earlier ones.
+/// Checks the lengths of the tables, the holes, and I1 to I7 in order; later checks rely on
+/// earlier.
 pub(crate) fn validate<E: Editing>(
     mesh: &AnyCornerTable<Untraced, E>,
 ) -> Result<(), InvariantError> {
@@ -31,13 +31,13 @@ fn corners<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> impl Iterator<Item
 }
 
 fn columns<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
-    let (corners, opposites) = (mesh.vertex_rows().len(), mesh.opposite_rows().len());
+    let (corners, opposites) = (mesh.corner_vertices().len(), mesh.opposite_corners().len());
     if !corners.is_multiple_of(3) || opposites != corners {
-        let detail = format!("{corners} corners, {opposites} with an opposite, are no triangles");
+        let detail = format!("`vertex` has {corners} rows, `opposite` {opposites}: not 3 per face");
         return fails("I1", detail);
     }
-    if mesh.corner_rows().len() != mesh.positions().len() {
-        return fails("I1", "not every vertex has a row in `corner`".into());
+    if mesh.vertex_corners().len() != mesh.positions().len() {
+        return fails("I1", "`corner` and `positions` differ in length".into());
     }
     Ok(())
 }
@@ -45,26 +45,26 @@ fn columns<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), Invaria
 fn holes<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     let rows = [
         (&mesh.vertex_holes, mesh.positions().len()),
-        (&mesh.face_holes, mesh.vertex_rows().len() / 3),
+        (&mesh.face_holes, mesh.corner_vertices().len() / 3),
     ];
     for (holes, end) in rows {
         if let Err(detail) = holes.check(end) {
             return fails("I8", detail);
         }
     }
-    for c in (0..row(mesh.vertex_rows().len())).map(CornerId::new) {
+    for c in (0..row(mesh.corner_vertices().len())).map(CornerId::new) {
         let deleted = mesh.face_holes.has(c.triangle().index());
         let marks = [mesh.vertex(c) == NOWHERE, mesh.opposite(c) == Some(c)];
         if marks != [deleted; 2] {
             return fails(
                 "I8",
-                format!("{c} is marked as deleted, or not, and should not be"),
+                format!("the rows of {c} and `face_holes` disagree on its deletion"),
             );
         }
     }
     for v in (0..row(mesh.positions().len())).map(VertexId::new) {
-        if mesh.vertex_holes.has(v.index()) && mesh.corner_rows()[v.index()] != Slot::NONE {
-            return fails("I8", format!("{v} was deleted and has a corner"));
+        if mesh.vertex_holes.has(v.index()) && mesh.vertex_corners()[v.index()] != Slot::NONE {
+            return fails("I8", format!("{v} was deleted but has a corner"));
         }
     }
     Ok(())
@@ -74,12 +74,12 @@ fn triangles<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), Invar
     for t in mesh.faces() {
         let [a, b, c] = mesh.vertices_of(t);
         if a == b || b == c || c == a {
-            return fails("I1", format!("{t} names {a}, {b} and {c}"));
+            return fails("I1", format!("{t} has a repeated vertex: {a}, {b} and {c}"));
         }
         let is_there =
             |v: &VertexId| v.index() < mesh.positions().len() && !mesh.vertex_holes.has(v.index());
         if let Some(v) = [a, b, c].into_iter().find(|v| !is_there(v)) {
-            return fails("I1", format!("{t} names {v}, which is not there"));
+            return fails("I1", format!("{t} has vertex {v}, which does not exist"));
         }
     }
     Ok(())
@@ -88,11 +88,14 @@ fn triangles<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), Invar
 fn opposites<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     for c in corners(mesh) {
         if let Some(across) = mesh.opposite(c) {
-            if across.index() >= mesh.vertex_rows().len() {
-                return fails("I2", format!("{across}, opposite to {c}, is not there"));
+            if across.index() >= mesh.corner_vertices().len() {
+                return fails("I2", format!("{across}, opposite to {c}, does not exist"));
             }
             if mesh.opposite(across) != Some(c) {
-                return fails("I2", format!("{across} is opposite to {c}, but not back"));
+                return fails(
+                    "I2",
+                    format!("{across} is opposite to {c}, but {c} is not opposite to {across}"),
+                );
             }
         }
     }
@@ -105,7 +108,8 @@ fn sides_agree<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), Inv
             let here = [c.next(), c.prev()].map(|c| mesh.vertex(c));
             let there = [across.prev(), across.next()].map(|c| mesh.vertex(c));
             if here != there {
-                let detail = format!("{c} faces {here:?}, and {across} across it {there:?}");
+                let detail =
+                    format!("{c} faces {here:?}, but its opposite {across} faces {there:?}");
                 return fails("I3", detail);
             }
         }
@@ -121,12 +125,12 @@ fn a_corner_each<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), I
     for v in mesh.vertices() {
         let Some(c) = mesh.corner_at(v) else {
             if used[v.index()] {
-                return fails("I4", format!("{v} is in a triangle and has no corner"));
+                return fails("I4", format!("{v} is in a triangle but has no corner"));
             }
             continue;
         };
-        if c.index() >= mesh.vertex_rows().len() || mesh.vertex(c) != v {
-            return fails("I4", format!("{c} is no corner at {v}"));
+        if c.index() >= mesh.corner_vertices().len() || mesh.vertex(c) != v {
+            return fails("I4", format!("{c} is not a corner at {v}"));
         }
     }
     Ok(())
@@ -137,7 +141,7 @@ fn fans_start<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), Inva
         let v = mesh.vertex(c);
         let entered = mesh.corner_at(v).and_then(|first| mesh.unswing(first));
         if let Some(before) = entered {
-            let detail = format!("{c} starts a fan at {v}, which is entered after {before}");
+            let detail = format!("the fan of {v} starts at {c}, but corner({v}) follows {before}");
             return fails("I5", detail);
         }
     }
@@ -154,7 +158,7 @@ fn one_fan_each<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), In
         if met != all {
             return fails(
                 "I6",
-                format!("swinging around {v} meets {met} of {all} corners"),
+                format!("swinging around {v} visits {met} of {all} corners"),
             );
         }
     }
@@ -168,7 +172,7 @@ fn edges_differ<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), In
         if !ends.insert((a.min(b), a.max(b))) {
             return fails(
                 "I7",
-                format!("{e} has the ends {a} and {b} of another edge"),
+                format!("{e} and another edge have the same ends {a} and {b}"),
             );
         }
     }
@@ -177,7 +181,7 @@ fn edges_differ<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), In
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{Point, PolygonMesh, Representation, Table};
+    use sixfold_core::{Point, PolygonMesh, Representation, Table};
 
     use super::*;
     use crate::mesh::EditableCornerTable;
@@ -190,8 +194,8 @@ mod tests {
         mesh
     }
 
-    /// The invariant that fails once `break_it` has had its way with a fan of two triangles around
-    /// v0 (corners 0 and 3; 1 and 5 are opposite), and an isolated v4.
+    /// Returns the invariant that fails after `break_it` changed a fan of two triangles around v0
+    /// (corners 0 and 3; 1 and 5 are opposite) and an isolated v4.
     fn broken(break_it: impl Fn(&mut EditableCornerTable)) -> &'static str {
         let mut mesh = table(5, [[0, 1, 2], [0, 2, 3]]);
         break_it(&mut mesh);
@@ -205,8 +209,8 @@ mod tests {
     #[test]
     fn each_broken_invariant_is_named() {
         let v = VertexId::new;
-        // I1: a column too short, a vertex that is not there, one that is there twice.
-        let short = |m: &EditableCornerTable| m.vertex_rows()[..4].to_vec();
+        // I1: a table that is too short, a vertex that does not exist, a vertex that is repeated.
+        let short = |m: &EditableCornerTable| m.corner_vertices()[..4].to_vec();
         assert_eq!(
             broken(|m| m.vertex = Table::new("vertex", "corner", short(m))),
             "I1"
@@ -217,22 +221,23 @@ mod tests {
         );
         assert_eq!(broken(|m| m.vertex.rows_mut()[1] = v(99)), "I1");
         assert_eq!(broken(|m| m.vertex.rows_mut()[1] = v(2)), "I1");
-        // I2: an opposite that is not there, that does not answer, that answers another.
+        // I2: an opposite that does not exist, without the reverse link, or linked to another
+        // corner.
         assert_eq!(broken(|m| m.opposite.rows_mut()[1] = c(99)), "I2");
         assert_eq!(broken(|m| m.opposite.rows_mut()[5] = Slot::NONE), "I2");
         assert_eq!(broken(|m| m.opposite.rows_mut()[0] = c(1)), "I2");
-        // I3: the pair faces two different edges; one edge, but run the same way twice.
+        // I3: the pair faces two different edges; the pair runs one edge in the same direction.
         assert_eq!(broken(|m| m.vertex.rows_mut()[3] = v(1)), "I3");
         assert_eq!(broken(|m| m.vertex.rows_mut().swap(3, 4)), "I3");
-        // I4: a corner that is not there, one elsewhere, none, and one at an isolated vertex.
+        // I4: a corner that does not exist, one elsewhere, none, and one for an isolated vertex.
         assert_eq!(broken(|m| m.corner.rows_mut()[0] = c(99)), "I4");
         assert_eq!(broken(|m| m.corner.rows_mut()[0] = c(1)), "I4");
         assert_eq!(broken(|m| m.corner.rows_mut()[0] = Slot::NONE), "I4");
         assert_eq!(broken(|m| m.corner.rows_mut()[4] = c(0)), "I4");
-        // I5: the fan around v0 is entered at its second corner.
+        // I5: corner(v0) is the second corner of its fan.
         assert_eq!(broken(|m| m.corner.rows_mut()[0] = c(3)), "I5");
-        // I8: holes that nothing marks, and marks without a hole; a deleted vertex that has a corner,
-        // and one that a triangle has.
+        // I8: holes without marks, marks without a hole, a deleted vertex with a corner, one in a
+        // face.
         assert_eq!(broken(|m| m.face_holes.dig(0)), "I8");
         assert_eq!(broken(|m| m.face_holes.dig(2)), "I8");
         assert_eq!(broken(|m| m.vertex.rows_mut()[2] = NOWHERE), "I8");
@@ -246,8 +251,8 @@ mod tests {
     }
 
     #[test]
-    fn a_vertex_of_two_fans_is_found() {
-        // Two triangles apart; then a vertex of each is made the same.
+    fn a_vertex_with_two_fans_is_reported() {
+        // Two separate triangles; then one vertex of each is made the same.
         let mut mesh = table(6, [[0, 1, 2], [3, 4, 5]]);
         mesh.vertex.rows_mut()[5] = VertexId::new(0);
         mesh.corner.rows_mut()[5] = Slot::NONE;
@@ -255,9 +260,9 @@ mod tests {
     }
 
     #[test]
-    fn edges_with_the_same_ends_are_found() {
-        // A tetrahedron cut open along two edges without a common end: a band, whose two rims are
-        // each two edges between the same two vertices. Every vertex is still one fan.
+    fn edges_with_the_same_ends_are_reported() {
+        // A tetrahedron cut open along two edges that share no end becomes a band. Each of its two
+        // rims has two edges between the same two vertices. Every vertex still has one fan.
         let mut mesh = table(4, [[0, 1, 2], [1, 3, 2], [1, 0, 3], [0, 2, 3]]);
         let cut = corners(&mesh).filter(|&c| {
             let ends = [c.next(), c.prev()].map(|c| mesh.vertex(c).index());

@@ -1,5 +1,5 @@
-//! The corner table keeps every law of the trait.
+//! The conformance tests for the corner table.
 
-conformance::suite!(corner_table::CornerTable);
-conformance::refine_suite!(corner_table::CornerTable);
-conformance::edit_suite!(corner_table::EditableCornerTable);
+sixfold_conformance::suite!(sixfold_corner_table::CornerTable);
+sixfold_conformance::refine_suite!(sixfold_corner_table::CornerTable);
+sixfold_conformance::edit_suite!(sixfold_corner_table::EditableCornerTable);

@@ -1,25 +1,25 @@
 //! Walks that several queries share.
 
-use mesh_core::{Editing, FaceId, IteratorExt, Pair, Probe, VertexId};
 use rustc_hash::FxHashSet;
+use sixfold_core::{Editing, FaceId, IteratorExt, Pair, Probe, VertexId};
 
 use crate::mesh::AnyFaceVertexMesh;
 
-/// How many handles an answer holds in place.
+/// Maximum number of handles that a result stores inline.
 const FEW: usize = 32;
 
-/// For how many sides of a face repeated neighbours are looked through anew rather than remembered.
+/// Maximum number of sides for which comparisons find repeated neighbours; above, a hash set does.
 const FEW_SIDES: usize = 8;
 
-/// The vertices before and after `v` in a face that has it.
+/// Returns the vertices before and after `v` in a face that contains `v`.
 ///
 /// # Panics
 ///
-/// If the face lacks `v`, which I3 rules out.
+/// Panics if `v` is missing from a face of more than three corners, which I3 rules out.
 #[inline]
 pub(crate) fn beside(face: &[VertexId], v: VertexId) -> [VertexId; 2] {
     if let &[a, b, c] = face {
-        // Two selections each and no branch: where `v` stands is not to be foreseen.
+        // Two selections each and no branch, because the place of `v` is unpredictable.
         let before = if v == b {
             a
         } else if v == a {
@@ -37,27 +37,27 @@ pub(crate) fn beside(face: &[VertexId], v: VertexId) -> [VertexId; 2] {
         return [before, after];
     }
     let at = face.iter().position(|&corner| corner == v);
-    let at = at.expect("I3: a face in the fan of a vertex names it");
+    let at = at.expect("I3: a face in the fan of a vertex contains it");
     let last = face.len() - 1;
     let before = if at == 0 { last } else { at - 1 };
     let after = if at == last { 0 } else { at + 1 };
     [face[before], face[after]]
 }
 
-/// Whether a face that has `v` runs between `v` and `other`.
+/// Returns whether a face that contains `v` has a side between `v` and `other`.
 #[inline]
 pub(crate) fn runs_between(face: &[VertexId], v: VertexId, other: VertexId) -> bool {
     match face {
-        // Any two corners of a triangle follow each other.
+        // Any two corners of a triangle are adjacent.
         &[a, b, c] => (a == other) | (b == other) | (c == other),
         face => beside(face, v).contains(&other),
     }
 }
 
-/// Keeps the first of equal items in front; how many there are.
+/// Moves the first of each group of equal items to the front; returns the number of distinct items.
 ///
-/// Every item is compared with all before it, without a branch: which of them are new follows no
-/// pattern, and a wrong guess costs more than comparing a whole ring.
+/// Compares every item with all items before it, without a branch. Which of them are new is
+/// unpredictable, and a branch misprediction costs more than the comparison with a whole ring.
 #[inline]
 fn keep_distinct<T: Copy + PartialEq>(items: &mut [T]) -> usize {
     let mut new = [true; FEW];
@@ -79,22 +79,22 @@ fn keep_distinct<T: Copy + PartialEq>(items: &mut [T]) -> usize {
     kept
 }
 
-/// The vertices beside a vertex, each once: a few in place, or any number of them.
+/// The vertices adjacent to a vertex, each once: stored inline if they are few, else in a vector.
 pub(crate) struct Ring {
     few: [VertexId; FEW],
-    /// How many of `few` there are.
+    /// Number of vertices in `few`.
     found: usize,
     many: Vec<VertexId>,
 }
 
 impl Ring {
-    /// Whether `v` is one of them.
+    /// Returns whether `v` is one of the vertices.
     #[inline]
     pub(crate) fn has(&self, v: VertexId) -> bool {
         self.few[..self.found].contains(&v) || self.many.contains(&v)
     }
 
-    /// All of them.
+    /// Returns all vertices.
     #[inline]
     pub(crate) fn into_vertices(self) -> impl Iterator<Item = VertexId> {
         self.few.into_iter().take(self.found).chain(self.many)
@@ -102,10 +102,10 @@ impl Ring {
 }
 
 impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
-    /// The vertices beside `v` in its faces, each once.
+    /// Returns the vertices adjacent to `v` in its faces, each once.
     ///
-    /// A small fan is answered in place; a large one through a hash set, so that a vertex of
-    /// valence 100,000 stays linear.
+    /// Compares the vertices of a small fan in place; uses a hash set for a large fan, so that the
+    /// time stays linear even for a vertex of valence 100,000.
     #[inline]
     pub(crate) fn ring(&self, v: VertexId) -> Ring {
         let fan = self.fan(v);
@@ -123,14 +123,14 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
         Ring { few, found, many }
     }
 
-    /// The sides of `f`, in order.
+    /// Returns the sides of `f`, in order.
     #[inline]
     pub(crate) fn sides(&self, f: FaceId) -> impl Iterator<Item = Pair<VertexId>> {
         let face = self.face(f);
         Pair::sides(face.len(), |i| face[i])
     }
 
-    /// The end of `e` with fewer faces, those faces, and the other end.
+    /// Returns the end of `e` with fewer faces, those faces, and the other end.
     #[inline]
     pub(crate) fn shorter_fan(&self, e: Pair<VertexId>) -> (VertexId, &[FaceId], VertexId) {
         let [a, b] = e.ends();
@@ -142,7 +142,7 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
         }
     }
 
-    /// The faces along the edge `e`, found from the end with the shorter fan.
+    /// Returns the faces at the edge `e`, from the end with the shorter fan.
     #[inline]
     pub(crate) fn faces_along(&self, e: Pair<VertexId>) -> impl Iterator<Item = FaceId> {
         let (v, fan, other) = self.shorter_fan(e);
@@ -150,7 +150,7 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
         fan.filter(move |&f| runs_between(self.known_face(f), v, other))
     }
 
-    /// The faces that share a side with `f`, each once; those of a few sides are found in place.
+    /// Returns the faces that share a side with `f`, each once; allocates only for many sides.
     #[inline]
     pub(crate) fn faces_around(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
         let mut few = [f; FEW];
@@ -176,7 +176,7 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
         few.into_iter().take(found).chain(many)
     }
 
-    /// The same for any number of sides; a face that is known is not looked through again.
+    /// Returns the same for any number of sides; a face that was found is not searched again.
     #[inline(never)]
     fn many_faces_around(&self, f: FaceId) -> Vec<FaceId> {
         let mut known = FxHashSet::from_iter([f]);

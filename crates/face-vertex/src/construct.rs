@@ -1,9 +1,9 @@
-//! In and out.
+//! Building from polygons, and conversion to polygons.
 
-use mesh_core::{
+use sixfold_core::{
     BuildError, Capabilities, Counts, Editing, FACE_HOLES, FaceId, FaceList, FaceSpans, HoleSet,
-    InvariantError, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost,
-    Representation, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap, row,
+    InvariantError, Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe,
+    QueryCost, Representation, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap, row,
 };
 
 use crate::mesh::{AnyFaceVertexMesh, Fan};
@@ -20,9 +20,14 @@ impl<E: Editing> Representation for AnyFaceVertexMesh<Untraced, E> {
         ]
     };
 
-    type Probed<P: Probe> = AnyFaceVertexMesh<P, E>;
+    fn type_path() -> &'static str {
+        match E::DELETES {
+            true => "sixfold_face_vertex::EditableFaceVertexMesh",
+            false => "sixfold_face_vertex::FaceVertexMesh",
+        }
+    }
 
-    /// Copies the face list, then sorts the faces by the vertices they name; O(corners + vertices).
+    /// Copies the face list, then sorts the faces by their vertices; O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let faces = polygons.faces();
         let (fans, pool) = incident_faces(polygons.vertex_count(), faces);
@@ -93,14 +98,18 @@ impl<E: Editing> Representation for AnyFaceVertexMesh<Untraced, E> {
         tables.into_iter().chain(spans).chain(holes).collect()
     }
 
+    fn validate(&self) -> Result<(), InvariantError> {
+        self.check_invariants()
+    }
+}
+
+impl<E: Editing> Measured for AnyFaceVertexMesh<Untraced, E> {
+    type Probed<P: Probe> = AnyFaceVertexMesh<P, E>;
+
     fn layout_bytes(counts: &Counts) -> usize {
         let by_vertex = size_of::<Point>() + size_of::<Fan>();
         let by_corner = size_of::<VertexId>() + size_of::<FaceId>();
         by_vertex * counts.vertices + by_corner * counts.corners + counts.offset_bytes()
-    }
-
-    fn validate(&self) -> Result<(), InvariantError> {
-        self.check_invariants()
     }
 
     fn probed<P: Probe>(self, probe: P) -> AnyFaceVertexMesh<P, E> {
@@ -116,7 +125,7 @@ impl<E: Editing> Representation for AnyFaceVertexMesh<Untraced, E> {
     }
 }
 
-/// The faces around every vertex, in the order of the faces: a counting sort.
+/// Returns the faces around every vertex, in the order of the faces, by a counting sort.
 fn incident_faces(vertices: usize, faces: &FaceList) -> (Vec<Fan>, Vec<FaceId>) {
     let corners = faces.corners();
     let mut fans = vec![Fan::default(); vertices];
@@ -127,7 +136,7 @@ fn incident_faces(vertices: usize, faces: &FaceList) -> (Vec<Fan>, Vec<FaceId>) 
     for fan in &mut fans {
         fan.start = total;
         total += fan.len;
-        // Counted up again while the pool is filled.
+        // Counted again while the pool is filled.
         fan.len = 0;
     }
     let mut pool = vec![FaceId::new(0); corners.len()];
@@ -148,7 +157,7 @@ fn incident_faces(vertices: usize, faces: &FaceList) -> (Vec<Fan>, Vec<FaceId>) 
     (fans, pool)
 }
 
-/// Files each face of `DEGREE` corners; with the degree known, the compiler unrolls the face.
+/// Files each face of `DEGREE` corners; the compiler unrolls the loop over a constant degree.
 #[inline(always)]
 fn file_uniform<const DEGREE: usize>(corners: &[VertexId], mut file: impl FnMut(FaceId, VertexId)) {
     let faces = corners.as_chunks::<DEGREE>().0;
@@ -167,13 +176,13 @@ mod tests {
     fn build(faces: &[&[u32]]) -> FaceVertexMesh {
         let square = [Point::ZERO, Point::X, Point::ONE, Point::Y, Point::Z];
         let polygons = PolygonMesh::new(square, faces).expect("valid");
-        let mesh = FaceVertexMesh::from_polygons(&polygons).expect("holds everything");
+        let mesh = FaceVertexMesh::from_polygons(&polygons).expect("holds every mesh");
         assert_eq!(mesh.to_polygons(), polygons);
         mesh
     }
 
     #[test]
-    fn fans_follow_one_another_in_the_order_of_vertices_and_faces() {
+    fn fans_are_consecutive_and_in_the_order_of_vertices_and_faces() {
         let all: [&[&[u32]]; 3] = [
             &[&[0, 1, 2], &[2, 3, 0]],
             &[&[0, 1, 2, 3], &[3, 2, 1, 0]],
@@ -199,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tables_hold_what_the_layout_says() {
+    fn memory_equals_the_layout_formula() {
         let mut counts = Counts {
             vertices: 5,
             edges: 5,

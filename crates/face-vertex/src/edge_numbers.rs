@@ -1,50 +1,51 @@
-//! Numbers for edges, which are pairs, by the sides along them.
+//! Numbers for edges, which are pairs of vertices, stored by side.
 
 use std::hint::select_unpredictable;
 use std::ops::Range;
 
-use mesh_core::{FaceId, FaceSpans, PART, Pair, VertexId, row};
+use sixfold_core::{FaceId, FaceSpans, PART, Pair, VertexId, row};
 
 use crate::mesh::FaceVertexMesh;
 
-/// By corner, the number of the edge along the side that starts there: its place in `edges()`.
+/// The numbers of the edges, by corner: the edge along the side that starts at the corner. The
+/// number of an edge is its position in `edges()`.
 ///
 /// ```text
-///    c ──3── b     corners   a b c │ a d b      edges  0 ab, 1 ac, 2 ad  by the lower end, and
-///    │ f0  / │     numbers   0 3 1 │ 2 4 0             3 bc, 4 bd        as their sides come
+///    c ──3── b     corners   a b c │ a d b      edges  0 ab, 1 ac, 2 ad  by the lower end, then
+///    │ f0  / │     numbers   0 3 1 │ 2 4 0             3 bc, 4 bd        in order of their sides
 ///    1   0   4
 ///    │ /  f1 │
 ///    a ──2── d
 /// ```
 ///
-/// Four bytes a corner, and four a vertex that are kept for the next mesh.
+/// Uses four bytes per corner, and four per vertex of scratch memory that the next mesh reuses.
 #[derive(Clone, Debug, Default)]
 pub struct EdgeNumbers {
     pub(crate) by_corner: Vec<u32>,
-    /// Where the parts begin, and the end of the last.
+    /// The starts of the parts, and the end of the last part.
     pub(crate) parts: Vec<EdgePart>,
-    /// By vertex: one more than the last number of an edge of which it is the higher end. Of use
-    /// while edges are numbered.
+    /// For each vertex: one more than the highest number of an edge that has it as its higher end.
+    /// Used only while edges are numbered.
     met: Vec<u32>,
 }
 
-/// Where some thousand edges begin: all those of some vertices in a row, which are their lower ends.
+/// The start of some thousand edges: all those with lower ends in a range of vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct EdgePart {
-    /// The first of the vertices.
+    /// The first vertex of the range.
     pub(crate) vertex: usize,
     /// The number of the first edge.
     pub(crate) edge: usize,
-    /// How many sides run along earlier edges.
+    /// Number of sides along earlier edges.
     pub(crate) side: usize,
 }
 
-/// How many faces of a fan are looked at before their sides are gone through.
+/// Number of faces of a fan that are read before their sides are processed.
 const FEW: usize = 64;
 
 impl EdgeNumbers {
-    /// Numbers the edges of `mesh`: fan after fan, every side to a higher vertex, unless its edge has
-    /// been met in the fan; O(corners · degree + vertices).
+    /// Numbers the edges of `mesh`, fan after fan: each side to a higher vertex gets a new number,
+    /// unless its edge was already found in the fan. O(corners · degree + vertices).
     pub(crate) fn fill(&mut self, mesh: &FaceVertexMesh) {
         match mesh.spans {
             FaceSpans::Uniform { degree: 3, .. } => self.fill_from::<3>(mesh),
@@ -73,13 +74,13 @@ impl EdgeNumbers {
             }
             let mut fan = mesh.fan(v);
             if !fan.is_sorted() {
-                // I3 promises no order, but `edges()` goes by that of the faces.
+                // I3 does not fix an order, but `edges()` uses that of the faces.
                 in_order.clear();
                 in_order.extend_from_slice(fan);
                 in_order.sort_unstable();
                 fan = &in_order;
             }
-            // Numbers rise, so a higher end met here has a higher one than any met before.
+            // Numbers increase: a higher end already found in this fan has an entry above `known`.
             let known = edges;
             for faces in fan.chunks(FEW) {
                 let found = mesh.sides_upward::<DEGREE>(v, faces, &mut upward);
@@ -103,14 +104,14 @@ impl EdgeNumbers {
         });
     }
 
-    /// How many edges there are.
+    /// Returns the number of edges.
     pub(crate) fn edges(&self) -> usize {
         self.parts.last().map_or(0, |end| end.edge)
     }
 }
 
 impl FaceVertexMesh {
-    /// The corners of `f`; `DEGREE` is that of all faces, or 0 where it is not known.
+    /// Returns the corners of `f`; `DEGREE` is the degree of all faces, or 0 if degrees differ.
     #[inline(always)]
     pub(crate) fn corners_of<const DEGREE: usize>(&self, f: FaceId) -> Range<usize> {
         if DEGREE == 0 {
@@ -119,16 +120,16 @@ impl FaceVertexMesh {
         DEGREE * f.index()..DEGREE * (f.index() + 1)
     }
 
-    /// The corner of `v` in `f`, which names it, between the ones before and after it.
+    /// Returns the corners before, at and after `v` in `f`, which contains `v`.
     #[inline(always)]
     pub(crate) fn around<const DEGREE: usize>(&self, f: FaceId, v: VertexId) -> [u32; 3] {
         let range = self.corners_of::<DEGREE>(f);
         let face = &self.corners.rows()[range.clone()];
         let i = if DEGREE == 0 {
             let i = face.iter().position(|&corner| corner == v);
-            i.expect("I3: a face in the fan of a vertex names it")
+            i.expect("I3: a face in the fan of a vertex contains it")
         } else {
-            // No branch: where `v` stands is not to be foreseen.
+            // No branch, because the place of `v` is unpredictable.
             (1..DEGREE).map(|i| i * usize::from(face[i] == v)).sum()
         };
         let last = face.len() - 1;
@@ -137,8 +138,8 @@ impl FaceVertexMesh {
         [before, i, after].map(|i| (range.start + i) as u32)
     }
 
-    /// Puts the sides between `v` and a higher vertex in these faces of its fan into `sides`, each as
-    /// the corner where it starts and the higher vertex; how many there are.
+    /// Writes the sides between `v` and a higher vertex in these faces of its fan into `sides`: for
+    /// each, the corner where it starts and the higher vertex. Returns their number.
     #[inline(always)]
     fn sides_upward<const DEGREE: usize>(
         &self,
@@ -152,7 +153,7 @@ impl FaceVertexMesh {
             let [before, at, after] = self.around::<DEGREE>(f, v);
             let to = corners[after as usize].index() as u32;
             let from = corners[before as usize].index() as u32;
-            // In the order of the corners where they start.
+            // In the order of the corners where the sides start.
             let turned = at < before;
             let highs = [
                 select_unpredictable(turned, to, from),
@@ -167,7 +168,7 @@ impl FaceVertexMesh {
         found
     }
 
-    /// The edges of a part, in the order of their numbers.
+    /// Returns the edges of a part, in the order of their numbers.
     pub(crate) fn edges_between(&self, numbers: &EdgeNumbers, part: usize) -> Vec<Pair<VertexId>> {
         match self.spans {
             FaceSpans::Uniform { degree: 3, .. } => self.edges_from::<3>(numbers, part),
@@ -200,14 +201,14 @@ impl FaceVertexMesh {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{MeshQuery, Point, PolygonMesh, Representation};
+    use sixfold_core::{MeshQuery, Point, PolygonMesh, Representation};
 
     use super::*;
 
-    /// The numbers of the edges, having seen that they are places in `edges()`.
+    /// Returns the numbers of the edges, after a check that they are positions in `edges()`.
     fn numbered(mesh: &FaceVertexMesh) -> EdgeNumbers {
         let mut numbers = EdgeNumbers::default();
-        // Filled with something else before.
+        // First filled for another mesh, to check that reuse works.
         numbers.fill(&build(3, &[[0, 2, 1]]));
         numbers.fill(mesh);
         let edges: Vec<Pair<VertexId>> = mesh.edges().collect();
@@ -224,11 +225,11 @@ mod tests {
         faces: impl IntoIterator<Item: AsRef<[u32]>> + Clone,
     ) -> FaceVertexMesh {
         let polygons = PolygonMesh::new(vec![Point::ZERO; vertices], faces).expect("valid");
-        FaceVertexMesh::from_polygons(&polygons).expect("holds everything")
+        FaceVertexMesh::from_polygons(&polygons).expect("holds every mesh")
     }
 
     #[test]
-    fn numbers_are_places_in_edges_in_whichever_order_fans_are() {
+    fn numbers_are_positions_in_edges_for_any_order_of_fans() {
         let mut square = build(4, &[[0, 1, 2], [0, 3, 1]]);
         assert_eq!(numbered(&square).by_corner, [0, 3, 1, 2, 4, 0], "as drawn");
         square.pool.rows_mut()[..2].reverse();
@@ -245,8 +246,8 @@ mod tests {
     }
 
     #[test]
-    fn parts_are_cut_between_vertices() {
-        // A book of many pages: v0 is the lower end of half of the edges, v1 of the others.
+    fn parts_start_at_vertices() {
+        // Triangles at one edge v0–v1: v0 is the lower end of half of the edges, v1 of the others.
         let n = 2 * PART;
         let mesh = build(n + 5, (0..row(n)).map(|page| [0, 1, page + 2]));
         let part = |vertex, edge, side| EdgePart { vertex, edge, side };

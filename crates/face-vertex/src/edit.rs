@@ -1,8 +1,9 @@
-//! The mesh changed in place: corners are rewritten, and the fans around them repaired.
+//! Edits in place: they rewrite corners and repair the fans at these corners.
 //!
-//! It holds every polygon mesh, so an edit is legal wherever its own rule holds: no edge is full, no
-//! fan has to stay whole, and a collapse may leave edges with many faces and faces with the same
-//! corners. The costs, and what each edit writes, are with [`EditableFaceVertexMesh`].
+//! The structure holds every polygon mesh, so only an edit's own rule restricts it: an edge can
+//! have any number of faces, a vertex any number of fans, and a collapse may leave edges with many
+//! faces and faces with the same corners. [`EditableFaceVertexMesh`] documents the costs and what
+//! each edit writes.
 
 mod collapse;
 mod compact;
@@ -13,7 +14,7 @@ mod split_vertex;
 #[cfg(test)]
 mod tests;
 
-use mesh_core::{
+use sixfold_core::{
     Edit, EditError, EditLog, FaceId, Few, HoleSet, MeshEdit, NoHoles, Pair, Point, Probe,
     QueryCost, Refusal, VertexId, row,
 };
@@ -200,7 +201,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
                 apexes.push(c);
             }
         }
-        // Triangles with one third corner have one edge from there.
+        // Triangles with the same third corner share one new edge.
         apexes.sort_unstable();
         apexes.dedup();
         let spokes = apexes.iter().map(|&c| Pair::new(m, c));
@@ -226,7 +227,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         for (i, &a) in face.iter().enumerate().skip(1) {
             let b = face[if i + 1 == face.len() { 0 } else { i + 1 }];
             let part = self.spans.push(&mut self.corners, &[a, b, n]);
-            // The corner at the start of the part before has both of them; the first keeps f.
+            // The fan of `a` gets this part and the part before it, which is `f` if i = 1.
             if i > 1 {
                 self.swap(a, f, part);
                 self.join(a, parts[i - 1]);
@@ -245,7 +246,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         Ok(n)
     }
 
-    /// The part that runs from the second of the ends, as `f` names them, to the first is new.
+    /// Keeps the part between the two ends in the corner order of `f`; the other part is new.
     fn split_face(
         &mut self,
         f: FaceId,
@@ -283,7 +284,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         Ok(e)
     }
 
-    /// The face that runs `e` from its lower end stays.
+    /// Keeps the face that runs `e` from its lower end.
     fn dissolve_edge(
         &mut self,
         e: Edge,
@@ -291,7 +292,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
     ) -> Result<FaceId, Refusal<Self>> {
         let [f, g] = self.two_faces(e)?;
         let [low, high] = e.ends();
-        // f from the higher end to the lower, then on along g.
+        // The corners of f from the higher end around to the lower, then those of g.
         let kept = from_corner(self.known_face(f), high);
         let gained = from_corner(self.known_face(g), low).skip(1);
         let gained = gained.filter(|&v| v != high);
@@ -363,42 +364,42 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         self.split_fan(v, [left, right], at, log)
     }
 
-    /// The fans come in the order of their vertices again, and each in that of its faces.
+    /// Puts the fans in the order of their vertices again, and each fan in the order of its faces.
     fn compact(&mut self, log: &mut impl EditLog<Self>) {
         self.close_up(log);
     }
 }
 
 impl<P: Probe> EditableFaceVertexMesh<P> {
-    /// Makes a hole of `f`, which is in no fan any more.
+    /// Marks `f`, which is in no fan any more, as deleted.
     fn delete_face(&mut self, f: FaceId) {
         self.spans.blank(&mut self.corners, f, BLANK_CORNER);
         self.face_holes.dig(f.index());
     }
 
-    /// Makes a hole of `v`, at which no face is any more.
+    /// Marks `v`, which has no faces any more, as deleted.
     fn delete_vertex(&mut self, v: VertexId) {
         let fan = std::mem::replace(self.fans.write(v.index()), Fan::GONE);
         self.clear_places(fan.range());
         self.vertex_holes.dig(v.index());
     }
 
-    /// Puts `new` where `f` has its corner `old`; the fans are the caller's.
+    /// Replaces the corner `old` of `f` by `new`; the caller updates the fans.
     #[inline]
     fn retarget(&mut self, f: FaceId, old: VertexId, new: VertexId) {
         let range = self.spans.range(f);
         let at = match self.corners.read_range(range.clone()) {
-            // Without a branch, for where it is follows no pattern.
+            // Without a branch, because its place is unpredictable.
             &[_, b, c] => usize::from(b == old) + 2 * usize::from(c == old),
             face => {
                 let at = face.iter().position(|&v| v == old);
-                at.expect("I3: a face in the fan of a vertex names it")
+                at.expect("I3: a face in the fan of a vertex contains it")
             }
         };
         *self.corners.write(range.start + at) = new;
     }
 
-    /// Tells which of `sides`, edges before, are edges no more.
+    /// Reports each of `sides`, which were edges before, that is not an edge any more.
     fn tell_removed(&self, sides: impl IntoIterator<Item = Edge>, log: &mut impl EditLog<Self>) {
         for e in sides.into_iter().filter(|&e| !self.has_edge(e)) {
             log.removed_edge(e);
@@ -406,12 +407,12 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
     }
 }
 
-/// Whether `log` wants to be told.
+/// Returns whether `log` records events.
 fn listens<P: Probe, L: EditLog<EditableFaceVertexMesh<P>>>(_: &L) -> bool {
     L::LISTENS
 }
 
-/// Tells that `m` cuts `e`, which is its lower half from now on.
+/// Reports that `m` splits `e`: `e` is renamed to its lower half, and the upper half is new.
 fn tell_split<P: Probe>(e: Edge, m: VertexId, log: &mut impl EditLog<EditableFaceVertexMesh<P>>) {
     let [low, high] = e.ends();
     log.created_vertex(m);

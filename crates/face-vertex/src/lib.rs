@@ -1,11 +1,11 @@
-//! Face-vertex mesh: shared vertices, faces as lists of them, and each vertex knows its faces.
+//! Face-vertex mesh: shared vertices, a vertex list for each face, a face list for each vertex.
 //!
-//! Choose it where faces around a vertex are what is asked for (normals, gathering for a smoothing
-//! step, handing faces to a renderer), and where the input may be anything at all: it holds every
-//! polygon mesh. Edges are not stored; an edge is the [pair](mesh_core::Pair) of its ends. FV, FE,
-//! EV and VF take O(1) an item; the other five look through the faces around the element. All edits
-//! of [`MeshEdit`](mesh_core::MeshEdit) are legal here wherever their own rule holds, and local.
-//! Start at [`AnyFaceVertexMesh`], whose four invariants explain the rest.
+//! Use it if the main query is the faces around a vertex (normals, gathering in a smoothing step,
+//! faces for a renderer), or if the input is unrestricted: it holds every polygon mesh. Edges are
+//! not stored; an edge is the [pair](sixfold_core::Pair) of its ends. FV, FE, EV and VF take O(1)
+//! per item; the other five search the faces around the element. All edits of
+//! [`MeshEdit`](sixfold_core::MeshEdit) are supported and local; only their own rules restrict
+//! them. Start at [`AnyFaceVertexMesh`]; its four invariants define the tables.
 
 mod circulate;
 mod construct;
@@ -19,3 +19,21 @@ mod validate;
 
 pub use edge_numbers::EdgeNumbers;
 pub use mesh::{AnyFaceVertexMesh, EditableFaceVertexMesh, FaceVertexMesh, Fan};
+
+/// The traits and types that all structures share: `PolygonMesh`, `MeshQuery`, handles, errors.
+pub use sixfold_core;
+
+/// Imports for a program: the types of this structure, and the traits of its queries and edits.
+///
+/// ```
+/// use sixfold_face_vertex::prelude::*;
+///
+/// let triangle = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]])?;
+/// let mesh = FaceVertexMesh::from_polygons(&triangle)?;
+/// assert_eq!(mesh.edge_count(), 3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub mod prelude {
+    pub use crate::{EditableFaceVertexMesh, FaceVertexMesh};
+    pub use sixfold_core::prelude::*;
+}

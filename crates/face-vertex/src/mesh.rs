@@ -1,13 +1,13 @@
-//! The structure itself.
+//! The tables, their invariants, and access to them.
 
 use std::ops::Range;
 
-use mesh_core::{
+use sixfold_core::{
     Editable, Editing, FACE_HOLES, FaceId, FaceSpans, Point, Probe, Table, Untraced, VERTEX_HOLES,
     VertexId, Whole,
 };
 
-/// Vertices and faces that know each other; edges are seen, not stored.
+/// A mesh with the vertices of each face and the faces of each vertex; edges are not stored.
 ///
 /// ```text
 ///    c ────── b     positions  a  b  c  d …                 by vertex
@@ -17,81 +17,84 @@ use mesh_core::{
 ///    a ────── d     pool       f0 f1 │ f0 f1 │ f0 │ f1 │ …  the faces around a, b, c, d …
 /// ```
 ///
-/// - I1  Face `f` has the corners of `spans.range(f)`; these ranges lie apart, and until a degree is
-///   edited follow one another through the whole table. A face names at least three vertices, each
-///   of them there and each once.
-/// - I2  The fans of two vertices lie apart in the pool.
-/// - I3  The fan of `v` names each face with a corner at `v`, once, and no other.
-/// - I4  What is deleted, or nobody's, is blank: the corners of a deleted face and those of no face
-///   name vertex `u32::MAX`, which no mesh has; the places of no fan name face `u32::MAX`; the fan of
-///   a deleted vertex is [`Fan::GONE`]. The holes are just these vertices and faces.
+/// - I1  Face `f` has the corners `spans.range(f)`. These ranges are disjoint. Until an edit
+///   changes a degree, they are consecutive and cover the whole table. A face has at least three
+///   vertices; they all exist and are distinct.
+/// - I2  The fans of two vertices do not overlap in the pool.
+/// - I3  The fan of `v` contains exactly the faces with a corner at `v`, each once.
+/// - I4  Deleted and unused entries are blank. A corner of a deleted face or of no face contains
+///   vertex `u32::MAX`, which no mesh has. A place of no fan contains face `u32::MAX`. The fan of a
+///   deleted vertex is [`Fan::GONE`]. The holes are exactly the deleted vertices and faces.
 ///
-/// Words for each vertex of a large closed triangle mesh: 17, being 3 of positions, 6 of corners, 2
-/// of fans and 6 of the pool. Mixed degrees add the offsets of the faces. With one offset a vertex
-/// it would be 16; but then the lists fill the pool without a gap, and a list that grows by one
-/// face moves all that follow. With start and length it moves to the end of the pool alone. Deleting
-/// adds a bit a row of vertices or of faces; faces of edited degrees, two words and one a corner.
+/// A large closed triangle mesh uses 17 words per vertex: 3 for positions, 6 for corners, 2 for
+/// fans and 6 for the pool. With mixed degrees, the offsets add one word per face. With one offset
+/// per vertex instead of start and length it would be 16 words. But the lists would then fill the
+/// pool without gaps, and a list that grows by one face would move all later lists. With start and
+/// length, only the list itself moves, to the end of the pool. After a deletion, holes add one bit
+/// per row of vertices or of faces. After an edit of degrees, two words per face and one per corner
+/// are added.
 ///
 /// # Complexity
 ///
-/// The fan of a vertex has as many faces as the vertex has corners, its length; `d` is their degree.
+/// The length of a fan is its number of faces, one per corner at the vertex; `d` is their degree.
 ///
-/// | query | looks at | time |
+/// | query | reads | time |
 /// |---|---|---|
-/// | FV, FE | the corners of the face | O(1) an item |
-/// | VF | the fan of the vertex | O(1) an item |
-/// | EV | the handle itself | O(1), without reading |
+/// | FV, FE | the corners of the face | O(1) per item |
+/// | VF | the fan of the vertex | O(1) per item |
+/// | EV | the handle itself | O(1), reads no table |
 /// | VV, VE | the corners of the fan | O(length · d) expected |
 /// | EF | the corners of the shorter fan of the two ends | O(length · d) |
 /// | EE | the corners of both fans | O(lengths · d) expected |
 /// | FF | for each side, as EF | O(sides · length · d) expected |
-/// | `vertices`, `faces` | the holes, if there are any | O(1) an item |
+/// | `vertices`, `faces` | the holes, if there are any | O(1) per item |
 /// | `edges`, `edge_count` | all corners | O(corners + vertices), without hashing |
 ///
-/// Sweeps over VF and FV read tables from end to end: in cache they are bound by the loop around six
-/// and three items, beyond it by bytes, 32 a vertex (8 of fans, 24 of pool) and 12 a triangle. The
-/// other sweeps jump from the pool to the corners of a face, six independent loads a vertex, and
-/// then compare what they found: VV is bound by these comparisons in a well ordered mesh, by the
-/// latency of the jumps in a shuffled one.
+/// Sweeps over VF and FV read tables from start to end. In cache, their limit is the loop over six
+/// and three items; in larger meshes it is the number of bytes: 32 per vertex (8 of fans, 24 of
+/// pool) and 12 per triangle. The other sweeps jump from the pool to the corners of faces, six
+/// independent loads per vertex, and then compare what they found. VV is limited by these
+/// comparisons in a well ordered mesh, and by the latency of the jumps in a shuffled one.
 ///
-/// Splitting every face ([`Refine`](mesh_core::Refine)) takes O(corners · d + vertices), and as much
-/// again to number the edges, for the vertex of a fan is looked for in each face of it.
+/// Splitting every face ([`Refine`](sixfold_core::Refine)) takes O(corners · d + vertices), and
+/// numbering the edges as much again: both search each face of a fan for the vertex of the fan.
 ///
-/// Edits ([`MeshEdit`](mesh_core::MeshEdit)) rewrite corners and repair fans. A fan that shrinks stays
-/// where it is and leaves blanks behind it; one that grows takes a blank behind it or, where there is
-/// none, moves to the end of the pool, with blanks for as many faces again. So a fan that grows face by
-/// face moves O(log length) times, and the pool has at most a few times the places that the input
-/// and the edits have filled; [`compact`](mesh_core::MeshEdit::compact) closes it up. Every edit but the
-/// last two is local: `n` is the length of a fan, `d` the degree of a face around.
+/// Edits ([`MeshEdit`](sixfold_core::MeshEdit)) rewrite corners and repair fans. A fan that shrinks
+/// stays in place and leaves blanks behind it. A fan that grows uses a blank behind it; if there is
+/// none, it moves to the end of the pool, with blanks for as many faces again. A fan that grows
+/// face by face thus moves O(log length) times, and the pool has at most a few times the places
+/// that the input and the edits have filled. [`compact`](sixfold_core::MeshEdit::compact) removes
+/// the blanks. Every edit except the last two is local. `n` is the length of a fan, `d` the degree
+/// of a face at the edited element.
 ///
 /// | edit | time | writes |
 /// |---|---|---|
 /// | `set_position` | O(1) | the position |
 /// | `add_vertex` | O(1) | a position, an empty fan |
 /// | `add_face` | O(d) | d new corners, a place in d fans |
-/// | `remove_face` | O(d · n) | its corners and d places, blank |
+/// | `remove_face` | O(d · n) | its corners and d places, as blanks |
 /// | `remove_vertex` | O(n · d · n) | the same for each face of its fan |
 /// | `split_edge` | O(n · d) | the corners of its faces, at the end of the table; a new fan |
-/// | `bisect_edge` | O(n) | a corner in each face, three new ones a new face; four fans for two faces |
-/// | `poke_face` | O(d · n) | a corner, three new ones a new face; d fans, and a new one |
-/// | `split_face` | O(d · n) | the corners of both parts, the fans of the one cut off |
-/// | `dissolve_edge` | O(n · d) | the corners of both faces, the fans of the one that goes |
+/// | `bisect_edge` | O(n) | a corner in each face, three in each new face; four fans for two faces |
+/// | `poke_face` | O(d · n) | a corner, three in each new face; d fans, and a new one |
+/// | `split_face` | O(d · n) | the corners of both parts, the fans of the new part |
+/// | `dissolve_edge` | O(n · d) | the corners of both faces, the fans of the removed face |
 /// | `flip_edge` | O(n) | a corner of each face, a place in four fans |
-/// | `collapse_edge` | O(n · d) | a corner in each face of the end that goes, the fans of both ends and of the third corners |
+/// | `collapse_edge` | O(n · d) | a corner in each face of the removed end, the fans of both ends and of the third corners |
 /// | `split_vertex` | O(n · d + n log n) | a corner in each face that the new vertex gets, four fans |
 /// | `remove_isolated_vertices` | O(vertices) | their fans |
 /// | `compact` | O(corners + vertices) | all tables |
 ///
-/// The first edit that leaves faces of different degrees where all had one, or changes the degree of
-/// one face, brings a table of spans and one of owners ([`FaceSpans::Scattered`]): O(corners), once
+/// The first edit that changes the degree of a face, or adds a face of another degree to a uniform
+/// mesh, builds a table of spans and one of owners ([`FaceSpans::Scattered`]): O(corners), once
 /// until the next `compact`. `split_edge`, `split_face` and `dissolve_edge` always change degrees;
-/// `add_face`, `poke_face` and `collapse_edge` do so at polygons alone.
+/// `add_face`, `poke_face` and `collapse_edge` do so only for polygons.
 ///
 /// # Examples
 ///
 /// ```
-/// use face_vertex::FaceVertexMesh;
-/// use mesh_core::{FaceId, MeshQuery, Point, PolygonMesh, Representation, VertexId};
+/// use sixfold_face_vertex::FaceVertexMesh;
+/// use sixfold_core::{FaceId, MeshQuery, Point, PolygonMesh, Representation, VertexId};
 ///
 /// let square = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
 /// let polygons = PolygonMesh::new(square, [[0, 1, 2], [0, 2, 3]])?;
@@ -111,12 +114,13 @@ pub struct AnyFaceVertexMesh<P: Probe, E: Editing> {
     pub(crate) face_holes: E::Holes<P>,
 }
 
-mesh_core::clone_by_field!(AnyFaceVertexMesh<P: Probe, E: Editing> { positions, corners, spans, fans, pool, vertex_holes, face_holes });
+sixfold_core::clone_by_field!(AnyFaceVertexMesh<P: Probe, E: Editing> { positions, corners, spans, fans, pool, vertex_holes, face_holes });
 
-/// A face-vertex mesh of which nothing can be deleted: [`AnyFaceVertexMesh`] whose rows are all elements.
+/// A face-vertex mesh that cannot delete elements: an [`AnyFaceVertexMesh`] without holes.
 pub type FaceVertexMesh<P = Untraced> = AnyFaceVertexMesh<P, Whole>;
 
-/// A face-vertex mesh that can be edited ([`MeshEdit`](mesh_core::MeshEdit)): [`AnyFaceVertexMesh`] with holes.
+/// A face-vertex mesh that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an
+/// [`AnyFaceVertexMesh`] with holes.
 pub type EditableFaceVertexMesh<P = Untraced> = AnyFaceVertexMesh<P, Editable>;
 
 impl<P: Probe> From<FaceVertexMesh<P>> for EditableFaceVertexMesh<P> {
@@ -134,30 +138,30 @@ impl<P: Probe> From<FaceVertexMesh<P>> for EditableFaceVertexMesh<P> {
     }
 }
 
-/// What a blank corner names: no vertex has so high a row.
+/// The vertex in a blank corner; no vertex has this row.
 pub(crate) const BLANK_CORNER: VertexId = VertexId::new(u32::MAX);
 
-/// What a blank place of the pool names: no face has so high a row.
+/// The face in a blank place of the pool; no face has this row.
 pub(crate) const BLANK_PLACE: FaceId = FaceId::new(u32::MAX);
 
-/// Where the faces around one vertex are in the pool.
+/// The range of the pool with the faces around one vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fan {
-    /// The row of the first.
+    /// The row of the first face.
     pub start: u32,
-    /// How many there are.
+    /// Number of faces.
     pub len: u32,
 }
 
 impl Fan {
-    /// The fan of a deleted vertex: it reaches beyond every pool, and so is found out by the bounds
-    /// check that every reader makes.
+    /// The fan of a deleted vertex: it is beyond every pool, so the bounds check of a read detects
+    /// it.
     pub const GONE: Self = Self {
         start: u32::MAX,
         len: u32::MAX,
     };
 
-    /// The rows of all.
+    /// Returns the range of pool rows.
     #[inline]
     pub fn range(self) -> Range<usize> {
         let start = self.start as usize;
@@ -166,36 +170,36 @@ impl Fan {
 }
 
 impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
-    /// Where each vertex is, as it lies in memory.
+    /// Returns the position of each vertex, as stored.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
     }
 
-    /// The vertex of each corner, face by face, as it lies in memory; blank where a face was.
+    /// Returns the vertex of each corner, face by face, as stored; blank for deleted faces.
     pub fn corners(&self) -> &[VertexId] {
         self.corners.rows()
     }
 
-    /// How the corners fall into faces.
+    /// Returns the ranges of corners of the faces.
     pub fn spans(&self) -> &FaceSpans<P, E> {
         &self.spans
     }
 
-    /// Where the faces around each vertex are in the [`pool`](Self::pool); of deleted vertices, too.
+    /// Returns the range of each vertex in the [`pool`](Self::pool), including deleted vertices.
     pub fn fans(&self) -> &[Fan] {
         self.fans.rows()
     }
 
-    /// The faces around all vertices, as they lie in memory; blank where no fan is.
+    /// Returns the faces around all vertices, as stored; blank outside all fans.
     pub fn pool(&self) -> &[FaceId] {
         self.pool.rows()
     }
 
-    /// The vertices of `f`, in order.
+    /// Returns the vertices of `f`, in order.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// Panics if there is no face `f`.
     #[inline(always)]
     pub fn face(&self, f: FaceId) -> &[VertexId] {
         let face = self.known_face(f);
@@ -205,23 +209,23 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
         face
     }
 
-    /// The vertices of a face that some fan names, and that is there therefore.
+    /// Returns the vertices of a face that is in a fan, and therefore exists.
     #[inline(always)]
     pub(crate) fn known_face(&self, f: FaceId) -> &[VertexId] {
         self.corners.read_range(self.spans.range(f))
     }
 
-    /// The faces around `v`, in no promised order.
+    /// Returns the faces around `v`, in unspecified order.
     ///
     /// # Panics
     ///
-    /// If there is no such vertex.
+    /// Panics if there is no vertex `v`.
     #[inline]
     pub fn fan(&self, v: VertexId) -> &[FaceId] {
         self.places(v, *self.fans.read(v.index()))
     }
 
-    /// What the pool has in the fan of `v`.
+    /// Returns the part of the pool in `fan`, the fan of `v`.
     #[inline]
     pub(crate) fn places(&self, v: VertexId, fan: Fan) -> &[FaceId] {
         let range = fan.range();

@@ -1,6 +1,6 @@
 //! The nine relations.
 
-use mesh_core::{Editing, FaceId, HoleSet, MeshQuery, Pair, Point, Probe, VertexId};
+use sixfold_core::{Editing, FaceId, HoleSet, MeshQuery, Pair, Point, Probe, VertexId};
 
 use crate::mesh::{AnyFaceVertexMesh, deleted_vertex};
 
@@ -14,7 +14,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyFaceVertexMesh<P, E> {
         self.vertex_holes.handles(self.fans.len())
     }
 
-    /// By their lower ends.
+    /// Lists the edges in the order of their lower ends.
     #[inline]
     fn edges(&self) -> impl Iterator<Item = Pair<VertexId>> {
         self.spans
@@ -66,8 +66,8 @@ impl<P: Probe, E: Editing> MeshQuery for AnyFaceVertexMesh<P, E> {
         e.ends()
     }
 
-    /// Only `e` itself ends at both of its ends, so no other edge comes twice; and if it is an edge,
-    /// either end is beside the other.
+    /// Lists no edge twice, because only `e` has both of its ends. If `e` is not an edge, its ends
+    /// are not adjacent, and the result is empty.
     #[inline]
     fn edge_edges(&self, e: Pair<VertexId>) -> impl Iterator<Item = Pair<VertexId>> {
         let [a, b] = e.ends();
@@ -99,6 +99,22 @@ impl<P: Probe, E: Editing> MeshQuery for AnyFaceVertexMesh<P, E> {
     }
 
     #[inline]
+    fn contains_vertex(&self, v: VertexId) -> bool {
+        v.index() < self.vertex_rows() && !self.vertex_holes.has(v.index())
+    }
+
+    #[inline]
+    fn contains_edge(&self, e: Pair<VertexId>) -> bool {
+        let [a, b] = e.ends();
+        self.contains_vertex(a) && self.contains_vertex(b) && self.edge_faces(e).next().is_some()
+    }
+
+    #[inline]
+    fn contains_face(&self, f: FaceId) -> bool {
+        f.index() < self.face_rows() && !self.face_holes.has(f.index())
+    }
+
+    #[inline]
     fn vertex_rows(&self) -> usize {
         self.fans.len()
     }
@@ -116,30 +132,30 @@ impl<P: Probe, E: Editing> MeshQuery for AnyFaceVertexMesh<P, E> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{PolygonMesh, Representation, Traced};
+    use sixfold_core::{Measured, PolygonMesh, Representation, Traced};
 
     use super::*;
     use crate::mesh::FaceVertexMesh;
 
     fn build(faces: impl IntoIterator<Item: AsRef<[u32]>>, vertices: usize) -> FaceVertexMesh {
         let polygons = PolygonMesh::new(vec![Point::ZERO; vertices], faces).expect("valid");
-        FaceVertexMesh::from_polygons(&polygons).expect("holds everything")
+        FaceVertexMesh::from_polygons(&polygons).expect("holds every mesh")
     }
 
-    /// A closed wheel: the hub v0, and `sides` triangles around it.
+    /// Returns a closed wheel: the hub v0 and `sides` triangles around it.
     fn wheel(sides: u32) -> FaceVertexMesh {
         let faces = (0..sides).map(|i| [0, i + 1, (i + 1) % sides + 1]);
         build(faces, sides as usize + 1)
     }
 
-    /// Two `sides`-gons back to back.
+    /// Returns two faces of `sides` sides each, back to back.
     fn pillow(sides: u32) -> FaceVertexMesh {
         let faces = [(0..sides).collect::<Vec<_>>(), (0..sides).rev().collect()];
         build(faces, sides as usize)
     }
 
     #[test]
-    fn neighbours_come_once_in_small_and_in_large_fans() {
+    fn neighbours_are_listed_once_in_small_and_large_fans() {
         for sides in [3, 4, 15, 16, 17, 18, 40] {
             let mesh = wheel(sides);
             let [hub, rim] = [0, 1].map(VertexId::new);
@@ -162,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn two_faces_with_the_same_sides_are_one_neighbour_of_each_other() {
+    fn two_faces_with_the_same_sides_are_listed_once_as_neighbours() {
         for sides in [3, 4, 5, 15, 16, 17, 40] {
             let mesh = pillow(sides);
             let [front, back] = [0, 1].map(FaceId::new);
@@ -173,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn forty_pages_of_a_book_are_all_neighbours() {
+    fn forty_faces_at_one_edge_are_all_adjacent() {
         let mesh = build((0..40).map(|page| [0, 1, page + 2]), 42);
         let spine = Pair::new(VertexId::new(0), VertexId::new(1));
         assert_eq!(mesh.edge_faces(spine).count(), 40);
@@ -186,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn a_diagonal_is_no_edge() {
+    fn a_diagonal_is_not_an_edge() {
         let mesh = build([[0, 1, 2, 3]], 4);
         let [a, b, c] = [0, 1, 2].map(VertexId::new);
         assert_eq!(mesh.edge_faces(Pair::new(a, c)).next(), None);
@@ -196,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn no_query_reads_more_than_its_surroundings_a_few_times() {
+    fn queries_read_only_a_few_times_the_surrounding_rows() {
         let n = 5000;
         let probe = Traced::default();
         let reads = |bound: u32, asked: usize| {
@@ -218,13 +234,13 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "no vertex 4: table `fans` has 4 rows")]
-    fn a_missing_vertex_panics_by_name() {
+    fn a_missing_vertex_panics_with_its_row() {
         let _ = wheel(3).vertex_faces(VertexId::new(4));
     }
 
     #[test]
     #[should_panic(expected = "no face f3: there are 3")]
-    fn a_missing_face_panics_by_name() {
+    fn a_missing_face_panics_with_its_handle() {
         let _ = wheel(3).face_edges(FaceId::new(3));
     }
 }

@@ -1,4 +1,4 @@
-//! Every face split in the structure's own tables, in closed form.
+//! Splits of every face in the structure's own tables; every new row has a closed formula.
 //!
 //! ```text
 //!           Quads                          Triangles
@@ -6,19 +6,23 @@
 //!    │   3   │   2    │                       ╱2╲          quads        k
 //!    │       │        │                     m₂───m₁        triangles    4f + i, the middle 4f + 3
 //!   m₃ ───── f ────── m₁                    ╱ ╲3╱ ╲
-//!    │       │        │                    ╱ 0 ╳ 1 ╲       It runs from its old vertex on: to m of
-//!    │   0   │   1    │                   a────m₀───b      its side, (to f,) to m of the side before.
+//!    │       │        │                    ╱ 0 ╳ 1 ╲       Its corners: the old vertex, m of its
+//!    │   0   │   1    │                   a────m₀───b      side, (f,) and m of the side before.
 //!    a────── m₀ ──────b
 //! ```
 //!
-//! The middle of a side is found by the [number](EdgeNumbers) of its edge. The pool has the fans of
-//! the child in the order of its vertices, without a gap: the fan of an old vertex has the part at
-//! its corner of each face of the old fan; that of a face point, the parts of the face in a row; and
-//! that of an edge point, for each side along the edge, the parts at both ends of the side and, of
-//! triangles, the middle. The sides of an edge are found in the old fan of its lower end, where all
-//! edges of one lower end have their numbers in a row; so some vertices in a row write rows in a row.
+//! The middle of a side is found by the [number](EdgeNumbers) of its edge. The pool stores the fans
+//! of the child in the order of its vertices, without gaps:
+//!
+//! - The fan of an old vertex has one part of each face of its old fan: the part at its corner.
+//! - The fan of a face point has the parts of the face, in order.
+//! - The fan of an edge point has, for each side along the edge, the parts at both ends of the
+//!   side, and for triangles the middle.
+//!
+//! The sides of an edge are found in the old fan of its lower end. All edges with the same lower
+//! end have consecutive numbers, so a range of vertices writes a range of rows.
 
-use mesh_core::{
+use sixfold_core::{
     Counts, FaceId, FaceSpans, MeshQuery, NoHoles, Pair, Point, Refine, RefineError, Split, Table,
     VertexId, check_split, row,
 };
@@ -46,7 +50,7 @@ impl Refine for FaceVertexMesh {
         }
     }
 
-    /// O(corners · degree + vertices), for the vertex of a fan is looked for in its face.
+    /// O(corners · degree + vertices), because each face of a fan is searched for the vertex.
     fn number_edges(&self, numbers: &mut EdgeNumbers) {
         numbers.fill(self);
     }
@@ -55,7 +59,7 @@ impl Refine for FaceVertexMesh {
         numbers.parts.iter().map(|part| part.edge).collect()
     }
 
-    /// Looks through the fans of the lower ends.
+    /// Searches the fans of the lower ends.
     fn edges_of_part(
         &self,
         numbers: &EdgeNumbers,
@@ -64,7 +68,7 @@ impl Refine for FaceVertexMesh {
         self.edges_between(numbers, part).into_iter()
     }
 
-    /// Looks through the shorter fan of the two ends; O(length · degree).
+    /// Searches the shorter fan of the two ends; O(length · degree).
     fn edge_number(&self, numbers: &EdgeNumbers, e: Pair<VertexId>) -> usize {
         let (v, fan, other) = self.shorter_fan(e);
         let corners = self.corners.rows();
@@ -77,12 +81,12 @@ impl Refine for FaceVertexMesh {
             }
         });
         let Some(side) = side else {
-            panic!("no edge {e:?}: no face has its ends beside each other")
+            panic!("no edge {e:?}: its ends are not adjacent in any face")
         };
         numbers.by_corner[side as usize] as usize
     }
 
-    /// O(corners · degree + vertices), for the vertex of a fan is looked for in its face.
+    /// O(corners · degree + vertices), because each face of a fan is searched for the vertex.
     fn split_into(
         &self,
         split: Split,
@@ -96,7 +100,7 @@ impl Refine for FaceVertexMesh {
             corners: self.corners.len(),
             uniform: matches!(self.spans, FaceSpans::Uniform { .. }),
         };
-        // How many faces an edge has matters to none of the splits.
+        // None of the splits depends on the number of faces per edge.
         let grown = check_split::<Self>(split, &counts, 0)?;
         if split.needs_triangles() {
             self.check_triangles()?;
@@ -123,7 +127,7 @@ impl Refine for FaceVertexMesh {
         Ok(())
     }
 
-    /// O(1), or O(log faces) where degrees are mixed.
+    /// O(1), or O(log faces) for mixed degrees.
     fn parent(&self, _: &EdgeNumbers, split: Split, child: FaceId) -> FaceId {
         match split {
             Split::Quads => self.spans.face_of(child.index()),
@@ -141,7 +145,7 @@ impl Refine for FaceVertexMesh {
 }
 
 impl FaceVertexMesh {
-    /// Refuses the first face that is no triangle.
+    /// Returns an error for the first face that is not a triangle.
     fn check_triangles(&self) -> Result<(), RefineError> {
         if let FaceSpans::Uniform { degree: 3, .. } = self.spans {
             return Ok(());
@@ -158,14 +162,14 @@ impl FaceVertexMesh {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{PolygonMesh, Representation};
+    use sixfold_core::{PolygonMesh, Representation};
 
     use super::*;
 
-    /// Two triangles on one side: v0 and v1 are its ends, v2 and v3 the tips.
+    /// Splits two triangles with a common side: v0 and v1 are its ends, v2 and v3 the others.
     fn split(split: Split) -> FaceVertexMesh {
         let polygons = PolygonMesh::new([Point::ZERO; 4], [[0, 1, 2], [0, 3, 1]]).expect("valid");
-        let mesh = FaceVertexMesh::from_polygons(&polygons).expect("holds everything");
+        let mesh = FaceVertexMesh::from_polygons(&polygons).expect("holds every mesh");
         let mut numbers = EdgeNumbers::default();
         mesh.number_edges(&mut numbers);
         let mut child = FaceVertexMesh::empty();
@@ -186,9 +190,9 @@ mod tests {
     }
 
     #[test]
-    fn quads_by_hand() {
+    fn a_split_into_quads_gives_the_expected_tables() {
         let child = split(Split::Quads);
-        // Face points 4 and 5; middles of 01, 02, 03, 12 and 13 from 6 on.
+        // Face points 4 and 5; from 6, the middles of 01, 02, 03, 12 and 13.
         let parts = [
             [0, 6, 4, 7],
             [1, 9, 4, 6],
@@ -215,9 +219,9 @@ mod tests {
     }
 
     #[test]
-    fn triangles_by_hand() {
+    fn a_split_into_triangles_gives_the_expected_tables() {
         let child = split(Split::Triangles);
-        // The middles of 01, 02, 03, 12 and 13 from 4 on.
+        // From 4, the middles of 01, 02, 03, 12 and 13.
         let parts = [
             [0, 4, 5],
             [1, 7, 4],
@@ -244,11 +248,11 @@ mod tests {
     }
 
     #[test]
-    fn a_fan_for_which_there_is_no_room_is_split_like_any_other() {
-        // A book with more pages than sides are found at once.
+    fn a_fan_longer_than_the_buffer_is_split_correctly() {
+        // More triangles at one edge than the buffer of sides can hold.
         let pages = (0..1500).map(|page| [0, 1, page + 2]);
         let polygons = PolygonMesh::new(vec![Point::ZERO; 1502], pages).expect("valid");
-        let mesh = FaceVertexMesh::from_polygons(&polygons).expect("holds everything");
+        let mesh = FaceVertexMesh::from_polygons(&polygons).expect("holds every mesh");
         let mut numbers = EdgeNumbers::default();
         mesh.number_edges(&mut numbers);
         for &split in FaceVertexMesh::SPLITS {

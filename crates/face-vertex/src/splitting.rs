@@ -1,28 +1,28 @@
-//! The tables of the child, filled: [`refine`](crate::refine) draws what goes where.
+//! Filling of the child's tables; [`refine`](crate::refine) draws the layout.
 
 use std::ops::Range;
 
-use mesh_core::{FaceId, PART, VertexId, in_given_parts, in_parts, row};
+use sixfold_core::{FaceId, PART, VertexId, in_given_parts, in_parts, row};
 
 use crate::edge_numbers::{EdgeNumbers, EdgePart};
 use crate::mesh::{FaceVertexMesh, Fan};
 
-/// How many sides are found before they are filed: so many at a time that loops do not end all the
-/// time, which costs a wrong guess each.
+/// Maximum number of sides that are found before they are filed. Large batches make the loops end
+/// rarely; each loop end costs a branch misprediction.
 const ROOM: usize = 512;
 
-/// A mesh while it is split; `DEGREE` is that of all its faces, or 0.
+/// A mesh during its split; `DEGREE` is the degree of all its faces, or 0 if degrees differ.
 #[derive(Clone, Copy)]
 pub(crate) struct Splitting<'a, const DEGREE: usize, const QUADS: bool> {
     mesh: &'a FaceVertexMesh,
     by_corner: &'a [u32],
     parts: &'a [EdgePart],
-    /// The middle of the first edge.
+    /// The vertex row of the middle of the first edge.
     middle: u32,
 }
 
 impl FaceVertexMesh {
-    /// This mesh, whose faces have `DEGREE` corners each if that is not 0, about to be split.
+    /// Returns this mesh prepared for its split; `DEGREE` is the degree of all its faces, or 0.
     pub(crate) fn splitting<'a, const DEGREE: usize, const QUADS: bool>(
         &'a self,
         numbers: &'a EdgeNumbers,
@@ -37,21 +37,22 @@ impl FaceVertexMesh {
     }
 }
 
-/// What some vertices in a row, and the edges of which they are the lower ends, give to the child.
+/// The child rows for a range of vertices, and for the edges with lower ends in this range.
 struct Part<'a> {
     vertices: Range<usize>,
     /// The number of the first edge.
     first: usize,
-    /// Where the rows of `pool` are in the pool.
+    /// The place in the whole pool where `pool` starts.
     start: usize,
     /// The parts of faces around the vertices.
     around: &'a mut [FaceId],
-    /// The fans of the middles, and what they have in the pool.
+    /// The fans of the middles.
     fans: &'a mut [Fan],
+    /// The places of these fans.
     pool: &'a mut [FaceId],
 }
 
-/// A side along an edge, and the parts of its face at both of its ends.
+/// A side along an edge, with the parts of its face at both ends of the side.
 #[derive(Clone, Copy, Default)]
 struct Side {
     edge: u32,
@@ -59,10 +60,10 @@ struct Side {
 }
 
 impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
-    /// How many parts of a face touch the middle of a side.
+    /// Number of parts of a face at the middle of a side.
     const ALONG: usize = if QUADS { 2 } else { 3 };
 
-    /// Overwrites the tables of `child`, which have their lengths already.
+    /// Overwrites the tables of `child`, which already have their final lengths.
     pub(crate) fn fill(self, child: &mut FaceVertexMesh) {
         self.fill_corners(child.corners.rows_mut());
         let (old, fans) = child.fans.rows_mut().split_at_mut(self.mesh.fans.len());
@@ -80,7 +81,7 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
         self.fill_fans(old, around, edge_fans, edge_pool);
     }
 
-    /// The part at corner `corner` of face `f`.
+    /// Returns the part at corner `corner` of face `f`.
     #[inline(always)]
     fn part(self, f: FaceId, corner: u32) -> u32 {
         if QUADS {
@@ -97,7 +98,7 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
             _ => self.mesh.corners_of::<DEGREE>(FaceId::new(row(f))).start,
         };
         let cut = (0..faces).step_by(PART).chain([faces]);
-        // Four a corner: a quad, or a triangle and a third of the inner one.
+        // Four rows per corner: a quad, or a triangle and a third of the inner one.
         let starts: Vec<usize> = cut.map(|f| 4 * first(f)).collect();
         in_given_parts(child, &starts, |part, _, child| {
             let faces = part * PART..faces.min((part + 1) * PART);
@@ -105,7 +106,7 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
         });
     }
 
-    /// The corners of the parts of some faces in a row.
+    /// Fills the corners of the parts of a range of faces.
     fn fill_corners_of(self, faces: Range<usize>, child: &mut [VertexId]) {
         let corners = self.mesh.corners.rows();
         let mut at = 0;
@@ -136,9 +137,9 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
         }
     }
 
-    /// The parts of a face are around its point, one after the other.
+    /// Fills the fans of the face points: each has the parts of its face, in order.
     fn fill_face_points(self, fans: &mut [Fan], pool: &mut [FaceId]) {
-        // The fans of the old vertices come before, as long as all corners.
+        // The fans of the old vertices come first, with one place for each corner.
         let start = self.by_corner.len();
         in_parts(fans, PART, |first, fans| {
             for (f, fan) in (first..).zip(fans) {
@@ -189,7 +190,7 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
         });
     }
 
-    /// Finds the sides of the edges of some vertices, counts them by edge, and files them.
+    /// Finds the sides of the edges of a range of vertices, counts them by edge, and files them.
     fn fill_part(self, part: &mut Part<'_>) {
         let mut sides = [Side::default(); ROOM];
         let mut around = std::mem::take(&mut part.around);
@@ -211,7 +212,8 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
                 v += 1;
             }
             if known == first && found == 0 && v < part.vertices.end {
-                // A fan for which there is no room: in pieces, and once more after they are counted.
+                // The fan does not fit into `sides`: process it in pieces, first to count, then to
+                // file.
                 let vertex = VertexId::new(v as u32);
                 let fan = self.mesh.fan(vertex);
                 let (here, after) = std::mem::take(&mut around).split_at_mut(fan.len());
@@ -235,8 +237,8 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
         }
     }
 
-    /// Puts the sides of `v` in these faces of its fan whose edge has the number `known` or a later
-    /// one into `sides`, and the part of each face at `v` into `around`.
+    /// Finds the sides of `v` in these faces of its fan whose edge has at least the number `known`,
+    /// and writes them into `sides`. Writes the part of each face at `v` into `around`.
     #[inline(always)]
     fn find_sides(
         self,
@@ -254,7 +256,7 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
             for (corner, parts) in [(corners[0], [before, at]), (corners[1], [at, after])] {
                 let edge = self.by_corner[corner as usize];
                 sides[found] = Side { edge, parts };
-                // No branch, for it would follow no pattern.
+                // No branch, because the result is unpredictable.
                 found += usize::from(edge as usize >= known);
                 end = end.max(edge + 1);
             }
@@ -273,7 +275,7 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
             let places = fan.range().end - part.start;
             let [first, second] = side.parts;
             let pool = &mut part.pool[places..places + Self::ALONG];
-            // In the order of faces, as all fans are that no edit has touched.
+            // In the order of faces, as in all fans that no edit has changed.
             pool[0] = FaceId::new(first.min(second));
             pool[1] = FaceId::new(first.max(second));
             if !QUADS {
@@ -285,10 +287,10 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
     }
 }
 
-/// Sides between a vertex and higher ones.
+/// The result of [`Splitting::find_sides`].
 struct Upward {
     found: usize,
-    /// One more than the last number of an edge seen.
+    /// One more than the highest edge number found.
     known: usize,
 }
 
@@ -301,8 +303,8 @@ impl Part<'_> {
         }
     }
 
-    /// Puts the fans of these edges one behind another, still empty, from place `start` of the pool
-    /// on; where the next begins.
+    /// Places the fans of these edges one after another, still empty, from place `start` of the
+    /// pool. Returns the place where the next fan starts.
     #[inline(always)]
     fn open(&mut self, edges: Range<usize>, start: usize) -> usize {
         let mut start = start as u32;

@@ -1,6 +1,6 @@
 //! One check for each invariant.
 
-use mesh_core::{
+use sixfold_core::{
     Editing, FaceId, HoleSet, InvariantError, IteratorExt, MeshQuery, Probe, VertexId, row,
 };
 
@@ -16,13 +16,13 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
         self.check_blanks()
     }
 
-    /// I1, its first half: the faces divide the corners among them, at least three each.
+    /// I1, first half: the faces partition the corners, with at least three corners each.
     fn check_spans(&self) -> Result<(), InvariantError> {
         let checked = self.spans.check(self.corners.len());
         checked.map_err(|detail| InvariantError::new("I1", detail))
     }
 
-    /// I1, its second half: a face names vertices that are there, each once.
+    /// I1, second half: the vertices of a face exist and are distinct.
     fn check_faces(&self) -> Result<(), InvariantError> {
         let fails = |detail: String| Err(InvariantError::new("I1", detail));
         for f in self.faces() {
@@ -30,17 +30,17 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
             let is_there =
                 |v: VertexId| v.index() < self.positions.len() && !self.vertex_holes.has(v.index());
             if let Some(v) = face.iter().find(|&&v| !is_there(v)) {
-                return fails(format!("{f} names {v}, which is not there"));
+                return fails(format!("{f} has vertex {v}, which does not exist"));
             }
             let mut once = face.iter().distinct();
             if let Some(v) = face.iter().find(|&v| once.next() != Some(v)) {
-                return fails(format!("{f} names {v} twice"));
+                return fails(format!("{f} has vertex {v} twice"));
             }
         }
         Ok(())
     }
 
-    /// I2: every vertex has a fan, inside the pool and apart from all others.
+    /// I2: every vertex has a fan inside the pool that does not overlap another.
     fn check_pool(&self) -> Result<(), InvariantError> {
         let fails = |detail: String| Err(InvariantError::new("I2", detail));
         if self.fans.len() != self.positions.len() {
@@ -65,7 +65,7 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
         Ok(())
     }
 
-    /// I3: the fan of a vertex names each face with a corner there, once, and no other.
+    /// I3: the fan of a vertex contains exactly the faces with a corner there, each once.
     fn check_fans(&self) -> Result<(), InvariantError> {
         let mut expected: Vec<Vec<FaceId>> = vec![Vec::new(); self.fans.len()];
         for f in self.faces() {
@@ -78,9 +78,9 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
             let mut fan = self.pool.rows()[self.fans.rows()[v.index()].range()].to_vec();
             fan.sort_unstable();
             let fault = if let Some(twice) = fan.windows(2).find(|pair| pair[0] == pair[1]) {
-                format!("names {} twice", twice[0])
+                format!("contains {} twice", twice[0])
             } else if let Some(f) = fan.iter().find(|f| expected.binary_search(f).is_err()) {
-                format!("names {f}, which has no corner there")
+                format!("contains {f}, which has no corner there")
             } else if let Some(f) = expected.iter().find(|f| fan.binary_search(f).is_err()) {
                 format!("lacks {f}")
             } else {
@@ -91,7 +91,7 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
         Ok(())
     }
 
-    /// I4, its first half: the holes are the vertices and faces that are marked as deleted.
+    /// I4, first half: the holes are the vertices and faces that are marked as deleted.
     fn check_holes(&self) -> Result<(), InvariantError> {
         let fails = |detail: String| InvariantError::new("I4", detail);
         self.vertex_holes.check(self.fans.len()).map_err(fails)?;
@@ -99,20 +99,20 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
         for (v, fan) in (0..row(self.fans.len())).zip(self.fans.rows()) {
             if (*fan == Fan::GONE) != self.vertex_holes.has(v as usize) {
                 let v = VertexId::new(v);
-                return Err(fails(format!("hole or not, {v} has the fan {fan:?}")));
+                return Err(fails(format!("{v} has {fan:?}, but the holes disagree")));
             }
         }
         let faces = (0..row(self.spans.len())).map(FaceId::new);
         for f in faces.filter(|f| self.face_holes.has(f.index())) {
             let face = self.known_face(f);
             if let Some(v) = face.iter().find(|&&v| v != BLANK_CORNER) {
-                return Err(fails(format!("{f} was deleted, and has the corner {v}")));
+                return Err(fails(format!("{f} was deleted but has the corner {v}")));
             }
         }
         Ok(())
     }
 
-    /// I4, its second half: what belongs to no face and to no fan is blank.
+    /// I4, second half: entries of no face and of no fan are blank.
     fn check_blanks(&self) -> Result<(), InvariantError> {
         let fails = |detail: String| Err(InvariantError::new("I4", detail));
         let corners: usize = self.faces().map(|f| self.known_face(f).len()).sum();
@@ -120,7 +120,7 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
         let named = named.count();
         if named != corners {
             return fails(format!(
-                "{named} corners are not blank, faces have {corners}"
+                "{named} corners are not blank, but faces have {corners}"
             ));
         }
         let fans = self.vertices().map(|v| self.fans.rows()[v.index()]);
@@ -128,7 +128,9 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
         let named = self.pool.rows().iter().filter(|&&f| f != BLANK_PLACE);
         let named = named.count();
         if named != places {
-            return fails(format!("{named} places are not blank, fans have {places}"));
+            return fails(format!(
+                "{named} places are not blank, but fans have {places}"
+            ));
         }
         Ok(())
     }
@@ -136,7 +138,7 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{FaceSpans, Point, PolygonMesh, Representation, Table};
+    use sixfold_core::{FaceSpans, Point, PolygonMesh, Representation, Table};
 
     use super::*;
     use crate::mesh::EditableFaceVertexMesh;
@@ -145,12 +147,12 @@ mod tests {
 
     fn mesh(faces: &[&[u32]]) -> EditableFaceVertexMesh {
         let polygons = PolygonMesh::new(SQUARE, faces).expect("valid");
-        let mesh = EditableFaceVertexMesh::from_polygons(&polygons).expect("holds everything");
+        let mesh = EditableFaceVertexMesh::from_polygons(&polygons).expect("holds every mesh");
         assert_eq!(mesh.validate(), Ok(()));
         mesh
     }
 
-    /// Faces 0 1 2 and 0 2 3; fans of v0 at 0, v1 at 2, v2 at 3, v3 at 5.
+    /// Returns faces 0 1 2 and 0 2 3; the fans of v0, v1, v2, v3 start at 0, 2, 3, 5.
     fn triangles() -> EditableFaceVertexMesh {
         mesh(&[&[0, 1, 2], &[0, 2, 3]])
     }
@@ -160,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn i1_spans_that_do_not_divide_the_corners() {
+    fn i1_spans_that_do_not_partition_the_corners() {
         let mut broken = triangles();
         broken.spans = FaceSpans::Uniform {
             degree: 3,
@@ -181,20 +183,23 @@ mod tests {
         assert_eq!(mixed(&[0, 4, 8]), "I1 fails: f1 has the corners 4..8 of 7");
         assert_eq!(mixed(&[0, 5, 7]), "I1 fails: f1 has the corners 5..7 of 7");
         assert_eq!(mixed(&[1, 4, 7]), "I1 fails: f0 has the corners 1..4 of 7");
-        assert_eq!(mixed(&[]), "I1 fails: the offsets lack even a first");
+        assert_eq!(mixed(&[]), "I1 fails: the table of offsets is empty");
     }
 
     #[test]
-    fn i1_faces_that_name_what_they_must_not() {
+    fn i1_faces_with_missing_or_repeated_vertices() {
         let mut broken = triangles();
         broken.corners.rows_mut()[4] = VertexId::new(4);
-        assert_eq!(fault(&broken), "I1 fails: f1 names v4, which is not there");
+        assert_eq!(
+            fault(&broken),
+            "I1 fails: f1 has vertex v4, which does not exist"
+        );
         broken.corners.rows_mut()[4] = VertexId::new(3);
-        assert_eq!(fault(&broken), "I1 fails: f1 names v3 twice");
+        assert_eq!(fault(&broken), "I1 fails: f1 has vertex v3 twice");
     }
 
     #[test]
-    fn i2_fans_that_are_not_apart() {
+    fn i2_fans_that_overlap_or_leave_the_pool() {
         let mut broken = triangles();
         broken.fans.rows_mut()[1].len = 2;
         assert_eq!(fault(&broken), "I2 fails: the fans of v1 and v2 overlap");
@@ -214,23 +219,26 @@ mod tests {
     fn i3_fans_that_contradict_the_faces() {
         let mut broken = triangles();
         broken.pool.rows_mut()[1] = FaceId::new(0);
-        assert_eq!(fault(&broken), "I3 fails: the fan of v0 names f0 twice");
+        assert_eq!(fault(&broken), "I3 fails: the fan of v0 contains f0 twice");
         let mut broken = triangles();
         broken.pool.rows_mut()[2] = FaceId::new(1);
-        let expected = "I3 fails: the fan of v1 names f1, which has no corner there";
+        let expected = "I3 fails: the fan of v1 contains f1, which has no corner there";
         assert_eq!(fault(&broken), expected);
         broken.fans.rows_mut()[1].len = 0;
         assert_eq!(fault(&broken), "I3 fails: the fan of v1 lacks f0");
     }
 
     #[test]
-    fn i4_what_is_deleted_and_does_not_show_it() {
+    fn i4_deleted_elements_that_are_not_marked() {
         let mut broken = triangles();
         broken.vertex_holes.dig(3);
-        assert_eq!(fault(&broken), "I1 fails: f1 names v3, which is not there");
+        assert_eq!(
+            fault(&broken),
+            "I1 fails: f1 has vertex v3, which does not exist"
+        );
         let mut broken = mesh(&[&[0, 1, 2]]);
         broken.vertex_holes.dig(3);
-        let expected = "I4 fails: hole or not, v3 has the fan Fan { start: 3, len: 0 }";
+        let expected = "I4 fails: v3 has Fan { start: 3, len: 0 }, but the holes disagree";
         assert_eq!(fault(&broken), expected);
         let mut broken = triangles();
         broken.face_holes.dig(1);
@@ -240,12 +248,12 @@ mod tests {
         broken.fans.rows_mut()[3].len = 0;
         assert_eq!(
             fault(&broken),
-            "I4 fails: f1 was deleted, and has the corner v0"
+            "I4 fails: f1 was deleted but has the corner v0"
         );
         broken.corners.rows_mut()[3..].fill(BLANK_CORNER);
         assert_eq!(
             fault(&broken),
-            "I4 fails: 6 places are not blank, fans have 3"
+            "I4 fails: 6 places are not blank, but fans have 3"
         );
         for place in [1, 4, 5] {
             broken.pool.rows_mut()[place] = BLANK_PLACE;
@@ -253,12 +261,12 @@ mod tests {
         assert_eq!(broken.validate(), Ok(()));
         let mut broken = triangles();
         broken.pool.push(FaceId::new(0));
-        let expected = "I4 fails: 7 places are not blank, fans have 6";
+        let expected = "I4 fails: 7 places are not blank, but fans have 6";
         assert_eq!(fault(&broken), expected);
     }
 
     #[test]
-    fn a_fan_may_lie_anywhere_in_the_pool() {
+    fn a_fan_can_be_anywhere_in_the_pool() {
         let mut edited = triangles();
         let mut pool = edited.pool.rows().to_vec();
         let moved = std::mem::replace(&mut pool[2], BLANK_PLACE);

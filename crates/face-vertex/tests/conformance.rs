@@ -1,5 +1,5 @@
-//! The laws of `conformance`, on this structure.
+//! The conformance tests for the face-vertex mesh.
 
-conformance::suite!(face_vertex::FaceVertexMesh);
-conformance::refine_suite!(face_vertex::FaceVertexMesh);
-conformance::edit_suite!(face_vertex::EditableFaceVertexMesh);
+sixfold_conformance::suite!(sixfold_face_vertex::FaceVertexMesh);
+sixfold_conformance::refine_suite!(sixfold_face_vertex::FaceVertexMesh);
+sixfold_conformance::edit_suite!(sixfold_face_vertex::EditableFaceVertexMesh);

@@ -1,6 +1,6 @@
-//! Walks around a vertex and along a face: ordinary iterators that end after one turn.
+//! Walks around a vertex and along a face, as iterators that end after one turn.
 
-use mesh_core::{EdgeId, Editing, FaceId, Probe, Slot, VertexId};
+use sixfold_core::{EdgeId, Editing, FaceId, Probe, Slot, VertexId};
 
 use crate::mesh::{AnyHalfEdgeMesh, Half, HalfEdgeId, deleted};
 
@@ -31,21 +31,22 @@ impl<P: Probe, E: Editing> Iterator for AroundFace<'_, P, E> {
 }
 
 impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
-    /// The half-edges that leave `v`, clockwise; from the boundary loop, if `v` is on one.
+    /// Iterates over the half-edges that leave `v`, clockwise, starting on the boundary loop if `v`
+    /// is on one.
     ///
     /// # Panics
     ///
-    /// If there is no such vertex.
+    /// Panics if `v` is not a vertex of this mesh.
     #[inline]
     pub fn leaving(&self, v: VertexId) -> Leaving<'_, P, E> {
         Leaving(self.spokes(v))
     }
 
-    /// The half-edges that have `f` on their left, counter-clockwise.
+    /// Iterates over the half-edges with `f` on their left, counter-clockwise.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// Panics if `f` is not a face of this mesh.
     #[inline]
     pub fn around_face(&self, f: FaceId) -> AroundFace<'_, P, E> {
         AroundFace(self.sides(f))
@@ -77,9 +78,11 @@ impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
     }
 }
 
-/// Each half that leaves a vertex, with the record of its twin: the one row a step has to read.
+/// The half-edges that leave a vertex (its spokes), each with the record of its twin: the only row
+/// that a step reads.
 ///
-/// The twin starts at the neighbour, has the next face on its left, and leads on to the next spoke.
+/// The twin starts at the neighbour, has the next face on its left, and its `next` is the next
+/// spoke.
 #[derive(Clone, Debug)]
 pub(crate) struct Spokes<'a, P: Probe, E: Editing> {
     mesh: &'a AnyHalfEdgeMesh<P, E>,
@@ -116,7 +119,7 @@ impl<'a, P: Probe, E: Editing> Iterator for Spokes<'a, P, E> {
     }
 }
 
-/// Each half along a face, with its record.
+/// The half-edges along a face, each with its record.
 #[derive(Clone, Debug)]
 pub(crate) struct Sides<'a, P: Probe, E: Editing> {
     mesh: &'a AnyHalfEdgeMesh<P, E>,
@@ -152,7 +155,8 @@ impl<'a, P: Probe, E: Editing> Iterator for Sides<'a, P, E> {
     }
 }
 
-/// The face across each side of a face; a step reads the two halves of an edge, which lie together.
+/// The face across each side of a face. A step reads the two half-edges of an edge, which are
+/// adjacent in memory.
 #[derive(Clone, Debug)]
 pub(crate) struct Across<'a, P: Probe, E: Editing>(Sides<'a, P, E>);
 
@@ -170,7 +174,8 @@ impl<P: Probe, E: Editing> Iterator for Across<'_, P, E> {
     }
 }
 
-/// The edges at both ends of an edge, but for itself: two walks that start and end at its halves.
+/// The edges at both ends of an edge, except the edge itself: one walk around each end, which stops
+/// at the half-edge of the edge itself.
 #[derive(Clone, Debug)]
 pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
     mesh: &'a AnyHalfEdgeMesh<P, E>,

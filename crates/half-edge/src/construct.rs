@@ -1,7 +1,7 @@
-//! In from polygons, and out again.
+//! Building from polygons, and conversion to polygons.
 
-use mesh_core::{
-    BuildError, Capabilities, Counts, Editing, FaceId, FaceList, HoleSet, InvariantError,
+use sixfold_core::{
+    BuildError, Capabilities, Counts, Editing, FaceId, FaceList, HoleSet, InvariantError, Measured,
     MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
     RowId, RowMap, SideRows, Slot, TwinPairs, Untraced, VertexId, row,
 };
@@ -15,10 +15,15 @@ impl<E: Editing> Representation for AnyHalfEdgeMesh<Untraced, E> {
 
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
 
-    type Probed<P: Probe> = AnyHalfEdgeMesh<P, E>;
+    fn type_path() -> &'static str {
+        match E::DELETES {
+            true => "sixfold_half_edge::EditableHalfEdgeMesh",
+            false => "sixfold_half_edge::HalfEdgeMesh",
+        }
+    }
 
-    /// Pairs the sides, links the faces in turn, then closes each hole with a boundary loop;
-    /// O(corners + vertices), without hashing.
+    /// Pairs the sides, links the half-edges of each face, then links the boundary loops, without
+    /// hashing; O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let refusal = || Self::CAPABILITIES.refusal(polygons);
         let faces = polygons.faces();
@@ -41,7 +46,7 @@ impl<E: Editing> Representation for AnyHalfEdgeMesh<Untraced, E> {
     }
 
     fn to_polygons(&self) -> PolygonMesh {
-        // Where there are holes, the rows after them move up.
+        // If there are holes, the rows after them get lower numbers.
         let rows =
             (!self.vertex_holes.is_empty()).then(|| self.vertex_holes.new_rows(self.vertex_rows()));
         let mut faces = FaceList::with_capacity(self.half_edge_count());
@@ -95,12 +100,16 @@ impl<E: Editing> Representation for AnyHalfEdgeMesh<Untraced, E> {
             .collect()
     }
 
-    fn layout_bytes(counts: &Counts) -> usize {
-        size_of::<Half>() * 2 * counts.edges + 16 * counts.vertices + 4 * counts.faces
-    }
-
     fn validate(&self) -> Result<(), InvariantError> {
         crate::validate::validate(self)
+    }
+}
+
+impl<E: Editing> Measured for AnyHalfEdgeMesh<Untraced, E> {
+    type Probed<P: Probe> = AnyHalfEdgeMesh<P, E>;
+
+    fn layout_bytes(counts: &Counts) -> usize {
+        size_of::<Half>() * 2 * counts.edges + 16 * counts.vertices + 4 * counts.faces
     }
 
     fn probed<P: Probe>(self, probe: P) -> AnyHalfEdgeMesh<P, E> {
@@ -116,15 +125,15 @@ impl<E: Editing> Representation for AnyHalfEdgeMesh<Untraced, E> {
     }
 }
 
-/// A half that is not linked, along a hole as far as is known.
+/// A half-edge that is not linked yet and has no face.
 const BLANK: Half = Half {
     next: HalfEdgeId::new(0),
     origin: VertexId::new(0),
     face: Slot::NONE,
 };
 
-/// Halves that are not linked yet, in whose place the pairing sorts the sides: `origin` and `next` hold
-/// one, and `face` stays empty.
+/// Half-edges that are not linked yet, used as scratch rows in which the pairing sorts the sides:
+/// `origin` and `next` of a row hold one side, and `face` stays empty.
 struct Unlinked<'a>(&'a mut [Half]);
 
 impl SideRows for Unlinked<'_> {
@@ -144,7 +153,7 @@ impl SideRows for Unlinked<'_> {
     }
 }
 
-/// The tables while they are being filled.
+/// The tables during construction.
 struct Draft {
     leaving: Vec<Slot<HalfEdgeId>>,
     halves: Vec<Half>,
@@ -152,8 +161,8 @@ struct Draft {
 }
 
 impl Draft {
-    /// Writes the half of every corner over the rows of `halves`, whose faces are empty; the halves
-    /// along holes keep an empty face.
+    /// Writes the half-edge of every corner over the rows of `halves`, whose faces are empty.
+    /// Boundary half-edges keep an empty face.
     fn link(vertices: usize, faces: &FaceList, halves: Vec<Half>, pairs: &TwinPairs) -> Self {
         let mut draft = Self {
             leaving: vec![Slot::NONE; vertices],
@@ -162,8 +171,8 @@ impl Draft {
         };
         let half_count = 2 * pairs.edge_count;
         if half_count > draft.halves.len() {
-            // There is a boundary, and halves without a corner. The old rows are freed first, for a block
-            // that grows may be copied, and the table would be in memory twice.
+            // There is a boundary, so some half-edges have no corner. The old rows are freed first:
+            // a growing block may be copied, and the table would be in memory twice.
             draft.halves = Vec::new();
             draft.halves = vec![BLANK; half_count];
         }
@@ -180,7 +189,7 @@ impl Draft {
         draft
     }
 
-    /// Links faces of a degree that the compiler knows and unrolls.
+    /// Links faces of one degree, which is known at compile time so that the loop is unrolled.
     fn link_uniform<const DEGREE: usize>(&mut self, corners: &[VertexId], halves: &[u32]) {
         let faces = corners
             .as_chunks::<DEGREE>()
@@ -206,7 +215,7 @@ impl Draft {
         }
     }
 
-    /// Links the blank halves into loops; false if two of them leave one vertex.
+    /// Links the blank half-edges into loops. Returns false if two of them leave one vertex.
     fn close_boundary_loops(&mut self) -> bool {
         let blank = |halves: &[Half], h: usize| halves[h].face.get().is_none();
         for h in 0..self.halves.len() {
@@ -226,17 +235,18 @@ impl Draft {
         for h in 0..self.halves.len() {
             if blank(&self.halves, h) {
                 let target = self.halves[h ^ 1].origin;
-                // As many boundary halves arrive at a vertex as leave it, and one leaves this one.
+                // At each vertex, as many boundary half-edges arrive as leave. One arrives here, so
+                // one leaves.
                 let next = self.leaving[target.index()]
                     .get()
-                    .expect("a half leaves every target");
+                    .expect("a half-edge leaves every target");
                 self.halves[h].next = next;
             }
         }
         true
     }
 
-    /// Whether the walks around all vertices meet every half.
+    /// Returns whether the walks around all vertices visit every half-edge.
     fn every_vertex_is_one_fan(&self) -> bool {
         let mut met = 0;
         for first in self.leaving.iter().filter_map(|leaving| leaving.get()) {

@@ -1,4 +1,4 @@
-//! Changing the mesh in place: the edits of [`MeshEdit`], and the steps that they share.
+//! Edits in place: the implementation of [`MeshEdit`], and the steps that the edits share.
 
 mod collapse;
 mod compact;
@@ -10,24 +10,25 @@ mod split_vertex;
 #[cfg(test)]
 mod tests;
 
-use mesh_core::{
+use sixfold_core::{
     EdgeId, Edit, EditError, EditLog, FaceId, HoleSet, MAX_ROWS, MeshEdit, MeshQuery, NoHoles,
     Point, Probe, QueryCost, Slot, VertexId, row,
 };
 
 use crate::mesh::{AnyHalfEdgeMesh, EditableHalfEdgeMesh, Half, HalfEdgeId, HalfEdgeMesh, NO_HALF};
 
-/// Why an edit is refused; the same whatever the probe.
-type Refusal = mesh_core::Refusal<EditableHalfEdgeMesh>;
+/// The error of an edit; the same type for every probe.
+type Refusal = sixfold_core::Refusal<EditableHalfEdgeMesh>;
 
-/// Surgery on twin pairs: halves are relinked, and each edit is a handful of rows (the operators of
-/// Mäntylä 1988, made for meshes without stored `prev`).
+/// Each edit relinks a few half-edges (the operators of Mäntylä 1988, adapted to meshes that do not
+/// store `prev`).
 ///
-/// An edit reads each row that it decides by once; what it then writes follows from these rows. The
-/// half before another is what a walk came by, or is looked for along the face or around the vertex.
+/// An edit reads each row on which its check depends once. What it then writes follows from these
+/// rows. The half-edge before another one is known from a walk, or is searched along the face or
+/// around the vertex.
 ///
-/// Every edit that touches a vertex sees to `leaving` (I5): where the boundary half goes, that which
-/// takes its place on the boundary loop takes it here.
+/// Every edit that touches a vertex maintains `leaving` (I5): if another half-edge replaces the
+/// boundary half-edge on the boundary loop, it also replaces it in `leaving`.
 impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 
@@ -176,7 +177,7 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
     }
 }
 
-/// What is there, and whether there is room for more.
+/// Checks that elements exist and that there is room for more.
 impl<P: Probe> EditableHalfEdgeMesh<P> {
     #[inline]
     fn check_vertex(&self, v: VertexId) -> Result<(), Refusal> {
@@ -187,7 +188,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         }
     }
 
-    /// The records of both halves of `e`.
+    /// Returns the records of both half-edges of `e`, or an error if `e` does not exist.
     #[inline]
     fn existing_edge(&self, e: EdgeId) -> Result<[Half; 2], Refusal> {
         if e.index() < self.edge_rows() {
@@ -199,7 +200,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         Err(EditError::NoSuchEdge { edge: e })
     }
 
-    /// `first(f)`.
+    /// Returns `first(f)`, or an error if `f` does not exist.
     #[inline]
     fn existing_face(&self, f: FaceId) -> Result<HalfEdgeId, Refusal> {
         if f.index() < self.face_rows() {
@@ -211,7 +212,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         Err(EditError::NoSuchFace { face: f })
     }
 
-    /// Whether there may be so many more rows.
+    /// Checks that this number of rows can be added.
     #[inline]
     fn check_room(&self, vertices: usize, edges: usize, faces: usize) -> Result<(), Refusal> {
         let too_many = |elements, limit| Err(EditError::TooMany { elements, limit });
@@ -228,15 +229,15 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     }
 }
 
-/// The steps that edits share.
+/// Steps that several edits share.
 impl<P: Probe> EditableHalfEdgeMesh<P> {
-    /// The record of `h`.
+    /// Returns the record of `h`.
     #[inline]
     fn row_of(&self, h: HalfEdgeId) -> Half {
         *self.halves.read(h.index())
     }
 
-    /// The record of `h`, and that of its twin beside it.
+    /// Returns the records of `h` and of its twin.
     #[inline]
     fn both(&self, h: HalfEdgeId) -> [Half; 2] {
         let pair = self.halves.read_pair(h.edge().index());
@@ -244,7 +245,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         [pair[side], pair[side ^ 1]]
     }
 
-    /// Whether `h` has a face on its left.
+    /// Returns whether `h` has a face on its left.
     #[inline]
     fn has_face(&self, h: HalfEdgeId) -> bool {
         self.row_of(h).face != Slot::NONE
@@ -255,7 +256,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         self.halves.write(h.index()).next = next;
     }
 
-    /// `new` takes the place of `old`, after `before`: in its face, or on its boundary loop.
+    /// Puts `new` in the place of `old`, after `before`, in its face or on its boundary loop.
     #[inline]
     fn replace(&mut self, before: HalfEdgeId, old: HalfEdgeId, new: HalfEdgeId) {
         let Half { next, face, .. } = self.row_of(old);
@@ -265,7 +266,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         self.pass_on_first(face, old, new);
     }
 
-    /// `first` of the face, if there is one, is `new` where it was `old`.
+    /// Sets `first` of the face, if there is a face, to `new` if it was `old`.
     #[inline]
     fn pass_on_first(&mut self, face: Slot<FaceId>, old: HalfEdgeId, new: HalfEdgeId) {
         if let Some(f) = face.get()
@@ -275,7 +276,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         }
     }
 
-    /// `leaving(v)` is `new` where it was `old`.
+    /// Sets `leaving(v)` to `new` if it was `old`.
     #[inline]
     fn pass_on_leaving(&mut self, v: VertexId, old: HalfEdgeId, new: HalfEdgeId) {
         if *self.leaving.read(v.index()) == Slot::some(old) {
@@ -288,7 +289,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         *self.leaving.write(v.index()) = Slot::some(h);
     }
 
-    /// The halves from `first` to `last` get the face `f`.
+    /// Sets the face of the half-edges from `first` to `last` to `f`.
     fn relabel(&mut self, first: HalfEdgeId, last: HalfEdgeId, f: FaceId) {
         let mut h = first;
         loop {
@@ -309,7 +310,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         v
     }
 
-    /// A new edge of these two halves; the first of them.
+    /// Adds an edge with these two half-edges; returns the first of them.
     #[inline]
     fn push_edge(&mut self, [one, other]: [Half; 2]) -> HalfEdgeId {
         let h = self.next_half();
@@ -318,26 +319,26 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         h
     }
 
-    /// The first half of the edge that is pushed next.
+    /// Returns the first half-edge of the edge that will be added next.
     #[inline]
     fn next_half(&self) -> HalfEdgeId {
         HalfEdgeId::new(row(self.halves.len()))
     }
 
-    /// The face that is pushed next.
+    /// Returns the face that will be added next.
     #[inline]
     fn next_face(&self) -> FaceId {
         FaceId::new(row(self.first.len()))
     }
 
-    /// Nothing is left of `v` but its row.
+    /// Deletes `v`: its row becomes a hole.
     #[inline]
     fn dig_vertex(&mut self, v: VertexId) {
         *self.leaving.write(v.index()) = Slot::NONE;
         self.vertex_holes.dig(v.index());
     }
 
-    /// Nothing is left of `e` but its rows.
+    /// Deletes `e`: its rows become holes.
     #[inline]
     fn dig_edge(&mut self, e: EdgeId) {
         for h in self.halves_of(e) {
@@ -346,7 +347,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         self.edge_holes.dig(e.index());
     }
 
-    /// Nothing is left of `f` but its row.
+    /// Deletes `f`: its row becomes a hole.
     #[inline]
     fn dig_face(&mut self, f: FaceId) {
         *self.first.write(f.index()) = NO_HALF;

@@ -1,65 +1,68 @@
-//! Half-edge mesh: every edge is two directed halves, each with a face on its left.
+//! Half-edge mesh: every edge is two directed half-edges, each with a face on its left.
 //!
-//! Choose it to walk around vertices and to change connectivity; not for input with three faces
-//! on an edge, which it refuses. Start at [`AnyHalfEdgeMesh`], whose numbered invariants explain the
-//! rest. After Weiler (1985) and Mäntylä (1988); twin pairs after Campagna, Kobbelt & Seidel (1998).
+//! Use it to walk around vertices and to change connectivity. It does not hold edges with three
+//! faces: building from them returns an error. Start at [`AnyHalfEdgeMesh`]; its numbered
+//! invariants define the tables. After Weiler (1985) and Mäntylä (1988); twin pairs after Campagna,
+//! Kobbelt & Seidel (1998).
 //!
 //! | holds | |
 //! |---|---|
 //! | polygons of any degree, boundaries, isolated vertices | yes |
-//! | edges with three faces, vertices with two fans, faces that disagree about the side | no: refused by name |
+//! | edges with three faces, vertices with two fans, faces with inconsistent orientation | no: the error names the elements |
 //!
 //! | query | cost | reads |
 //! |---|---|---|
-//! | VV, VE, VF | O(valence) | `leaving`, then one half a neighbour |
-//! | EV, EF | O(1) | two halves, side by side |
-//! | EE | O(valence) of both ends | one half a neighbour |
-//! | FV, FE | O(degree) | `first`, then one half a corner |
-//! | FF | O(degree) | `first`, then two halves a side, side by side |
+//! | VV, VE, VF | O(valence) | `leaving`, then one half-edge per neighbour |
+//! | EV, EF | O(1) | two half-edges, adjacent in memory |
+//! | EE | O(valence) of both ends | one half-edge per neighbour |
+//! | FV, FE | O(degree) | `first`, then one half-edge per corner |
+//! | FF | O(degree) | `first`, then two half-edges per side, adjacent in memory |
 //!
-//! | refinement ([`Refine`](mesh_core::Refine)) | cost | reads |
+//! | refinement ([`Refine`](sixfold_core::Refine)) | cost | reads |
 //! |---|---|---|
-//! | quads, triangles, √3: all faces split | O(halves) | along a face from each half: its next, and on to its prev |
+//! | quads, triangles, √3: all faces split | O(half-edges) | for each half-edge, the face from its next to its prev |
 //!
-//! | edit ([`MeshEdit`](mesh_core::MeshEdit)) | cost | records that change |
+//! | edit ([`MeshEdit`](sixfold_core::MeshEdit)) | cost | rows that change |
 //! |---|---|---|
 //! | `set_position`, `add_vertex` | O(1) | the vertex |
-//! | `add_face` | O(valence) of its corners | its sides, new edges, the halves before and after them |
-//! | `remove_face` | O(valence) of its corners | its sides, the halves before and after those that go |
-//! | `remove_vertex` | the sum of these over its faces | theirs |
-//! | `remove_isolated_vertices` | O(vertices) | those |
-//! | `split_edge` | O(degree) of a face | both halves, a new edge, the half before |
+//! | `add_face` | O(valence) of its corners | its sides, new edges, the half-edges before and after them |
+//! | `remove_face` | O(valence) of its corners | its sides, the half-edges before and after the removed ones |
+//! | `remove_vertex` | the sum of `remove_face` over its faces | as for `remove_face`, for all its faces |
+//! | `remove_isolated_vertices` | O(vertices) | the isolated vertices |
+//! | `split_edge` | O(degree) of one face | both half-edges, a new edge, the half-edge before |
 //! | `bisect_edge` | O(1) | both triangles, two or three new edges |
-//! | `poke_face` | O(degree) | its sides, an edge for each |
-//! | `split_face` | O(degree + valence) | the sides of one part, a new edge, the half before it |
-//! | `dissolve_edge` | O(degree) of both faces | the sides of one face, the halves before the edge |
-//! | `flip_edge` | O(valence) of a third corner | the six halves of two triangles |
-//! | `collapse_edge` | O(valence) of both ends | the halves from one end, and around its triangles |
-//! | `split_vertex` | O(valence) | the halves from the new vertex, up to three new edges |
+//! | `poke_face` | O(degree) | its sides, one new edge per side |
+//! | `split_face` | O(degree + valence) | the sides of one part, a new edge, the half-edge before it |
+//! | `dissolve_edge` | O(degree) of both faces | the sides of one face, the half-edges before the edge |
+//! | `flip_edge` | O(smaller valence) of the third corners | the six half-edges of two triangles |
+//! | `collapse_edge` | O(valence) of both ends | the half-edges that leave the removed end, and those around its triangles |
+//! | `split_vertex` | O(valence) | the half-edges that leave the new vertex, up to three new edges |
 //! | `compact` | O(mesh) | all |
 //!
-//! Degrees and valences are those of the faces and vertices named, not of the mesh. Vertices, edges
-//! and faces keep their names but in `compact`, and what is deleted is a hole until then.
+//! Degrees and valences are those of the faces and vertices at the edit. Vertices, edges and faces
+//! keep their handles until `compact`. Until then, the rows of deleted elements are holes.
 //!
-//! Vertices, edges and faces are rows, so that counting and listing them reads nothing but the bits
-//! of deleted ones, if there are any. `prev` is not stored: it is O(degree) along a face and
-//! O(valence) along a boundary. Stored, it made every sweep slower (one-rings 6 to 20 %, by the wider
-//! record) and nothing here faster; edits come by most of the halves that they need on their way.
+//! Vertices, edges and faces are rows. Counting and listing them reads only the bits of the holes,
+//! if there are any. `prev` is not stored: finding it costs O(degree) along a face and O(valence)
+//! along a boundary. Storing it made every sweep slower (one-rings by 6 to 20 %, because the record
+//! is wider) and nothing in this crate faster: the edits pass most of the half-edges that they need
+//! anyway.
 //!
-//! # What the sweeps are bound by
+//! # What limits the speed of the sweeps
 //!
-//! A step around a vertex is some nine instructions and one load that the next step waits for. On
-//! 82,000 triangles in a good order a one-ring sweep takes 12 ns a vertex, two a step: the records
-//! come from the nearer caches and several walks run at once, so instructions are the limit. In
-//! random order it takes 26 ns: each vertex touches some ten cache lines, of half-edges and of
-//! positions, that lie in no nearer cache. FF asks of each side two records and whether its face
-//! was met before: about 110 instructions a face in a breadth-first search, its real limit.
+//! A step around a vertex is about nine instructions and one load, for which the next step waits.
+//! On 82,000 triangles in a good order, a one-ring sweep takes 12 ns per vertex, 2 ns per step. The
+//! records come from the nearer caches and several walks run at once, so the number of instructions
+//! is the limit. In random order it takes 26 ns per vertex: each vertex touches about ten cache
+//! lines, of half-edges and of positions, that are not in the nearer caches. FF reads two records
+//! per side and tests whether the face was visited before. That is about 110 instructions per face
+//! in a breadth-first search, and they are its limit.
 //!
 //! # Examples
 //!
 //! ```
-//! use half_edge::HalfEdgeMesh;
-//! use mesh_core::{MeshQuery, Point, PolygonMesh, Representation, VertexId};
+//! use sixfold_half_edge::HalfEdgeMesh;
+//! use sixfold_core::{MeshQuery, Point, PolygonMesh, Representation, VertexId};
 //!
 //! let square = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
 //! let polygons = PolygonMesh::new(square, [[0, 1, 2], [0, 2, 3]])?;
@@ -83,3 +86,23 @@ mod validate;
 
 pub use circulate::{AroundFace, Leaving};
 pub use mesh::{AnyHalfEdgeMesh, EditableHalfEdgeMesh, Half, HalfEdgeId, HalfEdgeMesh};
+
+/// The traits and types that all Sixfold structures share: `PolygonMesh`, `MeshQuery`, handles,
+/// errors.
+pub use sixfold_core;
+
+/// Imports for a program that uses this structure: its types, and the traits of its queries and
+/// edits.
+///
+/// ```
+/// use sixfold_half_edge::prelude::*;
+///
+/// let triangle = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]])?;
+/// let mesh = HalfEdgeMesh::from_polygons(&triangle)?;
+/// assert_eq!(mesh.edge_count(), 3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub mod prelude {
+    pub use crate::{EditableHalfEdgeMesh, HalfEdgeMesh};
+    pub use sixfold_core::prelude::*;
+}

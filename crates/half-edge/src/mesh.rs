@@ -2,61 +2,61 @@
 
 use std::fmt::Debug;
 
-use mesh_core::{
+use sixfold_core::{
     EDGE_HOLES, EdgeId, Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe, Slot, Table,
     Untraced, VERTEX_HOLES, VertexId, Whole, row_id,
 };
 
 row_id! {
-    /// The name of one half-edge, `h7`; the halves of edge `e` are `2e` and `2e + 1`.
+    /// The handle of one half-edge, `h7`; the half-edges of edge `e` are `2e` and `2e + 1`.
     pub struct HalfEdgeId, "h"
 }
 
 impl HalfEdgeId {
-    /// The half that runs the other way along the same edge.
+    /// Returns the half-edge that runs the other way along the same edge.
     #[inline]
     pub const fn twin(self) -> Self {
         Self::new(self.index() as u32 ^ 1)
     }
 
-    /// The edge that this is a half of.
+    /// Returns the edge of this half-edge.
     #[inline]
     pub const fn edge(self) -> EdgeId {
         EdgeId::new(self.index() as u32 >> 1)
     }
 }
 
-/// One half of an edge: a row of the table `halves`.
+/// One half-edge: a row of the table `halves`.
 ///
-/// Kept as one record of 12 bytes rather than three columns: a step around a vertex needs two of
-/// the three fields of a row, and on meshes in random order the record saves the second cache miss
-/// (when the two were compared, by a quarter of a one-ring sweep over 82,000 shuffled triangles).
+/// Stored as one record of 12 bytes, not as three columns. A step around a vertex needs two of the
+/// three fields of a row. On meshes in random order the record avoids a second cache miss, which
+/// saved a quarter of the time of a one-ring sweep over 82,000 shuffled triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Half {
-    /// The next half along the face, or along the boundary loop.
+    /// The next half-edge along the face, or along the boundary loop.
     pub next: HalfEdgeId,
-    /// The vertex where the half starts.
+    /// The vertex where the half-edge starts.
     pub origin: VertexId,
-    /// The face on the left; none on a boundary loop.
+    /// The face on the left; empty on a boundary loop.
     pub face: Slot<FaceId>,
 }
 
 impl Half {
-    /// What both halves of a deleted edge hold: names that no row has.
+    /// The value of both rows of a deleted edge; it refers to rows that do not exist.
     pub(crate) const DELETED: Self = Self {
         next: NO_HALF,
         origin: VertexId::new(u32::MAX),
         face: Slot::NONE,
     };
 
-    /// Whether the half is one of a deleted edge.
+    /// Returns whether the edge of this half-edge is deleted.
     #[inline]
     pub(crate) fn is_deleted(&self) -> bool {
         self.origin == Self::DELETED.origin
     }
 }
 
-/// What `first` holds of a deleted face: the name of no half.
+/// The value of `first` for a deleted face; no half-edge has this row.
 pub(crate) const NO_HALF: HalfEdgeId = HalfEdgeId::new(u32::MAX);
 
 /// A mesh of directed edges in twin pairs.
@@ -72,25 +72,30 @@ pub(crate) const NO_HALF: HalfEdgeId = HalfEdgeId::new(u32::MAX);
 ///
 /// # Invariants
 ///
-/// - I1  `twin(h)` is `h ^ 1`; halves `2e` and `2e + 1` are edge `e`, and one of them has a face.
-/// - I2  `next` is a permutation of the halves; its cycles are the faces and the boundary loops.
-/// - I3  `face(next(h))` is `face(h)`; none on a boundary loop.
+/// - I1  `twin(h)` is `h ^ 1`; half-edges `2e` and `2e + 1` are edge `e`, and at least one of them
+///   has a face.
+/// - I2  `next` is a permutation of the half-edges; its cycles are the faces and the boundary
+///   loops.
+/// - I3  `face(next(h))` is `face(h)`; it is empty on a boundary loop.
 /// - I4  `origin(next(h))` is `origin(twin(h))`.
-/// - I5  `leaving(v)` has origin `v`, and no face if `v` is on a boundary; none if `v` is isolated.
-/// - I6  All halves with origin `v` are one cycle of `h → next(twin(h))`: every vertex is manifold.
-/// - I7  `first(f)` has face `f`, and its cycle names at least three vertices, each once.
+/// - I5  `leaving(v)` has origin `v`, and has no face if `v` is on a boundary; it is empty if `v`
+///   is isolated.
+/// - I6  All half-edges with origin `v` are one cycle of `h → next(twin(h))`: every vertex is
+///   manifold.
+/// - I7  `first(f)` has face `f`, and its cycle has at least three vertices, each once.
 /// - I8  No two edges have the same ends.
-/// - I9  The bits of a deleted vertex, edge or face are set, and no others. `leaving` of a deleted
-///   vertex is none; both halves of a deleted edge and `first` of a deleted face hold names that no
-///   row has. So a walk finds out by what it reads anyway that it was to start at what is deleted.
+/// - I9  The bits of deleted vertices, edges and faces are set, and no others. `leaving` of a
+///   deleted vertex is empty. Both half-edges of a deleted edge, and `first` of a deleted face,
+///   hold values that no row has. So a walk that starts at a deleted element detects this in the
+///   rows that it reads anyway.
 ///
-/// The other invariants are about what is not deleted, which never names what is.
+/// I1 to I8 are about elements that are not deleted; these never refer to deleted elements.
 ///
 /// # Memory
 ///
-/// 12 bytes a vertex for its position and 4 for `leaving`, 24 an edge, 4 a face: 96 bytes, or 24
-/// words, per vertex of a large closed triangle mesh. Once something is deleted, a bit for each
-/// vertex, edge or face up to it.
+/// 12 bytes per vertex for its position and 4 for `leaving`, 24 per edge, 4 per face: 96 bytes, or
+/// 24 words, per vertex of a large closed triangle mesh. After the first deletion, also one bit per
+/// row up to the last hole.
 #[derive(Debug)]
 pub struct AnyHalfEdgeMesh<P: Probe, E: Editing> {
     pub(crate) positions: Table<Point, P>,
@@ -102,12 +107,13 @@ pub struct AnyHalfEdgeMesh<P: Probe, E: Editing> {
     pub(crate) face_holes: E::Holes<P>,
 }
 
-mesh_core::clone_by_field!(AnyHalfEdgeMesh<P: Probe, E: Editing> { positions, leaving, halves, first, vertex_holes, edge_holes, face_holes });
+sixfold_core::clone_by_field!(AnyHalfEdgeMesh<P: Probe, E: Editing> { positions, leaving, halves, first, vertex_holes, edge_holes, face_holes });
 
-/// A half-edge mesh of which nothing can be deleted: [`AnyHalfEdgeMesh`] whose rows are all elements.
+/// A half-edge mesh that cannot delete elements: an [`AnyHalfEdgeMesh`] without holes.
 pub type HalfEdgeMesh<P = Untraced> = AnyHalfEdgeMesh<P, Whole>;
 
-/// A half-edge mesh that can be edited ([`MeshEdit`](mesh_core::MeshEdit)): [`AnyHalfEdgeMesh`] with holes.
+/// A half-edge mesh that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an
+/// [`AnyHalfEdgeMesh`] with holes.
 pub type EditableHalfEdgeMesh<P = Untraced> = AnyHalfEdgeMesh<P, Editable>;
 
 impl<P: Probe> From<HalfEdgeMesh<P>> for EditableHalfEdgeMesh<P> {
@@ -126,7 +132,7 @@ impl<P: Probe> From<HalfEdgeMesh<P>> for EditableHalfEdgeMesh<P> {
 }
 
 impl<E: Editing> AnyHalfEdgeMesh<Untraced, E> {
-    /// A mesh of these tables, without holes.
+    /// Builds a mesh from these tables, without holes.
     pub(crate) fn of_tables(
         positions: Vec<Point>,
         leaving: Vec<Slot<HalfEdgeId>>,
@@ -145,17 +151,18 @@ impl<E: Editing> AnyHalfEdgeMesh<Untraced, E> {
     }
 }
 
-/// The classic operators. Each panics, and names the half-edge, if the mesh does not have it.
+/// The classic operators. Each panics with the handle of the half-edge if it does not exist.
 impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
-    /// The next half along the face or the boundary loop; O(1).
+    /// Returns the next half-edge along the face or the boundary loop; O(1).
     #[inline]
     pub fn next(&self, h: HalfEdgeId) -> HalfEdgeId {
         self.half(h).next
     }
 
-    /// The half before `h`: its `next` is `h`; O(degree), on a boundary loop O(valence).
+    /// Returns the half-edge before `h`, whose `next` is `h`; O(degree), on a boundary loop
+    /// O(valence).
     pub fn prev(&self, h: HalfEdgeId) -> HalfEdgeId {
-        // Along a boundary the loop may be long; around the vertex the way is short.
+        // A boundary loop may be long; the walk around the vertex is short.
         let mut at = h;
         if self.is_boundary(h) {
             loop {
@@ -175,64 +182,64 @@ impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
         }
     }
 
-    /// The half that runs the other way; O(1), and no table is read.
+    /// Returns the half-edge that runs the other way; O(1), reads no table.
     #[inline]
     pub fn twin(&self, h: HalfEdgeId) -> HalfEdgeId {
         h.twin()
     }
 
-    /// The vertex where `h` starts; O(1).
+    /// Returns the vertex where `h` starts; O(1).
     #[inline]
     pub fn origin(&self, h: HalfEdgeId) -> VertexId {
         self.half(h).origin
     }
 
-    /// The vertex where `h` ends; O(1).
+    /// Returns the vertex where `h` ends; O(1).
     #[inline]
     pub fn target(&self, h: HalfEdgeId) -> VertexId {
         self.origin(h.twin())
     }
 
-    /// The face on the left of `h`; none on a boundary loop; O(1).
+    /// Returns the face on the left of `h`, or `None` on a boundary loop; O(1).
     #[inline]
     pub fn face(&self, h: HalfEdgeId) -> Option<FaceId> {
         self.half(h).face.get()
     }
 
-    /// The edge that `h` is a half of; O(1), and no table is read.
+    /// Returns the edge of `h`; O(1), reads no table.
     #[inline]
     pub fn edge(&self, h: HalfEdgeId) -> EdgeId {
         h.edge()
     }
 
-    /// The two halves of `e`; O(1), and no table is read.
+    /// Returns the two half-edges of `e`; O(1), reads no table.
     #[inline]
     pub fn halves_of(&self, e: EdgeId) -> [HalfEdgeId; 2] {
         let h = HalfEdgeId::new((e.index() as u32) << 1);
         [h, h.twin()]
     }
 
-    /// A half that leaves `v`, the one on the boundary loop if there is one; none if `v` is
-    /// isolated; O(1).
+    /// Returns a half-edge that leaves `v`, the one on the boundary loop if `v` is on one, or
+    /// `None` if `v` is isolated; O(1).
     ///
     /// # Panics
     ///
-    /// If there is no such vertex.
+    /// Panics if `v` is not a vertex of this mesh.
     #[inline]
     pub fn half_leaving(&self, v: VertexId) -> Option<HalfEdgeId> {
         let leaving = self.leaving.read(v.index()).get();
-        // Asked here: a cold function that may return made the VF sweep 6 % slower.
+        // Tested here, because a cold function that may return made the VF sweep 6 % slower.
         if leaving.is_none() && self.vertex_holes.has(v.index()) {
             deleted(v);
         }
         leaving
     }
 
-    /// A half that has `f` on its left; O(1).
+    /// Returns a half-edge that has `f` on its left; O(1).
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// Panics if `f` is not a face of this mesh.
     #[inline]
     pub fn half_along(&self, f: FaceId) -> HalfEdgeId {
         let first = *self.first.read(f.index());
@@ -242,19 +249,19 @@ impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
         first
     }
 
-    /// Whether `h` runs along a boundary loop, with no face on its left; O(1).
+    /// Returns whether `h` is on a boundary loop, without a face on its left; O(1).
     #[inline]
     pub fn is_boundary(&self, h: HalfEdgeId) -> bool {
         self.face(h).is_none()
     }
 
-    /// How many half-edges there are: two for each edge.
+    /// Returns the number of half-edges: two for each edge.
     #[inline]
     pub fn half_edge_count(&self) -> usize {
         self.halves.len() - 2 * self.edge_holes.len()
     }
 
-    /// How many vertices, edges and faces were deleted since the mesh was last compacted; O(1).
+    /// Returns the number of vertices, edges and faces deleted since the last `compact`; O(1).
     pub fn hole_count(&self) -> usize {
         self.vertex_holes.len() + self.edge_holes.len() + self.face_holes.len()
     }
@@ -268,39 +275,39 @@ impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
         half
     }
 
-    /// `next(h)` of a half that is known to be there.
+    /// Returns `next(h)` of a half-edge that is known to exist.
     #[inline]
     pub(crate) fn follow(&self, h: HalfEdgeId) -> HalfEdgeId {
         self.halves.read(h.index()).next
     }
 }
 
-/// The panic of a query that was asked about a deleted element.
+/// Panics because a query got the handle of a deleted element.
 #[cold]
 #[inline(never)]
 pub(crate) fn deleted(handle: impl Debug) -> ! {
     panic!("{handle:?} was deleted")
 }
 
-/// The tables as they lie in memory, for export and for loops of one's own; what the rows of
-/// deleted elements hold says I9.
+/// The tables as they are in memory, for export and for the caller's own loops. I9 defines the rows
+/// of deleted elements.
 impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
-    /// Positions by vertex.
+    /// Returns the positions by vertex.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
     }
 
-    /// A leaving half by vertex.
+    /// Returns one leaving half-edge for each vertex (I5).
     pub fn leaving_rows(&self) -> &[Slot<HalfEdgeId>] {
         self.leaving.rows()
     }
 
-    /// The records by half-edge.
+    /// Returns the records by half-edge.
     pub fn half_rows(&self) -> &[Half] {
         self.halves.rows()
     }
 
-    /// A half by face.
+    /// Returns one half-edge for each face (I7).
     pub fn first_rows(&self) -> &[HalfEdgeId] {
         self.first.rows()
     }
@@ -308,11 +315,11 @@ impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{MeshQuery, PolygonMesh, Representation};
+    use sixfold_core::{MeshQuery, PolygonMesh, Representation};
 
     use super::*;
 
-    /// The cube of a lecture's half-edge table: faces, and where each half leads.
+    /// Builds the cube of the half-edge table in lecture notes.
     fn cube() -> HalfEdgeMesh {
         let corners = [0, 1, 3, 2, 4, 5, 7, 6].map(|bits| {
             let axis = |bit: u32| (bits >> bit & 1) as f32;
@@ -331,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn the_operators_keep_their_laws() {
+    fn the_operators_satisfy_their_identities() {
         let open = PolygonMesh::new(
             [0.0, 1.0, 2.0, 3.0, 4.0].map(Point::splat),
             [&[0, 1, 2, 3][..], &[1, 0, 4]],
@@ -356,8 +363,8 @@ mod tests {
     }
 
     #[test]
-    fn the_lecture_cube_has_its_table() {
-        // (origin, target) of each half-edge of the notes, with the target of its next.
+    fn the_lecture_cube_has_the_expected_rows() {
+        // Origin and target of each half-edge in the notes, and the target of its next.
         let mesh = cube();
         let rows = [
             (0, 1, 2),
@@ -385,13 +392,13 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "no vertex 8: table `leaving` has 8 rows")]
-    fn a_vertex_that_is_not_there_panics_by_name() {
+    fn a_missing_vertex_panics_with_its_handle() {
         let _ = cube().vertex_vertices(VertexId::new(8)).count();
     }
 
     #[test]
     #[should_panic(expected = "no half-edge 24: table `halves` has 24 rows")]
-    fn a_half_edge_that_is_not_there_panics_by_name() {
+    fn a_missing_half_edge_panics_with_its_handle() {
         cube().next(HalfEdgeId::new(24));
     }
 }

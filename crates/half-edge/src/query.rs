@@ -1,6 +1,6 @@
 //! The nine relations.
 
-use mesh_core::{
+use sixfold_core::{
     DistinctWalk, EdgeId, Editing, FaceId, HoleSet, MeshQuery, Point, Probe, VertexId,
 };
 
@@ -60,7 +60,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyHalfEdgeMesh<P, E> {
 
     #[inline]
     fn vertex_faces(&self, v: VertexId) -> impl Iterator<Item = FaceId> {
-        // Each face at v has one half that arrives there.
+        // Each face at v has one half-edge that arrives at v.
         self.spokes(v).filter_map(|(_, twin)| twin.face.get())
     }
 
@@ -98,6 +98,21 @@ impl<P: Probe, E: Editing> MeshQuery for AnyHalfEdgeMesh<P, E> {
         DistinctWalk::new(self.across(f))
     }
 
+    #[inline]
+    fn contains_vertex(&self, v: VertexId) -> bool {
+        v.index() < self.vertex_rows() && !self.vertex_holes.has(v.index())
+    }
+
+    #[inline]
+    fn contains_edge(&self, e: EdgeId) -> bool {
+        e.index() < self.edge_rows() && !self.edge_holes.has(e.index())
+    }
+
+    #[inline]
+    fn contains_face(&self, f: FaceId) -> bool {
+        f.index() < self.face_rows() && !self.face_holes.has(f.index())
+    }
+
     fn vertex_rows(&self) -> usize {
         self.positions.len()
     }
@@ -110,7 +125,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyHalfEdgeMesh<P, E> {
         self.first.len()
     }
 
-    /// The walk around `v`, turned: leaving halves come clockwise, the boundary one first.
+    /// Reverses the walk around `v`, which is clockwise and starts on the boundary.
     fn one_ring(&self, v: VertexId) -> Option<impl Iterator<Item = VertexId>> {
         let mut ring: Vec<VertexId> = self.vertex_vertices(v).collect();
         ring.reverse();
@@ -119,7 +134,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyHalfEdgeMesh<P, E> {
 }
 
 impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
-    /// The two halves of an edge that is there.
+    /// Returns the records of both half-edges of `e`.
     #[inline]
     fn pair(&self, e: EdgeId) -> &[Half; 2] {
         let pair = self.halves.read_pair(e.index());

@@ -1,4 +1,4 @@
-//! Every face split, in the structure's own tables.
+//! Refinement: splits every face in the structure's own tables, in closed form.
 
 mod midpoints;
 mod sqrt3;
@@ -7,23 +7,24 @@ mod tests;
 
 use std::ops::Range;
 
-use mesh_core::{
+use sixfold_core::{
     Counts, EdgeId, FaceId, MeshQuery, PART, Point, Ranks, Refine, RefineError, Slot, Split,
     VertexId, all_rows, check_split, in_parts, row, row_parts, rows_of_part,
 };
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
-/// Each split is a closed form: the name of every half of the child follows from the parent's.
+/// The row of every half-edge of the child is computed from rows of the parent.
 ///
-/// A half with a face is a corner, and starts at it. The corners are numbered in the order of their
-/// halves, `#h`: on a closed mesh `#h` is `h`, on an open one [`Ranks`] count. Boundary halves have
-/// children like all others, but no corner.
+/// A half-edge with a face stands for the corner where it starts. `#h` is the number of the corner
+/// of `h`, in the order of the half-edges: on a closed mesh `#h` is `h`; on an open mesh, [`Ranks`]
+/// counts. Boundary half-edges have children like all others, but no corner.
 ///
 /// # Complexity
 ///
-/// O(halves) to number the edges and to split. Each row of the child is written once, and for a
-/// corner up to four halves of its face are read; `parent` is O(1), or O(log halves) on an open mesh.
+/// O(half-edges) to number the edges and to split. Each row of the child is written once, and at
+/// most eight other half-edges of a face are read for each of its corners. `parent` is O(1), or
+/// O(log half-edges) on an open mesh.
 impl Refine for HalfEdgeMesh {
     const SPLITS: &'static [Split] = &[
         Split::Quads,
@@ -31,7 +32,7 @@ impl Refine for HalfEdgeMesh {
         Split::Sqrt3 { trisect: false },
     ];
 
-    /// Edges are rows; these are the numbers of the corners.
+    /// The numbers of the corners; the number of an edge is its row.
     type EdgeNumbers = Ranks;
 
     fn empty() -> Self {
@@ -61,7 +62,11 @@ impl Refine for HalfEdgeMesh {
         child: &mut Self,
     ) -> Result<(), RefineError> {
         let halves = self.half_edge_count();
-        assert_eq!(numbers.items(), halves, "the numbers are of another mesh");
+        assert_eq!(
+            numbers.items(),
+            halves,
+            "the edge numbers belong to another mesh"
+        );
         let (corners, boundary) = (numbers.members(), numbers.missing());
         let counts = Counts {
             vertices: self.vertex_count(),
@@ -81,7 +86,7 @@ impl Refine for HalfEdgeMesh {
         child.leaving.resize(grown.vertices, Slot::NONE);
         child.halves.resize(2 * grown.edges, BLANK);
         child.first.resize(grown.faces, HalfEdgeId::new(0));
-        // Compiled once for closed meshes, where nothing has to be looked up.
+        // Compiled separately for closed meshes, which need no lookup of ranks.
         if boundary == 0 {
             self.split_checked(split, &Corners::<true>(numbers), child);
         } else {
@@ -94,9 +99,9 @@ impl Refine for HalfEdgeMesh {
         let (child, corners) = (child.index(), numbers.members());
         let corner = match split {
             _ if child < corners => numbers.select(child),
-            // The two more triangles of each boundary edge.
+            // The two additional triangles of each boundary edge.
             Split::Sqrt3 { .. } => numbers.select_missing((child - corners) / 2) ^ 1,
-            // The middle of each triangle.
+            // The middle triangle of each face.
             _ => return FaceId::new(row(child - corners)),
         };
         let face = self.half_rows()[corner].face.get();
@@ -138,11 +143,12 @@ impl HalfEdgeMesh {
             .faces()
             .map(|face| (face, self.around_face(face).count()));
         let odd = degrees.into_iter().find(|&(_, degree)| degree != 3);
-        let (face, degree) = odd.expect("more corners than those of triangles");
+        let (face, degree) = odd.expect("a face that is not a triangle");
         RefineError::NotATriangle { face, degree }
     }
 
-    /// Whether the vertex that `h` leaves has two edges, and both its faces have both of them.
+    /// Returns whether the origin of `h` is an inner vertex with two edges, so that its two faces
+    /// share both.
     fn is_pinched(&self, h: Slot<HalfEdgeId>) -> bool {
         let after = |h: HalfEdgeId| self.half_rows()[h.twin().index()].next;
         h.get()
@@ -151,18 +157,18 @@ impl HalfEdgeMesh {
 
     fn first_double_edge(&self) -> RefineError {
         let mut pinched = self.leaving_rows().iter().filter(|&&h| self.is_pinched(h));
-        let h = pinched.next().and_then(|h| h.get()).expect("one is there");
-        let [first, second] = [h, h.twin()].map(|h| self.face(h).expect("no boundary half"));
+        let h = pinched.next().and_then(|h| h.get()).expect("one exists");
+        let [first, second] = [h, h.twin()].map(|h| self.face(h).expect("both faces exist"));
         RefineError::DoubleEdge { first, second }
     }
 }
 
-/// The numbers of the corners; of a closed mesh each is that of its half.
+/// The numbers of the corners. On a closed mesh, each is the row of its half-edge.
 #[derive(Clone, Copy)]
 struct Corners<'a, const CLOSED: bool>(&'a Ranks);
 
 impl<const CLOSED: bool> Corners<'_, CLOSED> {
-    /// `#h`, for a half that has a face.
+    /// Returns `#h` of a half-edge that has a face.
     #[inline(always)]
     fn number(&self, h: u32) -> u32 {
         if CLOSED {
@@ -172,20 +178,20 @@ impl<const CLOSED: bool> Corners<'_, CLOSED> {
         }
     }
 
-    /// The same as the name of a face, of the child that is at the corner.
+    /// Returns the face of the child at the corner of `h`, which has the same number.
     #[inline(always)]
     fn face(&self, h: u32) -> Slot<FaceId> {
         Slot::some(FaceId::new(self.number(h)))
     }
 
-    /// Whether `h` has a face.
+    /// Returns whether `h` has a face.
     #[inline(always)]
     fn is_one(&self, h: u32) -> bool {
         CLOSED || self.0.contains(h as usize)
     }
 }
 
-/// A row of the child.
+/// Builds a row of the child.
 #[inline(always)]
 fn half(next: u32, origin: u32, face: Slot<FaceId>) -> Half {
     Half {
@@ -195,20 +201,21 @@ fn half(next: u32, origin: u32, face: Slot<FaceId>) -> Half {
     }
 }
 
-/// What some edges of the parent, and the corners of their halves, become.
+/// The rows of the child that come from some edges of the parent and from the corners of their
+/// half-edges.
 struct Part<'a> {
-    /// The edges.
+    /// The edges of the parent.
     edges: Range<u32>,
-    /// `N` halves of each edge.
+    /// The half-edges along each edge, always the same number.
     along: &'a mut [Half],
-    /// Two halves, one inner edge, for each corner.
+    /// Two half-edges, of one inner edge, for each corner.
     inner: &'a mut [Half],
-    /// The face at each corner.
+    /// `first` of the face at each corner.
     first: &'a mut [HalfEdgeId],
 }
 
-/// Calls `work` with parts of the child's tables that lie in order and cover what edges and corners
-/// become, on the threads of the current rayon pool; `along_each` halves belong to each edge.
+/// Calls `work` with consecutive parts of the child's tables that cover the rows of all edges and
+/// corners, on the threads of the current rayon pool. `along_each` half-edges belong to each edge.
 fn for_parts<const CLOSED: bool>(
     edges: usize,
     corners: &Corners<CLOSED>,
@@ -233,12 +240,12 @@ fn for_parts<const CLOSED: bool>(
     in_parts(&mut parts, 1, |_, parts| parts.iter_mut().for_each(&work));
 }
 
-/// The first `len` rows of `rows`, which keeps the others.
+/// Splits the first `len` rows off `rows` and returns them.
 fn take<'a, T>(rows: &mut &'a mut [T], len: usize) -> &'a mut [T] {
     rows.split_off_mut(..len).expect("the child has these rows")
 }
 
-/// Fills `rows` from the number of each, in parts that threads share.
+/// Computes each of `rows` from its number, in parts that the threads share.
 fn fill<T: Send>(rows: &mut [T], value: impl Fn(usize) -> T + Sync) {
     in_parts(rows, PART, |first, rows| {
         for (i, row) in (first..).zip(rows) {

@@ -2,11 +2,14 @@
 
 use std::collections::HashSet;
 
-use mesh_core::{Editing, FaceId, HoleSet, InvariantError, MeshQuery, RowId, Untraced, VertexId};
+use sixfold_core::{
+    Editing, FaceId, HoleSet, InvariantError, MeshQuery, RowId, Untraced, VertexId,
+};
 
 use crate::mesh::{AnyHalfEdgeMesh, Half, HalfEdgeId, NO_HALF};
 
-/// Checks I9, and then I1 to I8 in turn; the later ones rely on the earlier ones.
+/// Checks that the half-edges are pairs, then I9, then I1 to I8; each check relies on the earlier
+/// ones.
 pub(crate) fn validate<E: Editing>(
     mesh: &AnyHalfEdgeMesh<Untraced, E>,
 ) -> Result<(), InvariantError> {
@@ -27,7 +30,7 @@ fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> 
     Err(InvariantError::new(invariant, detail))
 }
 
-/// All halves that are there.
+/// Iterates over the half-edges of all edges that are not deleted.
 fn halves<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> impl Iterator<Item = HalfEdgeId> {
     mesh.edges().flat_map(|e| mesh.halves_of(e))
 }
@@ -35,11 +38,11 @@ fn halves<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> impl Iterator<Item
 fn pairs<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     match mesh.half_rows().len() {
         rows if rows.is_multiple_of(2) => Ok(()),
-        rows => fails("I1", format!("{rows} half-edges are no pairs")),
+        rows => fails("I1", format!("{rows} half-edges, expected an even number")),
     }
 }
 
-/// The rows of what is deleted, and no others, are marked so.
+/// Checks that exactly the rows of deleted elements are marked as deleted.
 fn holes<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let kinds = [
         (&mesh.vertex_holes, mesh.vertex_rows()),
@@ -59,18 +62,19 @@ fn holes<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), Invarian
     for (e, pair) in mesh.half_rows().as_chunks::<2>().0.iter().enumerate() {
         let marked = pair.map(|half| half == Half::DELETED);
         if marked != [mesh.edge_holes.has(e); 2] {
-            return fails("I9", format!("e{e} is deleted in part: {pair:?}"));
+            return fails("I9", format!("deletion marks of e{e} disagree: {pair:?}"));
         }
     }
     for (f, &first) in mesh.first_rows().iter().enumerate() {
         if (first == NO_HALF) != mesh.face_holes.has(f) {
-            return fails("I9", format!("f{f} is deleted in part"));
+            return fails("I9", format!("deletion marks of f{f} disagree"));
         }
     }
     Ok(())
 }
 
-/// Every name in the tables is that of a row that is no hole: without it no other check could walk.
+/// Checks that every handle in the tables names an element that exists; the other checks walk, and
+/// need this.
 fn names_exist<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let is_vertex =
         |v: VertexId| v.index() < mesh.vertex_rows() && !mesh.vertex_holes.has(v.index());
@@ -82,13 +86,13 @@ fn names_exist<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), In
     for h in halves(mesh) {
         let half = mesh.half_rows()[h.index()];
         if !is_half(half.next) || !is_vertex(half.origin) || !half.face.get().is_none_or(is_face) {
-            return fails("I2", format!("{h} names what is not there: {half:?}"));
+            return fails("I2", format!("{h} refers to a missing element: {half:?}"));
         }
     }
     let leaving = mesh.leaving_rows().iter().filter_map(|slot| slot.get());
     let along = mesh.faces().map(|f| mesh.half_along(f));
     match leaving.chain(along).find(|&h| !is_half(h)) {
-        Some(h) => fails("I5", format!("{h} is named but not there")),
+        Some(h) => fails("I5", format!("{h} is referred to, but missing")),
         None => Ok(()),
     }
 }
@@ -107,7 +111,7 @@ fn permutation<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), In
     for h in halves(mesh) {
         let next = mesh.next(h);
         if std::mem::replace(&mut reached[next.index()], true) {
-            return fails("I2", format!("two half-edges lead on to {next}"));
+            return fails("I2", format!("two half-edges have the next {next}"));
         }
     }
     Ok(())
@@ -117,7 +121,7 @@ fn faces_agree<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), In
     match halves(mesh).find(|&h| mesh.face(mesh.next(h)) != mesh.face(h)) {
         Some(h) => fails(
             "I3",
-            format!("{h} and its next {} differ in face", mesh.next(h)),
+            format!("{h} and its next {} have different faces", mesh.next(h)),
         ),
         None => Ok(()),
     }
@@ -136,7 +140,7 @@ fn leaving_halves<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(),
         let Some(leaving) = mesh.half_leaving(v) else {
             return fails(
                 "I5",
-                format!("{h} starts at {v}, which has no leaving half"),
+                format!("{h} starts at {v}, which has no leaving half-edge"),
             );
         };
         if mesh.origin(leaving) != v {
@@ -168,7 +172,7 @@ fn one_fan_each<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), I
             let all = leaving[v.index()];
             return fails(
                 "I6",
-                format!("the walk around {v} meets {walked} of {all} half-edges"),
+                format!("the walk around {v} visits {walked} of {all} half-edges"),
             );
         }
     }
@@ -185,7 +189,7 @@ fn faces<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), Invarian
         let corners: Vec<VertexId> = mesh.face_vertices(f).collect();
         let distinct: HashSet<u32> = corners.iter().map(|v| v.row()).collect();
         if corners.len() < 3 || distinct.len() < corners.len() {
-            return fails("I7", format!("{f} has the corners {corners:?}"));
+            return fails("I7", format!("{f} has invalid corners: {corners:?}"));
         }
         along += corners.len();
     }
@@ -193,7 +197,7 @@ fn faces<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), Invarian
     if along != with_face {
         return fails(
             "I7",
-            format!("{with_face} half-edges have a face, {along} are along one"),
+            format!("{with_face} half-edges have a face, the walks along faces visit {along}"),
         );
     }
     Ok(())
@@ -206,7 +210,7 @@ fn edges_differ<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), I
         if a == b || !ends.insert((a.min(b), a.max(b))) {
             return fails(
                 "I8",
-                format!("{e} has the ends {a} and {b} of another edge"),
+                format!("{e} and another edge have the same ends, {a} and {b}"),
             );
         }
     }
@@ -215,19 +219,19 @@ fn edges_differ<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), I
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{Point, PolygonMesh, Representation, Slot};
+    use sixfold_core::{Point, PolygonMesh, Representation, Slot};
 
     use super::*;
     use crate::mesh::EditableHalfEdgeMesh;
 
-    /// A square of two triangles and an isolated vertex.
+    /// Returns a square of two triangles and an isolated vertex.
     fn sound() -> EditableHalfEdgeMesh {
         let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y, Point::Z];
         let polygons = PolygonMesh::new(corners, [[0, 1, 2], [0, 2, 3]]).expect("valid");
         EditableHalfEdgeMesh::from_polygons(&polygons).expect("manifold")
     }
 
-    /// The invariant that fails once `break_it` has had its way.
+    /// Returns the invariant that fails after `break_it`.
     fn broken(break_it: impl Fn(&mut EditableHalfEdgeMesh)) -> &'static str {
         let mut mesh = sound();
         assert_eq!(mesh.validate(), Ok(()));
@@ -288,10 +292,10 @@ mod tests {
     }
 
     #[test]
-    fn a_deleted_element_that_is_named_is_found() {
+    fn a_reference_to_a_deleted_element_is_found() {
         let mut mesh = sound();
         mesh.vertex_holes.dig(4);
-        assert_eq!(mesh.validate(), Ok(()), "an isolated vertex may go");
+        assert_eq!(mesh.validate(), Ok(()), "an isolated vertex is deleted");
         let i = mesh.half_along(FaceId::new(0)).index();
         for (name, broken) in [
             (
@@ -316,8 +320,8 @@ mod tests {
     }
 
     #[test]
-    fn a_vertex_of_two_fans_is_found() {
-        // Two triangles that share no vertex; then one vertex of each is made the same.
+    fn a_vertex_with_two_fans_is_found() {
+        // Two triangles that share no vertex; then a vertex of one replaces a vertex of the other.
         let corners = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0].map(Point::splat);
         let polygons = PolygonMesh::new(corners, [[0, 1, 2], [3, 4, 5]]).expect("valid");
         let mut mesh = EditableHalfEdgeMesh::from_polygons(&polygons).expect("manifold");
@@ -332,8 +336,8 @@ mod tests {
 
     #[test]
     fn edges_with_the_same_ends_are_found() {
-        // A quad whose opposite corners become one vertex would break I7 first; two triangles with
-        // a vertex in common do not, once their far edges are given the same ends.
+        // Merging two opposite corners of a quad would break I7 first. Merging the third corners of
+        // two triangles along one edge does not, and their other edges then have the same ends.
         let corners = [0.0, 1.0, 2.0, 3.0].map(Point::splat);
         let faces = [[0, 1, 2], [1, 0, 3]];
         let polygons = PolygonMesh::new(corners, faces).expect("valid");

@@ -1,5 +1,5 @@
-//! The laws of `conformance`, on this structure.
+//! The conformance tests for the half-edge mesh.
 
-conformance::suite!(half_edge::HalfEdgeMesh);
-conformance::refine_suite!(half_edge::HalfEdgeMesh);
-conformance::edit_suite!(half_edge::EditableHalfEdgeMesh);
+sixfold_conformance::suite!(sixfold_half_edge::HalfEdgeMesh);
+sixfold_conformance::refine_suite!(sixfold_half_edge::HalfEdgeMesh);
+sixfold_conformance::edit_suite!(sixfold_half_edge::EditableHalfEdgeMesh);

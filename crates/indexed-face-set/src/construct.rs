@@ -1,9 +1,10 @@
-//! In and out.
+//! Building from polygons, and conversion to polygons.
 
-use mesh_core::{
+use sixfold_core::{
     BuildError, Capabilities, Counts, Editing, FaceId, FaceList, FaceSpans, HoleSet,
-    InvariantError, MemoryFootprint, MeshQuery, MoveError, Point, PolygonError, PolygonMesh, Probe,
-    QueryCost, Representation, ScannedFaces, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap,
+    InvariantError, Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonError,
+    PolygonMesh, Probe, QueryCost, Representation, ScannedFaces, Table, Untraced, VERTEX_HOLES,
+    VertexId, VertexMap,
 };
 
 use crate::mesh::AnyIndexedFaceSet;
@@ -20,7 +21,12 @@ impl<E: Editing> Representation for AnyIndexedFaceSet<Untraced, E> {
         ]
     };
 
-    type Probed<P: Probe> = AnyIndexedFaceSet<P, E>;
+    fn type_path() -> &'static str {
+        match E::DELETES {
+            true => "sixfold_indexed_face_set::EditableIndexedFaceSet",
+            false => "sixfold_indexed_face_set::IndexedFaceSet",
+        }
+    }
 
     /// Copies positions and corners; O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
@@ -42,7 +48,7 @@ impl<E: Editing> Representation for AnyIndexedFaceSet<Untraced, E> {
             }
             _ => self.faces_without_holes(),
         };
-        let faces = faces.expect("I1: as many corners as came in");
+        let faces = faces.expect("I1: no more corners than in the tables");
         PolygonMesh::from_faces(positions.collect(), faces).expect("I1 and I2")
     }
 
@@ -63,13 +69,17 @@ impl<E: Editing> Representation for AnyIndexedFaceSet<Untraced, E> {
         by_vertex.chain(self.faces.bytes()).collect()
     }
 
+    fn validate(&self) -> Result<(), InvariantError> {
+        self.check_invariants()
+    }
+}
+
+impl<E: Editing> Measured for AnyIndexedFaceSet<Untraced, E> {
+    type Probed<P: Probe> = AnyIndexedFaceSet<P, E>;
+
     fn layout_bytes(counts: &Counts) -> usize {
         let by_vertex = size_of::<Point>() * counts.vertices;
         by_vertex + size_of::<VertexId>() * counts.corners + counts.offset_bytes()
-    }
-
-    fn validate(&self) -> Result<(), InvariantError> {
-        self.check_invariants()
     }
 
     fn probed<P: Probe>(self, probe: P) -> AnyIndexedFaceSet<P, E> {
@@ -82,7 +92,7 @@ impl<E: Editing> Representation for AnyIndexedFaceSet<Untraced, E> {
 }
 
 impl<P: Probe, E: Editing> AnyIndexedFaceSet<P, E> {
-    /// The faces, by vertices numbered without a gap.
+    /// Returns the faces, with consecutive vertex numbers.
     fn faces_without_holes(&self) -> Result<FaceList, PolygonError> {
         let mut faces = FaceList::with_capacity(self.corners().len());
         let renumbered = !self.vertex_holes.is_empty();

@@ -1,6 +1,6 @@
-//! Editing: the faces by [`ScannedFaces`](mesh_core::ScannedFaces), and the table of vertices beside.
+//! Edits: [`ScannedFaces`](sixfold_core::ScannedFaces) edits the faces, this file the vertices.
 
-use mesh_core::{
+use sixfold_core::{
     Edit, EditError, EditLog, FaceId, HoleSet, MAX_ROWS, MeshEdit, MeshQuery, NoHoles, Pair, Point,
     Probe, QueryCost, Refusal, VertexId, row,
 };
@@ -66,7 +66,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         Ok(v)
     }
 
-    /// O(degree); one scan if somebody listens.
+    /// O(degree); one scan if the log records events.
     fn add_face(
         &mut self,
         corners: &[VertexId],
@@ -76,7 +76,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         self.faces.add_face(corners, log)
     }
 
-    /// O(degree); one scan if somebody listens.
+    /// O(degree); one scan if the log records events.
     fn remove_face(
         &mut self,
         f: FaceId,
@@ -85,7 +85,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         self.faces.remove_face(f, log)
     }
 
-    /// One scan; two if somebody listens.
+    /// One scan; two if the log records events.
     fn remove_vertex(
         &mut self,
         v: VertexId,
@@ -98,12 +98,12 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         Ok(())
     }
 
-    /// Reads all corners, and keeps a bit for each vertex meanwhile.
+    /// Reads all corners; uses temporary memory of one byte per vertex.
     fn remove_isolated_vertices(&mut self, log: &mut impl EditLog<Self>) -> usize {
         let mut used = vec![false; self.positions.len()];
         let corners = &self.faces.corners;
         for v in corners.read_range(0..corners.len()) {
-            // A blank corner is at no vertex.
+            // A blank corner has no vertex.
             if let Some(used) = used.get_mut(v.index()) {
                 *used = true;
             }
@@ -157,7 +157,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         Ok(m)
     }
 
-    /// O(degree); one scan if somebody listens.
+    /// O(degree); one scan if the log records events.
     fn split_face(
         &mut self,
         f: FaceId,
@@ -185,7 +185,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         self.faces.flip_edge(e, log)
     }
 
-    /// One scan; two where a third corner may have no other face.
+    /// One scan; two if a third corner may have no other face.
     fn collapse_edge(
         &mut self,
         e: Pair<VertexId>,
@@ -256,7 +256,7 @@ impl<P: Probe> EditableIndexedFaceSet<P> {
         }
     }
 
-    /// The name of the next vertex, if there is one left.
+    /// Returns the handle of the next new vertex, or an error if there are no more handles.
     fn next_vertex(&self) -> Result<VertexId, Refusal<Self>> {
         if self.positions.len() == MAX_ROWS {
             return Err(EditError::TooMany {
@@ -270,7 +270,7 @@ impl<P: Probe> EditableIndexedFaceSet<P> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{EditRecord, PolygonMesh, Representation, ScannedVertex};
+    use sixfold_core::{EditRecord, PolygonMesh, Representation, ScannedVertex};
 
     use super::*;
 
@@ -278,7 +278,7 @@ mod tests {
 
     fn square() -> EditableIndexedFaceSet {
         let polygons = PolygonMesh::new(SQUARE, [[0, 1, 2], [0, 2, 3]]).expect("valid");
-        EditableIndexedFaceSet::from_polygons(&polygons).expect("anything is held")
+        EditableIndexedFaceSet::from_polygons(&polygons).expect("holds every mesh")
     }
 
     fn v<const N: usize>(names: [u32; N]) -> [VertexId; N] {
@@ -286,17 +286,17 @@ mod tests {
     }
 
     #[test]
-    fn a_flip_writes_one_corner_of_each_face() {
+    fn a_flip_changes_one_corner_per_face() {
         let mut mesh = square();
         let [a, b, c, d] = v([0, 1, 2, 3]);
         let turned = mesh.flip_edge(Pair::new(a, c), &mut ());
         assert_eq!(turned, Ok(Pair::new(b, d)));
-        // The face a b c ran c→a and keeps c, the face a c d ran a→c and keeps a.
+        // The face a b c runs c→a and keeps c; the face a c d runs a→c and keeps a.
         assert_eq!(mesh.corners(), [d, b, c, a, b, d]);
     }
 
     #[test]
-    fn a_face_that_grows_moves_and_leaves_blanks_behind() {
+    fn a_growing_face_moves_and_leaves_blanks() {
         let mut mesh = square();
         let [a, b, c, d] = v([0, 1, 2, 3]);
         let side = Pair::new(a, c);
@@ -316,15 +316,15 @@ mod tests {
         assert_eq!(mesh.corners(), [b, c, d, d, a, b]);
         assert!(mesh.memory().total() < full);
         let sides = mesh.memory().tables.len();
-        assert_eq!(sides, 2, "positions and corners are all that is left");
+        assert_eq!(sides, 2, "only positions and corners remain");
     }
 
     #[test]
-    fn a_name_that_names_nothing_is_refused_even_the_blank_one() {
+    fn handles_of_missing_and_blank_elements_are_refused() {
         let mut mesh = square();
         let [a, c] = v([0, 2]);
         mesh.remove_face(FaceId::new(1), &mut ())
-            .expect("it is there");
+            .expect("f1 exists");
         for vertex in [VertexId::new(4), VertexId::BLANK] {
             let refusal = Err(EditError::NoSuchVertex { vertex });
             assert_eq!(mesh.remove_vertex(vertex, &mut ()), refusal);
@@ -345,15 +345,15 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "no vertex v1: it was deleted")]
-    fn a_deleted_vertex_panics_by_name() {
+    fn the_position_of_a_deleted_vertex_panics() {
         let mut mesh = square();
         let [v] = v([1]);
-        mesh.remove_vertex(v, &mut ()).expect("it is there");
+        mesh.remove_vertex(v, &mut ()).expect("v1 exists");
         mesh.position(v);
     }
 
     #[test]
-    fn edges_at_the_vertex_that_goes_are_renamed_and_those_that_meet_another_removed() {
+    fn a_collapse_removes_edges_that_merge_and_compaction_renames_vertices() {
         let mut mesh = square();
         let [a, b, c, d] = v([0, 1, 2, 3]);
         let mut record = EditRecord::new();

@@ -1,35 +1,38 @@
-//! Indexed face set: shared vertices, faces as lists of them, and nothing else.
+//! Indexed face set: shared vertices, a vertex list for each face, and no other tables.
 //!
-//! It is what files hold and what a renderer is handed. Choose it where faces are read in order, or
-//! where a mesh only waits in memory: no structure with shared vertices is smaller, and it holds
-//! every polygon mesh. FV, FE and EV take O(1) an item. Any question about a neighbourhood is a scan
-//! of all corners, for nothing else in the tables could answer it. Start at [`AnyIndexedFaceSet`],
-//! whose three invariants explain the rest.
+//! Files and renderers use this form. Use it if faces are read in order, or to keep a mesh in
+//! memory without queries: no structure with shared vertices is smaller, and it holds every polygon
+//! mesh. FV, FE and EV take O(1) per item. Every query of a neighbourhood scans all corners,
+//! because no table stores neighbours. Start at [`AnyIndexedFaceSet`]; its three invariants define
+//! the tables.
 //!
-//! Edges are not stored; an edge is the [pair](mesh_core::Pair) of its ends.
+//! Edges are not stored; an edge is the [pair](sixfold_core::Pair) of its ends.
 //!
-//! # What a scan is bound by
+//! # What limits the speed of a scan
 //!
-//! A scan reads 4 bytes a corner, once and in order, and compares them with the vertex that it looks
-//! for, many at a time and without a branch. In cache it is bound by those comparisons (0.08 ns a
-//! corner on 82,000 triangles, 50 GB/s), beyond it by the bandwidth of memory (0.16 ns on 1.3 million,
-//! 0.6 ms a query). Hits are few, and only they are looked at more closely. A scan of a polygon soup
-//! moves three times as many bytes and compares three times as many words.
+//! A scan reads 4 bytes per corner, once and in order. It compares them with the vertex it
+//! searches, many at a time and without a branch. In cache, the comparisons are the limit (0.08 ns
+//! per corner on 82,000 triangles, 50 GB/s); in larger meshes it is the memory bandwidth (0.16 ns
+//! per corner on 1.3 million triangles, 0.6 ms per query). Hits are few, and only they are examined
+//! further. A scan of a polygon soup moves three times as many bytes and compares three times as
+//! many words.
 //!
-//! `edges` is bound by the scattered writes of its counting sort: 3.4 ns a corner in cache, 13 beyond.
+//! `edges` is limited by the scattered writes of its counting sort: 3.4 ns per corner in cache, 13
+//! beyond.
 //!
 //! # Editing
 //!
-//! It takes every edit, and all but those of one face or one vertex begin with a scan: two of them to
-//! turn one edge. Choose it to edit a few places, or to add and remove faces, which it does in O(1) a
-//! corner; for many edits of edges choose a structure that knows what is where. The scan and the
-//! surgery are those of [`ScannedFaces`](mesh_core::ScannedFaces), shared with the polygon soup.
+//! All edits are supported. All except those of one face or one vertex begin with a scan; a flip of
+//! an edge needs two. Use the structure to edit a few places, or to add and remove faces, which
+//! takes O(1) per corner. For many edits of edges, use a structure that stores neighbours.
+//! [`ScannedFaces`](sixfold_core::ScannedFaces) implements the scan and the edits of faces; the
+//! polygon soup uses it too.
 //!
 //! # Examples
 //!
 //! ```
-//! use indexed_face_set::IndexedFaceSet;
-//! use mesh_core::{MeshQuery, Pair, Point, PolygonMesh, Representation, VertexId};
+//! use sixfold_indexed_face_set::IndexedFaceSet;
+//! use sixfold_core::{MeshQuery, Pair, Point, PolygonMesh, Representation, VertexId};
 //!
 //! let square = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
 //! let polygons = PolygonMesh::new(square, [[0, 1, 2], [0, 2, 3]])?;
@@ -48,3 +51,21 @@ mod query;
 mod validate;
 
 pub use mesh::{AnyIndexedFaceSet, EditableIndexedFaceSet, IndexedFaceSet};
+
+/// The traits and types that all structures share: `PolygonMesh`, `MeshQuery`, handles, errors.
+pub use sixfold_core;
+
+/// Imports for a program: the types of this structure, and the traits of its queries and edits.
+///
+/// ```
+/// use sixfold_indexed_face_set::prelude::*;
+///
+/// let triangle = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]])?;
+/// let mesh = IndexedFaceSet::from_polygons(&triangle)?;
+/// assert_eq!(mesh.edge_count(), 3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub mod prelude {
+    pub use crate::{EditableIndexedFaceSet, IndexedFaceSet};
+    pub use sixfold_core::prelude::*;
+}

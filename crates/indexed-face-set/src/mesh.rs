@@ -1,70 +1,71 @@
-//! The structure itself.
+//! The tables, their invariants, and access to them.
 
-use mesh_core::{
+use sixfold_core::{
     Editable, Editing, FaceId, FaceSpans, HoleSet, Point, Probe, ScannedFaces, Table, Untraced,
     VERTEX_HOLES, VertexId, Whole,
 };
 
-/// Vertices with positions, and faces as lists of vertices.
+/// A mesh with the position of each vertex and the vertices of each face.
 ///
 /// ```text
 ///    c ────── b
 ///    │ f0  /  │     positions  a  b  c  d …             by vertex
 ///    │   /    │     corners    a  b  c │ a  d  b │ …    by corner
 ///    │ /  f1  │                └─ f0 ─┘└─ f1 ─┘
-///    a ────── d     that f0 and f1 share the edge a–b, only a scan finds out
+///    a ────── d     that f0 and f1 share the edge a–b is not stored: only a scan finds it
 /// ```
 ///
 /// # Invariants
 ///
-/// - I1  Face `f` has the corners of `spans.range(f)`, at least three; these ranges follow one
-///   another through the whole table, until a face gets another degree, which may leave corners
+/// - I1  Face `f` has the corners `spans.range(f)`, at least three. These ranges are consecutive
+///   and cover the whole table, until an edit changes a degree; after that, unused corners can be
 ///   between them.
-/// - I2  The corners of a face name vertices that are there, each once.
-/// - I3  Holes are rows of vertices and of faces. Blank, which names no vertex, are the corners of
-///   deleted faces and those between faces, and no others; so no scan finds them. A deleted vertex
-///   keeps its last place, which nobody reads.
+/// - I2  The vertices at the corners of a face exist and are distinct.
+/// - I3  Holes are rows of vertices and of faces. The corners of deleted faces and the unused
+///   corners between faces are blank, and no others. A blank corner has no vertex, so no scan finds
+///   it. A deleted vertex keeps its last position, which is not used.
 ///
 /// # Memory
 ///
-/// Words for each vertex of a large closed triangle mesh: 9, being 3 of positions and 6 of corners.
-/// Mixed degrees add the offsets of the faces. Edits that change a degree bring two words a face and
-/// one a corner instead, deletions a bit a row, all until [`compact`](mesh_core::MeshEdit::compact).
+/// A large closed triangle mesh uses 9 words per vertex: 3 for positions and 6 for corners. With
+/// mixed degrees, the offsets add one word per face. Edits that change a degree replace the offsets
+/// by two words per face and one per corner. Deletions add one bit per row.
+/// [`compact`](sixfold_core::MeshEdit::compact) removes both.
 ///
 /// # Complexity
 ///
-/// | query | looks at | time |
+/// | query | reads | time |
 /// |---|---|---|
-/// | FV, FE | the corners of the face | O(1) an item |
-/// | EV | the handle itself | O(1), without reading |
+/// | FV, FE | the corners of the face | O(1) per item |
+/// | EV | the handle itself | O(1), reads no table |
 /// | VF, VV, VE, EF, EE | all corners, in one scan | O(corners) expected |
-/// | FF | all corners, in one scan | O(corners + degree log degree) expected; beyond degree 8 O(vertices) more |
-/// | `vertices`, `faces` | nothing | O(1) an item |
+/// | FF | all corners, in one scan | O(corners + degree log degree) expected; above degree 8 also O(vertices) |
+/// | `vertices`, `faces` | the holes, if there are any | O(1) per item |
 /// | `edges`, `edge_count` | all corners | O(corners + vertices), without hashing |
 ///
-/// A hit of a scan costs O(1), or O(log faces) with mixed degrees, where the face of a corner has to
-/// be looked for until edits have brought a table for that.
+/// A hit of a scan costs O(1), or O(log faces) with mixed degrees, because the face of the corner
+/// must be searched. After an edit of degrees, a table stores the face of each corner.
 ///
 /// # Edits
 ///
-/// | edit | looks at | changes |
+/// | edit | reads | changes |
 /// |---|---|---|
-/// | `set_position` | the vertex | its place |
-/// | `add_vertex` | nothing | a new place |
+/// | `set_position` | the vertex | its position |
+/// | `add_vertex` | nothing | a new position |
 /// | `add_face` | its corners | new corners, a new span |
-/// | `remove_face`, `split_face`, `poke_face` | the corners of the face | they, and those of new faces |
-/// | `split_edge`, `dissolve_edge` | all corners, in one scan | the faces along the edge, which may move to the end of the table |
+/// | `remove_face`, `split_face`, `poke_face` | the corners of the face | these, and the corners of new faces |
+/// | `split_edge`, `dissolve_edge` | all corners, in one scan | the faces at the edge, which may move to the end of the table |
 /// | `bisect_edge` | all corners, in one scan | a corner of each face, and a new face for each |
 /// | `flip_edge` | all corners, in two scans | one corner of each face |
-/// | `collapse_edge` | all corners, in one scan, seldom two | the corners at the vertex that goes |
+/// | `collapse_edge` | all corners, in one scan, rarely two | the corners at the removed vertex |
 /// | `split_vertex` | all corners, in one scan | the corners that the new vertex gets, and two new faces |
 /// | `remove_vertex` | all corners, in one scan | the corners of its faces |
-/// | `remove_isolated_vertices` | all corners | bits |
+/// | `remove_isolated_vertices` | all corners | one bit per removed vertex |
 /// | `compact` | everything | everything |
 ///
-/// To tell a listener which sides of a face others have too, `add_face`, `remove_face`,
-/// `remove_vertex` and `split_face` scan once more. Nothing but a handle that names nothing, or the
-/// rule of the edit itself, makes one illegal: any polygon mesh is held.
+/// If a log records the edits, `add_face`, `remove_face`, `remove_vertex` and `split_face` need one
+/// more scan, to find the sides that other faces also have. The structure holds every polygon mesh,
+/// so an edit has no restrictions besides its own rule and valid handles.
 #[derive(Debug)]
 pub struct AnyIndexedFaceSet<P: Probe, E: Editing> {
     pub(crate) positions: Table<Point, P>,
@@ -72,12 +73,13 @@ pub struct AnyIndexedFaceSet<P: Probe, E: Editing> {
     pub(crate) faces: ScannedFaces<VertexId, P, E>,
 }
 
-mesh_core::clone_by_field!(AnyIndexedFaceSet<P: Probe, E: Editing> { positions, vertex_holes, faces });
+sixfold_core::clone_by_field!(AnyIndexedFaceSet<P: Probe, E: Editing> { positions, vertex_holes, faces });
 
-/// An indexed face set of which nothing can be deleted: [`AnyIndexedFaceSet`] whose rows are all elements.
+/// An indexed face set that cannot delete elements: an [`AnyIndexedFaceSet`] without holes.
 pub type IndexedFaceSet<P = Untraced> = AnyIndexedFaceSet<P, Whole>;
 
-/// An indexed face set that can be edited ([`MeshEdit`](mesh_core::MeshEdit)): [`AnyIndexedFaceSet`] with holes.
+/// An indexed face set that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an
+/// [`AnyIndexedFaceSet`] with holes.
 pub type EditableIndexedFaceSet<P = Untraced> = AnyIndexedFaceSet<P, Editable>;
 
 impl<P: Probe> From<IndexedFaceSet<P>> for EditableIndexedFaceSet<P> {
@@ -92,42 +94,42 @@ impl<P: Probe> From<IndexedFaceSet<P>> for EditableIndexedFaceSet<P> {
 }
 
 impl<P: Probe, E: Editing> AnyIndexedFaceSet<P, E> {
-    /// Where each vertex is, as it lies in memory, deleted ones included.
+    /// Returns the position of each vertex, as stored, including deleted ones.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
     }
 
-    /// The vertex of each corner, face by face, as it lies in memory, blank ones included.
+    /// Returns the vertex of each corner, face by face, as stored, including blank corners.
     pub fn corners(&self) -> &[VertexId] {
         self.faces.corners.rows()
     }
 
-    /// How the corners fall into faces, deleted ones included.
+    /// Returns the ranges of corners of the faces, including deleted ones.
     pub fn spans(&self) -> &FaceSpans<P, E> {
         &self.faces.spans
     }
 
-    /// The vertices of `f`, in order.
+    /// Returns the vertices of `f`, in order.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// Panics if there is no face `f`.
     #[inline]
     pub fn face(&self, f: FaceId) -> &[VertexId] {
         self.faces.face(f)
     }
 
-    /// Whether `v` is there.
+    /// Returns whether `v` exists.
     #[inline]
     pub(crate) fn has(&self, v: VertexId) -> bool {
         v.index() < self.positions.len() && !self.vertex_holes.has(v.index())
     }
 
-    /// `v`, if it is there: a scan for a vertex that is not would find nothing, and say nothing.
+    /// Returns `v` if it exists. Without this check, a scan for a missing vertex would be empty.
     ///
     /// # Panics
     ///
-    /// If there is no such vertex.
+    /// Panics if there is no vertex `v`.
     #[inline]
     pub(crate) fn existing(&self, v: VertexId) -> VertexId {
         let vertices = self.positions.len();
@@ -136,9 +138,11 @@ impl<P: Probe, E: Editing> AnyIndexedFaceSet<P, E> {
         v
     }
 
+    /// Checks that `v` was not deleted.
+    ///
     /// # Panics
     ///
-    /// If `v` was deleted.
+    /// Panics if `v` was deleted.
     #[inline]
     pub(crate) fn check_deleted(&self, v: VertexId) {
         if self.vertex_holes.has(v.index()) {

@@ -1,6 +1,6 @@
 //! The nine relations.
 
-use mesh_core::{Editing, FaceId, HoleSet, MeshQuery, Pair, Point, Probe, VertexId};
+use sixfold_core::{Editing, FaceId, HoleSet, MeshQuery, Pair, Point, Probe, VertexId};
 
 use crate::mesh::AnyIndexedFaceSet;
 
@@ -14,7 +14,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyIndexedFaceSet<P, E> {
         self.vertex_holes.handles(self.positions.len())
     }
 
-    /// By their lower ends.
+    /// Lists the edges in the order of their lower ends.
     fn edges(&self) -> impl Iterator<Item = Pair<VertexId>> {
         let faces = &self.faces;
         let vertices = self.positions.len();
@@ -90,6 +90,22 @@ impl<P: Probe, E: Editing> MeshQuery for AnyIndexedFaceSet<P, E> {
     }
 
     #[inline]
+    fn contains_vertex(&self, v: VertexId) -> bool {
+        v.index() < self.vertex_rows() && !self.vertex_holes.has(v.index())
+    }
+
+    #[inline]
+    fn contains_edge(&self, e: Pair<VertexId>) -> bool {
+        let [a, b] = e.ends();
+        self.contains_vertex(a) && self.contains_vertex(b) && self.edge_faces(e).next().is_some()
+    }
+
+    #[inline]
+    fn contains_face(&self, f: FaceId) -> bool {
+        f.index() < self.face_rows() && !self.faces.holes.has(f.index())
+    }
+
+    #[inline]
     fn vertex_rows(&self) -> usize {
         self.positions.len()
     }
@@ -107,19 +123,19 @@ impl<P: Probe, E: Editing> MeshQuery for AnyIndexedFaceSet<P, E> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{PolygonMesh, Representation};
+    use sixfold_core::{PolygonMesh, Representation};
 
     use super::*;
     use crate::mesh::IndexedFaceSet;
 
     #[test]
-    fn a_vertex_of_very_many_faces_has_each_edge_once() {
+    fn edges_of_a_vertex_with_many_faces_are_listed_once() {
         let faces = 1_000;
         let corners = vec![Point::ZERO; faces as usize + 2];
-        // All around v0, which is the lower end of every spoke, each of them shared by two faces.
+        // All faces are around v0, the lower end of every spoke; two faces share each inner spoke.
         let fan = (1..=faces).map(|f| [0, f, f + 1]);
         let mesh = PolygonMesh::new(corners, fan).expect("valid");
-        let mesh = IndexedFaceSet::from_polygons(&mesh).expect("anything is held");
+        let mesh = IndexedFaceSet::from_polygons(&mesh).expect("holds every mesh");
         assert_eq!(mesh.edge_count(), 2 * faces as usize + 1);
         assert_eq!(
             mesh.vertex_edges(VertexId::new(0)).count(),

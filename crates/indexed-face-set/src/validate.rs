@@ -1,41 +1,41 @@
 //! One check for each invariant.
 
-use mesh_core::{Editing, HoleSet, InvariantError, IteratorExt, MeshQuery, Probe};
+use sixfold_core::{Editing, HoleSet, InvariantError, IteratorExt, MeshQuery, Probe};
 
 use crate::mesh::AnyIndexedFaceSet;
 
 impl<P: Probe, E: Editing> AnyIndexedFaceSet<P, E> {
-    /// Checks I1, then I3 and I2, which rely on it.
+    /// Checks I1 first, then I3 and I2, which rely on it.
     pub(crate) fn check_invariants(&self) -> Result<(), InvariantError> {
         self.check_spans()?;
         self.check_holes()?;
         self.check_faces()
     }
 
-    /// I1: the faces divide the corners among them, at least three each.
+    /// I1: the faces partition the corners, with at least three corners each.
     fn check_spans(&self) -> Result<(), InvariantError> {
         let checked = self.spans().check(self.corners().len());
         checked.map_err(|detail| InvariantError::new("I1", detail))
     }
 
-    /// I3: holes are rows, and blank corners are those of no face.
+    /// I3: holes are rows, and the blank corners are exactly those of no face.
     fn check_holes(&self) -> Result<(), InvariantError> {
         let checked = self.vertex_holes.check(self.positions.len());
         let checked = checked.and_then(|()| self.faces.check_holes());
         checked.map_err(|detail| InvariantError::new("I3", detail))
     }
 
-    /// I2: a face names vertices that are there, each once.
+    /// I2: the vertices of a face exist and are distinct.
     fn check_faces(&self) -> Result<(), InvariantError> {
         let fails = |detail: String| Err(InvariantError::new("I2", detail));
         for f in self.faces() {
             let face = self.face(f);
             if let Some(v) = face.iter().find(|v| !self.has(**v)) {
-                return fails(format!("{f} names {v}, which is not there"));
+                return fails(format!("{f} has vertex {v}, which does not exist"));
             }
             let mut once = face.iter().distinct();
             if let Some(v) = face.iter().find(|&v| once.next() != Some(v)) {
-                return fails(format!("{f} names {v} twice"));
+                return fails(format!("{f} has vertex {v} twice"));
             }
         }
         Ok(())
@@ -44,7 +44,7 @@ impl<P: Probe, E: Editing> AnyIndexedFaceSet<P, E> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{
+    use sixfold_core::{
         FaceId, FaceSpans, MeshEdit, Point, PolygonMesh, Representation, ScannedVertex, Table,
         VertexId,
     };
@@ -53,10 +53,10 @@ mod tests {
 
     const CORNERS: [Point; 5] = [Point::ZERO, Point::X, Point::ONE, Point::Y, Point::Z];
 
-    /// The invariant that fails once `break_it` has had its way with a mesh of these faces.
+    /// Returns the invariant that fails after `break_it` changed a mesh of these faces.
     fn broken(faces: &[&[u32]], break_it: impl Fn(&mut EditableIndexedFaceSet)) -> &'static str {
         let polygons = PolygonMesh::new(CORNERS, faces).expect("valid");
-        let mut mesh = EditableIndexedFaceSet::from_polygons(&polygons).expect("anything is held");
+        let mut mesh = EditableIndexedFaceSet::from_polygons(&polygons).expect("holds every mesh");
         assert_eq!(mesh.validate(), Ok(()));
         break_it(&mut mesh);
         mesh.validate().expect_err("the mesh is broken").invariant
@@ -66,7 +66,7 @@ mod tests {
     const MIXED: &[&[u32]] = &[&[0, 1, 2], &[0, 2, 3, 4], &[0, 4, 1]];
 
     #[test]
-    fn spans_that_do_not_divide_the_corners_break_i1() {
+    fn spans_that_do_not_partition_the_corners_break_i1() {
         let uniform = |degree, faces| {
             move |mesh: &mut EditableIndexedFaceSet| {
                 mesh.faces.spans = FaceSpans::Uniform { degree, faces };
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn corners_that_name_no_vertex_or_one_twice_break_i2() {
+    fn missing_or_repeated_vertices_break_i2() {
         for faces in [TRIANGLES, MIXED] {
             let name = |corner: usize, v| {
                 move |mesh: &mut EditableIndexedFaceSet| {
@@ -106,7 +106,7 @@ mod tests {
         }
     }
     #[test]
-    fn holes_that_are_used_and_blanks_that_are_no_holes_break_i3() {
+    fn used_holes_and_blank_corners_of_faces_break_i3() {
         for faces in [TRIANGLES, MIXED] {
             let blank = |mesh: &mut EditableIndexedFaceSet| {
                 mesh.faces.corners.rows_mut()[4] = VertexId::BLANK;
@@ -118,12 +118,12 @@ mod tests {
             assert_eq!(broken(faces, beyond), "I3");
             let revived = |mesh: &mut EditableIndexedFaceSet| {
                 let f = FaceId::new(1);
-                mesh.remove_face(f, &mut ()).expect("it is there");
+                mesh.remove_face(f, &mut ()).expect("f1 exists");
                 assert_eq!(mesh.validate(), Ok(()));
                 mesh.faces.corners.rows_mut()[5] = VertexId::new(0);
             };
             assert_eq!(broken(faces, revived), "I3");
-            // A vertex that is no longer there is named: that is for I2.
+            // A face that has a deleted vertex breaks I2.
             let named = |mesh: &mut EditableIndexedFaceSet| mesh.vertex_holes.dig(2);
             assert_eq!(broken(faces, named), "I2");
         }

@@ -1,4 +1,4 @@
-//! The laws of `conformance`, on this structure.
+//! The conformance tests for the indexed face set.
 
-conformance::suite!(indexed_face_set::IndexedFaceSet);
-conformance::edit_suite!(indexed_face_set::EditableIndexedFaceSet);
+sixfold_conformance::suite!(sixfold_indexed_face_set::IndexedFaceSet);
+sixfold_conformance::edit_suite!(sixfold_indexed_face_set::EditableIndexedFaceSet);

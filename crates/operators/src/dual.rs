@@ -1,44 +1,47 @@
 //! The dual of a closed mesh.
 
 use glam::DVec3;
-use mesh_core::{Capabilities, FaceId, FaceList, MeshQuery, PolygonMesh, TwinPairs, VertexId, row};
+use sixfold_core::{
+    Capabilities, FaceId, FaceList, MeshQuery, PolygonMesh, TwinPairs, VertexId, row,
+};
 
 use crate::error::DualError;
 
-/// The dual of a closed oriented manifold: a vertex for each face, and a face for each vertex.
+/// Builds the dual of a closed oriented manifold: one vertex for each face, one face for each
+/// vertex.
 ///
 /// ```text
 ///     ╲       │       ╱        vertex i of the dual: the mean of the corners of face i
 ///      ● ─────┼───── ●         face j of the dual: the faces around vertex j, counter-clockwise
-///      │ ╲    │    ╱ │           as seen from outside, from the lowest on
+///      │ ╲    │    ╱ │           as seen from outside, starting at the lowest
 ///      │   ╲  │  ╱   │         edges cross: v – e + f becomes f – e + v
 ///   ───┼───── v ─────┼───
 ///      │   ╱  │  ╲   │         tetrahedron ↔ itself, cube ↔ octahedron,
 ///      ● ─────┼───── ●         dodecahedron ↔ icosahedron
 /// ```
 ///
-/// Vertices and faces are numbered in the order of `faces()` and `vertices()`, so the dual of the
-/// dual has the faces of the mesh again, each from a start of its own. Two faces that share several
-/// edges become the ends of several edges, which share one name: structures for manifolds then
-/// refuse the dual, though they hold the mesh.
+/// The vertices are numbered in the order of `faces()`, the faces in the order of `vertices()`. The
+/// dual of the dual therefore has the faces of the mesh again, but a face may start at another
+/// corner. If two faces share several edges, the dual has several edges with the same two ends.
+/// Structures for manifolds then reject the dual, although they accept the mesh.
 ///
 /// # Errors
 ///
-/// A [`DualError`] that names a boundary edge, an isolated vertex, a vertex of valence 2, or what
-/// keeps the mesh from being an oriented manifold.
+/// Returns a [`DualError`] that names a boundary edge, an isolated vertex, a vertex of valence
+/// below 3, or the reason why the mesh is not an oriented manifold.
 ///
 /// # Complexity
 ///
-/// O(corners), of which it asks FV of each face once.
+/// O(corners). FV of each face is queried once.
 ///
 /// # Examples
 ///
 /// ```
-/// use half_edge::HalfEdgeMesh;
-/// use mesh_core::Representation;
+/// use sixfold_half_edge::HalfEdgeMesh;
+/// use sixfold_core::Representation;
 ///
-/// let cube = HalfEdgeMesh::from_polygons(&shapes::cube())?;
-/// let octahedron = operators::dual(&cube)?;
+/// let cube = HalfEdgeMesh::from_polygons(&sixfold_shapes::cube())?;
+/// let octahedron = sixfold_operators::dual(&cube)?;
 /// assert_eq!((octahedron.vertex_count(), octahedron.face_count()), (6, 8));
 /// assert_eq!(octahedron.faces().uniform_degree(), Some(3));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -50,14 +53,14 @@ pub fn dual<M: MeshQuery>(mesh: &M) -> Result<PolygonMesh, DualError> {
     Ok(rows.dual_mesh(faces))
 }
 
-/// A mesh by rows: positions in the order of `vertices()`, faces in the order of `faces()`.
+/// A mesh as tables: positions in the order of `vertices()`, faces in the order of `faces()`.
 struct Rows {
     positions: Vec<DVec3>,
     faces: FaceList,
 }
 
 impl Rows {
-    /// One pass over the vertices and one over FV.
+    /// Reads the mesh in one pass over the vertices and one over FV.
     fn of<M: MeshQuery>(mesh: &M) -> Self {
         let mut numbers = mesh.vertex_map(VertexId::new(0));
         let mut positions = Vec::new();
@@ -68,45 +71,48 @@ impl Rows {
         let mut faces = FaceList::default();
         mesh.faces().for_each(|f| {
             let corners = mesh.face_vertices(f).map(|v| numbers[v]);
-            faces.push(corners).expect("as many corners as the mesh");
+            faces.push(corners).expect("no corners are added");
         });
         Self { positions, faces }
     }
 
-    /// The faces of the dual, with a vertex in the middle of each face of this mesh.
+    /// Builds the dual from its `faces`; its vertices are the means of the corners of each face of
+    /// `self`.
     fn dual_mesh(&self, faces: FaceList) -> PolygonMesh {
         let middles = self.faces.iter().map(|(_, corners)| {
             let sum: DVec3 = corners.iter().map(|v| self.positions[v.index()]).sum();
             (sum / corners.len() as f64).as_vec3()
         });
         PolygonMesh::from_faces(middles.collect(), faces)
-            .expect("around a manifold vertex, three faces or more, each once")
+            .expect("a manifold vertex has at least three different faces")
     }
 
-    /// Why this is no oriented manifold, which it has been found not to be.
+    /// Returns the reason why this is not an oriented manifold; call it only if that is the case.
     fn refusal(&self) -> DualError {
         let positions = self.positions.iter().map(|p| p.as_vec3()).collect();
         let polygons = PolygonMesh::from_faces(positions, self.faces.clone())
-            .expect("faces of a mesh name at least three vertices, each once");
+            .expect("a face has at least three different vertices");
         Capabilities::ORIENTED_MANIFOLDS.refusal(&polygons).into()
     }
 }
 
-/// How to walk around the vertices of a closed oriented manifold.
+/// Tables to walk around the vertices of a closed oriented manifold.
 struct Walk {
     /// By vertex: its corner in the lowest face.
     first: Vec<Option<u32>>,
-    /// By vertex: how many corners are there.
+    /// By vertex: the number of its corners.
     valence: Vec<u32>,
-    /// By corner: the face it is in.
+    /// By corner: its face.
     face: Vec<FaceId>,
-    /// By corner: the next one around its vertex, counter-clockwise.
+    /// By corner: the next corner around its vertex, counter-clockwise.
     turned: Vec<u32>,
 }
 
 impl Walk {
+    /// Builds the tables.
+    ///
     /// ```text
-    ///       ╲  turned(c)          the side that comes in to v runs from prev(c);
+    ///       ╲  turned(c)          the side that ends at v starts at prev(c);
     ///        ╲    ╱               its twin leaves v in the next face
     ///   prev(c) ─ v
     ///            ╱ c
@@ -143,7 +149,7 @@ impl Walk {
         Ok(walk)
     }
 
-    /// Walks around every vertex.
+    /// Walks around every vertex to collect the faces of the dual.
     fn dual_faces(&self, rows: &Rows) -> Result<FaceList, DualError> {
         let mut faces = FaceList::with_capacity(self.face.len());
         let mut ring = Vec::new();
@@ -153,19 +159,19 @@ impl Walk {
             ring.clear();
             self.around(first, &mut ring);
             if ring.len() < valence as usize {
-                return Err(rows.refusal()); // a second fan
+                return Err(rows.refusal()); // the vertex has a second fan
             }
             if ring.len() < 3 {
                 let valence = ring.len();
                 return Err(DualError::LowValence { vertex, valence });
             }
             let face = ring.iter().copied();
-            faces.push(face).expect("as many corners as the mesh");
+            faces.push(face).expect("no corners are added");
         }
         Ok(faces)
     }
 
-    /// The faces around the vertex of corner `first`, as vertices of the dual.
+    /// Appends the faces around the vertex of corner `first` to `ring`, as vertices of the dual.
     fn around(&self, first: u32, ring: &mut Vec<VertexId>) {
         let mut corner = first;
         loop {
@@ -178,7 +184,7 @@ impl Walk {
     }
 }
 
-/// The lowest edge with one side.
+/// Returns the error for the lowest edge with only one side.
 fn boundary_edge(faces: &FaceList, pairs: &TwinPairs) -> DualError {
     let mut sides = vec![0_u8; pairs.edge_count];
     for half in &pairs.half_of_corner {
@@ -195,20 +201,20 @@ fn boundary_edge(faces: &FaceList, pairs: &TwinPairs) -> DualError {
                 (sides[edge as usize] == 1).then(|| [a.min(b), a.max(b)])
             })
     });
-    let ends = ends.min().expect("fewer sides than two an edge");
+    let ends = ends.min().expect("an edge has only one side");
     DualError::BoundaryEdge { ends }
 }
 
 #[cfg(test)]
 mod tests {
-    use half_edge::HalfEdgeMesh;
-    use indexed_face_set::IndexedFaceSet;
-    use mesh_core::{BuildError, Point, Representation};
+    use sixfold_core::{BuildError, Point, Representation};
+    use sixfold_half_edge::HalfEdgeMesh;
+    use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
 
     fn dual_of(polygons: &PolygonMesh) -> Result<PolygonMesh, DualError> {
-        dual(&IndexedFaceSet::from_polygons(polygons).expect("it holds everything"))
+        dual(&IndexedFaceSet::from_polygons(polygons).expect("it accepts any mesh"))
     }
 
     fn mesh(vertices: u32, faces: &[&[u32]]) -> PolygonMesh {
@@ -216,7 +222,7 @@ mod tests {
         PolygonMesh::new(spots, faces).expect("valid")
     }
 
-    /// The corners of a face from the lowest on.
+    /// Returns the corners of a face, starting at the lowest.
     fn cycle(face: &[VertexId]) -> Vec<VertexId> {
         let lowest = (0..face.len()).min_by_key(|&i| face[i]).unwrap_or(0);
         [&face[lowest..], &face[..lowest]].concat()
@@ -233,11 +239,17 @@ mod tests {
     #[test]
     fn platonic_solids_are_duals_of_each_other() {
         let duals = [
-            (shapes::tetrahedron(), shapes::tetrahedron()),
-            (shapes::cube(), shapes::octahedron()),
-            (shapes::octahedron(), shapes::cube()),
-            (shapes::dodecahedron(), shapes::icosahedron()),
-            (shapes::icosahedron(), shapes::dodecahedron()),
+            (sixfold_shapes::tetrahedron(), sixfold_shapes::tetrahedron()),
+            (sixfold_shapes::cube(), sixfold_shapes::octahedron()),
+            (sixfold_shapes::octahedron(), sixfold_shapes::cube()),
+            (
+                sixfold_shapes::dodecahedron(),
+                sixfold_shapes::icosahedron(),
+            ),
+            (
+                sixfold_shapes::icosahedron(),
+                sixfold_shapes::dodecahedron(),
+            ),
         ];
         for (solid, expected) in duals {
             let dual = dual_of(&solid).expect("closed");
@@ -248,7 +260,7 @@ mod tests {
                 expected.faces().uniform_degree()
             );
             let built = HalfEdgeMesh::from_polygons(&dual).expect("a manifold");
-            // Regular again: vertices on one sphere, and faces that face outward.
+            // The dual is regular too: vertices on one sphere, and faces that face outward.
             let radius = dual.positions()[0].length();
             assert!(
                 dual.positions()
@@ -261,7 +273,7 @@ mod tests {
                 assert!(normals[f].distance(middle.normalize()) < 1e-5, "{f}");
             }
         }
-        let axes = dual_of(&shapes::cube()).expect("closed");
+        let axes = dual_of(&sixfold_shapes::cube()).expect("closed");
         let expected = [
             Point::NEG_Z,
             Point::NEG_Y,
@@ -276,15 +288,15 @@ mod tests {
     #[test]
     fn the_dual_of_the_dual_has_the_faces_of_the_mesh() {
         let tori = [
-            shapes::torus(5, 4),
-            shapes::triangle_torus(4, 5),
-            shapes::antiprism(6),
+            sixfold_shapes::torus(5, 4),
+            sixfold_shapes::triangle_torus(4, 5),
+            sixfold_shapes::antiprism(6),
         ];
         for closed in tori.map(|shape| shape.expect("small")).into_iter().chain([
-            shapes::cube(),
-            shapes::dodecahedron(),
-            shapes::shuffled(&shapes::icosahedron(), 3),
-            shapes::geodesic(3).expect("small"),
+            sixfold_shapes::cube(),
+            sixfold_shapes::dodecahedron(),
+            sixfold_shapes::shuffled(&sixfold_shapes::icosahedron(), 3),
+            sixfold_shapes::geodesic(3).expect("small"),
         ]) {
             let dual = dual_of(&closed).expect("closed");
             let again = dual_of(&dual).expect("closed");

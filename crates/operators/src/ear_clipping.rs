@@ -1,4 +1,4 @@
-//! One polygon cut into triangles, ear by ear.
+//! Ear clipping: cuts one polygon into triangles.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -7,43 +7,43 @@ use glam::{DVec2, DVec3, Vec2Swizzles};
 
 use crate::normals::Newell;
 
-/// Cuts polygons; its tables are reused from one to the next.
+/// Cuts one polygon at a time; its tables are reused for the next one.
 ///
 /// ```text
 ///    d ─────── c
 ///     ╲        ┆ ╲        An ear is a convex corner b whose diagonal a–c runs inside: no other
-///      e       ┆  b       corner lies in the triangle a b c. Each simple polygon of four corners
-///     ╱        ┆ ╱        or more has two (Meisters 1975), and without its ear it is one again.
+///      e       ┆  b       corner lies in the triangle a b c. Each simple polygon with four or more
+///     ╱        ┆ ╱        corners has two ears (Meisters 1975), and stays simple if one is cut.
 ///    f ─────── a
 /// ```
 ///
-/// Only corners that are not convex, as e, need to be looked for in a triangle, and cutting b
-/// changes nothing but the ears at a and c.
+/// Only corners that are not convex, such as e, need to be tested against a triangle. Cutting
+/// b changes only the ears at a and c.
 ///
-/// Corners are seen along the axis nearest to the Newell normal. For a plane polygon this picture is
-/// an affine one, so that ears are ears; and its coordinates are those of the corners, bit by bit,
-/// so that corners on a line are on a line. The sign of an area is taken in doubles.
+/// Corners are projected along the axis nearest to the Newell normal. For a planar polygon this
+/// projection is affine, so ears stay ears. It copies coordinates bit by bit, so collinear corners
+/// stay collinear. The sign of an area is computed in doubles.
 ///
-/// Of all ears the best shaped is cut first, by its area over the square of its longest side, and
-/// one whose diagonal is an edge elsewhere last of all.
+/// The ear with the best shape is cut first: its area divided by the square of its longest side is
+/// largest. Ears whose diagonal is already an edge of the mesh are cut last.
 #[derive(Default)]
 pub(crate) struct EarClipping {
     solid: Vec<DVec3>,
     flat: Vec<DVec2>,
     before: Vec<u32>,
     after: Vec<u32>,
-    /// How often the ear at a corner has been looked at; what the heap knows from before is stale.
+    /// By corner: how often it was tested for an ear. Heap entries with an older count are stale.
     looked: Vec<u32>,
     gone: Vec<bool>,
-    /// Corners that may lie in the way: neither convex nor gone, when they were last looked at.
+    /// Corners that may obstruct an ear: neither convex nor cut off at their last test.
     in_the_way: Vec<u32>,
     ears: BinaryHeap<Ear>,
 }
 
-/// An ear, the better the greater.
+/// An ear. A better ear compares greater.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ear {
-    /// Its diagonal is no edge elsewhere.
+    /// Whether its diagonal is not yet an edge of the mesh.
     free: bool,
     shape: f64,
     corner: u32,
@@ -67,12 +67,14 @@ impl Ord for Ear {
 }
 
 impl EarClipping {
-    /// Hands `cut` the `n − 2` triangles of the polygon, as numbers of its `n` corners, each
-    /// counter-clockwise as the polygon is; `taken` says whether a diagonal is an edge elsewhere.
+    /// Passes the `n − 2` triangles of the polygon to `cut`, each as three of its corner numbers 0
+    /// to `n − 1`, in the orientation of the polygon. `taken` returns whether a diagonal is already
+    /// an edge of the mesh.
     ///
     /// A polygon that crosses itself or lies on a line may run out of ears. Then all corners are
-    /// looked at again, once for each halving of their number, and failing that the best of the
-    /// convex corners is cut, or any: n − 2 triangles come of it always, and O(n²) work at most.
+    /// tested again, at most once each time their number has halved. If there is still no ear, the
+    /// best convex corner is cut, or the best of all corners if no corner is convex. The result is
+    /// always n − 2 triangles, in O(n²) time.
     pub(crate) fn clip(
         &mut self,
         corners: impl Iterator<Item = DVec3>,
@@ -83,7 +85,7 @@ impl EarClipping {
         let mut left = self.flat.len();
         let mut looked_at_all = usize::MAX;
         while left > 3 {
-            // At the last cut the worse of two triangles counts: all four corners are looked at.
+            // The last cut makes two triangles, and the worse one counts: test all four corners.
             if left == 4 || looked_at_all == usize::MAX {
                 self.look_at_all(left, &taken);
                 looked_at_all = left;
@@ -109,7 +111,7 @@ impl EarClipping {
         }
     }
 
-    /// Lays the polygon out, all corners in place and none looked at.
+    /// Fills the tables: all corners are in place, no corner is tested yet.
     fn start(&mut self, corners: impl Iterator<Item = DVec3>) {
         self.solid.clear();
         self.solid.extend(corners);
@@ -130,7 +132,7 @@ impl EarClipping {
         self.ears.clear();
     }
 
-    /// Finds all ears of the polygon as it is now.
+    /// Finds all ears of the current polygon.
     fn look_at_all(&mut self, left: usize, taken: &impl Fn(usize, usize) -> bool) {
         self.ears.clear();
         self.in_the_way.clear();
@@ -146,7 +148,7 @@ impl EarClipping {
         }
     }
 
-    /// Looks whether there is an ear at corner `i` now.
+    /// Tests corner `i` and adds its ear, if it has one now.
     fn look_at(&mut self, i: usize, left: usize, taken: &impl Fn(usize, usize) -> bool) {
         self.looked[i] += 1;
         if !self.is_convex(i) || self.is_obstructed(i) {
@@ -175,7 +177,7 @@ impl EarClipping {
         None
     }
 
-    /// The best corner to cut where there is no ear.
+    /// Returns the best corner to cut if there is no ear.
     fn makeshift(&self, taken: &impl Fn(usize, usize) -> bool) -> usize {
         let here = (0..self.flat.len()).filter(|&i| !self.gone[i]);
         let ears = here.map(|i| {
@@ -201,7 +203,7 @@ impl EarClipping {
         turn(a, b, c) > 0.0
     }
 
-    /// Twice the area over the square of the longest side: √3/2 at best.
+    /// Returns twice the area divided by the square of the longest side: at most √3/2.
     fn shape(&self, i: usize) -> f64 {
         let [a, b, c] = self.triangle(i).map(|j| self.solid[j]);
         let sides = [b - a, c - b, a - c];
@@ -216,14 +218,15 @@ impl EarClipping {
         }
     }
 
-    /// Whether another corner lies in the triangle at the convex corner `i`, or on its diagonal.
+    /// Returns whether another corner lies in the triangle at the convex corner `i`, or on its
+    /// diagonal.
     fn is_obstructed(&mut self, i: usize) -> bool {
         let triangle = self.triangle(i);
         let mut at = 0;
         while let Some(&q) = self.in_the_way.get(at) {
             let q = q as usize;
             if self.gone[q] || self.is_convex(q) {
-                self.in_the_way.swap_remove(at); // it has become convex, and stays so
+                self.in_the_way.swap_remove(at); // it never obstructs again
                 continue;
             }
             if !triangle.contains(&q) && self.obstructs(q, triangle) {
@@ -234,10 +237,10 @@ impl EarClipping {
         false
     }
 
-    /// Whether corner `q` keeps the triangle from being cut off.
+    /// Returns whether corner `q` prevents the triangle from being cut off.
     ///
-    /// One at the very place of `a`, `b` or `c`, as where a slit leads to a hole, does so only if
-    /// one of its sides runs into the triangle from there.
+    /// A corner at exactly the position of `a`, `b` or `c` obstructs only if one of its sides runs
+    /// into the triangle from there. Such corners occur along a slit to a hole.
     fn obstructs(&self, q: usize, triangle: [usize; 3]) -> bool {
         let [a, b, c] = triangle.map(|j| self.flat[j]);
         let at = self.flat[q];
@@ -255,15 +258,16 @@ impl EarClipping {
     }
 }
 
-/// Above 0 where a, b, c turn left: twice the area of the triangle.
+/// Returns twice the signed area of the triangle: above 0 if a, b, c turn left.
 ///
-/// Differences of singles that lie within 2²⁹ of each other in size are exact in doubles, and a
+/// The difference of two singles is exact in doubles if their sizes differ by a factor below 2²⁹. A
 /// product rounds only in its last bits.
 fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// Leaves out the coordinate along which the polygon is thinnest, so that it runs counter-clockwise.
+/// Returns the projection along the axis nearest to the Newell normal, in which the polygon runs
+/// counter-clockwise.
 fn view_along(corners: &[DVec3]) -> impl Fn(DVec3) -> DVec2 + use<> {
     let mut newell = Newell::default();
     corners.iter().for_each(|&p| newell.corner(p));

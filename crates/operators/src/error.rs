@@ -1,74 +1,75 @@
-//! Why an operator refuses a mesh, or its options.
+//! Errors of the operators: a mesh or an option that an operator rejects.
 //!
-//! A vertex is named by its place in `vertices()` and a face by its place in `faces()`, in every
-//! structure: these are their names in `to_polygons()` too.
+//! In every structure, an error identifies a vertex by its position in `vertices()` and a face by
+//! its position in `faces()`. `to_polygons()` uses the same numbers.
 
-use mesh_core::{BuildError, FaceId, VertexId};
+use sixfold_core::{BuildError, FaceId, VertexId};
 
-/// Why a mesh cannot be smoothed as asked.
+/// The reason why a mesh cannot be smoothed with the given options.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the message says what each field is")]
+#[expect(missing_docs, reason = "the message explains each field")]
 pub enum SmoothingError {
-    /// A polygon where angles are opposite to edges in triangles only.
+    /// A face with more than three corners: only triangles have an angle opposite to each edge.
     #[error(
-        "face {face} has {degree} corners, and cotangent weights need triangles: triangulate the mesh, or choose uniform weights"
+        "face {face} has {degree} corners; cotangent weights need triangles: triangulate the mesh, or choose uniform weights"
     )]
     NotATriangle { face: FaceId, degree: usize },
     /// A step outside 0 to 1.
-    #[error("a step of {step} is not between 0 and 1: beyond 1 a vertex jumps over its neighbours")]
+    #[error("step {step} is not between 0 and 1: beyond 1 a vertex moves past its neighbours")]
     Step { step: f64 },
-    /// A step back that is no longer than the step, or so long that roughness would grow.
+    /// A step back that is not longer than the step, or so long that roughness would grow.
     #[error(
-        "a step back of {back} against a step of {step}: it must be negative, longer than the step, and (1 − 2·step)·(1 − 2·back) between −1 and 1"
+        "step back {back} does not fit step {step}: it must be negative, longer than the step, and (1 − 2·step)·(1 − 2·back) between −1 and 1"
     )]
     StepBack { step: f64, back: f64 },
 }
 
-/// Why a mesh has no dual.
+/// The reason why a mesh has no dual.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the message says what each field is")]
+#[expect(missing_docs, reason = "the message explains each field")]
 pub enum DualError {
     /// A vertex without a face.
-    #[error("vertex {vertex} is in no face and has none in the dual: remove isolated vertices")]
+    #[error("vertex {vertex} has no face and therefore no dual face: remove isolated vertices")]
     IsolatedVertex { vertex: VertexId },
     /// An edge with one face.
-    #[error("edge {0}–{1} has one face, and the dual of a mesh is closed as the mesh is: fill the hole there", .ends[0], .ends[1])]
+    #[error("edge {0}–{1} has one face, and only a closed mesh has a dual: fill the hole there", .ends[0], .ends[1])]
     BoundaryEdge { ends: [VertexId; 2] },
-    /// A vertex whose face in the dual would have two corners or one.
+    /// A vertex whose face in the dual would have only one or two corners.
     #[error(
-        "vertex {vertex} has {valence} edges, and a face of the dual needs three: leave it out of its two faces"
+        "vertex {vertex} has {valence} edges, and a face of the dual needs at least 3: remove the vertex from its faces"
     )]
     LowValence { vertex: VertexId, valence: usize },
-    /// What no oriented manifold has: an edge with three faces, a vertex with two fans, a side run twice.
-    #[error("the dual is that of an oriented manifold: {0}")]
+    /// A mesh that is not an oriented manifold: an edge has three faces, a vertex has two fans, or
+    /// two faces run along one edge in the same direction.
+    #[error("only an oriented manifold has a dual: {0}")]
     NoOrientedManifold(#[from] BuildError),
 }
 
-/// Why faces cannot be turned to agree.
+/// The reason why the faces cannot be oriented consistently.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the message says what each field is")]
+#[expect(missing_docs, reason = "the message explains each field")]
 pub enum OrientationError {
-    /// A chain of faces comes back upside down, as on a Möbius strip.
-    #[error("the faces around lead to edge {0}–{1} from both sides and cannot agree there: cut the mesh open along it, or choose a structure that holds inconsistent orientation", .ends[0], .ends[1])]
+    /// A closed chain of faces that returns with the opposite orientation, as on a Möbius strip.
+    #[error("the mesh is not orientable, and its faces cannot agree at edge {0}–{1}: cut the mesh open along this edge, or choose a structure that accepts inconsistent orientation", .ends[0], .ends[1])]
     NotOrientable { ends: [VertexId; 2] },
 }
 
-/// Why a mesh cannot be projected to a sphere.
+/// The reason why a mesh cannot be projected to a sphere.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the message says what each field is")]
+#[expect(missing_docs, reason = "the message explains each field")]
 pub enum SphereError {
-    /// A radius that is none, or a centre that is nowhere.
+    /// A radius that is not positive and finite, or a centre that is not finite.
     #[error(
-        "no sphere has the centre {centre:?} and the radius {radius}: both must be finite, and the radius above 0"
+        "centre {centre:?} and radius {radius} do not define a sphere: both must be finite, and the radius above 0"
     )]
     NoSphere { centre: [f32; 3], radius: f32 },
-    /// A vertex that lies in no direction.
+    /// A vertex that is at the centre or not finite, so that it has no direction from the centre.
     #[error(
-        "vertex {vertex} is at the centre or nowhere finite, and lies in no direction from there: move it, or choose another centre"
+        "vertex {vertex} is at the centre or not finite, so it has no direction from the centre: move it, or choose another centre"
     )]
     NoDirection { vertex: VertexId },
 }

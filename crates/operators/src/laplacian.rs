@@ -1,16 +1,16 @@
-//! The umbrella operator: where the neighbours of a vertex pull it.
+//! The umbrella operator: the offset of each vertex from the weighted mean of its neighbours.
 
 use glam::DVec3;
-use mesh_core::{FaceId, Handle, HandleMap, MeshQuery, VertexMap, row};
+use sixfold_core::{FaceId, Handle, HandleMap, MeshQuery, VertexMap, row};
 
 use crate::error::SmoothingError;
 use crate::smoothing::{Boundary, Weights};
 
-/// What a triangle's height must be to its longest side, at least, for its angles to be known:
-/// below it they are the rounding of single coordinates.
+/// Smallest height of a triangle, relative to its longest side, at which its angles are used. Below
+/// it, the angles are only rounding errors of single-precision coordinates.
 const FLAT: f64 = 1e-8;
 
-/// How strongly neighbours pull a vertex, and where to.
+/// The weighted sum of the offsets to the neighbours of a vertex, and the sum of the weights.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Pull {
     offset: DVec3,
@@ -18,14 +18,14 @@ pub(crate) struct Pull {
 }
 
 impl Pull {
-    /// Adds a neighbour `offset` away.
+    /// Adds a neighbour at `offset` from the vertex.
     #[inline(always)]
     fn add(&mut self, weight: f64, offset: DVec3) {
         self.offset += weight * offset;
         self.weight += weight;
     }
 
-    /// The way to the weighted mean of the neighbours; nowhere without neighbours.
+    /// Returns the offset to the weighted mean of the neighbours; zero if the weights are zero.
     #[inline(always)]
     pub(crate) fn way(self) -> DVec3 {
         if self.weight > 0.0 {
@@ -36,14 +36,14 @@ impl Pull {
     }
 }
 
-/// Who pulls whom, read from a mesh once and walked over at every step.
+/// The neighbours that pull each vertex, read from a mesh once and used at every step.
 pub(crate) struct Laplacian<V> {
     springs: Springs<V>,
     rim: Rim<V>,
 }
 
 impl<V: Handle> Laplacian<V> {
-    /// Reads every face of `mesh`, and every edge; O(corners).
+    /// Reads every face and every edge of `mesh`; O(corners).
     pub(crate) fn of<M: MeshQuery<Vertex = V>>(
         mesh: &M,
         weights: Weights,
@@ -60,7 +60,8 @@ impl<V: Handle> Laplacian<V> {
         })
     }
 
-    /// Adds to `pulls`, which are all none, what pulls each vertex where vertices are `at`.
+    /// Computes the pull at each vertex, with the vertices at `at`. All `pulls` must be zero
+    /// before.
     pub(crate) fn pull(&self, at: &V::Map<DVec3>, pulls: &mut V::Map<Pull>) {
         match &self.springs {
             Springs::Edges(edges) => pull_ends(edges, at, pulls),
@@ -70,15 +71,15 @@ impl<V: Handle> Laplacian<V> {
     }
 }
 
-/// What lies between vertices that pull each other.
+/// The elements that connect vertices which pull each other.
 enum Springs<V> {
-    /// Edges, all alike.
+    /// Edges, all with the same weight.
     Edges(Vec<[V; 2]>),
-    /// Triangles, by their angles.
+    /// Triangles, weighted by their angles.
     Triangles(Vec<[V; 3]>),
 }
 
-/// Uniform weights (Field 1988): each neighbour pulls as strongly as any other.
+/// Adds the pulls by uniform weights (Field 1988): all neighbours have the same weight.
 ///
 /// ```text
 ///      b ─── a                1
@@ -95,21 +96,22 @@ fn pull_ends<V: Handle>(edges: &[[V; 2]], at: &V::Map<DVec3>, pulls: &mut V::Map
     }
 }
 
-/// Cotangent weights (Pinkall & Polthier 1993): the way in which the area shrinks fastest.
+/// Adds the pulls by cotangent weights (Pinkall & Polthier 1993): in the direction in which the
+/// area shrinks fastest.
 ///
 /// ```text
 ///        k                          Σ wᵢ (pᵢ − v)
 ///       ╱α╲              L(v) =     ─────────────       wᵢ = (cot αᵢ + cot βᵢ) / 2
 ///      ╱   ╲                            Σ wᵢ
 ///     v ─── i
-///      ╲   ╱            The two angles opposite to the edge v–i. In a plane L is zero, however
-///       ╲β╱             the neighbours lie; on a surface it is normal to it.
+///      ╲   ╱            α and β: the angles opposite to edge v–i. In a plane L is zero for any
+///       ╲β╱             neighbours; on a surface it is normal to the surface.
 ///        l
 /// ```
 ///
-/// A triangle gives its corner with angle α the weights cot β + cot γ = sin α / (sin β sin γ) > 0,
-/// so a sum of weights is never negative, though one of them may be. A triangle too flat for its
-/// angles to be known pulls nobody.
+/// A triangle adds the weight cot β + cot γ = sin α / (sin β sin γ) > 0 to its corner with angle α.
+/// The sum of the weights is therefore never negative, although a single weight may be. A triangle
+/// that is too flat for reliable angles contributes no weight.
 fn pull_corners<V: Handle>(triangles: &[[V; 3]], at: &V::Map<DVec3>, pulls: &mut V::Map<Pull>) {
     for &[a, b, c] in triangles {
         let (pa, pb, pc) = (at[a], at[b], at[c]);
@@ -126,7 +128,7 @@ fn pull_corners<V: Handle>(triangles: &[[V; 3]], at: &V::Map<DVec3>, pulls: &mut
         let cotangent = |u: DVec3, v: DVec3| -u.dot(v) / double_area;
         let (at_a, at_b, at_c) = (cotangent(ca, ab), cotangent(ab, bc), cotangent(bc, ca));
         let [to_a, to_b, to_c] = [bc * at_a, ca * at_b, ab * at_c];
-        // The edge a–b is opposite to c, and so on around.
+        // The edge a–b is opposite to c, b–c to a, and c–a to b.
         let mut give = |v: V, offset: DVec3, weight: f64| {
             pulls[v].offset += offset;
             pulls[v].weight += weight;
@@ -137,7 +139,7 @@ fn pull_corners<V: Handle>(triangles: &[[V; 3]], at: &V::Map<DVec3>, pulls: &mut
     }
 }
 
-/// The corners of every face, which must be three.
+/// Returns the corners of every face, or an error if a face does not have three.
 fn triangles<M: MeshQuery>(mesh: &M) -> Result<Vec<[M::Vertex; 3]>, SmoothingError> {
     let mut triangles = Vec::with_capacity(mesh.face_count());
     for (i, f) in mesh.faces().enumerate() {
@@ -153,7 +155,7 @@ fn triangles<M: MeshQuery>(mesh: &M) -> Result<Vec<[M::Vertex; 3]>, SmoothingErr
     Ok(triangles)
 }
 
-/// The boundary of a mesh, whose vertices the inside does not pull.
+/// The boundary of a mesh. Interior vertices do not pull its vertices.
 ///
 /// ```text
 ///    ──── a ════ v ════ b ────     a curve:  L(v) = (a + b) / 2 − v
@@ -164,12 +166,13 @@ struct Rim<V> {
     vertices: Vec<V>,
     /// The boundary edges, if the boundary is a curve.
     edges: Vec<[V; 2]>,
-    /// Vertices where the curve ends or crosses itself: these have not two boundary edges.
+    /// Boundary vertices that do not have exactly two boundary edges: the curve ends or crosses
+    /// itself.
     knots: Vec<V>,
 }
 
 impl<V: Handle> Rim<V> {
-    /// Counts the faces along every edge, face by face: no structure has to look for them.
+    /// Counts the faces of every edge in one pass over the faces: no structure searches for them.
     fn of<M: MeshQuery<Vertex = V>>(mesh: &M, boundary: Boundary) -> Self {
         let mut faces = mesh.edge_map(0_u8);
         mesh.faces().for_each(|f| {
@@ -200,7 +203,7 @@ impl<V: Handle> Rim<V> {
         }
     }
 
-    /// Replaces what pulls the vertices of the boundary.
+    /// Replaces the pulls at the boundary vertices.
     fn pull(&self, at: &V::Map<DVec3>, pulls: &mut V::Map<Pull>) {
         let let_go = |vertices: &[V], pulls: &mut V::Map<Pull>| {
             vertices.iter().for_each(|&v| pulls[v] = Pull::default());

@@ -1,29 +1,29 @@
-//! Operators on meshes: each is written once, against the queries, and runs on every structure.
+//! Operators on meshes. Each is written once, against the query trait, and runs on every structure.
 //!
-//! | operator | takes | yields | time | source |
+//! | operator | input | output | time, O(…) | source |
 //! |---|---|---|---|---|
 //! | [`smoothed`] | any; triangles for cotangents | positions | corners × iterations | Field 1988, Pinkall & Polthier 1993, Taubin 1995 |
 //! | [`face_normals`], [`vertex_normals`] | any | directions | corners | Newell, after Sutherland, Sproull & Schumacker 1974; Thürmer & Wüthrich 1998 |
 //! | [`projected_to_sphere`] | any | positions | vertices | |
 //! | [`dual`] | closed oriented manifolds | polygons | corners | |
-//! | [`triangulated`] | polygons | polygons | degree² a face at most | Meisters 1975 |
+//! | [`triangulated`] | polygons | polygons | at most degree² per face | Meisters 1975 |
 //! | [`oriented`] | polygons | polygons | corners · log corners | |
 //!
-//! What works on a structure asks it for each face once (FV and FE), or for each edge, and adds up
-//! what it finds in maps by handle. So no structure has to scan the mesh for each vertex, and all
-//! take time in proportion to the corners. New positions come as a [`VertexMap`], which
-//! [`set_positions`] takes; two operators mend polygons that most structures refuse, and so they
-//! work on a [`PolygonMesh`] before there is a structure.
+//! An operator on a structure queries each face once (FV and FE), or each edge once, and sums its
+//! results in maps by handle. Therefore no structure scans the mesh for each vertex, and the time
+//! is O(corners) on every structure. New positions are returned as a [`VertexMap`], which
+//! [`set_positions`] accepts. Two operators repair polygons that most structures reject; they work
+//! on a [`PolygonMesh`], before a structure is built.
 //!
-//! Sums are kept in doubles: no product of three coordinates overflows or vanishes, and structures
-//! that add in different orders agree to the last bits of a coordinate.
+//! Sums are in double precision: a product of three coordinates neither overflows nor underflows,
+//! and structures that add in different orders agree up to the last bits of a coordinate.
 //!
 //! ```
-//! use half_edge::HalfEdgeMesh;
-//! use mesh_core::{MeshQuery, Representation};
-//! use operators::{Smoothing, Triangulation, oriented, smoothed, triangulated};
+//! use sixfold_half_edge::HalfEdgeMesh;
+//! use sixfold_core::{MeshQuery, Representation};
+//! use sixfold_operators::{Smoothing, Triangulation, oriented, smoothed, triangulated};
 //!
-//! let mended = oriented(&shapes::cube(), Default::default())?;
+//! let mended = oriented(&sixfold_shapes::cube(), Default::default())?;
 //! assert!(mended.turned.is_empty());
 //! let triangles = triangulated(&mended.polygons, Triangulation::EarClipping)?;
 //! let mut mesh = HalfEdgeMesh::from_polygons(&triangles)?;
@@ -33,9 +33,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`VertexMap`]: mesh_core::VertexMap
-//! [`PolygonMesh`]: mesh_core::PolygonMesh
-//! [`set_positions`]: mesh_core::Representation::set_positions
+//! [`VertexMap`]: sixfold_core::VertexMap
+//! [`PolygonMesh`]: sixfold_core::PolygonMesh
+//! [`set_positions`]: sixfold_core::Representation::set_positions
 
 mod dual;
 mod ear_clipping;

@@ -1,29 +1,31 @@
 //! Normals of faces and of vertices.
 
 use glam::DVec3;
-use mesh_core::{FaceMap, MeshQuery, Point, VertexMap};
+use sixfold_core::{FaceMap, MeshQuery, Point, VertexMap};
 
-/// How much each face around a vertex counts in its normal.
+/// The weight of each face around a vertex in the vertex normal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NormalWeights {
-    /// By its area: what comes for nothing, for Newell's vector is as long as the area.
+    /// By its area. Needs no extra work: Newell's vector is already proportional to the area.
     #[default]
     Area,
-    /// By its angle at the vertex (Thürmer & Wüthrich 1998): the same however the surface is cut.
+    /// By its angle at the vertex (Thürmer & Wüthrich 1998). Does not depend on how the surface is
+    /// cut into faces.
     Angle,
 }
 
-/// The unit normal of every face, by Newell's method; O(corners).
+/// Returns the unit normal of every face, by Newell's method; O(corners).
 ///
 /// ```text
 ///        p2               n = Σ (pᵢ − p₀) × (pᵢ₊₁ − p₀)
 ///       ╱  ╲
-///     p3    ╲             twice the area long, on the side from which
-///      │     p1           the corners run counter-clockwise; right for
-///      └── p0             polygons of any shape, and bent ones have the mean
+///     p3    ╲             |n| is twice the area; n points to the side from which
+///      │     p1           the corners run counter-clockwise. Valid for polygons
+///      └── p0             of any shape; for bent polygons n is a mean.
 /// ```
 ///
-/// A face without area has the normal zero. After Newell, in Sutherland, Sproull & Schumacker (1974).
+/// A face without area has the normal zero. Method by Newell, in Sutherland, Sproull & Schumacker
+/// (1974).
 pub fn face_normals<M: MeshQuery>(mesh: &M) -> FaceMap<M, Point> {
     let mut normals = mesh.face_map(Point::ZERO);
     mesh.faces().for_each(|f| {
@@ -35,19 +37,20 @@ pub fn face_normals<M: MeshQuery>(mesh: &M) -> FaceMap<M, Point> {
     normals
 }
 
-/// The unit normal of every vertex: the mean of those of its faces, by `weights`; O(corners).
+/// Returns the unit normal of every vertex: the mean of its face normals by `weights`; O(corners).
 ///
 /// ```text
 ///           n                 area    n ∝ Σ A(f) n(f)
 ///       ╲   ↑   ╱             angle   n ∝ Σ α(f) n(f),  α the angle of f at the vertex
 ///     f1 ╲  │  ╱ f2
-///         ╲ │ ╱               three squares meet in the corner of a cube: both give the diagonal;
-///     ─────╲│╱─────           cut one square in two, and only the angles still do
+///         ╲ │ ╱               Three squares at the corner of a cube: both give the diagonal.
+///     ─────╲│╱─────           If one square is cut in two, only the angles still give it.
 ///       f0  v
 /// ```
 ///
-/// A vertex without a face, or whose faces cancel out, has the normal zero. Faces add their share
-/// to their corners, one after the other: no structure has to look for the faces of a vertex.
+/// A vertex without faces, or whose face normals cancel, has the normal zero. One pass over the
+/// faces adds the share of each face at its corners: no structure searches for the faces of a
+/// vertex.
 pub fn vertex_normals<M: MeshQuery>(mesh: &M, weights: NormalWeights) -> VertexMap<M, Point> {
     let mut sums = mesh.vertex_map(DVec3::ZERO);
     let mut corners = Vec::new();
@@ -64,7 +67,7 @@ pub fn vertex_normals<M: MeshQuery>(mesh: &M, weights: NormalWeights) -> VertexM
             NormalWeights::Angle => {
                 let normal = newell.normal.normalize_or_zero();
                 let Some(&(_, mut before)) = corners.last() else {
-                    return; // a face has three corners: never
+                    return; // unreachable: a face has at least three corners
                 };
                 for (i, &(v, at)) in corners.iter().enumerate() {
                     let (_, after) = corners[if i + 1 == corners.len() { 0 } else { i + 1 }];
@@ -79,7 +82,8 @@ pub fn vertex_normals<M: MeshQuery>(mesh: &M, weights: NormalWeights) -> VertexM
     normals
 }
 
-/// The angle from `after` to `before`, counter-clockwise about `normal`: above π at a reflex corner.
+/// Returns the angle from `after` to `before`, counter-clockwise about `normal`: above π at a
+/// reflex corner.
 fn angle(before: DVec3, after: DVec3, normal: DVec3) -> f64 {
     let sine = after.cross(before).dot(normal);
     let angle = sine.atan2(after.dot(before));
@@ -90,24 +94,24 @@ fn angle(before: DVec3, after: DVec3, normal: DVec3) -> f64 {
     }
 }
 
-/// `vector` one long, or zero where it has no direction.
+/// Returns `vector` scaled to length 1, or zero if it has no direction.
 fn unit(vector: DVec3) -> Point {
     vector.normalize_or_zero().as_vec3()
 }
 
-/// Newell's vector of a polygon, corner by corner.
+/// Newell's vector of a polygon, summed corner by corner.
 ///
-/// Corners are taken from the first, which costs no accuracy far from the origin.
+/// Corners are taken relative to the first one, so no accuracy is lost far from the origin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Newell {
-    /// The sum so far: twice the area long.
+    /// The sum so far. Its length is twice the area.
     pub(crate) normal: DVec3,
     first: Option<DVec3>,
     spoke: DVec3,
 }
 
 impl Newell {
-    /// Takes the next corner.
+    /// Adds the next corner.
     #[inline(always)]
     pub(crate) fn corner(&mut self, at: DVec3) {
         let first = *self.first.get_or_insert(at);
@@ -119,16 +123,16 @@ impl Newell {
 
 #[cfg(test)]
 mod tests {
-    use half_edge::HalfEdgeMesh;
-    use indexed_face_set::IndexedFaceSet;
-    use mesh_core::{PolygonMesh, Representation};
+    use sixfold_core::{PolygonMesh, Representation};
+    use sixfold_half_edge::HalfEdgeMesh;
+    use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
 
     const BOTH: [NormalWeights; 2] = [NormalWeights::Area, NormalWeights::Angle];
 
     fn set(polygons: &PolygonMesh) -> IndexedFaceSet {
-        IndexedFaceSet::from_polygons(polygons).expect("it holds everything")
+        IndexedFaceSet::from_polygons(polygons).expect("it accepts any mesh")
     }
 
     fn set_of(points: &[[f32; 3]], faces: &[&[u32]]) -> IndexedFaceSet {
@@ -139,11 +143,11 @@ mod tests {
     #[test]
     fn normals_of_platonic_solids_point_from_the_centre() {
         for solid in [
-            shapes::tetrahedron(),
-            shapes::cube(),
-            shapes::octahedron(),
-            shapes::dodecahedron(),
-            shapes::icosahedron(),
+            sixfold_shapes::tetrahedron(),
+            sixfold_shapes::cube(),
+            sixfold_shapes::octahedron(),
+            sixfold_shapes::dodecahedron(),
+            sixfold_shapes::icosahedron(),
         ] {
             let mesh = HalfEdgeMesh::from_polygons(&solid).expect("a manifold");
             let faces = face_normals(&mesh);
@@ -161,10 +165,11 @@ mod tests {
         }
     }
 
-    /// The corner of a cube whose three squares are cut in two: below along the diagonal through the
-    /// corner, so that its whole area is around it, and of the others one half.
+    /// The corner of a cube whose three squares are cut in two. The lower square is cut through
+    /// this corner, so its whole area is incident to the corner; of the other squares only one half
+    /// is.
     #[test]
-    fn angles_do_not_see_how_a_surface_is_cut() {
+    fn angle_weights_do_not_depend_on_how_a_surface_is_cut() {
         let points = [
             [0.0; 3],
             [1.0, 0.0, 0.0],
@@ -189,7 +194,7 @@ mod tests {
         let diagonal = Point::ONE.normalize();
         let by_angle = vertex_normals(&mesh, NormalWeights::Angle)[v];
         assert!(by_angle.distance(diagonal) < 1e-6, "{by_angle}");
-        // Whole area 1 against halves of 1/2: (1/2, 1/2, 1).
+        // Area 1 of the lower square, and 1/2 of each other square: (1/2, 1/2, 1).
         let by_area = vertex_normals(&mesh, NormalWeights::Area)[v];
         assert!(
             by_area.distance(Point::new(1.0, 1.0, 2.0).normalize()) < 1e-6,
@@ -197,7 +202,7 @@ mod tests {
         );
     }
 
-    /// An L, whose corner v3 is reflex: three of the angles around it are right, one is 3π/2.
+    /// An L-shaped face with the reflex angle 3π/2 at v3; the other face there has a right angle.
     #[test]
     fn a_reflex_corner_counts_with_its_whole_angle() {
         let points = [
@@ -221,8 +226,8 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_normal_has_zero_and_never_nan() {
-        // A face on a line, a pillow whose sides cancel out, an isolated vertex.
+    fn faces_and_vertices_without_direction_have_normal_zero() {
+        // A face on a line and an isolated vertex, then a pillow whose sides cancel.
         let points = [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let mesh = set_of(&points, &[&[0, 1, 2]]);
         let faces = face_normals(&mesh);
@@ -238,9 +243,9 @@ mod tests {
         }
     }
 
-    /// The squares of such lengths overflow or vanish in singles.
+    /// The squares of these lengths overflow or underflow in singles.
     #[test]
-    fn meshes_huge_tiny_or_far_away_have_normals_as_any_other() {
+    fn huge_tiny_and_distant_meshes_have_correct_normals() {
         let triangle = [Point::ZERO, Point::X, Point::Y];
         for (scale, shift) in [(1e30, 0.0), (1e-30, 0.0), (1.0, 4096.0)] {
             let points = triangle.map(|p| p * scale + Point::splat(shift));

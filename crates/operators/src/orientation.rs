@@ -1,50 +1,50 @@
-//! Orientation repair: faces turned until neighbours agree.
+//! Orientation repair: turns faces over until adjacent faces agree.
 
 use glam::DVec3;
-use mesh_core::{FaceId, FaceList, PolygonMesh, VertexId};
+use sixfold_core::{FaceId, FaceList, PolygonMesh, VertexId};
 
 use crate::error::OrientationError;
 
-/// Which way the faces of a component face in the end.
+/// The side that the faces of a component face in the result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Facing {
-    /// As most of them did: the fewest faces are turned. Of two halves, the one of its first face.
+    /// As the majority did, so that the fewest faces are turned. In a tie, as the first face did.
     #[default]
     Majority,
-    /// Outward where a component is closed and encloses a volume; as most did elsewhere.
+    /// Outward if the component is closed and encloses a volume; otherwise as the majority did.
     Outward,
 }
 
-/// A mesh whose faces agree, and what it took.
+/// A mesh with consistent orientation, and the faces that were turned for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Oriented {
-    /// The mesh: the vertices, and the order and the first corners of the faces, are as they were.
+    /// The mesh. The vertices, the order of the faces and their first corners are unchanged.
     pub polygons: PolygonMesh,
-    /// The faces that were turned over, ascending.
+    /// The faces that were turned over (their corners reversed), ascending.
     pub turned: Vec<FaceId>,
 }
 
-/// Turns faces over until no edge of two faces is run twice in the same direction.
+/// Turns faces over until no two faces run along an edge in the same direction.
 ///
 /// ```text
 ///     ──→──              ──→──
-///    ↑  0  ↓            ↑  0  ↓      both run the middle to the left: face 1 is turned, and so on
-///     ──←──      ⇒       ──←──       from face to face, over every edge that two faces share;
-///    ↓  1  ↑             ──→──       an edge of three or more faces leads nowhere
+///    ↑  0  ↓            ↑  0  ↓      both run along the middle edge to the left: face 1 is turned;
+///     ──←──      ⇒       ──←──       this continues across every edge that two faces share, but
+///    ↓  1  ↑             ──→──       not across an edge of three or more faces
 ///     ──→──             ↑  1  ↓
 ///                        ──←──
 /// ```
 ///
-/// Components are oriented each for itself: the wall of a cavity, closed and inside of another
-/// component, faces away from the cavity as well if faces are to face outward.
+/// Each component is oriented independently. With [`Facing::Outward`], the closed wall of a cavity
+/// inside another component therefore also faces away from the cavity.
 ///
 /// # Errors
 ///
-/// [`OrientationError::NotOrientable`] with an edge at which a component turns back on itself.
+/// Returns [`OrientationError::NotOrientable`] with an edge at which a component cannot agree.
 ///
 /// # Complexity
 ///
-/// O(n log n) in the corners, for sorting the sides.
+/// O(n log n) for n corners, to sort the sides.
 pub fn oriented(polygons: &PolygonMesh, facing: Facing) -> Result<Oriented, OrientationError> {
     let faces = polygons.faces();
     let mates = mates(faces);
@@ -71,10 +71,10 @@ pub fn oriented(polygons: &PolygonMesh, facing: Facing) -> Result<Oriented, Orie
     Ok(turned_over(polygons, &turn))
 }
 
-/// The face across a side, and whether it runs the edge in the same direction.
+/// The face across a side, and whether both faces run along the edge in the same direction.
 type Mate = Option<(FaceId, bool)>;
 
-/// By corner: what is across the side that starts there, if the edge has two faces.
+/// Returns, by corner, the mate across the side that starts there, if the edge has two faces.
 fn mates(faces: &FaceList) -> Vec<Mate> {
     struct Side {
         ends: [VertexId; 2],
@@ -107,7 +107,7 @@ fn mates(faces: &FaceList) -> Vec<Mate> {
     mates
 }
 
-/// Says of every face that `seed` reaches whether it is to be turned, if `seed` is not.
+/// Decides for every face connected to `seed` whether it is turned, if `seed` is not turned.
 fn flood(
     seed: FaceId,
     faces: &FaceList,
@@ -141,9 +141,11 @@ fn flood(
     Ok(())
 }
 
-/// Whether the component, turned so, faces inward; `None` if it is open or encloses nothing.
+/// Returns whether the component, after the turns, faces inward; `None` if it is open or encloses
+/// no volume.
 ///
-/// The signed volume: a sum over triangles of det(a, b, c) / 6, seen from a vertex of the component.
+/// Uses the signed volume: the sum of det(a, b, c) / 6 over triangles, relative to a vertex of the
+/// component.
 fn inward(
     polygons: &PolygonMesh,
     mates: &[Mate],
@@ -172,11 +174,11 @@ fn inward(
             size += part.abs();
         }
     }
-    // What is left of a sum that cancels out says nothing.
+    // If the terms cancel, the rest is only rounding error.
     (volume.abs() > 1e-9 * size).then_some(volume < 0.0)
 }
 
-/// The mesh with the faces that are to be turned turned, each around its first corner.
+/// Builds the mesh with the faces in `turn` reversed; each keeps its first corner.
 fn turned_over(polygons: &PolygonMesh, turn: &[Option<bool>]) -> Oriented {
     let faces = polygons.faces();
     let mut list = FaceList::with_capacity(faces.corners().len());
@@ -188,23 +190,23 @@ fn turned_over(polygons: &PolygonMesh, turn: &[Option<bool>]) -> Oriented {
         } else {
             list.push(face.iter().copied())
         };
-        pushed.expect("as many corners as before");
+        pushed.expect("the same number of corners as before");
     }
     let polygons = PolygonMesh::from_faces(polygons.positions().to_vec(), list)
-        .expect("the same vertices in each face");
+        .expect("each face has the same vertices as before");
     Oriented { polygons, turned }
 }
 
 #[cfg(test)]
 mod tests {
-    use conformance::strategy::manifold_mesh;
-    use mesh_core::Facts;
     use proptest::collection;
     use proptest::prelude::*;
+    use sixfold_conformance::strategy::manifold_mesh;
+    use sixfold_core::Facts;
 
     use super::*;
 
-    /// The mesh with the faces that `turn` picks turned over.
+    /// Builds the mesh with the faces that `turn` selects turned over.
     fn with_turned(polygons: &PolygonMesh, turn: impl Fn(usize) -> bool) -> PolygonMesh {
         let faces = polygons.faces().iter().map(|(f, _)| Some(turn(f.index())));
         let faces: Vec<Option<bool>> = faces.collect();
@@ -218,7 +220,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// Faces of a mesh that agreed agree again, and no other way would have turned fewer.
+        /// After some faces of a consistent mesh are turned, all faces agree again with the fewest
+        /// turns.
         #[test]
         fn turned_faces_are_turned_back(
             polygons in manifold_mesh(),
@@ -228,7 +231,7 @@ mod tests {
             let mended = oriented(&with_turned(&polygons, turn), Facing::Majority).expect("orientable");
             prop_assert_eq!(Facts::of(&mended.polygons).inconsistent_edges, 0);
             prop_assert!(2 * mended.turned.len() <= polygons.face_count());
-            // A face that is not as it was is of a component that is the other way round as a whole.
+            // A face differs from the original only if its whole component is turned over.
             let as_was = |f: FaceId| polygons.faces().face(f) == mended.polygons.faces().face(f);
             let mates = mates(polygons.faces());
             for (f, _) in polygons.faces().iter() {
@@ -243,11 +246,11 @@ mod tests {
             prop_assert!(again.turned.is_empty());
         }
 
-        /// Closed shapes of this project face outward, so they come back as they were.
+        /// The closed shapes of this project face outward, so the result is the original shape.
         #[test]
-        fn closed_shapes_come_to_face_outward(turn in collection::vec(any::<bool>(), 1..50)) {
-            let torus = shapes::torus(6, 5).expect("small");
-            for shape in [shapes::cube(), shapes::dodecahedron(), torus] {
+        fn closed_shapes_face_outward_again(turn in collection::vec(any::<bool>(), 1..50)) {
+            let torus = sixfold_shapes::torus(6, 5).expect("small");
+            for shape in [sixfold_shapes::cube(), sixfold_shapes::dodecahedron(), torus] {
                 let mixed = with_turned(&shape, |f| turn[f % turn.len()]);
                 let mended = oriented(&mixed, Facing::Outward).expect("orientable");
                 prop_assert_eq!(mended.polygons, shape);
@@ -256,22 +259,22 @@ mod tests {
     }
 
     #[test]
-    fn a_shape_inside_out_is_turned_only_if_asked_to() {
-        let inside_out = with_turned(&shapes::cube(), |_| true);
+    fn an_inside_out_shape_is_turned_only_by_outward() {
+        let inside_out = with_turned(&sixfold_shapes::cube(), |_| true);
         let majority = oriented(&inside_out, Facing::Majority).expect("orientable");
         assert!(majority.turned.is_empty());
         let outward = oriented(&inside_out, Facing::Outward).expect("orientable");
         assert_eq!(outward.turned, (0..6).map(face).collect::<Vec<_>>());
-        assert_eq!(outward.polygons, shapes::cube());
+        assert_eq!(outward.polygons, sixfold_shapes::cube());
     }
 
     #[test]
-    fn what_encloses_nothing_goes_by_the_majority() {
-        let grid = shapes::grid(3, 3).expect("small");
+    fn components_without_volume_follow_the_majority() {
+        let grid = sixfold_shapes::grid(3, 3).expect("small");
         let mixed = with_turned(&grid, |f| f == 4);
         let mended = oriented(&mixed, Facing::Outward).expect("orientable");
         assert_eq!(mended.turned, [face(4)]);
-        // A pillow is closed, and flat.
+        // A pillow is closed, but it is flat.
         let corners = grid.positions()[..3].to_vec();
         let pillow = PolygonMesh::new(corners, [[0, 1, 2], [0, 1, 2]]).expect("valid");
         let mended = oriented(&pillow, Facing::Outward).expect("orientable");
@@ -279,17 +282,17 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_of_three_faces_leads_nowhere() {
-        let points = [0.0, 1.0, 2.0, 3.0, 4.0].map(mesh_core::Point::splat);
+    fn an_edge_of_three_faces_is_not_crossed() {
+        let points = [0.0, 1.0, 2.0, 3.0, 4.0].map(sixfold_core::Point::splat);
         let book = PolygonMesh::new(points, [[0, 1, 2], [0, 1, 3], [0, 1, 4]]).expect("valid");
-        let mended = oriented(&book, Facing::Majority).expect("nothing contradicts");
+        let mended = oriented(&book, Facing::Majority).expect("no faces disagree");
         assert_eq!((mended.polygons, mended.turned), (book, vec![]));
     }
 
     #[test]
-    fn one_sided_surfaces_are_refused_at_an_edge_of_theirs() {
+    fn non_orientable_surfaces_are_rejected_with_an_edge() {
         let mut refused = 0;
-        for specimen in conformance::gallery() {
+        for specimen in sixfold_conformance::gallery() {
             let facts = Facts::of(&specimen.polygons);
             match oriented(&specimen.polygons, Facing::Majority) {
                 Ok(_) => assert_ne!(facts.orientable, Some(false), "{}", specimen.name),
@@ -304,7 +307,7 @@ mod tests {
         }
         assert!(
             refused >= 3,
-            "Möbius strip, Klein bottle and projective plane"
+            "expected at least the Möbius strip, the Klein bottle and the projective plane"
         );
     }
 }

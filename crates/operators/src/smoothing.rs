@@ -1,48 +1,48 @@
 //! Laplacian smoothing, by uniform and by cotangent weights.
 
 use glam::DVec3;
-use mesh_core::{MeshQuery, Point, VertexMap};
+use sixfold_core::{MeshQuery, Point, VertexMap};
 
 use crate::error::SmoothingError;
 use crate::laplacian::{Laplacian, Pull};
 
-/// How strongly each neighbour pulls a vertex.
+/// The weight of each neighbour of a vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Weights {
-    /// All alike (Field 1988): evens out the shapes of faces too.
+    /// All equal (Field 1988). Also evens out the shapes of faces.
     #[default]
     Uniform,
-    /// By the two angles opposite to the edge (Pinkall & Polthier 1993): follows the surface alone,
-    /// and leaves a plane as it is. Triangles only.
+    /// By the two angles opposite to the edge (Pinkall & Polthier 1993). Depends on the surface
+    /// only and leaves a plane unchanged. Triangles only.
     Cotangent,
 }
 
-/// What becomes of vertices on boundary edges.
+/// The treatment of vertices on boundary edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Boundary {
-    /// They stay.
+    /// They do not move.
     #[default]
     Fixed,
-    /// Each moves towards the mean of its two neighbours on the boundary, whatever is inside. One
-    /// with more than two boundary edges stays.
+    /// Each moves towards the mean of its two neighbours on the boundary, independent of the
+    /// interior. A vertex that does not have exactly two boundary edges does not move.
     Curve,
 }
 
-/// How to smooth.
+/// The options of [`smoothed`].
 ///
-/// The default is ten iterations of half a step with uniform weights, the boundary fixed.
+/// The default is ten iterations with step 0.5 and uniform weights, with the boundary fixed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Smoothing {
-    /// How strongly each neighbour pulls.
+    /// The weight of each neighbour.
     pub weights: Weights,
-    /// What becomes of the boundary.
+    /// The treatment of the boundary.
     pub boundary: Boundary,
-    /// λ: how far each vertex goes towards the mean of its neighbours; from 0 to 1.
+    /// λ: the part of the way to the mean of its neighbours that each vertex moves; from 0 to 1.
     pub step: f64,
-    /// μ < −λ: a step away again after each step, which keeps the volume (Taubin 1995); his own
-    /// numbers are λ = 0.33 and μ = −0.34.
+    /// μ < −λ: a step in the opposite direction after each step, which keeps the volume (Taubin
+    /// 1995). Taubin's values are λ = 0.33 and μ = −0.34.
     pub step_back: Option<f64>,
-    /// How often.
+    /// The number of iterations.
     pub iterations: usize,
 }
 
@@ -59,13 +59,13 @@ impl Default for Smoothing {
 }
 
 impl Smoothing {
-    /// Whether the steps make a mesh smoother.
+    /// Returns an error if the steps do not make a mesh smoother.
     fn check(&self) -> Result<(), SmoothingError> {
         let step = self.step;
         if !(0.0..=1.0).contains(&step) {
             return Err(SmoothingError::Step { step });
         }
-        // What one iteration does to the roughest wave of all, for which L is twice the wave back.
+        // The factor of one iteration on the roughest wave, for which L(p) = −2p.
         let roughest = |back: f64| (1.0 - 2.0 * step) * (1.0 - 2.0 * back);
         match self.step_back {
             Some(back) if !(back < -step && roughest(back).abs() <= 1.0) => {
@@ -76,7 +76,7 @@ impl Smoothing {
     }
 }
 
-/// Where every vertex of `mesh` comes to when neighbours pull at each other.
+/// Returns the positions of all vertices after moving them towards their neighbours.
 ///
 /// ```text
 ///        p              p ← p + λ L(p)     L(p): from p to the mean of its neighbours,
@@ -85,40 +85,42 @@ impl Smoothing {
 ///     a ─── b           a step back        p ← p + μ L(p)
 /// ```
 ///
-/// Isolated vertices stay, and so do vertices of which no triangle is thick enough to tell its
-/// angles. An edge with three faces pulls as any other, by all its angles. Cotangents are taken
-/// anew at every step; with obtuse triangles a weight can be negative, and then steps above one half
-/// can overshoot.
+/// Isolated vertices do not move. With cotangent weights, vertices whose triangles are all too flat
+/// for reliable angles do not move either. An edge with three faces gets its weight from all its
+/// opposite angles. Cotangents are computed again at every step. With obtuse triangles a weight can
+/// be negative, and then steps above 0.5 can overshoot.
 ///
-/// All iterations run on the map that is returned; the mesh and its names stay as they are. Where a
-/// vertex is its coordinates, [`set_positions`] then renames it, welds vertices that have met, and
-/// refuses to weld two corners of one face.
+/// The mesh and its handles do not change. In a structure that identifies a vertex by its
+/// coordinates, a later call of [`set_positions`] changes the handle, welds vertices that have the
+/// same position now, and returns an error if two corners of one face would be welded.
 ///
 /// # Errors
 ///
-/// [`SmoothingError::Step`] and [`SmoothingError::StepBack`] for steps that would not smooth;
-/// [`SmoothingError::NotATriangle`] for the first polygon under cotangent weights.
+/// Returns [`SmoothingError::Step`] or [`SmoothingError::StepBack`] for steps that would not
+/// smooth, and [`SmoothingError::NotATriangle`] for the first face of larger degree with cotangent
+/// weights.
 ///
 /// # Complexity
 ///
-/// O(corners) to read the mesh, then O(edges), or O(faces), for each iteration.
+/// O(corners) to read the mesh, then O(edges) for uniform and O(faces) for cotangent weights in
+/// each iteration.
 ///
 /// # Examples
 ///
 /// ```
-/// use indexed_face_set::IndexedFaceSet;
-/// use mesh_core::{MeshQuery, Representation};
-/// use operators::{Smoothing, smoothed};
+/// use sixfold_indexed_face_set::IndexedFaceSet;
+/// use sixfold_core::{MeshQuery, Representation};
+/// use sixfold_operators::{Smoothing, smoothed};
 ///
-/// // The neighbours of a vertex of the octahedron balance around the centre: half of the way.
-/// let octahedron = IndexedFaceSet::from_polygons(&shapes::octahedron())?;
+/// // The mean of the neighbours of each vertex is the centre; step 0.5 moves it half of the way.
+/// let octahedron = IndexedFaceSet::from_polygons(&sixfold_shapes::octahedron())?;
 /// let once = Smoothing { iterations: 1, ..Smoothing::default() };
 /// let moved = smoothed(&octahedron, &once)?;
 /// assert!(octahedron.vertices().all(|v| moved[v] == octahedron.position(v) / 2.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// [`set_positions`]: mesh_core::Representation::set_positions
+/// [`set_positions`]: sixfold_core::Representation::set_positions
 pub fn smoothed<M: MeshQuery>(
     mesh: &M,
     smoothing: &Smoothing,

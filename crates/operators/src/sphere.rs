@@ -1,38 +1,40 @@
-//! Projection to a sphere.
+//! Projection of vertices to a sphere.
 
-use mesh_core::{MeshQuery, Point, VertexId, VertexMap, row};
+use sixfold_core::{MeshQuery, Point, VertexId, VertexMap, row};
 
 use crate::error::SphereError;
 
-/// Every vertex pushed along its ray from `centre` to the sphere of `radius` around it; O(vertices).
+/// Returns all positions, moved along their rays from `centre` to the sphere of `radius` around it;
+/// O(vertices).
 ///
 /// ```text
 ///         ╭───●───╮          p' = c + r (p − c) / |p − c|
 ///       ╭─╯   ↑   ╰─╮
-///       │     p     │        Only positions change: a mesh that sees the centre from all sides
-///       │     │     │        covers the sphere once, others fold over.
+///       │     p     │        Only positions change. The faces cover the sphere once if each ray
+///       │     │     │        from c meets the mesh once; otherwise they fold over.
 ///       │     c     │
 /// ```
 ///
 /// # Errors
 ///
-/// [`SphereError::NoSphere`] for a radius that is not above 0 or anything not finite;
-/// [`SphereError::NoDirection`] for the first vertex at the centre.
+/// Returns [`SphereError::NoSphere`] for a radius that is not above 0, or a radius or centre that
+/// is not finite, and [`SphereError::NoDirection`] for the first vertex at the centre or not
+/// finite.
 ///
 /// # Examples
 ///
-/// An icosahedron divided with frequency 6 — every edge into six, every triangle into thirty-six —
-/// and projected to its sphere, as domes are built. Points of the planar division are named by what
-/// they are made of, so that faces share those on their common edges.
+/// An icosahedron divided with frequency 6 (every edge into 6, every triangle into 36) and
+/// projected to its sphere, as domes are built. The points of the division are stored by their
+/// corners and weights, so that faces share the points on their common edges.
 ///
 /// ```
 /// use std::collections::BTreeMap;
 ///
-/// use indexed_face_set::IndexedFaceSet;
-/// use mesh_core::{MeshQuery, Point, PolygonMesh, Representation};
-/// use operators::projected_to_sphere;
+/// use sixfold_indexed_face_set::IndexedFaceSet;
+/// use sixfold_core::{MeshQuery, Point, PolygonMesh, Representation};
+/// use sixfold_operators::projected_to_sphere;
 ///
-/// let icosahedron = shapes::icosahedron();
+/// let icosahedron = sixfold_shapes::icosahedron();
 /// let radius = icosahedron.positions()[0].length();
 /// let frequency = 6;
 ///
@@ -92,9 +94,9 @@ pub fn projected_to_sphere<M: MeshQuery>(
 
 #[cfg(test)]
 mod tests {
-    use half_edge::HalfEdgeMesh;
-    use mesh_core::{PolygonMesh, Representation};
     use proptest::prelude::*;
+    use sixfold_core::{PolygonMesh, Representation};
+    use sixfold_half_edge::HalfEdgeMesh;
 
     use super::*;
 
@@ -106,13 +108,13 @@ mod tests {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
         #[test]
-        fn vertices_come_to_the_sphere_along_their_rays(
+        fn vertices_move_to_the_sphere_along_their_rays(
             centre in prop::array::uniform3(-5.0_f32..5.0),
             radius in 0.01_f32..100.0,
         ) {
-            let torus = mesh(&shapes::torus(7, 5).expect("small"));
+            let torus = mesh(&sixfold_shapes::torus(7, 5).expect("small"));
             let centre = Point::from_array(centre);
-            let moved = projected_to_sphere(&torus, centre, radius).expect("off the centre");
+            let moved = projected_to_sphere(&torus, centre, radius).expect("not at the centre");
             for v in torus.vertices() {
                 let (ray, arm) = (torus.position(v) - centre, moved[v] - centre);
                 prop_assert!((arm.length() - radius).abs() < 1e-5 * (radius + 5.0));
@@ -122,8 +124,8 @@ mod tests {
     }
 
     #[test]
-    fn each_refusal_is_named() {
-        let grid = mesh(&shapes::grid(2, 2).expect("small"));
+    fn each_invalid_input_returns_its_error() {
+        let grid = mesh(&sixfold_shapes::grid(2, 2).expect("small"));
         let project = |centre, radius| projected_to_sphere(&grid, centre, radius);
         let middle = Point::new(1.0, 1.0, 0.0);
         let vertex = VertexId::new(4);

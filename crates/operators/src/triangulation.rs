@@ -1,63 +1,64 @@
-//! Triangulation: polygons into triangles on the same vertices.
+//! Triangulation: cuts polygons into triangles on the same vertices.
 
-use mesh_core::{FaceList, HandleMap, HashHandleMap, Pair, PolygonError, PolygonMesh, VertexId};
+use sixfold_core::{FaceList, HandleMap, HashHandleMap, Pair, PolygonError, PolygonMesh, VertexId};
 
 use crate::ear_clipping::EarClipping;
 
-/// How polygons are cut.
+/// The method by which polygons are cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Triangulation {
-    /// In a fan from the first corner: quick, and right for convex faces alone.
+    /// A fan from the first corner: fast, but correct for convex faces only.
     Fan,
-    /// By cutting ears (Meisters 1975): right for every simple polygon.
+    /// Ear clipping (Meisters 1975): correct for every simple polygon.
     #[default]
     EarClipping,
 }
 
-/// The mesh with every polygon of `n` corners cut into `n − 2` triangles, which take its place.
+/// Returns the mesh with every polygon of `n` corners replaced by `n − 2` triangles.
 ///
 /// ```text
 ///    d ─────── c           d ─────── c
 ///     ╲        │            ╲    ╱   │      The fan from a is a b c, a c d, a d e: the second
-///      e       │     ⇒       e       │      runs over the hollow at e, and the third is turned
-///     ╱        │            ╱    ╲   │      over. Ears never do.
+///      e       │     ⇒       e       │      extends over the hollow at e, and the third is turned
+///     ╱        │            ╱    ╲   │      over. Ear clipping avoids both.
 ///    a ─────── b           a ─────── b
 /// ```
 ///
-/// No vertex is added, triangles run the way of their polygon, and faces that are triangles stay as
-/// they are. Of [`EarClipping`](Triangulation::EarClipping) there is more to say:
+/// No vertex is added. Triangles have the orientation of their polygon. Triangular faces are
+/// unchanged. [`EarClipping`](Triangulation::EarClipping) also has these properties:
 ///
-/// - The triangles of a simple polygon in a plane do not overlap and none is flat, wherever its
-///   corners lie, on a line too. A bent polygon is seen along the axis nearest to its Newell normal.
+/// - The triangles of a simple planar polygon do not overlap and are not flat, even if corners are
+///   collinear. A bent polygon is projected along the axis nearest to its Newell normal.
 /// - A polygon that is not simple gets `n − 2` triangles too, which may overlap or be flat.
-/// - Of all ears the best shaped is cut first.
-/// - A diagonal that is an edge elsewhere in the mesh would have three faces or more. Ears with such
-///   diagonals are cut only where a polygon has no other at that moment; the triangulated mesh then
-///   has an edge that structures for manifolds refuse by name. Earlier polygons choose first.
+/// - The ear with the best shape is cut first.
+/// - A diagonal that is already an edge elsewhere in the mesh would get three or more faces. An ear
+///   with such a diagonal is cut only if the polygon has no other ear at that moment. Structures
+///   for manifolds then reject the mesh and name the edge. Earlier polygons choose their diagonals
+///   first.
 ///
 /// # Errors
 ///
-/// [`PolygonError::TooMany`] where the triangles have more corners than have names.
+/// Returns [`PolygonError::TooMany`] if the triangles have more corners than an index can count.
 ///
 /// # Complexity
 ///
-/// O(corners) for fans; ears of a face of `n` corners, of which `r` are not convex, take
-/// O(n·(r + log n)), and O(n²) at worst.
+/// O(corners) for fans. Ear clipping of a face with `n` corners, of which `r` are not convex, takes
+/// O(n·(r + log n)), and O(n²) in the worst case.
 ///
 /// # Examples
 ///
 /// ```
-/// use mesh_core::{Point, PolygonMesh};
-/// use operators::{Triangulation, triangulated};
+/// use sixfold_core::{Point, PolygonMesh};
+/// use sixfold_operators::{Triangulation, triangulated};
 ///
-/// // An arrow head, hollow at v3: the only diagonal inside is v1–v3.
+/// // An arrow head, not convex at v3: the only diagonal inside is v1–v3.
 /// let points = [[0.0, 0.0], [2.0, -1.0], [0.0, 2.0], [0.5, 0.5]].map(|[x, y]| Point::new(x, y, 0.0));
 /// let arrow = PolygonMesh::new(points, [[0, 1, 2, 3]])?;
 /// let ears = triangulated(&arrow, Triangulation::EarClipping)?;
 /// assert!(ears.faces().iter().all(|(_, face)| {
 ///     face.iter().any(|v| v.index() == 1) && face.iter().any(|v| v.index() == 3)
 /// }));
-/// # Ok::<(), mesh_core::PolygonError>(())
+/// # Ok::<(), sixfold_core::PolygonError>(())
 /// ```
 pub fn triangulated(
     polygons: &PolygonMesh,
@@ -92,7 +93,8 @@ fn ears_cut(polygons: &PolygonMesh) -> Result<PolygonMesh, PolygonError> {
     PolygonMesh::from_faces(polygons.positions().to_vec(), triangles)
 }
 
-/// The edges that could be diagonals of a polygon: both their ends are corners of polygons.
+/// Returns the edges that could be diagonals of a polygon: both ends are corners of polygons with
+/// more than three corners.
 fn edges_between_polygons(
     faces: &FaceList,
     vertices: usize,
@@ -115,9 +117,9 @@ fn edges_between_polygons(
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
-    use mesh_core::{Capabilities, FaceId, Point};
     use proptest::collection;
     use proptest::prelude::*;
+    use sixfold_core::{Capabilities, FaceId, Point};
 
     use super::*;
 
@@ -135,7 +137,7 @@ mod tests {
         triangulated(polygons, Triangulation::EarClipping).expect("small")
     }
 
-    /// Twice the area of each face, as vectors.
+    /// Returns for each face the normal vector whose length is twice the area.
     fn areas(mesh: &PolygonMesh) -> Vec<DVec3> {
         let at = |v: VertexId| mesh.position(v).as_dvec3();
         let area = |face: &[VertexId]| -> DVec3 {
@@ -146,7 +148,8 @@ mod tests {
         mesh.faces().iter().map(|(_, face)| area(face)).collect()
     }
 
-    /// The sides of the triangles are those of the polygon, and diagonals run once each way.
+    /// Checks that the triangles have the sides of the polygon, and each diagonal once in each
+    /// direction.
     fn cuts_up(mesh: &PolygonMesh, triangles: &PolygonMesh) {
         let sides = |mesh: &PolygonMesh| {
             let mut sides = Vec::new();
@@ -173,8 +176,8 @@ mod tests {
         }
     }
 
-    /// All triangles lie as the polygon does, none is flat, and together they are as large: so they
-    /// cover it, and none overlap.
+    /// Checks that all triangles have the orientation of the polygon, that no triangle is flat if
+    /// `exact`, and that their areas sum to its area. Then they cover it without overlap.
     fn covers(mesh: &PolygonMesh, exact: bool) {
         let triangles = ears(mesh);
         let whole: DVec3 = areas(mesh).into_iter().sum();
@@ -197,7 +200,7 @@ mod tests {
         );
     }
 
-    /// Bars side by side, with a corner at every whole number on the way around: most are on lines.
+    /// Bars side by side, with a corner at every integer point of the outline: most are collinear.
     fn skyline() -> impl Strategy<Value = Vec<[f32; 2]>> {
         collection::vec(1..5_u8, 1..9).prop_map(|heights| {
             let width = heights.len();
@@ -217,7 +220,8 @@ mod tests {
         })
     }
 
-    /// Two arms of `turns` turns around each other and back.
+    /// A strip that winds `turns` times around the centre, out along one arm and back along the
+    /// other.
     fn spiral(corners: usize, turns: f64) -> Vec<[f32; 2]> {
         let arm = |i: usize, width: f64| {
             let t = i as f64 / corners as f64;
@@ -233,7 +237,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// Whole coordinates in whole planes: nothing is rounded, and nothing may be flat.
+        /// Integer coordinates in integer planes: nothing is rounded, and no triangle may be flat.
         #[test]
         fn skylines_in_any_plane_are_covered(
             outline in skyline(),
@@ -248,7 +252,7 @@ mod tests {
             covers(&one_face(points), true);
         }
 
-        /// Around a centre at rising angles, near and far: simple, and mostly hollow.
+        /// Corners around a centre at rising angles, near and far: simple, and mostly not convex.
         #[test]
         fn stars_are_covered(
             radii in collection::vec(0.05_f64..1.0, 5..40),
@@ -264,7 +268,7 @@ mod tests {
             covers(&one_face(points.collect()), false);
         }
 
-        /// Whatever the polygon: crossing itself, on one line, in one point.
+        /// Any polygon: one that crosses itself, lies on one line or in one point.
         #[test]
         fn any_polygon_is_cut_up(
             points in collection::vec(prop::array::uniform3(-2..3_i8), 4..30),
@@ -282,14 +286,14 @@ mod tests {
     }
 
     #[test]
-    fn spirals_are_covered_however_long() {
+    fn short_and_long_spirals_are_covered() {
         covers(&polygon(&spiral(60, 3.0)), true);
         covers(&polygon(&spiral(1500, 40.0)), false);
     }
 
-    /// A square with a square hole, and a slit between them that the outline runs twice.
+    /// A square with a square hole. The outline runs twice along the slit between them.
     #[test]
-    fn a_slit_to_a_hole_is_run_along_both_sides() {
+    fn a_polygon_with_a_slit_to_a_hole_is_covered() {
         let slit = [
             [0.0, 0.0],
             [3.0, 0.0],
@@ -310,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn corners_that_are_nowhere_or_on_a_line_are_cut_up_in_time() {
+    fn large_degenerate_polygons_are_cut_up() {
         let line: Vec<[f32; 2]> = (0..1500).map(|i| [(i * 7 % 1500) as f32, 0.0]).collect();
         let zigzag: Vec<[f32; 2]> = (0..1500)
             .map(|i| [(i * 611 % 997) as f32, (i * i % 991) as f32])
@@ -338,24 +342,24 @@ mod tests {
         }
     }
 
-    /// Two squares back to back: the second may not take the diagonal of the first.
+    /// Two squares back to back: the second must not use the diagonal of the first.
     #[test]
     fn a_diagonal_that_is_an_edge_is_not_cut_again() {
         let square = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
         let pillow = PolygonMesh::new(square, [[0, 1, 2, 3], [3, 2, 1, 0]]).expect("valid");
         let triangles = ears(&pillow);
         assert_eq!(Capabilities::ORIENTED_MANIFOLDS.check(&triangles), Ok(()));
-        // A third square has no diagonal left, and takes one of the two.
+        // For a third square both diagonals are already edges, so it uses one of them again.
         let three = [[0, 1, 2, 3], [3, 2, 1, 0], [0, 1, 2, 3]];
         let three = PolygonMesh::new(square, three).expect("valid");
         assert_eq!(ears(&three).face_count(), 6);
     }
 
     #[test]
-    fn triangles_stay_and_a_fan_is_the_fan() {
-        let icosahedron = shapes::icosahedron();
+    fn triangles_stay_and_a_fan_equals_fan_triangulated() {
+        let icosahedron = sixfold_shapes::icosahedron();
         assert_eq!(ears(&icosahedron), icosahedron);
-        let prism = shapes::prism(7).expect("small");
+        let prism = sixfold_shapes::prism(7).expect("small");
         let fan = triangulated(&prism, Triangulation::Fan);
         assert_eq!(fan, prism.fan_triangulated());
         let lid = ears(&prism);

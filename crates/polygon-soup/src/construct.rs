@@ -1,11 +1,11 @@
-//! In and out.
+//! Building from polygons, and conversion to polygons.
 
-use mesh_core::{
-    BuildError, Capabilities, Counts, Editing, FaceId, FaceList, InvariantError, IteratorExt,
-    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
-    ScannedFaces, ScannedVertex, Untraced, VertexId, VertexMap, row,
-};
 use rustc_hash::FxHashMap;
+use sixfold_core::{
+    BuildError, Capabilities, Counts, Editing, FaceId, FaceList, InvariantError, IteratorExt,
+    Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost,
+    Representation, ScannedFaces, ScannedVertex, Untraced, VertexId, VertexMap, row,
+};
 
 use crate::mesh::AnyPolygonSoup;
 use crate::vertex::SoupVertex;
@@ -26,7 +26,12 @@ impl<E: Editing> Representation for AnyPolygonSoup<Untraced, E> {
         ]
     };
 
-    type Probed<P: Probe> = AnyPolygonSoup<P, E>;
+    fn type_path() -> &'static str {
+        match E::DELETES {
+            true => "sixfold_polygon_soup::EditablePolygonSoup",
+            false => "sixfold_polygon_soup::PolygonSoup",
+        }
+    }
 
     /// Copies the position of every corner; O(corners).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
@@ -43,7 +48,7 @@ impl<E: Editing> Representation for AnyPolygonSoup<Untraced, E> {
         Ok(mesh)
     }
 
-    /// Numbers the vertices in the order of `vertices()`.
+    /// Numbers the vertices in the order of `vertices()`; O(corners) expected.
     fn to_polygons(&self) -> PolygonMesh {
         let mut names: FxHashMap<SoupVertex, VertexId> = FxHashMap::default();
         let mut positions = Vec::new();
@@ -55,10 +60,12 @@ impl<E: Editing> Representation for AnyPolygonSoup<Untraced, E> {
                     VertexId::new(row(positions.len() - 1))
                 })
             });
-            faces.push(corners).expect("as many corners as here");
+            faces
+                .push(corners)
+                .expect("no more corners than in the table");
         }
         PolygonMesh::from_faces(positions, faces)
-            .expect("I1 and I3: each corner of a face at its own place")
+            .expect("I1 and I3: the corners of a face are distinct")
     }
 
     fn vertex_name(polygons: &PolygonMesh, v: VertexId) -> SoupVertex {
@@ -69,11 +76,11 @@ impl<E: Editing> Representation for AnyPolygonSoup<Untraced, E> {
         f
     }
 
-    /// Moves every corner to where the map has the vertex of its old coordinates; O(corners) expected.
+    /// Moves every corner to the position that the map has for its vertex; O(corners) expected.
     fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
         let corners = self.corners().iter();
         let moved = corners.map(|corner| {
-            // What no face has stays blank.
+            // Corners of no face stay blank.
             if SoupVertex::BLANK.is_at(corner) {
                 return *corner;
             }
@@ -93,12 +100,16 @@ impl<E: Editing> Representation for AnyPolygonSoup<Untraced, E> {
         self.faces.bytes().collect()
     }
 
-    fn layout_bytes(counts: &Counts) -> usize {
-        size_of::<Point>() * counts.corners + counts.offset_bytes()
-    }
-
     fn validate(&self) -> Result<(), InvariantError> {
         self.check_invariants()
+    }
+}
+
+impl<E: Editing> Measured for AnyPolygonSoup<Untraced, E> {
+    type Probed<P: Probe> = AnyPolygonSoup<P, E>;
+
+    fn layout_bytes(counts: &Counts) -> usize {
+        size_of::<Point>() * counts.corners + counts.offset_bytes()
     }
 
     fn probed<P: Probe>(self, probe: P) -> AnyPolygonSoup<P, E> {
@@ -108,7 +119,7 @@ impl<E: Editing> Representation for AnyPolygonSoup<Untraced, E> {
     }
 }
 
-/// `point` as I2 has it: 0 for −0.
+/// Returns `point` with 0 instead of −0 (I2).
 fn canonical(point: Point) -> Point {
     SoupVertex::at(point).position()
 }
@@ -121,7 +132,7 @@ fn has_isolated_vertex(polygons: &PolygonMesh) -> bool {
     used.contains(&false)
 }
 
-/// Whether two of the corners of a face, canonical as they are, are at one place.
+/// Returns whether two corners of a face are at the same position; expects canonical coordinates.
 fn coincident(face: &[Point]) -> bool {
     match *face {
         [a, b, c] => {
@@ -142,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn vertices_that_share_coordinates_are_one() {
+    fn vertices_with_equal_coordinates_become_one() {
         let [a, b, c, d] = [Point::ZERO, Point::X, Point::ONE, Point::Y];
         let positions = [a, b, c, Point::new(0.0, -0.0, 0.0), c, d];
         let soup = build(&positions, &[&[0, 1, 2], &[3, 4, 5]]).expect("no face has both");
@@ -157,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_coordinates_of_its_own_is_refused() {
+    fn isolated_and_coincident_vertices_are_refused() {
         let [a, b, c, d] = [Point::ZERO, Point::X, Point::ONE, Point::Y];
         let isolated = build(&[a, b, c, d], &[&[0, 1, 3]]);
         let vertex = VertexId::new(2);
@@ -189,14 +200,14 @@ mod tests {
         for v in soup.vertices() {
             moved[v] = v.position() - Point::X;
         }
-        soup.set_positions(&moved).expect("apart");
-        assert_eq!(soup.validate(), Ok(()), "1 − 1 and −0 are zeros alike");
+        soup.set_positions(&moved).expect("no vertices coincide");
+        assert_eq!(soup.validate(), Ok(()), "1 − 1 and −0 are stored as 0");
         let expected = square.map(|p| SoupVertex::at(p - Point::X));
         assert!(soup.vertices().eq(expected));
     }
 
     #[test]
-    fn corners_are_not_brought_together() {
+    fn a_move_that_makes_corners_coincide_is_refused() {
         let mut soup = build(&[Point::ZERO, Point::X, Point::Y], &[&[0, 1, 2]]).expect("valid");
         let before = soup.corners().to_vec();
         let mut moved = soup.vertex_map(Point::X);
@@ -212,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tables_hold_eighteen_words_a_vertex_and_nothing_else() {
+    fn memory_equals_the_layout_formula() {
         let [a, b, c, d] = [Point::ZERO, Point::X, Point::Y, Point::Z];
         let faces: [&[u32]; 4] = [&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]];
         let tetrahedron = build(&[a, b, c, d], &faces).expect("valid");

@@ -1,6 +1,6 @@
-//! Editing: the faces by [`ScannedFaces`](mesh_core::ScannedFaces), for there is nothing else.
+//! Edits: [`ScannedFaces`](sixfold_core::ScannedFaces) does them, because a soup has only faces.
 
-use mesh_core::{
+use sixfold_core::{
     Edit, EditError, EditLog, FaceId, MeshEdit, Pair, Point, Probe, QueryCost, Refusal,
     Representation,
 };
@@ -41,7 +41,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         }
     }
 
-    /// One sweep: every corner there moves, and the vertex with its edges has another name.
+    /// One scan: moves every corner at the vertex. The vertex and its edges get new handles.
     fn set_position(
         &mut self,
         v: SoupVertex,
@@ -53,7 +53,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         Ok(to)
     }
 
-    /// Never: a vertex is the place of a corner.
+    /// Always returns an error: a vertex is the position of a corner.
     fn add_vertex(
         &mut self,
         _: Point,
@@ -65,7 +65,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         })
     }
 
-    /// O(degree); one sweep if somebody listens. Corners may be anywhere, also where no vertex is yet.
+    /// O(degree); one scan if the log records events. Corners may be at positions without a vertex.
     fn add_face(
         &mut self,
         corners: &[SoupVertex],
@@ -74,7 +74,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         self.faces.add_face(corners, log)
     }
 
-    /// O(degree); one sweep if somebody listens.
+    /// O(degree); one scan if the log records events.
     fn remove_face(
         &mut self,
         f: FaceId,
@@ -83,7 +83,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         self.faces.remove_face(f, log)
     }
 
-    /// One sweep; two if somebody listens.
+    /// One scan; two if the log records events.
     fn remove_vertex(
         &mut self,
         v: SoupVertex,
@@ -92,12 +92,12 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         self.faces.remove_faces_at(v, log)
     }
 
-    /// None is isolated.
+    /// Returns 0, because no vertex is isolated.
     fn remove_isolated_vertices(&mut self, _: &mut impl EditLog<Self>) -> usize {
         0
     }
 
-    /// One sweep.
+    /// One scan.
     fn split_edge(
         &mut self,
         e: Pair<SoupVertex>,
@@ -109,7 +109,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         Ok(m)
     }
 
-    /// One sweep.
+    /// One scan.
     fn bisect_edge(
         &mut self,
         e: Pair<SoupVertex>,
@@ -121,7 +121,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         Ok(m)
     }
 
-    /// One sweep, to see that no vertex is at the place.
+    /// One scan, to check that the position is free.
     fn poke_face(
         &mut self,
         f: FaceId,
@@ -133,7 +133,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         Ok(m)
     }
 
-    /// O(degree); one sweep if somebody listens.
+    /// O(degree); one scan if the log records events.
     fn split_face(
         &mut self,
         f: FaceId,
@@ -143,7 +143,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         self.faces.split_face(f, ends, log)
     }
 
-    /// One sweep.
+    /// One scan.
     fn dissolve_edge(
         &mut self,
         e: Pair<SoupVertex>,
@@ -152,7 +152,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         self.faces.dissolve_edge(e, log)
     }
 
-    /// Two sweeps.
+    /// Two scans.
     fn flip_edge(
         &mut self,
         e: Pair<SoupVertex>,
@@ -161,8 +161,8 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         self.faces.flip_edge(e, log)
     }
 
-    /// One sweep; two where a third corner may have no other face. The place of the end that goes is
-    /// free for the one that is kept.
+    /// One scan; two if a third corner may have no other face. `to` may be the place of the removed
+    /// end.
     fn collapse_edge(
         &mut self,
         e: Pair<SoupVertex>,
@@ -175,7 +175,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         Ok(to)
     }
 
-    /// One sweep.
+    /// One scan.
     fn split_vertex(
         &mut self,
         v: SoupVertex,
@@ -189,7 +189,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         Ok(n)
     }
 
-    /// Vertices and edges keep their names.
+    /// Keeps the handles of vertices and edges.
     fn compact(&mut self, log: &mut impl EditLog<Self>) {
         self.faces.compact(log);
     }
@@ -197,7 +197,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{EditRecord, MeshQuery, PolygonMesh};
+    use sixfold_core::{EditRecord, MeshQuery, PolygonMesh};
 
     use super::*;
 
@@ -210,13 +210,13 @@ mod tests {
     }
 
     #[test]
-    fn a_vertex_that_moves_has_another_name_and_its_edges_too() {
+    fn moving_a_vertex_changes_its_handle_and_those_of_its_edges() {
         let (mut soup, [a, b, c, d]) = square();
         let mut record = EditRecord::new();
         let to = soup.set_position(a, Point::new(5.0, -0.0, 0.0), &mut record);
-        let to = to.expect("nobody is there");
+        let to = to.expect("the position is free");
         assert_eq!(to, SoupVertex::at(Point::new(5.0, 0.0, 0.0)));
-        assert_eq!(soup.validate(), Ok(()), "−0 is written as 0");
+        assert_eq!(soup.validate(), Ok(()), "−0 is stored as 0");
         assert_eq!(record.vertices.renamed, [[a, to]]);
         let mut renamed = record.edges.renamed.clone();
         renamed.sort_unstable();
@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn a_collapse_to_the_end_that_goes_takes_over_its_name() {
+    fn a_collapse_to_the_position_of_the_removed_end_uses_its_handle() {
         let (mut soup, [a, b, c, d]) = square();
         let mut record = EditRecord::new();
         let kept = soup.collapse_edge(Pair::new(a, b), a, b.position(), &mut record);
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn vertices_come_and_go_with_their_faces() {
+    fn vertices_are_created_and_removed_with_their_faces() {
         let (mut soup, [a, b, c, d]) = square();
         let mut record = EditRecord::new();
         let peak = SoupVertex::at(Point::Z);
@@ -261,22 +261,22 @@ mod tests {
         assert_eq!(record.vertices.created, [peak]);
         assert_eq!(record.edges.created.len(), 2);
         record.clear();
-        soup.remove_face(f, &mut record).expect("it is there");
+        soup.remove_face(f, &mut record).expect("f exists");
         assert_eq!(record.vertices.removed, [peak]);
         assert_eq!(record.edges.removed.len(), 2);
         record.clear();
-        soup.remove_vertex(b, &mut record).expect("it is there");
+        soup.remove_vertex(b, &mut record).expect("b exists");
         assert_eq!(record.vertices.removed, [b]);
-        soup.remove_vertex(d, &mut record).expect("it is there");
+        soup.remove_vertex(d, &mut record).expect("d exists");
         assert_eq!(soup.vertex_count(), 0);
         let gone = soup.remove_vertex(c, &mut ());
         assert_eq!(gone, Err(EditError::NoSuchVertex { vertex: c }));
     }
 
     #[test]
-    fn coordinates_that_are_no_numbers_find_no_deleted_corner() {
+    fn nan_coordinates_find_no_deleted_corner() {
         let (mut soup, [a, b, _, _]) = square();
-        soup.remove_face(FaceId::new(0), &mut ()).expect("there");
+        soup.remove_face(FaceId::new(0), &mut ()).expect("a face");
         let stored = soup.corners()[0];
         let strangers = [
             stored,
@@ -291,9 +291,9 @@ mod tests {
             assert_eq!(soup.remove_vertex(stranger, &mut ()), refusal);
             let edge = Pair::new(stranger, a);
             assert_eq!(soup.edge_faces(edge).next(), None);
-            // Places like any other: a face may have a corner there.
+            // These positions are valid: a face may have a corner there.
             let mut soup = soup.clone();
-            let f = soup.add_face(&[a, b, stranger], &mut ()).expect("three");
+            let f = soup.add_face(&[a, b, stranger], &mut ()).expect("valid");
             assert_eq!(soup.validate(), Ok(()));
             assert!(soup.vertex_faces(stranger).eq([f]));
             assert!(soup.face_vertices(f).eq([a, b, stranger]));
@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn compaction_leaves_the_corners_of_faces_and_nothing_else() {
+    fn compaction_keeps_only_the_corners_of_faces() {
         let (mut soup, [a, b, c, d]) = square();
         let merged = soup.dissolve_edge(Pair::new(a, c), &mut ());
         assert_eq!(merged, Ok(FaceId::new(0)));
@@ -313,9 +313,9 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "no face f0: it was deleted")]
-    fn a_deleted_face_panics_by_name() {
+    fn the_vertices_of_a_deleted_face_panic() {
         let (mut soup, _) = square();
-        soup.remove_face(FaceId::new(0), &mut ()).expect("there");
+        soup.remove_face(FaceId::new(0), &mut ()).expect("a face");
         let _ = soup.face_vertices(FaceId::new(0));
     }
 }

@@ -1,18 +1,18 @@
-//! Polygon soup: every face keeps the coordinates of its own corners, and nothing is shared.
+//! Polygon soup: every face stores the coordinates of its own corners, and faces share nothing.
 //!
-//! It is what an STL file holds and what a renderer can be handed as it is. Choose it to pass faces
-//! on in one go; every question about a neighbourhood is a sweep over all corners, for nothing else
-//! in the tables could answer it. FV, FE and EV take O(1) an item, the other six O(corners).
-//! Start at [`AnyPolygonSoup`], whose four invariants explain the rest.
+//! STL files have this form, and a renderer can use it unchanged. Use it to transfer all faces at
+//! once. Every query of a neighbourhood scans all corners, because no table stores neighbours. FV,
+//! FE and EV take O(1) per item, the other six O(corners). Start at [`AnyPolygonSoup`]; its four
+//! invariants define the tables.
 //!
-//! A vertex *is* its coordinates here ([`SoupVertex`]), so vertices that share them are one vertex
-//! afterwards, and moving a vertex renames it. A face with two corners at one point, or a vertex
-//! in no face, cannot be held.
+//! A vertex *is* its coordinates here ([`SoupVertex`]). Vertices with the same coordinates
+//! therefore become one vertex, and moving a vertex changes its handle. The structure cannot hold a
+//! face with two corners at one point, or a vertex without faces.
 //!
-//! Adding and removing faces takes O(1) a corner; nearly every other edit begins with a sweep, which
-//! also sees that no vertex is where a new one is to be. Choose another structure for many of them. The
-//! sweep and the surgery are those of [`ScannedFaces`](mesh_core::ScannedFaces), shared with the indexed
-//! face set.
+//! Adding and removing faces takes O(1) per corner. Nearly every other edit begins with a scan,
+//! which also checks that the position of a new vertex is free. For many edits, use another
+//! structure. [`ScannedFaces`](sixfold_core::ScannedFaces) implements the scan and the edits; the
+//! indexed face set uses it too.
 
 mod construct;
 mod edit;
@@ -23,3 +23,21 @@ mod vertex;
 
 pub use mesh::{AnyPolygonSoup, EditablePolygonSoup, PolygonSoup};
 pub use vertex::SoupVertex;
+
+/// The traits and types that all structures share: `PolygonMesh`, `MeshQuery`, handles, errors.
+pub use sixfold_core;
+
+/// Imports for a program: the types of this structure, and the traits of its queries and edits.
+///
+/// ```
+/// use sixfold_polygon_soup::prelude::*;
+///
+/// let triangle = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]])?;
+/// let mesh = PolygonSoup::from_polygons(&triangle)?;
+/// assert_eq!(mesh.edge_count(), 3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub mod prelude {
+    pub use crate::{EditablePolygonSoup, PolygonSoup};
+    pub use sixfold_core::prelude::*;
+}

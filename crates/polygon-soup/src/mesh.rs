@@ -1,79 +1,82 @@
-//! The structure itself.
+//! The table, its invariants, and access to it.
 
-use mesh_core::{
+use sixfold_core::{
     Editable, Editing, FaceId, FaceSpans, Point, Probe, ScannedFaces, Untraced, Whole,
 };
 
 use crate::vertex::SoupVertex;
 
-/// Faces that each keep the coordinates of their corners.
+/// Faces that each store the coordinates of their corners.
 ///
 /// ```text
 ///    c ────── b   b
 ///     \  f0  /   / \        corners   a  b  c │ a  d  b │ …      by corner
 ///      \    /   /   \                 └─ f0 ─┘└─ f1 ─┘
 ///       \  /   / f1  \
-///        a    a ───── d     the edge a–b is in the table twice, and nothing says so
+///        a    a ───── d     the edge a–b is in the table twice; that it is shared is not stored
 /// ```
 ///
-/// - I1  Each corner belongs to one face: face `f` has the corners of `spans.range(f)`, at least
-///   three, and these ranges follow one another through the whole table, until a face gets another
-///   degree, which may leave corners between them.
-/// - I2  No coordinate is −0; construction, [`set_positions`] and edits write 0 for it.
-/// - I3  The corners of one face are at different places; [`set_positions`] refuses what would bring
-///   two of them together, and every edit a place that is taken.
-/// - I4  Holes are rows of faces. Blank are the corners of deleted faces and those between faces, and
-///   no others. A blank corner is a NaN that no [`SoupVertex`] is made of, so no sweep finds it.
+/// - I1  Each corner belongs to one face: face `f` has the corners `spans.range(f)`, at least
+///   three. These ranges are consecutive and cover the whole table, until an edit changes a degree;
+///   after that, unused corners can be between them.
+/// - I2  No coordinate is −0; construction, [`set_positions`] and edits write 0 instead.
+/// - I3  The corners of one face are at different positions. [`set_positions`] returns an error if
+///   two of them would coincide, and every edit does if the position of a new vertex is occupied.
+/// - I4  Holes are rows of faces. The corners of deleted faces and the unused corners between faces
+///   are blank, and no others. A blank corner is a NaN that no [`SoupVertex`] has, so no scan finds
+///   it.
 ///
-/// Words for each vertex of a large closed triangle mesh: 18, three points a face. Mixed degrees
-/// add the offsets of the faces. Edits that change a degree bring two words a face and one a corner
-/// instead, deletions a bit a face, all until [`compact`](mesh_core::MeshEdit::compact).
+/// A large closed triangle mesh uses 18 words per vertex, three points per face. With mixed
+/// degrees, the offsets add one word per face. Edits that change a degree replace the offsets by
+/// two words per face and one per corner. Deletions add one bit per face.
+/// [`compact`](sixfold_core::MeshEdit::compact) removes both.
 ///
 /// # Complexity
 ///
-/// | query | looks at | time |
+/// | query | reads | time |
 /// |---|---|---|
-/// | FV, FE | the corners of the face | O(1) an item |
-/// | EV, `position` | the handle itself | O(1), without reading |
-/// | VF, VV, VE, EF, EE | all corners, in one sweep | O(corners) |
-/// | FF | all corners, in one sweep | O(corners + degree log degree) |
+/// | FV, FE | the corners of the face | O(1) per item |
+/// | EV, `position` | the handle itself | O(1), reads no table |
+/// | VF, VV, VE, EF, EE | all corners, in one scan | O(corners) |
+/// | FF | all corners, in one scan | O(corners + degree log degree) |
 /// | `vertices`, `edges` | all corners | O(corners) expected, with a hash set |
-/// | `vertex_count`, `edge_count` | as above: nothing stores them | O(corners) expected |
+/// | `vertex_count`, `edge_count` | as above: they are not stored | O(corners) expected |
 ///
-/// A hit of a sweep costs O(1), or O(log faces) with mixed degrees, where the face of a corner has
-/// to be looked for. A sweep reads 12 bytes a corner, once and in order. It is bound by the three
-/// comparisons a corner while the table fits the cache, and by the bandwidth of the memory beyond.
+/// A hit of a scan costs O(1), or O(log faces) with mixed degrees, because the face of the corner
+/// must be searched. A scan reads 12 bytes per corner, once and in order. If the table fits the
+/// cache, the limit is the three comparisons per corner; in larger meshes it is the memory
+/// bandwidth.
 ///
 /// # Edits
 ///
-/// | edit | looks at | changes |
+/// | edit | reads | changes |
 /// |---|---|---|
-/// | `set_position` | all corners, in one sweep | those at the vertex, and its name |
-/// | `add_vertex` | | not offered: a vertex is the place of a corner |
+/// | `set_position` | all corners, in one scan | the corners at the vertex, and its handle |
+/// | `add_vertex` | | not supported: a vertex is the position of a corner |
 /// | `add_face` | its corners | new corners, a new span |
-/// | `remove_face`, `split_face` | the corners of the face | they, and those of the new face |
-/// | `poke_face` | all corners, in one sweep | the corners of the face, and new faces |
-/// | `split_edge`, `dissolve_edge` | all corners, in one sweep | the faces along the edge, which may move to the end of the table |
-/// | `bisect_edge` | all corners, in one sweep | a corner of each face, and a new face for each |
-/// | `flip_edge` | all corners, in two sweeps | one corner of each face |
-/// | `collapse_edge` | all corners, in one sweep, seldom two | the corners at the vertex that goes; at both ends, if they move |
-/// | `split_vertex` | all corners, in one sweep | the corners that the new vertex gets, and two new faces |
-/// | `remove_vertex` | all corners, in one sweep | the corners of its faces |
-/// | `remove_isolated_vertices` | nothing | nothing: there are none |
+/// | `remove_face`, `split_face` | the corners of the face | these, and the corners of the new face |
+/// | `poke_face` | all corners, in one scan | the corners of the face, and new faces |
+/// | `split_edge`, `dissolve_edge` | all corners, in one scan | the faces at the edge, which may move to the end of the table |
+/// | `bisect_edge` | all corners, in one scan | a corner of each face, and a new face for each |
+/// | `flip_edge` | all corners, in two scans | one corner of each face |
+/// | `collapse_edge` | all corners, in one scan, rarely two | the corners at the removed vertex; at both ends, if they move |
+/// | `split_vertex` | all corners, in one scan | the corners that the new vertex gets, and two new faces |
+/// | `remove_vertex` | all corners, in one scan | the corners of its faces |
+/// | `remove_isolated_vertices` | nothing | nothing: no vertex is isolated |
 /// | `compact` | everything | everything |
 ///
-/// The sweep for an edge sees as well that no vertex is where a new one is to be. To tell a listener
-/// which vertices and sides of a face others have too, `add_face`, `remove_face`, `remove_vertex` and
-/// `split_face` sweep once more. An edit is legal where its own rule holds, and no two vertices would be
-/// one.
+/// The scan for an edge also checks that the position of a new vertex is free. If a log records the
+/// edits, `add_face`, `remove_face`, `remove_vertex` and `split_face` need one more scan, to find
+/// the vertices and sides that other faces also have. An edit is refused if its own rule is broken
+/// or if two vertices would coincide.
 ///
-/// [`set_positions`]: mesh_core::Representation::set_positions
+/// [`set_positions`]: sixfold_core::Representation::set_positions
 ///
 /// # Examples
 ///
 /// ```
-/// use mesh_core::{MeshQuery, Point, PolygonMesh, Representation};
-/// use polygon_soup::{PolygonSoup, SoupVertex};
+/// use sixfold_core::{MeshQuery, Point, PolygonMesh, Representation};
+/// use sixfold_polygon_soup::{PolygonSoup, SoupVertex};
 ///
 /// let square = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
 /// let polygons = PolygonMesh::new(square, [[0, 1, 2], [0, 2, 3]])?;
@@ -87,12 +90,13 @@ pub struct AnyPolygonSoup<P: Probe, E: Editing> {
     pub(crate) faces: ScannedFaces<SoupVertex, P, E>,
 }
 
-mesh_core::clone_by_field!(AnyPolygonSoup<P: Probe, E: Editing> { faces });
+sixfold_core::clone_by_field!(AnyPolygonSoup<P: Probe, E: Editing> { faces });
 
-/// A polygon soup of which nothing can be deleted: [`AnyPolygonSoup`] whose rows are all elements.
+/// A polygon soup that cannot delete faces: an [`AnyPolygonSoup`] without holes.
 pub type PolygonSoup<P = Untraced> = AnyPolygonSoup<P, Whole>;
 
-/// A polygon soup that can be edited ([`MeshEdit`](mesh_core::MeshEdit)): [`AnyPolygonSoup`] with holes.
+/// A polygon soup that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an [`AnyPolygonSoup`]
+/// with holes.
 pub type EditablePolygonSoup<P = Untraced> = AnyPolygonSoup<P, Editable>;
 
 impl<P: Probe> From<PolygonSoup<P>> for EditablePolygonSoup<P> {
@@ -104,21 +108,21 @@ impl<P: Probe> From<PolygonSoup<P>> for EditablePolygonSoup<P> {
 }
 
 impl<P: Probe, E: Editing> AnyPolygonSoup<P, E> {
-    /// Where each corner is, face by face, as it lies in memory, blank ones included.
+    /// Returns the position of each corner, face by face, as stored, including blank corners.
     pub fn corners(&self) -> &[Point] {
         self.faces.corners.rows()
     }
 
-    /// How the corners fall into faces, deleted ones included.
+    /// Returns the ranges of corners of the faces, including deleted ones.
     pub fn spans(&self) -> &FaceSpans<P, E> {
         &self.faces.spans
     }
 
-    /// Where the corners of `f` are, in order.
+    /// Returns the positions of the corners of `f`, in order.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// Panics if there is no face `f`.
     #[inline]
     pub fn face_positions(&self, f: FaceId) -> &[Point] {
         self.faces.face(f)

@@ -1,6 +1,6 @@
 //! The nine relations.
 
-use mesh_core::{Editing, FaceId, IteratorExt, MeshQuery, Pair, Point, Probe};
+use sixfold_core::{Editing, FaceId, HoleSet, IteratorExt, MeshQuery, Pair, Point, Probe};
 
 use crate::mesh::AnyPolygonSoup;
 use crate::vertex::SoupVertex;
@@ -10,12 +10,12 @@ impl<P: Probe, E: Editing> MeshQuery for AnyPolygonSoup<P, E> {
     type Edge = Pair<SoupVertex>;
     type Face = FaceId;
 
-    /// In the order in which faces first name them.
+    /// Lists the vertices in the order of their first corners in the faces.
     fn vertices(&self) -> impl Iterator<Item = SoupVertex> {
         self.faces().flat_map(|f| self.face_vertices(f)).distinct()
     }
 
-    /// In the order in which faces first run along them.
+    /// Lists the edges in the order of their first sides in the faces.
     fn edges(&self) -> impl Iterator<Item = Pair<SoupVertex>> {
         self.faces().flat_map(|f| self.face_edges(f)).distinct()
     }
@@ -81,6 +81,21 @@ impl<P: Probe, E: Editing> MeshQuery for AnyPolygonSoup<P, E> {
         self.faces.face_faces(f)
     }
 
+    #[inline]
+    fn contains_vertex(&self, v: SoupVertex) -> bool {
+        self.vertex_faces(v).next().is_some()
+    }
+
+    #[inline]
+    fn contains_edge(&self, e: Pair<SoupVertex>) -> bool {
+        self.edge_faces(e).next().is_some()
+    }
+
+    #[inline]
+    fn contains_face(&self, f: FaceId) -> bool {
+        f.index() < self.face_rows() && !self.faces.holes.has(f.index())
+    }
+
     fn vertex_rows(&self) -> usize {
         0
     }
@@ -96,12 +111,13 @@ impl<P: Probe, E: Editing> MeshQuery for AnyPolygonSoup<P, E> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{PolygonMesh, Representation, Sought, Traced, VertexId};
+    use sixfold_core::{Measured, PolygonMesh, Representation, Sought, Traced, VertexId};
 
     use super::*;
     use crate::mesh::PolygonSoup;
 
-    /// A pentagon and its mirror image share all sides; a triangle and a quad share one each.
+    /// Returns a pentagon and its mirror image, and a triangle and a quad at one of their sides
+    /// each.
     fn pillow() -> (PolygonMesh, PolygonSoup) {
         let at = [
             (0, 0),
@@ -126,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn each_neighbour_comes_once() {
+    fn each_neighbour_is_listed_once() {
         let (polygons, soup) = pillow();
         let v = |i| PolygonSoup::vertex_name(&polygons, VertexId::new(i));
         let faces = |faces: &mut dyn Iterator<Item = FaceId>| {
@@ -160,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn a_diagonal_is_no_edge_and_a_stranger_has_no_neighbours() {
+    fn a_diagonal_is_not_an_edge_and_a_missing_vertex_has_no_neighbours() {
         let (polygons, soup) = pillow();
         let v = |i| PolygonSoup::vertex_name(&polygons, VertexId::new(i));
         assert_eq!(soup.edge_faces(Pair::new(v(0), v(2))).next(), None);
@@ -169,17 +185,17 @@ mod tests {
         assert_eq!(soup.vertex_edges(stranger).next(), None);
     }
 
-    /// A fan of `sides` triangles around the origin.
+    /// Returns a fan of `sides` - 1 triangles around the origin.
     fn fan(sides: u32) -> PolygonSoup {
         let rim = (0..sides).map(|i| Point::new(1.0, i as f32, 0.0));
         let positions: Vec<Point> = std::iter::once(Point::ZERO).chain(rim).collect();
         let faces = (1..sides).map(|i| [i, i + 1, 0]);
         PolygonSoup::from_polygons(&PolygonMesh::new(positions, faces).expect("valid"))
-            .expect("held")
+            .expect("a valid soup")
     }
 
     #[test]
-    fn a_sweep_finds_the_corners_of_whole_and_of_broken_blocks() {
+    fn a_scan_finds_corners_in_full_and_partial_blocks() {
         for sides in [2, 10, 11, 12, 21, 22, 23, 24, 33, 100] {
             let soup = fan(sides);
             let hub = SoupVertex::at(Point::ZERO);
@@ -198,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn a_query_reads_every_corner_once_and_looks_around_its_hits() {
+    fn a_query_reads_every_corner_once_and_the_faces_of_its_hits() {
         let probe = Traced::default();
         let soup = fan(101);
         let far = SoupVertex::at(Point::new(1.0, 50.0, 0.0));
@@ -211,9 +227,9 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "no face f1: there are 1")]
-    fn a_missing_face_panics_by_name() {
+    fn a_missing_face_panics_with_its_handle() {
         let triangle = PolygonMesh::new([Point::X, Point::Y, Point::Z], [[0, 1, 2]]);
-        let soup = PolygonSoup::from_polygons(&triangle.expect("valid")).expect("held");
+        let soup = PolygonSoup::from_polygons(&triangle.expect("valid")).expect("a valid soup");
         let _ = soup.face_vertices(FaceId::new(1));
     }
 }

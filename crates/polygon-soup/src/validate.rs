@@ -1,12 +1,12 @@
 //! One check for each invariant.
 
-use mesh_core::{Editing, InvariantError, IteratorExt, MeshQuery, Probe, ScannedVertex};
+use sixfold_core::{Editing, InvariantError, IteratorExt, MeshQuery, Probe, ScannedVertex};
 
 use crate::mesh::AnyPolygonSoup;
 use crate::vertex::SoupVertex;
 
 impl<P: Probe, E: Editing> AnyPolygonSoup<P, E> {
-    /// Checks I1, then I4, which relies on it, and the faces that are there.
+    /// Checks I1 first, then I4, which relies on it, then I2 and I3.
     pub(crate) fn check_invariants(&self) -> Result<(), InvariantError> {
         self.check_spans()?;
         self.check_holes()?;
@@ -14,32 +14,32 @@ impl<P: Probe, E: Editing> AnyPolygonSoup<P, E> {
         self.check_faces()
     }
 
-    /// I1: the faces divide the corners among them, at least three each.
+    /// I1: the faces partition the corners, with at least three corners each.
     fn check_spans(&self) -> Result<(), InvariantError> {
         let checked = self.spans().check(self.corners().len());
         checked.map_err(|detail| InvariantError::new("I1", detail))
     }
 
-    /// I4: holes are faces, and blank corners are those of no face.
+    /// I4: holes are faces, and the blank corners are exactly those of no face.
     fn check_holes(&self) -> Result<(), InvariantError> {
         let checked = self.faces.check_holes();
         checked.map_err(|detail| InvariantError::new("I4", detail))
     }
 
-    /// I2: no coordinate is −0, nor is x that of a blank corner unless all are.
+    /// I2: no coordinate is −0, and only blank corners have the x of a blank corner.
     fn check_zeros(&self) -> Result<(), InvariantError> {
         let stored = self.corners().iter().enumerate();
         let mut stored = stored.filter(|(_, p)| !SoupVertex::BLANK.is_at(p));
         match stored.find(|(_, p)| !SoupVertex::at(**p).is_at(p)) {
             Some((corner, point)) => {
-                let detail = format!("corner {corner} is at {point}, with a zero below zero");
+                let detail = format!("corner {corner} is at {point}, with a negative zero");
                 Err(InvariantError::new("I2", detail))
             }
             None => Ok(()),
         }
     }
 
-    /// I3: the corners of a face are at different places.
+    /// I3: the corners of a face are at different positions.
     fn check_faces(&self) -> Result<(), InvariantError> {
         for f in self.faces() {
             let mut once = self.face_vertices(f).distinct();
@@ -54,7 +54,7 @@ impl<P: Probe, E: Editing> AnyPolygonSoup<P, E> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{
+    use sixfold_core::{
         Editable, FaceId, FaceSpans, MeshEdit, Point, PolygonMesh, Representation, Table, Untraced,
     };
 
@@ -64,7 +64,7 @@ mod tests {
 
     fn soup(faces: &[&[u32]]) -> EditablePolygonSoup {
         let polygons = PolygonMesh::new(SQUARE, faces).expect("valid");
-        let soup = EditablePolygonSoup::from_polygons(&polygons).expect("within the capabilities");
+        let soup = EditablePolygonSoup::from_polygons(&polygons).expect("a valid soup");
         assert_eq!(soup.validate(), Ok(()));
         soup
     }
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn i1_corners_that_no_face_has() {
+    fn i1_corners_of_no_face() {
         let mut broken = soup(&[&[0, 1, 2], &[0, 2, 3]]);
         broken.faces.spans = FaceSpans::Uniform {
             degree: 3,
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn i1_offsets_that_do_not_divide_the_corners() {
+    fn i1_offsets_that_do_not_partition_the_corners() {
         let mut broken = soup(&[&[0, 1, 2, 3], &[0, 1, 2]]);
         broken.faces.spans = mixed(&[0, 4, 6]);
         assert_eq!(fault(&broken), "I1 fails: f1 has the corners 4..6 of 7");
@@ -104,19 +104,19 @@ mod tests {
         broken.faces.spans = mixed(&[1, 4, 7]);
         assert_eq!(fault(&broken), "I1 fails: f0 has the corners 1..4 of 7");
         broken.faces.spans = mixed(&[]);
-        assert_eq!(fault(&broken), "I1 fails: the offsets lack even a first");
+        assert_eq!(fault(&broken), "I1 fails: the table of offsets is empty");
     }
 
     #[test]
-    fn i2_a_zero_below_zero() {
+    fn i2_negative_zero() {
         let mut broken = soup(&[&[0, 1, 2, 3]]);
         broken.faces.corners.rows_mut()[3].z = -0.0;
-        let expected = "I2 fails: corner 3 is at [0, 1, -0], with a zero below zero";
+        let expected = "I2 fails: corner 3 is at [0, 1, -0], with a negative zero";
         assert_eq!(fault(&broken), expected);
     }
 
     #[test]
-    fn i3_two_corners_at_one_place() {
+    fn i3_two_corners_at_one_position() {
         let mut broken = soup(&[&[0, 1, 2], &[0, 2, 3]]);
         broken.faces.corners.rows_mut()[5] = SQUARE[0];
         assert_eq!(
@@ -125,17 +125,17 @@ mod tests {
         );
     }
     #[test]
-    fn i4_blank_corners_of_faces_and_others_of_none() {
+    fn i4_blank_corners_of_faces_and_used_corners_of_no_face() {
         let mut broken = soup(&[&[0, 1, 2], &[0, 2, 3]]);
         broken.faces.holes.dig(1);
-        let expected = "I4 fails: corner 3 is not blank, and no face has it";
+        let expected = "I4 fails: corner 3 is not blank, but no face has it";
         assert_eq!(fault(&broken), expected);
         let mut broken = soup(&[&[0, 1, 2], &[0, 2, 3]]);
-        broken.remove_face(FaceId::new(0), &mut ()).expect("there");
+        broken.remove_face(FaceId::new(0), &mut ()).expect("a face");
         assert_eq!(broken.validate(), Ok(()));
         let blank = broken.corners()[0];
         broken.faces.corners.rows_mut()[4] = blank;
-        let expected = "I4 fails: corner 4 is blank, and a face has it";
+        let expected = "I4 fails: corner 4 is blank, but a face has it";
         assert_eq!(fault(&broken), expected);
     }
 }

@@ -1,41 +1,40 @@
-//! The name of a vertex that has no number.
+//! The handle of a vertex that has no row.
 
 use std::fmt;
 use std::hash::{Hash, Hasher};
 
-use mesh_core::{Handle, HashHandleMap, Point, ScannedVertex};
 use rustc_hash::FxHashSet;
+use sixfold_core::{Handle, HashHandleMap, Point, ScannedVertex};
 
-/// A vertex of a soup: its coordinates, as bits, with −0 as 0.
+/// A vertex of a soup: the bits of its coordinates, with −0 as 0.
 ///
-/// Two corners are at one vertex exactly when their coordinates are equal, bit for bit. The order
-/// of handles is that of the bits: total, and of no geometric meaning.
+/// Two corners are at one vertex if and only if their coordinates are equal, bit for bit. The order
+/// of handles is that of the bits: a total order without geometric meaning.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SoupVertex([u32; 3]);
 
 impl SoupVertex {
-    /// The vertex at `point`, wherever that is.
+    /// Returns the vertex at `point`, whether or not a face has a corner there.
     #[inline]
     pub fn at(point: Point) -> Self {
-        // −0 + 0 is 0; every other number stays as it is.
+        // −0 + 0 is 0; every other number stays unchanged.
         let [x, y, z] = point.to_array().map(|x| (x + 0.0).to_bits());
-        // Of the many bits that are no number, one stands for deleted corners: who hands them in means
-        // no number, and gets others of these.
+        // One NaN bit pattern marks blank corners. If `point` has it, use another NaN.
         let x = if x == BLANK { f32::NAN.to_bits() } else { x };
         Self([x, y, z])
     }
 
-    /// Where it is.
+    /// Returns the position of the vertex.
     #[inline]
     pub fn position(self) -> Point {
         Point::from_array(self.0.map(f32::from_bits))
     }
 }
 
-/// The x of a blank corner, a quiet NaN: [`SoupVertex::at`] makes no vertex of it.
+/// The x of a blank corner, a quiet NaN; [`SoupVertex::at`] never returns it.
 const BLANK: u32 = u32::MAX;
 
-/// A corner keeps its coordinates as they lie in the name: I2 has made the zeros alike.
+/// A corner stores the coordinates with the bits of the handle, because I2 excludes −0.
 impl ScannedVertex for SoupVertex {
     type Corner = Point;
     type Set = FxHashSet<Self>;
@@ -52,8 +51,7 @@ impl ScannedVertex for SoupVertex {
         self.position()
     }
 
-    /// All three coordinates are compared: a branch after the first costs more than the two
-    /// comparisons that it saves.
+    /// Compares all three: a branch after the first costs more than the two comparisons it avoids.
     #[inline]
     fn is_at(self, corner: &Point) -> bool {
         let [x, y, z] = self.0;
@@ -71,7 +69,7 @@ impl ScannedVertex for SoupVertex {
 }
 
 impl Hash for SoupVertex {
-    /// Two whole words: a slice of numbers would be hashed byte by byte, at twice the cost.
+    /// Writes whole words: a slice of numbers would be hashed byte by byte, at twice the cost.
     #[inline]
     fn hash<H: Hasher>(&self, state: &mut H) {
         let [x, y, z] = self.0;
@@ -82,12 +80,6 @@ impl Hash for SoupVertex {
 
 impl Handle for SoupVertex {
     type Map<T: Clone> = HashHandleMap<Self, T>;
-
-    #[inline]
-    fn token(self) -> u64 {
-        let [x, y, z] = self.0.map(u64::from);
-        x ^ y << 16 ^ z << 32
-    }
 }
 
 impl fmt::Debug for SoupVertex {

@@ -1,4 +1,4 @@
-//! The laws of `conformance`, on this structure.
+//! The conformance tests for the polygon soup.
 
-conformance::suite!(polygon_soup::PolygonSoup);
-conformance::edit_suite!(polygon_soup::EditablePolygonSoup);
+sixfold_conformance::suite!(sixfold_polygon_soup::PolygonSoup);
+sixfold_conformance::edit_suite!(sixfold_polygon_soup::EditablePolygonSoup);

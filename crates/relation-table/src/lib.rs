@@ -1,21 +1,21 @@
-//! Relation tables: what a program asks of a mesh again and again, written down once, end to end.
+//! Relation tables: the relations of a mesh that a program queries often, stored as flat tables.
 //!
-//! Choose them for many sweeps over a mesh that does not change: a row is a slice, and the rows of
-//! a sweep lie in memory one after the other, whatever structure they were asked of. Making one takes
-//! one sweep over that structure. They know nothing of edits. Start at [`Numbering`], which gives the
-//! elements the numbers that rows and items go by.
+//! Choose them for many sweeps over a mesh that does not change. A row is a slice, and the rows of
+//! a sweep follow one another in memory, whatever structure the table was built from. Building a
+//! table takes one sweep over that structure. Tables do not follow later edits of the mesh. Start
+//! at [`Numbering`], which numbers the elements: the numbers are the row indices and the items.
 //!
 //! ```text
 //!   offsets   0     3        7  …        row v of `vertex_faces` is items[offsets[v]..offsets[v + 1]];
-//!             │     │        │           where all rows are equally long there are no offsets, and
+//!             │     │        │           if all rows have one length, offsets are not stored:
 //!   items     f4 f9 f2 f2 f7 f9 f1 …     row f of `face_vertices` is items[3 f..3 f + 3]
 //! ```
 //!
 //! ```
-//! use mesh_core::Representation;
-//! use relation_table::Numbering;
+//! use sixfold_core::Representation;
+//! use sixfold_relation_table::Numbering;
 //!
-//! let mesh = half_edge::HalfEdgeMesh::from_polygons(&shapes::icosahedron())?;
+//! let mesh = sixfold_half_edge::HalfEdgeMesh::from_polygons(&sixfold_shapes::icosahedron())?;
 //! let neighbours = Numbering::of(&mesh).vertex_vertices()?;
 //! assert!(neighbours.iter().all(|(_, ring)| ring.len() == 5));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -1,17 +1,17 @@
-//! Numbers for the elements of any mesh, and the nine tables by them.
+//! Numbers for the elements of any mesh, and the nine relation tables that use these numbers.
 
 use std::cell::OnceCell;
 
-use mesh_core::{
+use sixfold_core::{
     EdgeId, EdgeMap, FaceId, FaceMap, MeshQuery, Point, Relation, VertexId, VertexMap, row,
 };
 
 use crate::table::{RelationTable, TabulationError};
 
-/// The elements of a mesh, numbered in the order in which the structure names them.
+/// The elements of a mesh, numbered in the order in which the structure lists them.
 ///
-/// Where handles are rows and nothing was removed, the number is the row. Each kind of element is
-/// numbered when it is first asked for.
+/// If handles are rows and nothing was removed, the number is the row. The elements of a kind are
+/// numbered when the first number of that kind is needed.
 pub struct Numbering<'m, M: MeshQuery> {
     mesh: &'m M,
     vertices: OnceCell<VertexMap<M, VertexId>>,
@@ -19,16 +19,16 @@ pub struct Numbering<'m, M: MeshQuery> {
     faces: OnceCell<FaceMap<M, FaceId>>,
 }
 
-/// A table by name: `fn vertex_faces() -> RelationTable<VertexId, FaceId>`.
+/// Defines the method that builds one table, such as `vertex_faces`.
 macro_rules! tabulate {
     ($(#[$doc:meta])+ $name:ident, $relation:ident, $all:ident, $from:ty => $number:ident, $to:ty) => {
         $(#[$doc])+
         ///
-        /// O(rows + items) beyond the cost of asking every element once.
+        /// O(rows + items) plus the cost of querying every element once.
         ///
         /// # Errors
         ///
-        /// [`TabulationError`]: more items than offsets of 32 bits can tell apart.
+        /// Returns [`TabulationError`] if there are more items than a 32-bit offset can address.
         pub fn $name(&self) -> Result<RelationTable<$from, $to>, TabulationError> {
             let mesh = self.mesh;
             RelationTable::collect(Relation::$relation, mesh.$all(), |element, items| {
@@ -49,7 +49,7 @@ impl<'m, M: MeshQuery> Numbering<'m, M> {
         }
     }
 
-    /// The number of `v`; O(1) but for the first one, which numbers all: O(vertices).
+    /// Returns the number of `v`. O(1), except the first call, which numbers all: O(vertices).
     #[inline]
     pub fn vertex(&self, v: M::Vertex) -> VertexId {
         self.vertices.get_or_init(|| {
@@ -60,7 +60,7 @@ impl<'m, M: MeshQuery> Numbering<'m, M> {
         })[v]
     }
 
-    /// The number of `e`; O(1) but for the first one, which numbers all: O(edges).
+    /// Returns the number of `e`. O(1), except the first call, which numbers all: O(edges).
     #[inline]
     pub fn edge(&self, e: M::Edge) -> EdgeId {
         self.edges.get_or_init(|| {
@@ -71,7 +71,7 @@ impl<'m, M: MeshQuery> Numbering<'m, M> {
         })[e]
     }
 
-    /// The number of `f`; O(1) but for the first one, which numbers all: O(faces).
+    /// Returns the number of `f`. O(1), except the first call, which numbers all: O(faces).
     #[inline]
     pub fn face(&self, f: M::Face) -> FaceId {
         self.faces.get_or_init(|| {
@@ -82,46 +82,46 @@ impl<'m, M: MeshQuery> Numbering<'m, M> {
         })[f]
     }
 
-    /// The positions, by number.
+    /// Returns the positions of the vertices, by vertex number.
     pub fn positions(&self) -> Vec<Point> {
         let vertices = self.mesh.vertices();
         vertices.map(|v| self.mesh.position(v)).collect()
     }
 
     tabulate! {
-        /// VV: the neighbours of every vertex.
+        /// Builds the VV table: the vertices adjacent to every vertex.
         vertex_vertices, VertexVertices, vertices, VertexId => vertex, VertexId
     }
     tabulate! {
-        /// VE: the edges at every vertex.
+        /// Builds the VE table: the edges at every vertex.
         vertex_edges, VertexEdges, vertices, VertexId => edge, EdgeId
     }
     tabulate! {
-        /// VF: the faces at every vertex.
+        /// Builds the VF table: the faces at every vertex.
         vertex_faces, VertexFaces, vertices, VertexId => face, FaceId
     }
     tabulate! {
-        /// EV: the two ends of every edge.
+        /// Builds the EV table: the two ends of every edge.
         edge_vertices, EdgeVertices, edges, EdgeId => vertex, VertexId
     }
     tabulate! {
-        /// EE: the edges that share an end with every edge.
+        /// Builds the EE table: for every edge, the edges that share an end with it.
         edge_edges, EdgeEdges, edges, EdgeId => edge, EdgeId
     }
     tabulate! {
-        /// EF: the faces along every edge.
+        /// Builds the EF table: the faces on every edge.
         edge_faces, EdgeFaces, edges, EdgeId => face, FaceId
     }
     tabulate! {
-        /// FV: the corners of every face.
+        /// Builds the FV table: the corners of every face.
         face_vertices, FaceVertices, faces, FaceId => vertex, VertexId
     }
     tabulate! {
-        /// FE: the sides of every face.
+        /// Builds the FE table: the edges of every face.
         face_edges, FaceEdges, faces, FaceId => edge, EdgeId
     }
     tabulate! {
-        /// FF: the faces beside every face.
+        /// Builds the FF table: the faces adjacent to every face.
         face_faces, FaceFaces, faces, FaceId => face, FaceId
     }
 }

@@ -1,40 +1,40 @@
-//! One relation as rows of items, end to end.
+//! One relation as rows of items, stored one after the other.
 
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use mesh_core::{Relation, RowId};
+use sixfold_core::{Relation, RowId};
 
 /// One relation of a whole mesh: for each element of kind `A` a row of elements of kind `B`.
 ///
-/// Rows are in the order in which the structure names its elements, items in the order in which it
-/// yields them.
+/// Rows are in the order in which the structure lists its elements. Items are in the order in which
+/// the query yields them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RelationTable<A, B> {
-    /// Where each row begins, and where the last one ends; empty where all are equally long.
+    /// Index of the first item of each row, then the number of items. Empty if `stride` is not 0.
     offsets: Vec<u32>,
-    /// How long all rows are, where they are.
+    /// The length of every row, if all rows have the same length; otherwise 0.
     stride: usize,
     rows: usize,
     items: Vec<B>,
     asked_of: PhantomData<A>,
 }
 
-/// Why a relation could not be tabulated.
+/// The reason why the table of a relation could not be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the message says what each field is")]
+#[expect(missing_docs, reason = "the message explains each field")]
 pub enum TabulationError {
-    /// Offsets have 32 bits.
+    /// The relation has more items than a 32-bit offset can address.
     #[error(
-        "{relation} yields more than {} items: ask the structure, or split the mesh",
+        "{relation} yields more than {} items: query the structure, or split the mesh",
         u32::MAX
     )]
     TooManyItems { relation: Relation },
 }
 
 impl<A: RowId, B: RowId> RelationTable<A, B> {
-    /// Puts the rows that `ask` adds to its list one after the other.
+    /// Builds the table; `ask` appends the row of one element to the list of items.
     pub(crate) fn collect<E>(
         relation: Relation,
         elements: impl Iterator<Item = E>,
@@ -67,44 +67,44 @@ impl<A: RowId, B: RowId> RelationTable<A, B> {
         })
     }
 
-    /// How many rows there are.
+    /// Returns the number of rows.
     #[inline]
     pub fn len(&self) -> usize {
         self.rows
     }
 
-    /// Whether there is no row.
+    /// Returns whether the table has no rows.
     pub fn is_empty(&self) -> bool {
         self.rows == 0
     }
 
-    /// What `element` has; O(1).
+    /// Returns the row of `element`. O(1).
     ///
     /// # Panics
     ///
-    /// If the table has no such row.
+    /// Panics if the table has no such row.
     #[inline]
     pub fn of(&self, element: A) -> &[B] {
         &self.items[self.range(element.row() as usize)]
     }
 
-    /// All rows, in order.
+    /// Returns all rows with their elements, in order.
     pub fn iter(&self) -> impl Iterator<Item = (A, &[B])> {
         let row = |row: usize| {
             (
-                A::from_row(mesh_core::row(row)),
+                A::from_row(sixfold_core::row(row)),
                 &self.items[self.range(row)],
             )
         };
         (0..self.rows).map(row)
     }
 
-    /// All rows end to end.
+    /// Returns the items of all rows, one row after the other.
     pub fn items(&self) -> &[B] {
         &self.items
     }
 
-    /// The bytes held, capacity included.
+    /// Returns the number of bytes allocated, including unused capacity.
     pub fn bytes(&self) -> usize {
         self.offsets.capacity() * size_of::<u32>() + self.items.capacity() * size_of::<B>()
     }

@@ -1,14 +1,14 @@
-//! Every table says what the structure says, row by row, on random meshes.
+//! Checks on random meshes that every table row equals the answer of the structure.
 
-use conformance::strategy::any_mesh;
-use half_edge::{EditableHalfEdgeMesh, HalfEdgeMesh};
-use indexed_face_set::IndexedFaceSet;
-use mesh_core::{EdgeId, FaceId, MeshEdit, MeshQuery, PolygonMesh, Representation, VertexId};
-use polygon_soup::PolygonSoup;
 use proptest::prelude::*;
-use relation_table::Numbering;
+use sixfold_conformance::strategy::any_mesh;
+use sixfold_core::{EdgeId, FaceId, MeshEdit, MeshQuery, PolygonMesh, Representation, VertexId};
+use sixfold_half_edge::{EditableHalfEdgeMesh, HalfEdgeMesh};
+use sixfold_indexed_face_set::IndexedFaceSet;
+use sixfold_polygon_soup::PolygonSoup;
+use sixfold_relation_table::Numbering;
 
-/// Asks each element directly, and compares with its row.
+/// Queries each element of the structure and compares the answer with its row.
 fn tables_are_answers<M: MeshQuery>(mesh: &M) -> Result<(), TestCaseError> {
     let numbers = Numbering::of(mesh);
     macro_rules! same {
@@ -55,13 +55,13 @@ fn tables_are_answers<M: MeshQuery>(mesh: &M) -> Result<(), TestCaseError> {
 fn on<M: Representation>(polygons: &PolygonMesh) -> Result<(), TestCaseError> {
     match M::from_polygons(polygons) {
         Ok(mesh) => tables_are_answers(&mesh),
-        Err(_) => Ok(()), // the mesh is not for this structure
+        Err(_) => Ok(()), // this structure cannot hold the mesh
     }
 }
 
 proptest! {
     #[test]
-    fn a_row_is_the_answer_of_the_structure(polygons in any_mesh()) {
+    fn rows_equal_the_answers_of_the_structure(polygons in any_mesh()) {
         on::<PolygonSoup>(&polygons)?;
         on::<IndexedFaceSet>(&polygons)?;
         on::<HalfEdgeMesh>(&polygons)?;
@@ -69,31 +69,31 @@ proptest! {
 }
 
 #[test]
-fn holes_get_no_numbers() {
-    let ball = shapes::icosahedron();
+fn removed_elements_get_no_numbers() {
+    let ball = sixfold_shapes::icosahedron();
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&ball).expect("closed");
     mesh.remove_face(FaceId::new(3), &mut ())
-        .expect("it has it");
+        .expect("it exists");
     mesh.remove_vertex(VertexId::new(0), &mut ())
-        .expect("it has it");
+        .expect("it exists");
     tables_are_answers(&mesh).expect("the same answers");
     let numbers = Numbering::of(&mesh);
     assert_eq!(numbers.vertex(VertexId::new(1)), VertexId::new(0));
     assert_eq!(
-        numbers.edge(mesh.edges().next().expect("some")),
+        numbers.edge(mesh.edges().next().expect("edges")),
         EdgeId::new(0)
     );
 }
 
-/// Rows of one length need no offsets: three words a triangle, and one more for each vertex elsewhere.
+/// Rows of one length need no offsets. Other tables store one offset per row, and one at the end.
 #[test]
-fn tables_are_as_small_as_they_can_be() {
-    let ball = shapes::icosahedron();
+fn tables_store_no_offsets_if_all_rows_have_one_length() {
+    let ball = sixfold_shapes::icosahedron();
     let mesh = HalfEdgeMesh::from_polygons(&ball).expect("closed");
     let numbers = Numbering::of(&mesh);
     assert_eq!(numbers.face_vertices().expect("few").bytes(), 4 * 60);
     assert_eq!(numbers.vertex_faces().expect("few").bytes(), 4 * 60);
-    let grid = shapes::grid(2, 2).expect("small");
+    let grid = sixfold_shapes::grid(2, 2).expect("small");
     let mesh = HalfEdgeMesh::from_polygons(&grid).expect("open");
     let table = Numbering::of(&mesh).vertex_faces().expect("few");
     assert_eq!(table.bytes(), 4 * (16 + 9 + 1));
@@ -101,7 +101,7 @@ fn tables_are_as_small_as_they_can_be() {
     assert!(
         Numbering::of(&none)
             .vertex_faces()
-            .expect("none")
+            .expect("empty")
             .is_empty()
     );
 }

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use mesh_core::{MeshEdit, Point, Representation, row};
+use sixfold_core::{MeshEdit, Point, Representation, row};
 
 use crate::Stop;
 use crate::error::RemeshError;
@@ -12,27 +12,27 @@ use crate::quadric::{Packed, Quadric};
 use crate::queue::{Entry, Queue};
 use crate::rules::{keeps_link, turns_nothing_over};
 
-/// How much more a plane through a boundary edge weighs than a face beside it.
+/// The weight of a plane through a boundary edge, relative to a face beside it.
 const BOUNDARY_WEIGHT: f64 = 100.0;
 
-/// How many collapses go between two looks of whoever watches.
+/// The number of collapses between two calls of `watch`.
 const WATCHED_EVERY: usize = 1024;
 
-/// How far to go.
+/// The target of a decimation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// Down to so many faces, or one fewer: a collapse takes two at a time.
+    /// This number of faces, or one fewer: a collapse can remove two.
     Faces(usize),
-    /// Down to this part of the faces there are; from 0 to 1.
+    /// This fraction of the faces of the mesh, from 0 to 1.
     Ratio(f64),
 }
 
 impl Target {
-    /// How many faces that is of so many.
+    /// Returns the target number of faces for a mesh with `faces` faces.
     ///
     /// # Errors
     ///
-    /// [`RemeshError::BadRatio`] for a ratio that is none.
+    /// Returns [`RemeshError::BadRatio`] if the ratio is not from 0 to 1.
     pub fn of(self, faces: usize) -> Result<usize, RemeshError> {
         match self {
             Self::Faces(target) => Ok(target),
@@ -44,22 +44,23 @@ impl Target {
     }
 }
 
-/// What becomes of vertices on boundary edges.
+/// The treatment of vertices on boundary edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Boundary {
-    /// The boundary is simplified as the surface is, and pulled at by planes across it.
+    /// The boundary is simplified like the surface. Planes perpendicular to the surface keep its
+    /// shape.
     #[default]
     Follow,
-    /// Its vertices stay.
+    /// Boundary vertices stay where they are.
     Fixed,
 }
 
-/// How to decimate. The default is to half of the faces, the boundary simplified too.
+/// Options of a decimation. The default is half of the faces, with the boundary simplified too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decimation {
-    /// How far.
+    /// The target.
     pub target: Target,
-    /// What becomes of the boundary.
+    /// The treatment of the boundary.
     pub boundary: Boundary,
 }
 
@@ -72,43 +73,47 @@ impl Default for Decimation {
     }
 }
 
-/// What a decimation came to.
+/// The result of a decimation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Decimated {
-    /// The faces that are left.
+    /// The number of faces that remain.
     pub faces: usize,
-    /// How many edges were collapsed.
+    /// The number of collapsed edges.
     pub collapses: usize,
-    /// How many collapses were refused: illegal, or turning a face over.
+    /// The number of refused collapses: illegal, or turning a face over.
     pub refused: usize,
-    /// The greatest quadric error of a collapse: squared distances to the planes of the faces, each
-    /// by its area.
+    /// The largest quadric error of a collapse: squared distances to the planes of the faces, each
+    /// weighted by the area of the face.
     pub worst: f64,
-    /// Why it ended.
+    /// The reason why it ended.
     pub stop: Stop,
 }
 
-/// Collapses edges, the least harmful first, until the target is reached or no collapse is left.
+/// Collapses edges, the lowest error first, until the target is reached or no legal collapse is
+/// left.
 ///
-/// The error of a vertex is the sum of squared distances to the planes of the faces it stands for,
-/// each by the area of the face; the vertex that two become stands where the sum of both errors is
-/// least, or at the best of the two and their midpoint where no one place is. Boundary edges bring
-/// planes across the surface, so that outlines stay. A collapse that would turn a face over, or
-/// break the link condition, is left out, and comes again when something around it has changed.
+/// The error of a vertex is the sum of the squared distances to the planes of the faces that it
+/// represents, each weighted by the area of the face. The merged vertex is placed where the sum of
+/// both errors is least. If there is no single such place, it is placed at the best of the two ends
+/// and their midpoint. Boundary edges add planes perpendicular to the surface, so that outlines
+/// stay. A collapse is refused if it would turn a face over or break the link condition. It is
+/// tried again after one of its ends has changed.
 ///
-/// Errors that differ by less than an eighth count as the same, and edges of the same error go in
-/// rounds, in the order of the mesh. The queue is updated lazily: an entry whose ends have changed
-/// since is dropped when it comes.
+/// Errors are rounded: those in one bucket differ by at most an eighth. Edges with the same rounded
+/// error are collapsed in rounds, in the order of the mesh. The queue is updated lazily: an entry
+/// whose ends have changed is dropped when it is taken out.
 ///
 /// # Errors
 ///
-/// [`RemeshError`]: a polygon, a vertex that is nowhere, a ratio that is none. Nothing has changed then.
+/// Returns [`RemeshError`] if a face is not a triangle, a position is not finite or the ratio is
+/// not from 0 to 1. The mesh is then unchanged.
 ///
 /// # Complexity
 ///
-/// O(edges log edges) and the structure's cost of VF, VV and `collapse_edge` for each collapse: on
-/// structures that scan, O(faces) each. Every collapse takes a face away, so there is an end.
+/// O(edges log edges), plus the structure's cost of VF, VV and `collapse_edge` for each collapse.
+/// On structures that scan, this is O(faces) each. Every collapse removes a face, so the number of
+/// collapses is limited.
 pub fn decimate<M: MeshEdit + Representation>(
     mesh: &mut M,
     decimation: &Decimation,
@@ -116,11 +121,12 @@ pub fn decimate<M: MeshEdit + Representation>(
     decimate_watched(mesh, decimation, &mut |_| ControlFlow::Continue(()))
 }
 
-/// As [`decimate`]; every thousand collapses `watch` is told the number of faces, and may end it.
+/// Decimates like [`decimate`], and calls `watch` with the number of faces every 1024 collapses;
+/// `watch` can end the decimation.
 ///
 /// # Errors
 ///
-/// Those of [`decimate`].
+/// The same as for [`decimate`].
 pub fn decimate_watched<M: MeshEdit + Representation>(
     mesh: &mut M,
     decimation: &Decimation,
@@ -158,21 +164,21 @@ pub fn decimate_watched<M: MeshEdit + Representation>(
             break;
         }
     }
-    // Weights and distances were taken in a box of unit size.
+    // Areas and squared distances were computed in a box of unit size.
     report.worst *= work.size.powi(4);
     Ok(report)
 }
 
-/// What there is to know of a vertex: one cache line, for a collapse looks at vertices all around.
+/// The data of a vertex: one cache line, because a collapse reads all vertices around it.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 struct Vertex {
-    /// From the vertex itself, in the unit box.
+    /// Its origin is the vertex itself, in the unit box.
     quadric: Packed,
     at: Point,
-    /// Changes when the vertex does.
+    /// Changes whenever the vertex changes.
     version: u32,
-    /// Whether it stays where it is.
+    /// Whether the vertex must not move.
     fixed: bool,
 }
 
@@ -180,7 +186,7 @@ struct Work<M: MeshEdit> {
     numbering: Numbering<M>,
     vertices: Vec<Vertex>,
     queue: Queue,
-    /// The mesh fits a unit box once it is divided by this.
+    /// The size of the mesh: divided by it, the mesh fits in a unit box.
     size: f64,
 }
 
@@ -209,10 +215,11 @@ impl<M: MeshEdit + Representation> Work<M> {
         Ok(work)
     }
 
-    /// Gives each vertex the planes of its faces and, where there is a boundary, those across it. All
-    /// go through the vertex, from which its quadric is told.
+    /// Adds the planes of its faces to each vertex and, at a boundary, the planes perpendicular to
+    /// the surface. All of them contain the vertex, which is the origin of its quadric.
     fn add_planes(&mut self, mesh: &M, boundary: Boundary) {
-        // How many faces each edge has, by a pass over the faces: what no structure searches for.
+        // The number of faces of each edge, by one pass over the faces: no structure needs a search
+        // for it.
         let mut uses = mesh.edge_map(0_u8);
         for f in mesh.faces() {
             for e in mesh.face_edges(f) {
@@ -223,7 +230,7 @@ impl<M: MeshEdit + Representation> Work<M> {
         let mut across: Vec<([u32; 2], Quadric)> = Vec::new();
         for f in mesh.faces() {
             let mut numbers = corners(mesh, f).map(|v| self.numbering.number(v));
-            // From the least number on, so that rounding is the same on every structure.
+            // Starts at the lowest number, so that rounding is the same on every structure.
             let least = (0..3).min_by_key(|&i| numbers[i]).unwrap_or(0);
             numbers.rotate_left(least);
             let [a, b, c] = numbers;
@@ -250,7 +257,7 @@ impl<M: MeshEdit + Representation> Work<M> {
                 }
             }
         }
-        // The sides of a face come in an order of the structure's own.
+        // The order of the edges of a face depends on the structure.
         across.sort_by_key(|&(ends, _)| ends);
         for (ends, plane) in across {
             for n in ends {
@@ -262,7 +269,7 @@ impl<M: MeshEdit + Representation> Work<M> {
         }
     }
 
-    /// The way from one vertex to another, in the unit box.
+    /// Returns the vector from one vertex to another, in the unit box.
     #[inline]
     fn way(&self, a: u32, b: u32) -> DVec3 {
         let [p, q] = [a, b].map(|n| self.vertices[n as usize].at.as_dvec3());
@@ -281,7 +288,7 @@ impl<M: MeshEdit + Representation> Work<M> {
         }
     }
 
-    /// Puts an edge into the queue, unless both ends are fixed.
+    /// Adds an edge to the queue, unless both ends are fixed.
     #[inline]
     fn put(&mut self, a: u32, b: u32) {
         let ends = [a.min(b), a.max(b)];
@@ -291,7 +298,7 @@ impl<M: MeshEdit + Representation> Work<M> {
         }
     }
 
-    /// The sum of both versions.
+    /// Returns the sum of the versions of both ends.
     #[inline]
     fn version(&self, ends: [u32; 2]) -> u32 {
         let [a, b] = ends.map(|n| self.vertices[n as usize].version);
@@ -302,7 +309,7 @@ impl<M: MeshEdit + Representation> Work<M> {
         self.version(entry.ends) == entry.version
     }
 
-    /// Where the two ends should meet.
+    /// Returns the best place for the merged vertex, or `None` if both ends are fixed.
     #[inline]
     fn best(&self, [a, b]: [u32; 2]) -> Option<Best> {
         let [p, q] = [a, b].map(|n| &self.vertices[n as usize]);
@@ -320,7 +327,7 @@ impl<M: MeshEdit + Representation> Work<M> {
             [false, false] => {}
         }
         let middle = way / 2.0;
-        // A place far from the edge is a matter of rounding, not of shape.
+        // A place far from the edge comes from rounding, not from the shape.
         let reach = 4.0 * way.length_squared();
         if let Some(x) = sum.least().filter(|x| x.distance_squared(middle) <= reach) {
             return Some(at(x));
@@ -331,13 +338,14 @@ impl<M: MeshEdit + Representation> Work<M> {
             .min_by(|x, y| x.error.total_cmp(&y.error))
     }
 
-    /// Collapses the edge of `entry`, if it is there and may go; the error that this makes.
+    /// Collapses the edge of `entry`, if it exists and the collapse is legal; returns the error of
+    /// the collapse.
     fn collapse(&mut self, mesh: &mut M, entry: &Entry) -> Option<f64> {
         let [a, b] = entry.ends;
         let e = self.numbering.edge(mesh, entry.ends)?;
         let best = self.best(entry.ends)?;
         let [p, q] = [a, b].map(|n| self.vertices[n as usize]);
-        // What is fixed stays to the bit.
+        // A fixed end keeps its exact position.
         let to = match [p.fixed, q.fixed] {
             [true, _] => p.at,
             [_, true] => q.at,
@@ -350,7 +358,7 @@ impl<M: MeshEdit + Representation> Work<M> {
         let kept = mesh.collapse_edge(e, ends[0], to, &mut ()).ok()?;
         self.numbering.renamed(a, kept);
         self.numbering.remove(b);
-        // As the structure holds it: rounded to singles.
+        // The position as the structure stores it, rounded to f32.
         let way = (to.as_dvec3() - p.at.as_dvec3()) / self.size;
         self.vertices[a as usize] = Vertex {
             quadric: best.sum.seen_from(way).into(),
@@ -358,7 +366,7 @@ impl<M: MeshEdit + Representation> Work<M> {
             version: p.version.wrapping_add(1),
             fixed: p.fixed || q.fixed,
         };
-        // No number is used twice, so no entry of the end that is gone is fresh again.
+        // No number is used twice, so no entry with the removed end becomes fresh again.
         self.vertices[b as usize].version = q.version.wrapping_add(1);
         for v in mesh.vertex_vertices(kept) {
             self.put(a, self.numbering.number(v));
@@ -367,12 +375,12 @@ impl<M: MeshEdit + Representation> Work<M> {
     }
 }
 
-/// Where the two ends of an edge should meet, from the first of them in the unit box.
+/// The best place for the merged vertex, relative to the first end, in the unit box.
 #[derive(Clone, Copy, Debug)]
 struct Best {
     way: DVec3,
     error: f64,
-    /// Of both, from the first end.
+    /// The quadric of both ends, with its origin at the first end.
     sum: Quadric,
 }
 

@@ -1,54 +1,56 @@
 //! Delaunay flipping by the cotangent criterion.
 
 use glam::DVec3;
-use mesh_core::{MeshEdit, Representation};
 use rustc_hash::FxHashSet;
+use sixfold_core::{MeshEdit, Representation};
 
 use crate::Stop;
 use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners};
 use crate::rules::at;
 
-/// How many flips there are at most, for each edge: a plane needs far fewer, and a surface, on which
-/// flips need not come to an end, does not go on for ever.
+/// The maximum number of flips per edge. A plane needs far fewer. On a surface, flipping might
+/// never end without this limit.
 const FLIPS_PER_EDGE: usize = 16;
 
-/// By how much the cotangents must add up below zero: rounding alone should flip nothing.
+/// Edges are flipped if the cotangents add up to less than minus this, so that rounding alone flips
+/// nothing.
 const MARGIN: f64 = 1e-7;
 
-/// What flipping came to.
+/// The result of [`flip_to_delaunay`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Flipped {
-    /// How many edges were flipped.
+    /// The number of flipped edges.
     pub flips: usize,
-    /// How many flips were refused: illegal, or folding the surface.
+    /// The number of refused flips: illegal, or folding the surface.
     pub refused: usize,
-    /// Why it ended; [`Stop::Done`] where every edge is Delaunay or was refused.
+    /// The reason why it ended; [`Stop::Done`] if every edge is Delaunay or was refused.
     pub stop: Stop,
 }
 
-/// Flips every edge whose two opposite angles come to more than π together, until there is none.
+/// Flips edges whose two opposite angles add up to more than π, until none is left that can be
+/// flipped.
 ///
 /// ```text
-///       c                 cot ∠c + cot ∠d < 0:  the circle around a b c holds d,
+///       c                 cot ∠c + cot ∠d < 0:  the circle around a b c contains d,
 ///     ╱   ╲               and the cotangent Laplacian has a negative weight there
 ///    a ─── b
 ///     ╲   ╱
 ///       d
 /// ```
 ///
-/// In a plane that ends at the Delaunay triangulation (Lawson 1977). On a surface a flip changes the
-/// shape, so one that would turn a triangle away from the two it comes from is left out, and the
-/// number of flips is bounded by sixteen for each edge.
+/// In a plane, the result is the Delaunay triangulation (Lawson 1977). On a surface, a flip changes
+/// the shape. So a flip is refused if a new triangle would face away from the two old ones, and
+/// there are at most 16 flips per edge of the mesh.
 ///
 /// # Errors
 ///
-/// [`RemeshError`]: a polygon, a vertex that is nowhere.
+/// Returns [`RemeshError`] if a face is not a triangle or a position is not finite.
 ///
 /// # Complexity
 ///
-/// O(edges log edges), and the structure's cost of VE, EF and `flip_edge` for each flip.
+/// O(edges log edges), plus the structure's cost of VE, EF and `flip_edge` for each flip.
 pub fn flip_to_delaunay<M: MeshEdit + Representation>(
     mesh: &mut M,
 ) -> Result<Flipped, RemeshError> {
@@ -96,7 +98,8 @@ struct Quad {
 }
 
 impl Quad {
-    /// That of the edge between two numbers; none where it is gone or has not two faces.
+    /// Returns the quad of the edge between two numbers, or `None` if the edge is missing or does
+    /// not have two faces.
     fn around<M: MeshEdit + Representation>(
         mesh: &M,
         numbering: &Numbering<M>,
@@ -109,7 +112,7 @@ impl Quad {
             faces += 1;
             let numbers = corners(mesh, f).map(|v| numbering.number(v));
             let i = numbers.iter().position(|&n| n != a && n != b)?;
-            // From the apex on, the face that runs a to b has b last.
+            // Starting at the apex, the face that runs from a to b has b last.
             let side = usize::from(numbers[(i + 2) % 3] != b);
             apexes[side] = Some(numbers[i]);
         }
@@ -125,7 +128,8 @@ impl Quad {
         let cotangent = |apex: DVec3| {
             let (u, v) = (a - apex, b - apex);
             let sine = u.cross(v).length();
-            // A triangle without an area: as obtuse, or as acute, as its sides say.
+            // A triangle without area: the sign of the dot product shows whether the angle is acute
+            // or obtuse.
             if sine == 0.0 {
                 u.dot(v).signum() * 1e30
             } else {
@@ -135,7 +139,7 @@ impl Quad {
         cotangent(c) + cotangent(d)
     }
 
-    /// Whether both new triangles face the way the two old ones do together.
+    /// Returns whether both new triangles face in the direction of the sum of the two old normals.
     fn stays_flat(&self) -> bool {
         let [a, b, c, d] = self.at;
         let together = (b - a).cross(c - a) + (a - b).cross(d - b);

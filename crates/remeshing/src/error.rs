@@ -1,31 +1,31 @@
-//! Why a mesh cannot be remeshed, or not as asked.
+//! Errors of the operators.
 //!
-//! A vertex is named by its place in `vertices()` and a face by its place in `faces()`.
+//! A vertex is given by its index in `vertices()`, and a face by its index in `faces()`.
 
-use mesh_core::{FaceId, VertexId};
+use sixfold_core::{FaceId, VertexId};
 
-/// Why an operator refuses a mesh, or its options; nothing has changed then.
+/// The reason why an operator refuses a mesh or its options. The mesh is then unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum RemeshError {
-    /// A polygon where only triangles will do.
+    /// A face is not a triangle.
     #[error(
-        "face {face} has {degree} corners, and remeshing needs triangles: triangulate the mesh"
+        "face {face} has {degree} corners, but remeshing needs triangles: triangulate the mesh"
     )]
     NotATriangle { face: FaceId, degree: usize },
-    /// A coordinate that is no number.
-    #[error("vertex {vertex} is at {at:?}, which is nowhere: mend the coordinates")]
+    /// A coordinate is not a finite number.
+    #[error("vertex {vertex} is at {at:?}, which is not finite: correct the coordinates")]
     NotFinite { vertex: VertexId, at: [f32; 3] },
-    /// A ratio that is none.
-    #[error("a ratio of {ratio} is not between 0 and 1: it is the part of the faces to keep")]
+    /// The ratio is not a number from 0 to 1.
+    #[error("the ratio {ratio} is not from 0 to 1: give the part of the faces to keep")]
     BadRatio { ratio: f64 },
-    /// A length that is none.
-    #[error("an edge length of {length} cannot be reached: it must be finite and above 0")]
+    /// The edge length is not a finite positive number.
+    #[error("the edge length {length} is not a finite positive number: choose one above 0")]
     BadLength { length: f64 },
-    /// A length that is lost in the rounding of positions.
+    /// The edge length is too short for the precision of the positions.
     #[error(
-        "edges of {length} are too short so far from the origin: beside a coordinate of {far} positions are {step} apart, so move the mesh to the origin, or choose a length of {least} or more"
+        "the edge length {length} is too short so far from the origin: at the coordinate {far}, positions are {step} apart; move the mesh to the origin, or choose a length of {least} or more"
     )]
     TooFar {
         length: f64,
@@ -33,9 +33,9 @@ pub enum RemeshError {
         step: f64,
         least: f64,
     },
-    /// A length that would take more faces than allowed.
+    /// The edge length would need more faces than allowed.
     #[error(
-        "edges of {length} would take about {faces:.0} triangles, and {limit} are allowed: choose a greater length, or allow more"
+        "the edge length {length} would need about {faces:.0} triangles, but {limit} are allowed: choose a greater length, or allow more"
     )]
     TooFine {
         length: f64,

@@ -3,40 +3,42 @@
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use mesh_core::{MeshEdit, Representation};
+use sixfold_core::{MeshEdit, Representation};
 
 use crate::Stop;
 use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners, corners_from};
 use crate::rules::{at, is_boundary, keeps_link, turns_nothing_over};
 
-/// An edge longer than this times the target is split, one shorter than that is collapsed: between
-/// them neither the halves of a split edge nor the edges around a collapsed one are at once undone.
+/// Edges longer than `LONG` times the target length are split, and edges shorter than `SHORT` times
+/// the target length are collapsed. With these factors, a later pass does not at once undo a split
+/// or a collapse.
 const LONG: f64 = 4.0 / 3.0;
 const SHORT: f64 = 4.0 / 5.0;
 
-/// A boundary that turns by less than this at a vertex is straight there: the cosine.
+/// The boundary is straight at a vertex if it turns by less than this there, as a cosine.
 const STRAIGHT: f64 = 0.9962; // 5 degrees
 
-/// Positions are singles: a length of fewer steps between them than this is beyond what they can tell.
+/// The minimum edge length, in steps between neighbouring f32 coordinates.
 const FEWEST_STEPS: f64 = 4.0;
 
-/// Where no vertex moves by more than this part of the length, and no edge is changed, it has settled.
+/// Remeshing ends early if an iteration changes no edge, and moves no vertex by more than this
+/// fraction of the length.
 const SETTLED: f64 = 1e-3;
 
-/// How to remesh. Set the length; the default iterates ten times, up to ten million faces.
+/// Options of remeshing. Set the length; the default is at most 10 iterations and 10 million faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remeshing {
-    /// How long edges should be.
+    /// The target length of edges, in the units of the mesh.
     pub edge_length: f64,
-    /// How often to split, collapse, flip and smooth, at most.
+    /// The maximum number of iterations; each splits, collapses, flips and smooths.
     pub iterations: usize,
-    /// No edge is split beyond so many faces; a length that would take more is refused.
+    /// The maximum number of faces for splitting. A length that would need more is refused.
     pub most_faces: usize,
 }
 
 impl Remeshing {
-    /// The default with edges of `edge_length`.
+    /// Returns the default options with edges of `edge_length`.
     pub fn to(edge_length: f64) -> Self {
         Self {
             edge_length,
@@ -46,48 +48,50 @@ impl Remeshing {
     }
 }
 
-/// What a remeshing came to.
+/// The result of remeshing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Remeshed {
-    /// The faces there are.
+    /// The number of faces at the end.
     pub faces: usize,
-    /// How many edges were split.
+    /// The number of split edges.
     pub splits: usize,
-    /// How many were collapsed.
+    /// The number of collapsed edges.
     pub collapses: usize,
-    /// How many were flipped.
+    /// The number of flipped edges.
     pub flips: usize,
-    /// How many iterations were done.
+    /// The number of finished iterations.
     pub iterations: usize,
-    /// Why it ended.
+    /// The reason why it ended.
     pub stop: Stop,
 }
 
-/// Makes all edges about `edge_length` long and all vertices about as regular as can be.
+/// Makes all edges about `edge_length` long and all vertices as regular as possible.
 ///
-/// Each iteration splits edges longer than 4/3 of the length in the middle, collapses edges shorter
-/// than 4/5 of it (unless a longer edge than 4/3 came of it), flips edges where that brings valences
-/// nearer to six, or four on a boundary, and moves inner vertices within their tangent planes to the
-/// middle of their neighbours (Botsch & Kobbelt 2004, without the projection back to the original).
+/// Each iteration has four passes (Botsch & Kobbelt 2004, without the projection back to the
+/// original). It splits edges longer than 4/3 of the length in the middle. It collapses edges
+/// shorter than 4/5 of the length, unless this makes an edge longer than 4/3. It flips edges if
+/// this brings valences closer to six, or to four on a boundary. It moves inner vertices within
+/// their tangent planes to the middle of their neighbours.
 ///
-/// Boundary vertices stay; one goes only where the boundary is straight. Nothing is done that turns a
-/// face over or breaks the link condition. Inner edges are not kept however sharp they are: they are
-/// rounded, and the mesh shrinks there by something like the length.
+/// Boundary vertices do not move, and are removed only if the boundary is straight there. No edit
+/// turns a face over or breaks the link condition. Sharp inner edges are not kept: they are
+/// rounded, and the mesh shrinks there by about the length.
 ///
-/// It ends early once an iteration changes next to nothing.
+/// Remeshing ends early if an iteration changes almost nothing.
 ///
 /// # Errors
 ///
-/// [`RemeshError`]: a polygon, a vertex that is nowhere, a length that is none, one that positions so
-/// far from the origin cannot tell, or one that would take more faces than allowed, by the area or by
-/// the edges to be split. Nothing has changed then.
+/// Returns [`RemeshError`] if a face is not a triangle or a position is not finite. Also if the
+/// length is not a finite positive number, is too short for the precision of the positions, or
+/// would need more faces than allowed (estimated from the area and from the edges to be split). The
+/// mesh is then unchanged.
 ///
 /// # Complexity
 ///
-/// O(edges log edges) for each iteration, and the structure's cost of the neighbours and the edit for
-/// each edge. Splits are bounded by the faces allowed; each of the other passes looks once at the edges
-/// there are when it begins.
+/// O(edges log edges) for each iteration, plus the structure's cost of the queries and the edit for
+/// each edge. The maximum number of faces limits the splits. Each of the other passes visits once
+/// the edges that exist when it begins.
 pub fn remesh<M: MeshEdit + Representation>(
     mesh: &mut M,
     remeshing: &Remeshing,
@@ -95,11 +99,12 @@ pub fn remesh<M: MeshEdit + Representation>(
     remesh_watched(mesh, remeshing, &mut |_| ControlFlow::Continue(()))
 }
 
-/// As [`remesh`]; before each iteration `watch` is told how many are done, and may end it.
+/// Remeshes like [`remesh`], and calls `watch` with the number of finished iterations before each
+/// iteration; `watch` can end the remeshing.
 ///
 /// # Errors
 ///
-/// Those of [`remesh`].
+/// The same as for [`remesh`].
 pub fn remesh_watched<M: MeshEdit + Representation>(
     mesh: &mut M,
     remeshing: &Remeshing,
@@ -114,7 +119,8 @@ pub fn remesh_watched<M: MeshEdit + Representation>(
         long: (LONG * length) * (LONG * length),
         short: (SHORT * length) * (SHORT * length),
     };
-    // Equilateral triangles over the area; where faces have next to none, along the edges.
+    // The larger of two estimates: equilateral triangles over the area, and triangles along the
+    // long edges (for faces with almost no area).
     let area: f64 = mesh.faces().map(|f| cross(mesh, f).length() / 2.0).sum();
     let lengths = mesh.edges().map(|e| {
         let [a, b] = mesh.edge_vertices(e).map(|v| at(mesh, v));
@@ -155,7 +161,7 @@ pub fn remesh_watched<M: MeshEdit + Representation>(
         report.iterations += 1;
         report.faces = mesh.face_count();
         report.stop = if whole { Stop::Done } else { Stop::WorkBound };
-        // What was collapsed makes room to split.
+        // Collapses make room for more splits.
         let settled = splits + collapses + flips == 0 && moved <= SETTLED * length;
         if settled || (!whole && collapses == 0) {
             break;
@@ -164,7 +170,7 @@ pub fn remesh_watched<M: MeshEdit + Representation>(
     Ok(report)
 }
 
-/// Whether positions can tell edges of `length` from one another.
+/// Checks that positions are precise enough for edges of `length`.
 fn check_steps<M: MeshEdit>(mesh: &M, length: f64) -> Result<(), RemeshError> {
     let far = mesh
         .vertices()
@@ -185,7 +191,7 @@ fn check_steps<M: MeshEdit>(mesh: &M, length: f64) -> Result<(), RemeshError> {
 
 struct Work<M: MeshEdit> {
     numbering: Numbering<M>,
-    /// The squares of the lengths between which edges stay.
+    /// The squared lengths between which edges stay.
     long: f64,
     short: f64,
 }
@@ -200,8 +206,8 @@ impl<M: MeshEdit + Representation> Work<M> {
         a.distance_squared(b)
     }
 
-    /// Splits long edges, and those that come of it, while there may be more faces; how many, and
-    /// whether none was left.
+    /// Splits long edges, including new ones, up to `most_faces` faces. Returns the number of
+    /// splits, and false if the maximum was reached.
     fn split_long(&mut self, mesh: &mut M, most_faces: usize) -> (usize, bool) {
         let mut waiting = self.numbering.edges(mesh);
         waiting.retain(|&ends| self.length_squared(mesh, ends) > self.long);
@@ -217,7 +223,7 @@ impl<M: MeshEdit + Representation> Work<M> {
             }
             let [a, b] = self.ends(mesh, ends);
             let middle = ((a + b) / 2.0).as_vec3();
-            // Rounding must not leave a half that is as long as the whole.
+            // Rounding must not make a half as long as the whole edge.
             let whole = a.distance_squared(b);
             let halves = [a, b].map(|end| end.distance_squared(middle.as_dvec3()));
             if !halves.iter().all(|&half| half < whole && half > 0.0) {
@@ -239,7 +245,8 @@ impl<M: MeshEdit + Representation> Work<M> {
         (splits, true)
     }
 
-    /// Collapses the short edges there are, where nothing becomes too long.
+    /// Collapses short edges, unless an edge would become too long; returns the number of
+    /// collapses.
     fn collapse_short(&mut self, mesh: &mut M) -> usize {
         let mut collapses = 0;
         for ends in self.numbering.edges(mesh) {
@@ -275,7 +282,8 @@ impl<M: MeshEdit + Representation> Work<M> {
         collapses
     }
 
-    /// Which end stays and where, so that boundaries keep their shape; `None` where they would not.
+    /// Returns the end that stays and its new position, or `None` if a boundary would change its
+    /// shape.
     fn meeting_place(&self, mesh: &M, e: M::Edge, ends: [u32; 2]) -> Option<(u32, DVec3)> {
         let [p, q] = self.ends(mesh, ends);
         let handles = ends.map(|n| self.numbering.name(n));
@@ -296,7 +304,7 @@ impl<M: MeshEdit + Representation> Work<M> {
         }
     }
 
-    /// Whether the boundary runs straight through a vertex on it.
+    /// Returns whether the boundary is straight at a vertex on it.
     fn is_straight(&self, mesh: &M, number: u32) -> bool {
         let v = self.numbering.name(number);
         let from = at(mesh, v);
@@ -312,7 +320,8 @@ impl<M: MeshEdit + Representation> Work<M> {
         matches!(ways[..], [one, other] if one.dot(other) <= -STRAIGHT)
     }
 
-    /// Flips the edges whose flip brings the valences around nearer to what they should be.
+    /// Flips edges if this brings the valences around closer to the regular ones; returns the
+    /// number of flips.
     fn even_valences(&mut self, mesh: &mut M) -> usize {
         let mut flips = 0;
         for ends in self.numbering.edges(mesh) {
@@ -346,7 +355,8 @@ impl<M: MeshEdit + Representation> Work<M> {
         flips
     }
 
-    /// Moves inner vertices within their tangent planes, all by what was there before; the longest way.
+    /// Moves inner vertices within their tangent planes, all computed from the old positions.
+    /// Returns the longest distance.
     fn smooth(&mut self, mesh: &mut M) -> f64 {
         let mut moves: Vec<(u32, DVec3)> = Vec::new();
         let mut vertices: Vec<u32> = mesh.vertices().map(|v| self.numbering.number(v)).collect();
@@ -357,7 +367,7 @@ impl<M: MeshEdit + Representation> Work<M> {
                 continue;
             }
             let from = at(mesh, v);
-            // In the order of numbers, so that rounding is the same on every structure.
+            // In the order of the numbers, so that rounding is the same on every structure.
             let mut fan: Vec<([u32; 2], DVec3, DVec3)> = mesh
                 .vertex_faces(v)
                 .map(|f| {
@@ -389,17 +399,18 @@ impl<M: MeshEdit + Representation> Work<M> {
     }
 }
 
-/// Twice the area of a face along its normal.
+/// Returns twice the area of a face along its normal.
 fn cross<M: MeshEdit>(mesh: &M, f: M::Face) -> DVec3 {
     let [a, b, c] = corners(mesh, f).map(|v| at(mesh, v));
     (b - a).cross(c - a)
 }
 
-/// Whether both triangles of the flipped edge would face the way the two of today do together.
+/// Returns whether both triangles of the flipped edge would face in the direction of the sum of the
+/// two old normals.
 fn flip_stays_flat<M: MeshEdit>(mesh: &M, quad: [M::Vertex; 4], e: M::Edge) -> bool {
     let together: DVec3 = mesh.edge_faces(e).map(|f| cross(mesh, f)).sum();
     let [a, b, c, d] = quad.map(|v| at(mesh, v));
-    // Which of the apexes is on the left does not matter here: the two crosses change sign together.
+    // It does not matter which apex is on the left: both cross products change sign together.
     let new = [(d - a).cross(c - a), (c - b).cross(d - b)];
     let signs = new.map(|n| n.dot(together));
     signs.iter().all(|&s| s > 0.0) || signs.iter().all(|&s| s < 0.0)

@@ -1,24 +1,25 @@
-//! What people do with edits: coarser meshes, even ones, and better triangles.
+//! Operators that use edits: coarser meshes, even edge lengths and better triangles.
 //!
-//! | operator | does | work | source |
+//! | operator | does | cost | source |
 //! |---|---|---|---|
-//! | [`decimate`] | collapses edges, the least harmful first, down to a number of faces | edges · log edges | Garland & Heckbert 1997 |
-//! | [`remesh`] | makes all edges about as long as asked, all valences about six | edges · log edges, each iteration | Botsch & Kobbelt 2004 |
-//! | [`flip_to_delaunay`] | flips edges whose two opposite angles are obtuse together | edges · flips | Lawson 1977 |
+//! | [`decimate`] | collapses edges, the lowest error first, down to a number of faces | O(edges log edges) | Garland & Heckbert 1997 |
+//! | [`remesh`] | makes all edges about as long as requested, all valences about six | O(edges log edges) per iteration | Botsch & Kobbelt 2004 |
+//! | [`flip_to_delaunay`] | flips edges whose two opposite angles add up to more than π | O(edges log edges + flips) | Lawson 1977 |
 //!
-//! Each is written once, against [`MeshEdit`] and the queries, and runs on every structure; where a
-//! structure scans for its neighbours, so does every step. All decisions go by numbers that vertices
-//! get in the order in which the faces name them, and sums run in that order: so **every structure
-//! makes the same mesh, to the bit**, from the same manifold.
+//! Each operator is written once, with [`MeshEdit`] and the queries, and runs on every structure.
+//! On a structure that scans for neighbours, every step scans. All decisions depend on vertex
+//! numbers, which follow the order in which the faces list the vertices, and sums are computed in
+//! that order. So **every structure makes the same mesh, to the bit**, from the same manifold.
 //!
-//! Triangles only. Boundaries keep their shape. What is removed leaves holes: see [`MeshEdit::compact`].
+//! Only meshes of triangles are accepted. Boundaries keep their shape. Removed elements leave
+//! holes: see [`MeshEdit::compact`].
 //!
 //! ```
-//! use half_edge::EditableHalfEdgeMesh;
-//! use mesh_core::{MeshQuery, Representation};
-//! use remeshing::{Decimation, Target, decimate};
+//! use sixfold_half_edge::EditableHalfEdgeMesh;
+//! use sixfold_core::{MeshQuery, Representation};
+//! use sixfold_remeshing::{Decimation, Target, decimate};
 //!
-//! let sphere = shapes::geodesic(8)?;
+//! let sphere = sixfold_shapes::geodesic(8)?;
 //! let mut mesh = EditableHalfEdgeMesh::from_polygons(&sphere)?;
 //! let tenth = Decimation { target: Target::Ratio(0.1), ..Decimation::default() };
 //! let report = decimate(&mut mesh, &tenth)?;
@@ -27,8 +28,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`MeshEdit`]: mesh_core::MeshEdit
-//! [`MeshEdit::compact`]: mesh_core::MeshEdit::compact
+//! [`MeshEdit`]: sixfold_core::MeshEdit
+//! [`MeshEdit::compact`]: sixfold_core::MeshEdit::compact
 
 mod decimation;
 mod delaunay;
@@ -44,16 +45,16 @@ pub use delaunay::{Flipped, flip_to_delaunay};
 pub use error::RemeshError;
 pub use isotropic::{Remeshed, Remeshing, remesh, remesh_watched};
 
-/// Why an operator came to its end.
+/// The reason why an operator ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stop {
-    /// It did all that was asked.
+    /// It did everything that was requested.
     Done,
     /// No edit was left that is legal and turns no face over.
     NothingLeft,
-    /// It reached the bound of its work.
+    /// It reached the limit of its work.
     WorkBound,
-    /// Whoever watched told it to.
+    /// The `watch` function ended it.
     Asked,
 }

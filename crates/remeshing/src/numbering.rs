@@ -1,17 +1,19 @@
-//! Vertices by number, in an order that is the same on every structure.
+//! Vertex numbers, in an order that is the same on every structure.
 
-use mesh_core::{HandleMap, MeshEdit, Point, Representation, VertexId, VertexMap, row};
+use sixfold_core::{HandleMap, MeshEdit, Point, Representation, VertexId, VertexMap, row};
 
 use crate::error::RemeshError;
 
-/// Every vertex by a number, and every number's vertex, through all edits.
+/// A number for every vertex, and the vertex of every number, kept up to date through all edits.
 ///
-/// Structures list vertices and walk around them in orders of their own. Decisions that went by these
-/// would differ from structure to structure; numbers do not. They follow the first face that names a
-/// vertex, each face from its least corner on.
+/// Structures list vertices, and walk around them, in different orders. Decisions that depend on
+/// these orders would differ between structures; decisions that depend on the numbers do not. The
+/// numbers follow the order in which the faces list the vertices, each face from its least corner
+/// (by coordinates).
 pub(crate) struct Numbering<M: MeshEdit> {
     names: Vec<M::Vertex>,
-    /// Whether the vertex of a number has been removed: its name must not be asked for any more.
+    /// Whether the vertex of a number has been removed, so that its handle must not be used any
+    /// more.
     gone: Vec<bool>,
     numbers: VertexMap<M, u32>,
 }
@@ -21,12 +23,13 @@ impl<M: MeshEdit + Representation> Numbering<M> {
     ///
     /// # Errors
     ///
-    /// The first face that is no triangle, and the first vertex that is nowhere.
+    /// Returns an error for the first face that is not a triangle, or for the first position that
+    /// is not finite.
     pub(crate) fn of(mesh: &M) -> Result<Self, RemeshError> {
         for (i, f) in (0..).zip(mesh.faces()) {
             let degree = mesh.face_vertices(f).count();
             if degree != 3 {
-                let face = mesh_core::FaceId::new(i);
+                let face = sixfold_core::FaceId::new(i);
                 return Err(RemeshError::NotATriangle { face, degree });
             }
         }
@@ -44,7 +47,7 @@ impl<M: MeshEdit + Representation> Numbering<M> {
         };
         for f in mesh.faces() {
             let [a, b, c] = corners(mesh, f);
-            // −0 is 0, as it is where a vertex is its coordinates.
+            // −0 counts as 0, as in structures where a vertex is its coordinates.
             let place = |v| mesh.position(v) + Point::ZERO;
             let bits = |v| place(v).to_array().map(f32::to_bits);
             let least = bits(a).min(bits(b)).min(bits(c));
@@ -64,7 +67,7 @@ impl<M: MeshEdit + Representation> Numbering<M> {
         Ok(numbering)
     }
 
-    /// Numbers a new vertex.
+    /// Numbers a new vertex; returns its number.
     pub(crate) fn push(&mut self, v: M::Vertex) -> u32 {
         let number = row(self.names.len());
         self.numbers.insert(v, number);
@@ -73,13 +76,13 @@ impl<M: MeshEdit + Representation> Numbering<M> {
         number
     }
 
-    /// Notes that the vertex has been removed.
+    /// Marks the vertex as removed.
     #[inline]
     pub(crate) fn remove(&mut self, number: u32) {
         self.gone[number as usize] = true;
     }
 
-    /// What the vertex is called now that an edit has touched it.
+    /// Sets the handle of the vertex after an edit.
     #[inline]
     pub(crate) fn renamed(&mut self, number: u32, new: M::Vertex) {
         let old = self.names[number as usize];
@@ -90,31 +93,31 @@ impl<M: MeshEdit + Representation> Numbering<M> {
         }
     }
 
-    /// Moves a vertex; where a vertex is its coordinates and another is there, it stays.
+    /// Moves a vertex. If a vertex is its coordinates and another one is at `to`, it stays.
     pub(crate) fn set_position(&mut self, mesh: &mut M, number: u32, to: Point) {
         if let Ok(v) = mesh.set_position(self.name(number), to, &mut ()) {
             self.renamed(number, v);
         }
     }
 
-    /// How many numbers have been given.
+    /// Returns how many numbers are in use, including those of removed vertices.
     pub(crate) fn len(&self) -> usize {
         self.names.len()
     }
 
-    /// What the vertex is called.
+    /// Returns the handle of the vertex.
     #[inline]
     pub(crate) fn name(&self, number: u32) -> M::Vertex {
         self.names[number as usize]
     }
 
-    /// The number of a vertex.
+    /// Returns the number of a vertex.
     #[inline]
     pub(crate) fn number(&self, v: M::Vertex) -> u32 {
         self.numbers[v]
     }
 
-    /// All edges as the numbers of their ends, in order; O(edges log edges).
+    /// Returns all edges as the numbers of their ends, sorted; O(edges log edges).
     pub(crate) fn edges(&self, mesh: &M) -> Vec<[u32; 2]> {
         let ends = mesh.edges().map(|e| {
             let [a, b] = mesh.edge_vertices(e).map(|v| self.number(v));
@@ -125,7 +128,7 @@ impl<M: MeshEdit + Representation> Numbering<M> {
         edges
     }
 
-    /// The edge between two numbers, if there is one now.
+    /// Returns the edge between two numbers, if it exists.
     #[inline]
     pub(crate) fn edge(&self, mesh: &M, [a, b]: [u32; 2]) -> Option<M::Edge> {
         if self.gone[a as usize] || self.gone[b as usize] {
@@ -135,7 +138,7 @@ impl<M: MeshEdit + Representation> Numbering<M> {
     }
 }
 
-/// The corners of a triangle, from any of them on.
+/// Returns the corners of a triangle, starting at any of them.
 #[inline]
 pub(crate) fn corners<M: MeshEdit>(mesh: &M, f: M::Face) -> [M::Vertex; 3] {
     let mut corners = mesh.face_vertices(f);
@@ -143,7 +146,7 @@ pub(crate) fn corners<M: MeshEdit>(mesh: &M, f: M::Face) -> [M::Vertex; 3] {
     [next(), next(), next()]
 }
 
-/// The corners of a triangle at `v`, from `v` on.
+/// Returns the corners of a triangle, starting at its corner `v`.
 #[inline]
 pub(crate) fn corners_from<M: MeshEdit>(mesh: &M, f: M::Face, v: M::Vertex) -> [M::Vertex; 3] {
     let [a, b, c] = corners(mesh, f);

@@ -4,8 +4,8 @@ use std::ops::AddAssign;
 
 use glam::{DMat3, DVec3};
 
-/// A sum of squared distances to planes, each with a weight: xᵀ A x − 2 b·x + c, of a place x given
-/// from some origin.
+/// A weighted sum of squared distances to planes: xᵀ A x − 2 b·x + c, for a point x relative to
+/// some origin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Quadric {
     /// A: xx, xy, xz, yy, yz, zz.
@@ -14,10 +14,10 @@ pub(crate) struct Quadric {
     c: f64,
 }
 
-/// A quadric in half the bytes.
+/// A quadric in f32, with half the bytes.
 ///
-/// With the origin at the vertex whose quadric it is, the numbers are of the size of what they tell,
-/// and singles are enough: from an origin far away the error would be the difference of large ones.
+/// f32 is precise enough because the origin is the vertex of the quadric: the numbers are then as
+/// large as the error. With an origin far away, the error would be a difference of large numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Packed {
     a: [f32; 6],
@@ -48,7 +48,8 @@ impl From<Packed> for Quadric {
 }
 
 impl Quadric {
-    /// `weight` times the squared distance to the plane through the origin with the unit normal `n`.
+    /// Returns `weight` times the squared distance to the plane through the origin with the unit
+    /// normal `n`.
     pub(crate) fn plane(n: DVec3, weight: f64) -> Self {
         let a = [
             n.x * n.x,
@@ -64,7 +65,7 @@ impl Quadric {
         }
     }
 
-    /// The same with places given from an origin that is `d` away from this one.
+    /// Returns the same quadric with the origin moved by `d`.
     #[inline]
     pub(crate) fn seen_from(&self, d: DVec3) -> Self {
         let ad = self.times(d);
@@ -75,7 +76,7 @@ impl Quadric {
         }
     }
 
-    /// A x.
+    /// Returns A x.
     #[inline]
     fn times(&self, x: DVec3) -> DVec3 {
         let [xx, xy, xz, yy, yz, zz] = self.a;
@@ -86,25 +87,26 @@ impl Quadric {
         )
     }
 
-    /// The sum of both.
+    /// Returns the sum of both.
     #[inline]
     pub(crate) fn plus(mut self, other: &Self) -> Self {
         self += *other;
         self
     }
 
-    /// What it comes to at `x`; rounding may leave a hair below zero, which is zero.
+    /// Returns the value at `x`; 0 if rounding makes it slightly negative.
     #[inline]
     pub(crate) fn at(&self, x: DVec3) -> f64 {
         let ax = self.times(x);
         (x.dot(ax) - 2.0 * self.b.dot(x) + self.c).max(0.0)
     }
 
-    /// Where it is least, if that is one well-determined point: not along a flat or a straight part.
+    /// Returns the point with the least value, or `None` if it is not well determined, as on a flat
+    /// or straight part.
     #[inline]
     pub(crate) fn least(&self) -> Option<DVec3> {
         let [xx, xy, xz, yy, yz, zz] = self.a;
-        // Cofactors of a symmetric matrix; the trace tells its scale.
+        // Cofactors of a symmetric matrix; its trace gives the scale.
         let c0 = yy * zz - yz * yz;
         let c1 = xz * yz - xy * zz;
         let c2 = xy * yz - xz * yy;
@@ -146,7 +148,7 @@ mod tests {
         let corner = DVec3::new(1.0, -2.0, 3.0);
         let mut sum = Quadric::default();
         for (n, weight) in [(DVec3::X, 1.0), (DVec3::Y, 2.0), (DVec3::Z, 0.5)] {
-            // From the corner, through which all three go, to an origin elsewhere.
+            // All three planes contain the corner; then the origin is moved away from it.
             sum += Quadric::plane(n, weight).seen_from(-corner);
         }
         let least = sum.least().expect("three planes");
@@ -168,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn singles_are_enough_where_the_origin_is_near() {
+    fn f32_is_precise_enough_near_the_origin() {
         let mut sum = Quadric::default();
         for (i, n) in [DVec3::X, DVec3::Y, DVec3::ONE.normalize()]
             .into_iter()

@@ -1,38 +1,39 @@
-//! Edges to be collapsed, the cheapest first, by costs that are rounded.
+//! A queue of edges to collapse, the cheapest first, by rounded costs.
 
-/// An edge by the numbers of its ends.
+/// An edge, by the numbers of its ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Entry {
     pub(crate) ends: [u32; 2],
-    /// The sum of both ends' versions when the entry was made: either has changed since if it is
-    /// another now.
+    /// The sum of the versions of both ends when the entry was made. If the sum is different now,
+    /// an end has changed.
     pub(crate) version: u32,
 }
 
-/// How many bits of a cost, a float that is not negative, tell no two of them apart: of the fraction
-/// three bits are left, and costs in one bucket differ by an eighth at most.
+/// The number of low bits of a cost, a non-negative f32, that are ignored. Three bits of the
+/// fraction remain, so costs in one bucket differ by at most an eighth.
 const ROUNDED: u32 = 20;
 
-/// A bucket for each rounded cost, of all floats up to infinity.
+/// One bucket for each rounded cost, for all floats up to infinity.
 const BUCKETS: usize = 1 << (31 - ROUNDED);
 
-/// A queue of edges in rounds: all of the cheapest bucket, in the order of their ends, then what is
-/// the cheapest then.
+/// A queue of edges in rounds. A round has all edges of the cheapest bucket, in the order of their
+/// ends; the next round has the bucket that is then the cheapest.
 ///
 /// ```text
 /// costs     1 ── 1⅛ ── 1¼ ── …      a round: one bucket, sorted by the ends
-/// buckets  [ab cf] [ ] [bc] …       what is put in meanwhile waits for the next round
+/// buckets  [ab cf] [ ] [bc] …       new entries wait for the next round
 /// ```
 ///
-/// A heap of exact costs jumps from place to place all over the mesh, and each jump waits for memory.
-/// In a round the edges come as their vertices lie in memory. And since a collapse outdates the other
-/// edges at its end, a round collapses edges that are apart: none grows into a hub of its neighbours.
+/// With a heap of exact costs, consecutive edges are far apart in the mesh, and each edge waits for
+/// memory. In a round, the edges come in the order in which their vertices are in memory. A
+/// collapse also makes the other entries at its ends stale, so a round collapses edges that are
+/// apart, and no vertex absorbs all of its neighbours.
 #[derive(Debug)]
 pub(crate) struct Queue {
     buckets: Vec<Vec<Entry>>,
-    /// All buckets below are empty.
+    /// All lower buckets are empty.
     lowest: usize,
-    /// What is left of this round, the next one last.
+    /// The rest of this round, the next entry last.
     round: Vec<Entry>,
 }
 
@@ -45,7 +46,7 @@ impl Queue {
         }
     }
 
-    /// Puts an edge in; O(1) amortised. A cost that is no number counts as the highest.
+    /// Adds an edge; O(1) amortised. A cost that is not a number counts as the highest.
     #[inline]
     pub(crate) fn push(&mut self, cost: f32, entry: Entry) {
         let bucket = (cost.abs().to_bits() >> ROUNDED) as usize;
@@ -53,7 +54,7 @@ impl Queue {
         self.lowest = self.lowest.min(bucket);
     }
 
-    /// Takes the next edge out; O(log entries) amortised.
+    /// Removes and returns the next edge; O(log entries) amortised.
     #[inline]
     pub(crate) fn pop(&mut self) -> Option<Entry> {
         if self.round.is_empty() {
@@ -84,14 +85,14 @@ mod tests {
     }
 
     #[test]
-    fn rounds_go_up_and_begin_again() {
+    fn rounds_go_up_and_start_again() {
         let mut queue = Queue::new();
         for (cost, a) in [(1.1, 7), (4.0, 1), (1.0, 9), (0.0, 8), (f32::INFINITY, 0)] {
             queue.push(cost, entry(a, a + 1));
         }
         let next = |queue: &mut Queue| queue.pop().map(|entry| entry.ends[0]);
         assert_eq!(next(&mut queue), Some(8), "the cheapest");
-        assert_eq!(next(&mut queue), Some(7), "1 and 1.1 are the same, rounded");
+        assert_eq!(next(&mut queue), Some(7), "1 and 1.1 are equal, rounded");
         queue.push(0.5, entry(5, 6));
         queue.push(1.0, entry(4, 6));
         assert_eq!(next(&mut queue), Some(9), "this round first");
@@ -100,7 +101,7 @@ mod tests {
         assert_eq!(next(&mut queue), Some(1));
         queue.push(f32::NAN, entry(3, 6));
         assert_eq!(next(&mut queue), Some(0));
-        assert_eq!(next(&mut queue), Some(3), "no cost at all comes last");
+        assert_eq!(next(&mut queue), Some(3), "NaN comes last");
         assert_eq!(next(&mut queue), None);
         queue.push(-0.0, entry(2, 6));
         assert_eq!(next(&mut queue), Some(2));

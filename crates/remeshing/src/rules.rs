@@ -1,20 +1,20 @@
-//! When an edit may be done that its structure would allow.
+//! Rules for edits beyond those of the structures.
 
 use glam::DVec3;
-use mesh_core::{MeshEdit, Representation};
+use sixfold_core::{MeshEdit, Representation};
 
 use crate::numbering::{corners, corners_from};
 
-/// A normal may turn by less than this: the cosine.
+/// The maximum turn of a normal, as a cosine.
 const TURN: f64 = 0.2;
 
-/// The position of `v` in doubles.
+/// Returns the position of `v` in f64.
 #[inline]
 pub(crate) fn at<M: MeshEdit>(mesh: &M, v: M::Vertex) -> DVec3 {
     mesh.position(v).as_dvec3()
 }
 
-/// Whether moving both ends of an edge to `to` turns no triangle over, of those that stay.
+/// Returns whether moving both ends of an edge to `to` turns over none of the remaining triangles.
 pub(crate) fn turns_nothing_over<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], to: DVec3) -> bool {
     [(a, b), (b, a)].into_iter().all(|(end, other)| {
         let from = at(mesh, end);
@@ -26,14 +26,15 @@ pub(crate) fn turns_nothing_over<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], 
             let [p, q] = [p, q].map(|v| at(mesh, v));
             let before = (p - from).cross(q - from);
             let after = (p - to).cross(q - to);
-            // A face without an area has no side to keep.
+            // A face without area has no orientation to keep.
             before == DVec3::ZERO || before.dot(after) > TURN * before.length() * after.length()
         })
     })
 }
 
-/// The link condition of Dey et al. (1999) in a mesh of triangles, for structures that hold what a
-/// collapse against it makes; those that hold manifolds alone keep it themselves.
+/// Returns whether a collapse keeps the link condition (Dey et al. 1999) in a mesh of triangles.
+/// Only structures that hold non-manifold edges need this test; the others refuse the collapse
+/// themselves.
 pub(crate) fn keeps_link<M: MeshEdit + Representation>(mesh: &M, e: M::Edge) -> bool {
     if !M::CAPABILITIES.non_manifold_edges {
         return true;
@@ -53,7 +54,8 @@ pub(crate) fn keeps_link<M: MeshEdit + Representation>(mesh: &M, e: M::Edge) -> 
         return false;
     }
     if apexes.len() == 2 {
-        // Four triangles that close up: a tetrahedron would become two triangles back to back.
+        // Four triangles that close: a tetrahedron would become two triangles with the same
+        // corners.
         let closed = |v| mesh.vertex_faces(v).count() == 3;
         if at_a.len() == 3 && at_b.len() == 3 && closed(a) && closed(b) {
             return false;
@@ -63,7 +65,7 @@ pub(crate) fn keeps_link<M: MeshEdit + Representation>(mesh: &M, e: M::Edge) -> 
     true
 }
 
-/// Whether an edge with one face ends at `v`.
+/// Returns whether `v` is an end of an edge with one face.
 pub(crate) fn is_boundary<M: MeshEdit>(mesh: &M, v: M::Vertex) -> bool {
     mesh.vertex_edges(v)
         .any(|e| mesh.edge_faces(e).count() == 1)

@@ -1,23 +1,23 @@
-//! Edges with the faces along them.
+//! Edges with the faces at them.
 
-use mesh_core::{Pair, PolygonMesh, VertexId, row};
+use sixfold_core::{Pair, PolygonMesh, VertexId, row};
 
 /// One side of a face.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Side {
-    /// The edge that the face runs along.
+    /// The edge of this side.
     pub(crate) edge: Pair<VertexId>,
     /// The face.
     pub(crate) face: u32,
-    /// Where the side starts and ends, counted in the corners of all faces.
+    /// The corners where the side starts and ends, as rows of the corner table of all faces.
     pub(crate) corners: [u32; 2],
 }
 
-/// The sides of all faces, those of one edge beside each other; O(corners · log corners).
+/// The sides of all faces, sorted by edge; O(corners · log corners).
 pub(crate) struct Edges(Vec<Side>);
 
 impl Edges {
-    /// The edges of `mesh`.
+    /// Collects the sides of `mesh`.
     pub(crate) fn of(mesh: &PolygonMesh) -> Self {
         let mut sides = Vec::with_capacity(mesh.corner_count());
         for (f, face) in mesh.faces().iter() {
@@ -36,7 +36,7 @@ impl Edges {
         Self(sides)
     }
 
-    /// The sides of each edge.
+    /// Iterates over the edges, each as the slice of its sides.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &[Side]> {
         self.0.chunk_by(|a, b| a.edge == b.edge)
     }

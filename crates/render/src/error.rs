@@ -1,60 +1,60 @@
-//! Why there is no picture.
+//! Errors of drawing.
 
-use mesh_core::VertexId;
+use sixfold_core::VertexId;
 
 use crate::settings::{MAX_PIXELS, MAX_SIDE, MIN_PANEL};
 use crate::svg::MAX_SVG_FACES;
 
-/// Why there is no picture.
+/// The reason why a picture cannot be drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the message says what each field is")]
+#[expect(missing_docs, reason = "the message explains each field")]
 pub enum RenderError {
-    /// Nothing to draw.
-    #[error("there is no mesh to draw: name one")]
+    /// There is no mesh.
+    #[error("no mesh to draw: give at least one")]
     NoMesh,
-    /// A side that is too long, or too many pixels.
+    /// A side is too long, or there are too many pixels.
     #[error(
-        "a picture of {width} × {height} pixels is too large: at most {MAX_SIDE} a side, and {MAX_PIXELS} in all"
+        "a picture of {width} × {height} pixels is too large: at most {MAX_SIDE} per side and {MAX_PIXELS} in total"
     )]
     TooLarge { width: u32, height: u32 },
-    /// A panel that is too small to show anything.
+    /// A panel would be too small.
     #[error(
-        "{width} × {height} pixels are too few for {panels} in a row: each needs {MIN_PANEL} × {MIN_PANEL}"
+        "{width} × {height} pixels are too few: a mesh needs {MIN_PANEL} × {MIN_PANEL}, and the row has {panels}"
     )]
     TooSmall {
         width: u32,
         height: u32,
         panels: usize,
     },
-    /// An angle that is none, or beyond the poles.
+    /// An angle is not finite, or the elevation is out of range.
     #[error(
-        "no view has azimuth {azimuth} and elevation {elevation}: these are degrees, the elevation from -90 to 90"
+        "azimuth {azimuth} and elevation {elevation} are not valid: both are degrees, the elevation from -90 to 90"
     )]
     View { azimuth: f64, elevation: f64 },
     /// The samples do not fit into memory.
-    #[error("there is no memory for {bytes} bytes of samples: make the picture smaller")]
+    #[error("not enough memory for {bytes} bytes of samples: make the picture smaller")]
     Memory { bytes: usize },
     /// One of the meshes, counted from 0, cannot be drawn.
     #[error("mesh {} of the row: {fault}", .mesh + 1)]
     Mesh { mesh: usize, fault: MeshFault },
 }
 
-/// Why a mesh cannot be drawn.
+/// The reason why a mesh cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the message says what each field is")]
+#[expect(missing_docs, reason = "the message explains each field")]
 pub enum MeshFault {
-    /// Nothing but vertices.
+    /// The mesh has no faces.
     #[error("the mesh has no faces: there is nothing to draw")]
     NoFaces,
-    /// A vertex without a place.
-    #[error("vertex {vertex} is not at a finite place: mend its coordinates")]
+    /// A vertex of a face has a coordinate that is infinite or NaN.
+    #[error("vertex {vertex} has a coordinate that is not finite: correct it")]
     NotFinite { vertex: VertexId },
-    /// All faces in one point.
+    /// All faces are in one point.
     #[error("all faces lie in one point: there is nothing to see")]
     NoExtent,
-    /// Too many polygons for vector graphics.
-    #[error("{faces} faces are to be seen, and an SVG holds {MAX_SVG_FACES}: write a PNG")]
+    /// There are too many visible faces for an SVG.
+    #[error("{faces} faces are visible, an SVG can have {MAX_SVG_FACES}: write a PNG")]
     TooManyFaces { faces: usize },
 }

@@ -1,4 +1,4 @@
-//! Polygons to samples.
+//! Rasterisation of polygons into samples.
 
 use std::ops::Range;
 
@@ -7,9 +7,9 @@ use glam::DVec3;
 /// A corner of a polygon on the grid of samples.
 #[derive(Clone, Copy)]
 pub(crate) struct Corner {
-    /// To the right, down, and towards the viewer, in samples.
+    /// Coordinates to the right, down, and towards the viewer, in samples.
     pub(crate) place: DVec3,
-    /// Which way the surface looks there.
+    /// The normal of the surface at the corner.
     pub(crate) normal: DVec3,
 }
 
@@ -17,23 +17,23 @@ pub(crate) struct Corner {
 pub(crate) struct Sample {
     pub(crate) column: usize,
     pub(crate) row: usize,
-    /// Towards the viewer.
+    /// Coordinate towards the viewer, in samples.
     pub(crate) depth: f64,
     pub(crate) normal: DVec3,
 }
 
-/// Where a side crosses the middle of a row.
+/// The point where a side crosses the middle of a row.
 #[derive(Clone, Copy)]
 struct Crossing {
     row: usize,
     corner: Corner,
 }
 
-/// Fills polygons on a grid, and keeps its scratch memory from one to the next.
+/// Fills polygons on a grid; reuses its scratch memory from one polygon to the next.
 ///
-/// A polygon of any shape is inside wherever a line from the left has crossed an odd number of its
-/// sides. Along sides and then between them everything is interpolated (Bouknight 1970), so
-/// polygons that share a side leave no gap, bent ones included.
+/// A point is inside a polygon of any shape if a line from the left to the point crosses an odd
+/// number of sides. Coordinates and normals are interpolated along sides and then between them
+/// (Bouknight 1970), so polygons that share a side leave no gap, even if they are not planar.
 ///
 /// ```text
 ///       ╱╲          ╱╲
@@ -47,7 +47,7 @@ pub(crate) struct Filler {
 }
 
 impl Filler {
-    /// A grid of this size.
+    /// Creates a filler for a grid of this size.
     pub(crate) fn new(columns: usize, rows: usize) -> Self {
         Self {
             columns,
@@ -56,9 +56,9 @@ impl Filler {
         }
     }
 
-    /// Gives every sample inside the polygon to `put`; O(crossings · log + samples).
+    /// Calls `put` with every sample inside the polygon; O(crossings · log + samples).
     pub(crate) fn fill(&mut self, corners: &[Corner], mut put: impl FnMut(Sample)) {
-        /// The most crossings in memory at once, give or take those of one row.
+        /// Maximum number of crossings in memory at once, plus at most those of one row.
         const MOST: usize = 1 << 16;
         let heights = corners.iter().map(|corner| corner.place.y);
         let lowest = heights.clone().fold(f64::INFINITY, f64::min);
@@ -72,12 +72,12 @@ impl Filler {
         }
     }
 
-    /// Notes where the sides cross these rows, from left to right.
+    /// Stores the points where the sides cross these rows, by row and then from left to right.
     fn cross(&mut self, corners: &[Corner], rows: &Range<usize>) {
         self.crossings.clear();
         let next = corners.iter().cycle().skip(1);
         for (&a, &b) in corners.iter().zip(next) {
-            // Both faces at a side see it from the same end, and round alike.
+            // Both faces at a side use it from the same end, and so round in the same way.
             let (low, high) = if (a.place.y, a.place.x) <= (b.place.y, b.place.x) {
                 (a, b)
             } else {
@@ -97,7 +97,7 @@ impl Filler {
         });
     }
 
-    /// Fills between each two crossings of a row, of which there is an even number.
+    /// Fills between each pair of crossings of a row; a row has an even number of crossings.
     fn spans(&self, put: &mut impl FnMut(Sample)) {
         for pair in self.crossings.chunks_exact(2) {
             let [from, to] = [pair[0], pair[1]];
@@ -125,9 +125,9 @@ impl Corner {
     }
 }
 
-/// The samples, of `count`, whose middles lie from `low` on and before `high`.
+/// Returns the samples among `count` whose centres are at or after `low` and before `high`.
 fn between(low: f64, high: f64, count: usize) -> Range<usize> {
-    // The first whose middle is not before. A cast takes what is negative for 0.
+    // The first sample whose centre is at or after `x`. The cast turns negative values into 0.
     let first = |x: f64| ((x - 0.5).ceil() as usize).min(count);
     first(low)..first(high)
 }
@@ -136,7 +136,7 @@ fn between(low: f64, high: f64, count: usize) -> Range<usize> {
 mod tests {
     use super::*;
 
-    /// The grid after these polygons: how often each sample was filled.
+    /// Returns the grid after filling these polygons: the number of times each sample was filled.
     fn filled(polygons: &[&[(f64, f64)]]) -> Vec<String> {
         let mut filler = Filler::new(8, 6);
         let mut counts = [[0; 8]; 6];
@@ -153,7 +153,7 @@ mod tests {
                 let (x, y) = (sample.column as f64 + 0.5, sample.row as f64 + 0.5);
                 assert!(
                     (sample.depth - x - 2.0 * y).abs() < 1e-9,
-                    "a plane stays one"
+                    "the depth is interpolated linearly"
                 );
             });
         }
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_polygon_need_not_be_convex() {
+    fn polygons_that_are_not_convex_are_filled() {
         let horseshoe = [
             (1.0, 0.0),
             (7.0, 0.0),
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_outside_or_has_no_area_fills_nothing() {
+    fn polygons_outside_or_without_area_fill_nothing() {
         let nothing = ["........"; 6];
         assert_eq!(filled(&[&[(-9.0, 1.0), (-1.0, 1.0), (-5.0, 4.0)]]), nothing);
         assert_eq!(filled(&[&[(1.0, 1.0), (5.0, 1.0), (3.0, 1.0)]]), nothing);
@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn many_corners_are_filled_in_batches() {
-        // A comb: every tooth crosses every row twice.
+        // A comb: both sides of every tooth cross every row.
         let teeth = 40_000;
         let mut comb = vec![(8.0, 6.0), (0.0, 6.0)];
         for tooth in 0..teeth {

@@ -1,40 +1,40 @@
-//! Where everything falls in the picture.
+//! Positions of the meshes in the picture.
 
 use glam::DVec3;
-use mesh_core::{PolygonMesh, VertexId};
+use sixfold_core::{PolygonMesh, VertexId};
 
 use crate::error::{MeshFault, RenderError};
 use crate::settings::{Settings, Subject, View};
 
-/// How much of a panel stays empty at each side.
+/// The empty part of a panel at each side, as a fraction of the panel.
 const MARGIN: f64 = 0.07;
 
-/// The part of the picture that one mesh has.
+/// The part of the picture for one mesh.
 pub(crate) struct Panel {
-    /// Its first column in the picture.
+    /// The first column of the panel in the picture.
     pub(crate) left: usize,
     /// In pixels.
     pub(crate) width: usize,
     /// In pixels.
     pub(crate) height: usize,
-    /// By vertex: to the right and down from the corner of the panel, and towards the viewer, all in
-    /// pixels. Vertices without faces may be anywhere.
+    /// Coordinates by vertex, in pixels: to the right and down from the upper left corner of the
+    /// panel, and towards the viewer. Vertices without faces can have any coordinates.
     pub(crate) places: Vec<DVec3>,
 }
 
 impl Panel {
-    /// The width of lines in pixels grows with the panel.
+    /// Returns the unit of line widths in pixels, which grows with the panel.
     pub(crate) fn unit(&self) -> f64 {
         (self.width.min(self.height) as f64 / 480.0).max(0.5)
     }
 
-    /// Where `v` is.
+    /// Returns the coordinates of `v` in the panel.
     pub(crate) fn place(&self, v: VertexId) -> DVec3 {
         self.places[v.index()]
     }
 }
 
-/// The least and the greatest coordinates of a mesh in the axes of the picture.
+/// The least and the greatest coordinates of a mesh, in the axes of the picture.
 struct Bounds([DVec3; 2]);
 
 impl Bounds {
@@ -61,7 +61,7 @@ impl Bounds {
     }
 }
 
-/// The panels from left to right, each mesh in the middle of its own, all at one scale; O(corners).
+/// Returns the panels from left to right, each with a centred mesh, all at one scale; O(corners).
 pub(crate) fn layout(
     subjects: &[Subject<'_>],
     settings: &Settings,
@@ -78,11 +78,11 @@ pub(crate) fn layout(
     };
     let bounds = subjects.iter().enumerate().map(of_mesh);
     let bounds = bounds.collect::<Result<Vec<Bounds>, RenderError>>()?;
-    // All panels are as wide as the narrowest, give or take the pixel that rounding leaves.
+    // All panels count as wide as the narrowest; rounding makes a difference of one pixel.
     let free = |side: usize| side as f64 * (1.0 - 2.0 * MARGIN);
     let scales = bounds.iter().map(|bounds| {
         let size = bounds.size();
-        // What is seen from its edge must not grow beyond all bounds.
+        // Limits the scale of a mesh that is seen from its edge.
         let least = size.max_element() * 0.01;
         let across = free(width / subjects.len()) / size.x.max(least);
         across.min(free(height) / size.y.max(least))

@@ -1,18 +1,18 @@
-//! A plain software renderer: meshes, their edges and creases, seen without perspective.
+//! A software renderer for meshes with their edges and creases, in parallel projection.
 //!
-//! Start at [`draw`] for pixels, which [`Picture::write_png`] writes, or at [`draw_svg`] for lines and
-//! polygons. Several [`Subject`]s stand in a row, each in a panel of its own, all at one scale: the
-//! levels of a subdivision can be compared.
+//! Start at [`draw`] for pixels, which [`Picture::write_png`] writes, or at [`draw_svg`] for lines
+//! and polygons. Several [`Subject`]s are drawn in a row, each in its own panel and all at one
+//! scale, for example to compare the levels of a subdivision.
 //!
 //! ```text
-//!               ┌ layout: where each vertex falls ┐
-//! subjects ─────┤                                 ├─ depth buffer ─┬─ shaded samples ─┬─ picture
-//!               └ normals: what light falls on    ┘                └─ visible strokes ┴─ SVG
+//!               ┌ layout: place of each vertex ┐
+//! subjects ─────┤                              ├─ depth buffer ─┬─ shaded samples ─┬─ picture
+//!               └ normals: for the lighting    ┘                └─ visible strokes ┴─ SVG
 //! ```
 //!
-//! Hidden lines and surfaces are decided in a depth buffer of several samples a pixel, after Catmull
-//! (1974); lines are tested along their middle, so that a thick line is never half hidden by the faces
-//! it parts. The same input gives the same bytes.
+//! A depth buffer with several samples per pixel decides which lines and surfaces are hidden, after
+//! Catmull (1974). Lines are tested along their middle, so that the faces at a thick line do not
+//! hide half of it. The same input gives the same bytes.
 
 mod edges;
 mod error;

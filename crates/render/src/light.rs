@@ -1,16 +1,16 @@
-//! Colours and light.
+//! Colours and lighting.
 
 use glam::DVec3;
 
-/// A colour in shares of red, green and blue light, not of their codes: sums and means are right.
+/// A colour in linear amounts of red, green and blue, not sRGB codes: sums and means are valid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Colour(pub(crate) DVec3);
 
-/// What is behind the meshes.
+/// The background.
 pub(crate) const BACKGROUND: Colour = Colour(DVec3::new(0.965, 0.965, 0.958));
 /// The outer side of a surface.
 const OUTSIDE: Colour = Colour(DVec3::new(0.30, 0.42, 0.60));
-/// The side that a closed mesh never shows.
+/// The inner side, which a closed mesh never shows.
 const INSIDE: Colour = Colour(DVec3::new(0.66, 0.47, 0.26));
 /// Edges.
 pub(crate) const EDGE: Colour = Colour(DVec3::new(0.018, 0.030, 0.055));
@@ -18,12 +18,12 @@ pub(crate) const EDGE: Colour = Colour(DVec3::new(0.018, 0.030, 0.055));
 pub(crate) const CREASE: Colour = Colour(DVec3::new(0.86, 0.075, 0.020));
 
 impl Colour {
-    /// As much of `other` as `share` says, and the rest of this.
+    /// Returns the mixture of `share` parts of `other` and `1 - share` parts of this colour.
     pub(crate) fn mixed(self, other: Self, share: f64) -> Self {
         Self(self.0.lerp(other.0, share))
     }
 
-    /// As the codes that screens take (sRGB, IEC 61966-2-1).
+    /// Returns the sRGB codes (IEC 61966-2-1).
     pub(crate) fn codes(self) -> [u8; 3] {
         self.0.to_array().map(|light| {
             let light = light.clamp(0.0, 1.0);
@@ -36,18 +36,19 @@ impl Colour {
         })
     }
 
-    /// `#9fb4c8`.
+    /// Returns the colour in the form `#9fb4c8`.
     pub(crate) fn web(self) -> String {
         let [r, g, b] = self.codes();
         format!("#{r:02x}{g:02x}{b:02x}")
     }
 }
 
-/// The colour of a surface that looks along `normal`, in the axes of the picture; of its inner side
-/// if `inside`.
+/// Returns the colour of a surface with this normal, in the axes of the picture; if `inside`, the
+/// colour of its inner side.
 ///
-/// Lambert's law (1760) for a key light from the upper left and a weak one from the right, the sky
-/// above, a soft highlight after Blinn (1977), and light along the rim, where the surface turns away.
+/// Uses Lambert's law (1760) for a key light from the upper left and a weak light from the right,
+/// light from the sky above, a soft highlight after Blinn (1977), and light along the rim, where
+/// the surface turns away from the viewer.
 pub(crate) fn lit(normal: DVec3, inside: bool) -> Colour {
     let normal = normal.normalize_or(DVec3::Z);
     let (normal, base) = if inside {
@@ -71,9 +72,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn light_is_coded_as_screens_take_it() {
+    fn linear_light_is_converted_to_srgb() {
         let grey = |light| Colour(DVec3::splat(light)).codes()[0];
-        // Half the light is code 188, by the standard; and it ends at both ends.
+        // By the standard, half the light has code 188. Values out of range are clamped.
         let codes = [-1.0, 0.0, 0.002, 0.215_861, 0.5, 1.0, 7.0].map(grey);
         assert_eq!(codes, [0, 0, 7, 128, 188, 255, 255]);
         assert_eq!(Colour(DVec3::X).web(), "#ff0000");

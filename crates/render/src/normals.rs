@@ -1,30 +1,30 @@
-//! Which way surfaces look.
+//! Normals for the lighting.
 
 use glam::DVec3;
-use mesh_core::{Creases, PolygonMesh, VertexId, row};
+use sixfold_core::{Creases, PolygonMesh, VertexId, row};
 
 use crate::edges::Edges;
 use crate::settings::{Shading, View};
 
-/// The cosine of 40°: faces that meet at more are not one smooth surface.
+/// The cosine of 40°: faces at a larger angle are not one smooth surface.
 const SMOOTH: f64 = 0.766_044_443_118_978;
 
-/// From here on a crease breaks smooth shading: less is rounded off in one more step.
+/// The least sharpness that breaks smooth shading: a lower one is rounded off in the next level.
 const BREAKS: f32 = 1.0;
 
-/// Unit vectors in the axes of the picture; zero where a face has no area.
+/// Unit normals in the axes of the picture; zero for a face without area.
 pub(crate) struct Normals {
     /// By face.
     pub(crate) faces: Vec<DVec3>,
-    /// By corner, all faces in a row: what light falls on there.
+    /// By corner, in the order of the corners of all faces: the normals for the lighting.
     pub(crate) corners: Vec<DVec3>,
 }
 
 impl Normals {
-    /// The normals of `mesh`; O(corners), its inverse Ackermann aside.
+    /// Computes the normals of `mesh`; O(corners · α), with the inverse Ackermann function α.
     ///
-    /// Corners that smooth edges join are one surface: it looks where the areas of its faces look on
-    /// the mean.
+    /// Corners joined by smooth edges are one surface, whose normal is the mean of its face
+    /// normals, weighted by area.
     pub(crate) fn of(
         mesh: &PolygonMesh,
         creases: &Creases,
@@ -75,9 +75,9 @@ impl Normals {
     }
 }
 
-/// The area of a face as a vector upright on it, times two (Newell's method).
+/// Returns the normal of a face, with twice its area as length (Newell's method).
 ///
-/// Coordinates of 32 bits have products that 64 bits hold.
+/// Products of the 32-bit coordinates do not overflow 64-bit floats.
 fn area(mesh: &PolygonMesh, face: &[VertexId]) -> DVec3 {
     let place = |v: VertexId| mesh.position(v).as_dvec3();
     let origin = place(face[0]);
@@ -87,7 +87,7 @@ fn area(mesh: &PolygonMesh, face: &[VertexId]) -> DVec3 {
         .sum()
 }
 
-/// Which corners belong to one smooth surface: disjoint sets after Tarjan (1975), paths halved.
+/// The smooth surface of each corner: disjoint sets after Tarjan (1975), with path halving.
 struct Surfaces(Vec<u32>);
 
 impl Surfaces {
@@ -107,7 +107,7 @@ impl Surfaces {
 
     fn join(&mut self, a: u32, b: u32) {
         let [a, b] = [self.of(a), self.of(b)];
-        // The lower is the name, whatever the order.
+        // The lowest corner represents the set, in whichever order sets are joined.
         self.0[a.max(b) as usize] = a.min(b);
     }
 }

@@ -1,36 +1,37 @@
-//! In which order polygons are painted over each other.
+//! The order in which polygons are painted over each other.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use mesh_core::{FaceId, PolygonMesh, row};
+use sixfold_core::{FaceId, PolygonMesh, row};
 
 use crate::fill::{Corner, Filler};
 use crate::layout::Panel;
 
-/// The most samples to look at; what is beyond goes by depth alone.
+/// Number of samples after which further faces are ordered by mean depth alone.
 const MOST_SAMPLES: usize = 1 << 24;
 
-/// How much nearer, in pixels, a face must be to have to come later.
+/// Minimum difference in depth, in pixels, for which the nearer face must come later.
 const NEARER: f32 = 0.25;
 
-/// A surface at a pixel.
+/// The surface of a face at a pixel.
 struct Layer {
     pixel: u32,
     depth: f32,
     face: u32,
 }
 
-/// The faces that are marked `visible`, from back to front; O(samples · log samples).
+/// Returns the faces marked `visible`, from back to front; O(samples · log samples).
 ///
-/// Sorting by one depth for each face is wrong for long faces beside short ones. Here each pixel
-/// says which of its faces must come before which, and those rules are obeyed in the manner of Kahn
-/// (1962), the farthest first where there is a choice. Faces that run through each other have no
-/// order; then the farthest of those left goes first.
+/// Sorting by one depth per face is wrong for long faces next to short ones. Here, the surfaces at
+/// each pixel give rules for which face comes before which. The order follows these rules by the
+/// algorithm of Kahn (1962); among several candidates, the farthest comes first. Faces that
+/// intersect each other can have no valid order; then the farthest of the remaining faces comes
+/// next.
 pub(crate) fn back_to_front(mesh: &PolygonMesh, panel: &Panel, visible: &[bool]) -> Vec<FaceId> {
     let mut layers: Vec<Layer> = Vec::new();
     let mut filler = Filler::new(panel.width, panel.height);
-    // By mean depth: the choice where no rule decides.
+    // Sorted by mean depth: the order if no rule applies.
     let mut ranked: Vec<(f64, FaceId)> = Vec::new();
     for (f, face) in mesh.faces().iter().filter(|(f, _)| visible[f.index()]) {
         let depths = face.iter().map(|&v| panel.place(v).z);
@@ -68,8 +69,8 @@ pub(crate) fn back_to_front(mesh: &PolygonMesh, panel: &Panel, visible: &[bool])
     order.into_iter().map(|rank| ranked[rank].1).collect()
 }
 
-/// The numbers below `count` in an order in which the first of each rule comes before the second, the
-/// lowest where there is a choice.
+/// Returns the numbers below `count` in an order in which the first of each rule comes before the
+/// second. Among several candidates, the lowest comes first.
 fn obeying(count: usize, mut rules: Vec<(u32, u32)>) -> Vec<usize> {
     rules.sort_unstable();
     rules.dedup();
@@ -85,7 +86,7 @@ fn obeying(count: usize, mut rules: Vec<(u32, u32)>) -> Vec<usize> {
     while order.len() < count {
         let next = free.pop().map(|Reverse(next)| next);
         let next = next.unwrap_or_else(|| {
-            // All that are left wait for each other.
+            // All remaining numbers wait for each other.
             while placed[lowest] {
                 lowest += 1;
             }
@@ -111,11 +112,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rules_are_obeyed_and_knots_are_cut() {
+    fn rules_are_followed_and_cycles_are_broken() {
         assert_eq!(obeying(3, vec![]), [0, 1, 2]);
         assert_eq!(obeying(4, vec![(3, 0), (0, 1)]), [2, 3, 0, 1]);
         assert_eq!(obeying(3, vec![(2, 1), (2, 1), (1, 0)]), [2, 1, 0]);
-        // 1 and 2 wait for each other, and 0 for both.
+        // 1 and 2 wait for each other, and 0 waits for 2.
         assert_eq!(obeying(3, vec![(1, 2), (2, 1), (2, 0)]), [0, 1, 2]);
     }
 }

@@ -1,4 +1,4 @@
-//! Pixels.
+//! Drawing of pixels.
 
 use std::io::{self, Write};
 
@@ -13,7 +13,7 @@ use crate::samples::{Samples, table};
 use crate::settings::{Settings, Size, Subject};
 use crate::strokes::{Stroke, Strokes};
 
-/// A picture, three bytes a pixel.
+/// A picture with three bytes per pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
     size: Size,
@@ -21,12 +21,12 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Its size.
+    /// Returns the size in pixels.
     pub fn size(&self) -> Size {
         self.size
     }
 
-    /// Red, green and blue (sRGB) of each pixel, row by row from the top left.
+    /// Returns red, green and blue (sRGB) of each pixel, row by row from the top left.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -35,7 +35,7 @@ impl Picture {
     ///
     /// # Errors
     ///
-    /// What `out` fails with.
+    /// Returns the error of `out`.
     pub fn write_png(&self, out: impl Write) -> io::Result<()> {
         let Size { width, height } = self.size;
         let mut encoder = png::Encoder::new(out, width, height);
@@ -52,17 +52,17 @@ impl Picture {
 
 /// Draws the subjects in a row; O(corners · log corners + samples covered).
 ///
-/// Memory: 14 bytes a sample, at most sixteen samples a pixel, of one panel at a time.
+/// Memory: 14 bytes per sample, at most sixteen samples per pixel, for one panel at a time.
 ///
 /// # Errors
 ///
-/// A size or a mesh that cannot be drawn: see [`RenderError`].
+/// Returns an error for a size or a mesh that cannot be drawn: see [`RenderError`].
 ///
 /// # Examples
 ///
 /// ```
-/// use mesh_core::{Creases, Point, PolygonMesh};
-/// use render::{Settings, Shading, Size, Subject, Up, View};
+/// use sixfold_core::{Creases, Point, PolygonMesh};
+/// use sixfold_render::{Settings, Shading, Size, Subject, Up, View};
 ///
 /// let mesh = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]])?;
 /// let creases = Creases::new(&mesh, [([0, 1], 2.0)], [])?;
@@ -75,7 +75,7 @@ impl Picture {
 ///     wireframe: false,
 /// };
 /// let subject = Subject { mesh: &mesh, creases: &creases };
-/// let picture = render::draw(&[subject], &settings)?;
+/// let picture = sixfold_render::draw(&[subject], &settings)?;
 /// assert_eq!(picture.bytes().len(), 64 * 48 * 3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -106,10 +106,10 @@ pub fn draw(subjects: &[Subject<'_>], settings: &Settings) -> Result<Picture, Re
     Ok(Picture { size, bytes })
 }
 
-/// What is to be seen of one subject.
+/// The visible parts of one subject.
 pub(crate) struct Drawn {
     pub(crate) normals: Normals,
-    /// None in a wireframe.
+    /// `None` in a wireframe.
     pub(crate) samples: Option<Samples>,
     pub(crate) strokes: Strokes,
 }
@@ -136,15 +136,15 @@ impl Drawn {
     }
 }
 
-/// How much of each pixel of a panel lines of one colour cover. Where lines meet the darker counts,
-/// so that no joint shows.
+/// The share of each pixel of a panel that lines of one colour cover. If lines meet, the larger
+/// share counts, so that joints are invisible.
 struct Ink {
     width: usize,
     shares: Vec<u8>,
 }
 
 impl Ink {
-    /// The ink of strokes of these widths.
+    /// Returns the ink of strokes of these widths.
     fn of<const N: usize>(
         panel: &Panel,
         strokes: [(&Vec<Stroke>, f64); N],
@@ -165,15 +165,15 @@ impl Ink {
         let along = b - a;
         let reach = DVec2::splat(radius + 1.0);
         let (low, high) = (a.min(b) - reach, a.max(b) + reach);
-        // A cast takes what is negative for 0.
+        // The cast turns negative values into 0.
         let pixels = |low: f64, high: f64, count| low as usize..(high.ceil() as usize).min(count);
-        // A thin line covers less than a pixel and is paler.
+        // A line thinner than a pixel is drawn paler.
         let most = (2.0 * radius).min(1.0);
         for row in pixels(low.y, high.y, height) {
             for column in self.near(row, [a, b], reach.x, pixels(low.x, high.x, self.width)) {
                 let middle = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
                 let t = (middle - a).dot(along) / along.length_squared();
-                // A dot has no direction.
+                // A dot has no direction: `t` is NaN.
                 let t = if t.is_finite() {
                     t.clamp(0.0, 1.0)
                 } else {
@@ -187,7 +187,7 @@ impl Ink {
         }
     }
 
-    /// The columns of `row` that a long sloping line may reach, not all of those beside it.
+    /// Returns the columns of `row` that a sloping line can reach, not its whole bounding box.
     fn near(
         &self,
         row: usize,
@@ -206,7 +206,7 @@ impl Ink {
         first.max(columns.start)..end.min(columns.end)
     }
 
-    /// `below` with this ink in `colour` on it.
+    /// Returns `below` covered with this ink in `colour`.
     fn over(&self, below: Colour, colour: Colour, column: usize, row: usize) -> Colour {
         let share = self.shares[row * self.width + column];
         below.mixed(colour, f64::from(share) / 255.0)

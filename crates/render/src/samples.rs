@@ -1,7 +1,7 @@
-//! What is nearest, sample by sample.
+//! The depth buffer: the nearest surface at each sample.
 
 use glam::DVec3;
-use mesh_core::{FaceId, RowId, Slot};
+use sixfold_core::{FaceId, RowId, Slot};
 
 use crate::error::RenderError;
 use crate::fill::{Corner, Filler, Sample};
@@ -19,15 +19,15 @@ pub(crate) struct Samples {
     pub(crate) fine: usize,
     pub(crate) columns: usize,
     pub(crate) rows: usize,
-    /// How near the nearest surface is, in samples; −∞ where there is none.
+    /// The depth of the nearest surface towards the viewer, in samples; −∞ if there is no surface.
     depths: Vec<f32>,
-    /// The face that it belongs to.
+    /// The face of this surface.
     faces: Vec<Slot<FaceId>>,
-    /// Its colour in shares of [`FULL`].
+    /// The colour of this surface, in shares of [`FULL`].
     lights: Vec<[u16; 3]>,
 }
 
-/// The code of all the light there is. Highlights beyond it are cut, as a screen would.
+/// The code of full light. Brighter highlights are clamped, as on a screen.
 const FULL: f64 = 65535.0;
 
 impl Samples {
@@ -35,7 +35,7 @@ impl Samples {
     ///
     /// # Errors
     ///
-    /// [`RenderError::Memory`] if there is none.
+    /// Returns [`RenderError::Memory`] if there is not enough memory.
     pub(crate) fn of(
         subject: &Subject<'_>,
         panel: &Panel,
@@ -59,7 +59,7 @@ impl Samples {
     }
 
     fn empty(panel: &Panel) -> Result<Self, RenderError> {
-        // Small pictures are looked at closely.
+        // More samples per pixel for small pictures, which are viewed closely.
         let fine = match panel.width * panel.height {
             ..=1_000_000 => 4,
             1_000_001..=3_000_000 => 3,
@@ -88,8 +88,8 @@ impl Samples {
         }
     }
 
-    /// Whether `near` holds for the depth and the row of the face of the nearest surface at one of
-    /// the nine samples around `place`, or there is none at one.
+    /// Returns whether, at one of the nine samples around `place`, there is no surface, or `near`
+    /// is true for the depth and the face row of the nearest surface.
     pub(crate) fn any_around(&self, place: DVec3, near: impl Fn(f32, u32) -> bool) -> bool {
         let around = |at: f64, count: usize| {
             let at = (at.max(0.0) as usize).min(count - 1);
@@ -104,7 +104,7 @@ impl Samples {
         })
     }
 
-    /// Which faces are the nearest somewhere.
+    /// Returns for each face whether it is the nearest at any sample.
     pub(crate) fn visible(&self, faces: usize) -> Vec<bool> {
         let mut visible = vec![false; faces];
         for face in self.faces.iter().filter_map(|face| face.get()) {
@@ -113,7 +113,7 @@ impl Samples {
         visible
     }
 
-    /// The mean of the samples of a pixel before `background`.
+    /// Returns the mean colour of the samples of a pixel, with `background` for empty samples.
     pub(crate) fn pixel(&self, column: usize, row: usize, background: Colour) -> Colour {
         let mut sum = DVec3::ZERO;
         for row in row * self.fine..(row + 1) * self.fine {
@@ -129,7 +129,7 @@ impl Samples {
     }
 }
 
-/// A table of `count` cells, if there is memory for it.
+/// Returns a table of `count` cells, or an error if there is not enough memory.
 pub(crate) fn table<T: Clone>(count: usize, cell: T) -> Result<Vec<T>, RenderError> {
     let mut table = Vec::new();
     let bytes = count.saturating_mul(size_of::<T>());

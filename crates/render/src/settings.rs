@@ -1,26 +1,26 @@
-//! What is drawn, and how.
+//! The subjects and settings of a picture.
 
 use glam::DVec3;
-use mesh_core::{Creases, Point, PolygonMesh};
+use sixfold_core::{Creases, Point, PolygonMesh};
 
 use crate::error::RenderError;
 
-/// The longest side of a picture, in pixels.
+/// Maximum width and height of a picture, in pixels.
 pub const MAX_SIDE: u32 = 8192;
 
-/// The most pixels of a picture: a little more than 3840 × 2160.
+/// Maximum number of pixels of a picture: a little more than 3840 × 2160.
 pub const MAX_PIXELS: u32 = 1 << 23;
 
-/// The shortest side of the panel of one mesh, in pixels.
+/// Minimum width and height of the panel of one mesh, in pixels.
 pub const MIN_PANEL: u32 = 16;
 
-/// A mesh to draw, and what is sharp in it.
+/// A mesh to draw, with its creases.
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
     /// The mesh.
     pub mesh: &'a PolygonMesh,
-    /// Its own sharp edges and corners, drawn in colour; where shading is smooth it breaks at those of
-    /// sharpness 1 and more.
+    /// The sharp edges and corners, drawn in colour; smooth shading breaks at a sharpness of 1 or
+    /// more.
     pub creases: &'a Creases,
 }
 
@@ -34,7 +34,7 @@ pub struct Size {
 }
 
 impl Size {
-    /// The size of a picture of so many panels, if nothing else is asked for.
+    /// Returns the default size of a picture with this number of panels.
     pub fn of_row(panels: usize) -> Self {
         const PANEL: u32 = 480;
         let panels = u32::try_from(panels.max(1)).unwrap_or(u32::MAX);
@@ -44,14 +44,14 @@ impl Size {
         }
     }
 
-    /// Whether `panels` can stand in a row.
+    /// Checks the size for `panels` panels in a row.
     pub(crate) fn check(self, panels: usize) -> Result<(), RenderError> {
         let Self { width, height } = self;
         if width.max(height) > MAX_SIDE || u64::from(width) * u64::from(height) > MAX_PIXELS.into()
         {
             return Err(RenderError::TooLarge { width, height });
         }
-        // The sides are short by now.
+        // Both sides are at most `MAX_SIDE` here.
         let needed = panels.saturating_mul(MIN_PANEL as usize);
         if height < MIN_PANEL || (width as usize) < needed {
             return Err(RenderError::TooSmall {
@@ -64,17 +64,17 @@ impl Size {
     }
 }
 
-/// Which axis points up.
+/// The axis that points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Up {
-    /// As most OBJ files have it.
+    /// As in most OBJ files.
     #[default]
     Y,
-    /// As scans and CAD models often have it.
+    /// As often in scans and CAD models.
     Z,
 }
 
-/// Where we look from: parallel projection, no perspective.
+/// The direction of view, in parallel projection without perspective.
 ///
 /// ```text
 ///     up │  ╱ to the viewer            azimuth     around the upward axis, from the front to the right
@@ -82,7 +82,7 @@ pub enum Up {
 ///        │╱______ right
 /// ```
 ///
-/// From the front means along −z where y is up, and along y where z is up.
+/// The view from the front looks along −z if y is up, and along y if z is up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// The axes of the picture in the space of the mesh: right, up, and towards the viewer.
@@ -90,14 +90,14 @@ pub struct View {
 }
 
 impl View {
-    /// All three axes equally foreshortened.
+    /// Azimuth and elevation of the isometric view: all three axes are equally foreshortened.
     pub const ISO: [f64; 2] = [45.0, 35.264_389_682_754_66];
 
-    /// The view from these angles, in degrees.
+    /// Creates the view from these angles, in degrees.
     ///
     /// # Errors
     ///
-    /// [`RenderError::View`] for an angle that is not finite, and an elevation beyond 90° or −90°.
+    /// Returns [`RenderError::View`] if an angle is not finite or the elevation not within ±90°.
     pub fn new(azimuth: f64, elevation: f64, up: Up) -> Result<Self, RenderError> {
         if !azimuth.is_finite() || !(-90.0..=90.0).contains(&elevation) {
             return Err(RenderError::View { azimuth, elevation });
@@ -114,40 +114,40 @@ impl View {
         Ok(Self { axes })
     }
 
-    /// Where `p` is in the picture: to the right, upwards, and towards the viewer.
+    /// Returns the place of `p` in the picture: to the right, upwards, and towards the viewer.
     pub(crate) fn place(&self, p: Point) -> DVec3 {
         self.turned(p.as_dvec3())
     }
 
-    /// A direction likewise.
+    /// Returns a direction in the same axes.
     pub(crate) fn turned(&self, direction: DVec3) -> DVec3 {
         let [right, up, viewer] = self.axes.map(|axis| axis.dot(direction));
         DVec3::new(right, up, viewer)
     }
 }
 
-/// What light falls on.
+/// The normals that the lighting uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shading {
-    /// Each face is flat.
+    /// The normal of each face: every face looks flat.
     Flat,
-    /// Faces that meet at less than 40° are one smooth surface, unless a crease parts them.
+    /// Smooth normals: faces at an angle of at most 40° are one smooth surface, except at a crease.
     #[default]
     Smooth,
 }
 
-/// How to draw.
+/// How to draw a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// The size of the whole picture.
     pub size: Size,
-    /// Where we look from.
+    /// The direction of view.
     pub view: View,
-    /// What light falls on.
+    /// The normals that the lighting uses.
     pub shading: Shading,
-    /// Whether to draw the edges that are not sharp; sharp ones are drawn always.
+    /// Whether to draw the edges that are not sharp; sharp edges are always drawn.
     pub edges: bool,
-    /// Whether to draw all edges, also the hidden ones, and no faces.
+    /// Whether to draw all edges, including hidden ones, and no faces.
     pub wireframe: bool,
 }
 
@@ -156,19 +156,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_view_turns_to_the_right_and_rises() {
+    fn azimuth_and_elevation_turn_the_view() {
         let at = |azimuth, elevation, up, p: Point| {
             let view = View::new(azimuth, elevation, up).expect("a view");
             view.place(p).round().to_array()
         };
-        // From the front; from the right side; from above, the front below.
+        // From the front; from the right; from above, with the front at the bottom.
         let p = Point::new(1.0, 2.0, 3.0);
         assert_eq!(at(0.0, 0.0, Up::Y, p), [1.0, 2.0, 3.0]);
         assert_eq!(at(90.0, 0.0, Up::Y, p), [-3.0, 2.0, 1.0]);
         assert_eq!(at(0.0, 90.0, Up::Y, p), [1.0, -3.0, 2.0]);
         assert_eq!(at(0.0, 0.0, Up::Z, p), [1.0, 3.0, -2.0]);
         assert_eq!(at(-630.0, 0.0, Up::Z, p), [2.0, 3.0, 1.0]);
-        // All axes are equally long in an isometric view.
+        // In an isometric view, all axes have the same length.
         let [azimuth, elevation] = View::ISO;
         let view = View::new(azimuth, elevation, Up::Z).expect("a view");
         for axis in [Point::X, Point::Y, Point::Z] {
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_has_room_for_each() {
+    fn the_default_size_grows_with_the_number_of_panels() {
         let of = |panels| (Size::of_row(panels).width, Size::of_row(panels).height);
         assert_eq!([of(0), of(1), of(3)], [(480, 480), (480, 480), (1440, 480)]);
         assert_eq!(of(usize::MAX), (MAX_SIDE, 480));

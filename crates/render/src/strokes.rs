@@ -1,4 +1,4 @@
-//! The lines of a picture: visible parts of edges.
+//! The lines of a picture: the visible parts of edges, and sharp corners.
 
 use std::ops::Range;
 
@@ -9,22 +9,22 @@ use crate::layout::Panel;
 use crate::samples::Samples;
 use crate::settings::{Settings, Subject};
 
-/// How wide an edge is, in units of the panel.
+/// Width of an edge, in units of the panel.
 const EDGE_WIDTH: f64 = 1.1;
-/// How wide a sharp edge is.
+/// Width of a sharp edge, in units of the panel.
 const CREASE_WIDTH: f64 = 3.0;
-/// How wide a sharp corner is.
+/// Width of a sharp corner, in units of the panel.
 const CORNER_WIDTH: f64 = 8.0;
-/// How dark an edge is at most.
+/// Maximum share of the colour of an edge.
 const EDGE_SHARE: f64 = 0.62;
-/// Edges that are shorter on the mean, in units, are drawn lighter, or they would hide the faces.
+/// Below this mean length, in units of the panel, edges are drawn paler, to keep faces visible.
 const LONG: f64 = 14.0;
 
-/// A straight line with round ends in the pixels of a panel; a dot where both ends are one.
+/// A straight line with round ends, in pixels of a panel; a dot if both ends are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stroke {
     pub(crate) ends: [DVec2; 2],
-    /// How much of its colour there is: less where it is far away in a wireframe.
+    /// The share of its colour: lower for distant strokes in a wireframe.
     pub(crate) share: f64,
 }
 
@@ -39,8 +39,8 @@ pub(crate) struct Strokes {
 }
 
 impl Strokes {
-    /// What is to be seen of the edges and corners; all of them where there are no `samples`, as in
-    /// a wireframe. O(corners + pixels along edges).
+    /// Collects the visible parts of edges and corners; all of them without `samples`, as in a
+    /// wireframe. O(corners + pixels along edges).
     pub(crate) fn of(
         subject: &Subject<'_>,
         panel: &Panel,
@@ -80,7 +80,7 @@ impl Strokes {
             stroke.share *= dark;
         }
         for &(v, _) in subject.creases.corners() {
-            // It need not be a corner of any face, and then its place is anywhere.
+            // It may be a corner of no face, and then have any coordinates.
             let place = panel.place(v);
             if place.is_finite() && eye.sees_corner(place) {
                 strokes.corners.push(Stroke {
@@ -93,10 +93,10 @@ impl Strokes {
     }
 }
 
-/// Who looks at the edges.
+/// The visibility test for edges.
 struct Eye<'a> {
     samples: Option<&'a Samples>,
-    /// How far the farthest and the nearest vertex are.
+    /// The depths of the farthest and the nearest vertex.
     depths: Range<f64>,
 }
 
@@ -110,10 +110,10 @@ impl<'a> Eye<'a> {
         Self { samples, depths }
     }
 
-    /// Adds what is to be seen of the line between `ends`, an edge with these sides.
+    /// Adds the visible parts of the line between `ends`, an edge with these sides.
     ///
-    /// The line is tested along its middle, half a pixel at a time or less. It is seen where one of
-    /// the samples around shows nothing, something behind it, or a face that it belongs to.
+    /// The line is tested along its middle, in steps of at most half a pixel. A point is visible if
+    /// one of the samples around it has no surface, a surface behind it, or a face at this edge.
     fn see(&self, ends: [DVec3; 2], sides: &[Side], into: &mut Vec<Stroke>) {
         let at = |t: f64| ends[0].lerp(ends[1], t);
         let mut add = |from: f64, to: f64| {
@@ -126,7 +126,7 @@ impl<'a> Eye<'a> {
         let Some(samples) = self.samples else {
             return add(0.0, 1.0);
         };
-        /// What is seen or hidden for less, in pixels, is a trick of the samples.
+        /// Maximum length in pixels of visible or hidden parts that are ignored as sampling errors.
         const LEAST: f64 = 1.0;
         let pixels = ends[0].truncate().distance(ends[1].truncate());
         let steps = (pixels * samples.fine as f64).ceil().max(1.0);
@@ -154,7 +154,7 @@ impl<'a> Eye<'a> {
         samples.is_none_or(|samples| nearest(samples, place, |_| false))
     }
 
-    /// What is far away in a wireframe is paler.
+    /// Returns the share of a stroke: lower for distant strokes in a wireframe.
     fn share(&self, depth: f64) -> f64 {
         let Range { start, end } = self.depths;
         if self.samples.is_some() || start >= end {
@@ -164,9 +164,10 @@ impl<'a> Eye<'a> {
     }
 }
 
-/// Whether nothing but faces of its `own` is before `place`, in pixels.
+/// Returns whether no face except its `own` faces hides `place`, which is in pixels.
 fn nearest(samples: &Samples, place: DVec3, own: impl Fn(u32) -> bool) -> bool {
-    /// How much nearer a face must be to hide an edge, in pixels: less is its own slope.
+    /// Minimum distance, in pixels, by which a face must be nearer to hide an edge. A smaller
+    /// distance can come from the slope of the face.
     const BEFORE: f64 = 1.0;
     let fine = samples.fine as f64;
     let hides = ((place.z + BEFORE) * fine) as f32;

@@ -1,4 +1,4 @@
-//! Lines and polygons.
+//! Drawing of lines and polygons as SVG.
 
 use std::fmt::Write;
 
@@ -12,18 +12,18 @@ use crate::picture::Drawn;
 use crate::settings::{Settings, Size, Subject};
 use crate::strokes::Stroke;
 
-/// The most faces of one mesh that an SVG may show: beyond, viewers give up, and pixels are smaller.
+/// Maximum number of visible faces per mesh: viewers fail with more, and a PNG is smaller.
 pub const MAX_SVG_FACES: usize = 50_000;
 
-/// Draws the subjects in a row, as the text of an SVG file; costs as [`draw`](crate::draw).
+/// Draws the subjects in a row, as the text of an SVG file; same cost as [`draw`](crate::draw).
 ///
-/// Faces that are to be seen are polygons, each in one colour, painted from back to front; lines are
-/// the visible parts of edges, hidden as in [`draw`](crate::draw). Faces that run through each
-/// other cannot be painted so, and come out as if one were before the other.
+/// Visible faces are polygons, each in one colour, painted from back to front. Lines are the
+/// visible parts of edges, hidden as in [`draw`](crate::draw). Faces that intersect each other
+/// cannot be painted correctly: one of them appears in front of the other.
 ///
 /// # Errors
 ///
-/// As [`draw`](crate::draw), and [`MeshFault::TooManyFaces`].
+/// Returns the errors of [`draw`](crate::draw), and [`MeshFault::TooManyFaces`].
 pub fn draw_svg(subjects: &[Subject<'_>], settings: &Settings) -> Result<String, RenderError> {
     let panels = layout(subjects, settings)?;
     let Size { width, height } = settings.size;
@@ -54,7 +54,7 @@ pub fn draw_svg(subjects: &[Subject<'_>], settings: &Settings) -> Result<String,
     Ok(svg)
 }
 
-/// Adds the faces that are to be seen.
+/// Adds the visible faces.
 fn paint(
     subject: &Subject<'_>,
     panel: &Panel,
@@ -83,7 +83,7 @@ fn paint(
         shapes[f.index()] =
             format!("<path d=\"{outline}Z\" fill=\"{colour}\" stroke=\"{colour}\"/>\n");
     }
-    // A thin line of its own colour closes the seam to the next face.
+    // A thin line of the same colour closes the seam to the next face.
     *svg += "<g stroke-width=\"0.6\" fill-rule=\"evenodd\">\n";
     for face in back_to_front(mesh, panel, &visible) {
         *svg += &shapes[face.index()];
@@ -92,10 +92,10 @@ fn paint(
     Ok(())
 }
 
-/// Adds lines of one colour, those of one share as one path, so that no joint shows.
+/// Adds lines of one colour. Lines of the same share are one path, so that joints are invisible.
 fn draw_lines(strokes: &[Stroke], width: f64, colour: &str, svg: &mut String) {
     let mut strokes = strokes.to_vec();
-    // Shades of a wireframe in few steps: each is a path of its own.
+    // Rounds the shares of a wireframe, because each share is a separate path.
     let step = |stroke: &Stroke| (stroke.share * 50.0).round();
     strokes.sort_by(|a, b| step(a).total_cmp(&step(b)));
     for same in strokes.chunk_by(|a, b| step(a) == step(b)) {
@@ -108,23 +108,23 @@ fn draw_lines(strokes: &[Stroke], width: f64, colour: &str, svg: &mut String) {
     }
 }
 
-/// `M1 2L3 4`, and for points that are all one `M1 2L1 2`, which a round line end makes a dot.
+/// Returns `M1 2L3 4`, or `M1 2L1 2` for equal points, which round line ends make a dot.
 fn path(places: impl IntoIterator<Item = DVec2>) -> String {
     let mut text = String::new();
     for (i, place) in places.into_iter().enumerate() {
         let letter = if i == 0 { 'M' } else { 'L' };
         let (x, y) = (Number(place.x), Number(place.y));
-        write!(text, "{letter}{x} {y}").expect("memory takes all");
+        write!(text, "{letter}{x} {y}").expect("a String accepts all writes");
     }
     text
 }
 
-/// A number with at most two decimals, and no more than it needs.
+/// A number with at most two decimals, and without trailing zeros.
 struct Number(f64);
 
 impl std::fmt::Display for Number {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        // Zero without a sign.
+        // + 0.0 removes the sign of −0.
         write!(f, "{}", (self.0 * 100.0).round() / 100.0 + 0.0)
     }
 }

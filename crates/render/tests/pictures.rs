@@ -1,12 +1,12 @@
-//! What pictures show: nothing too much, nothing too little, and the same each time.
+//! Tests of what pictures show, and that they are the same each time.
 
-use mesh_core::{Creases, Point, PolygonMesh, VertexId};
-use render::{
+use sixfold_core::{Creases, Point, PolygonMesh, VertexId};
+use sixfold_render::{
     MAX_PIXELS, MAX_SIDE, MeshFault, Picture, RenderError, Settings, Shading, Size, Subject, Up,
     View, draw, draw_svg,
 };
 
-/// The corners of a cube from −1 to 1, by the bits of their number: 1 is x, 2 is y, 4 is z.
+/// The faces of a cube from −1 to 1; bits 1, 2 and 4 of a vertex number are its x, y and z.
 const CUBE: [[u32; 4]; 6] = [
     [0, 2, 3, 1],
     [4, 5, 7, 6],
@@ -22,7 +22,7 @@ fn cube(half: f32) -> PolygonMesh {
     PolygonMesh::new((0..8).map(place).collect::<Vec<_>>(), CUBE).expect("valid")
 }
 
-/// From the front, the right and above: of the cube all is seen but vertex 0 and what is at it.
+/// The view from the front, the right and above; it hides only vertex 0 and what is at it.
 fn settings() -> Settings {
     Settings {
         size: Size {
@@ -48,7 +48,7 @@ fn svg(mesh: &PolygonMesh, creases: &Creases, settings: &Settings) -> String {
     draw_svg(&[Subject { mesh, creases }], settings).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What a pixel shows.
+/// The content of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Shows {
     Background,
@@ -82,7 +82,7 @@ fn count(picture: &Picture, what: Shows) -> usize {
         .count()
 }
 
-/// The lines of an SVG in this colour, as places of their ends.
+/// Returns the lines of an SVG in this colour, as the coordinates of their ends.
 fn lines<'a>(svg: &'a str, colour: &str) -> Vec<&'a str> {
     let stroke = format!("fill=\"none\" stroke=\"{colour}\"");
     let paths = svg.lines().filter(|line| line.contains(&stroke));
@@ -100,7 +100,7 @@ const EDGE: &str = "#243042";
 const CREASE: &str = "#ef4d27";
 
 #[test]
-fn a_picture_has_its_size_a_frame_of_background_and_no_chance_in_it() {
+fn a_picture_has_its_size_a_margin_and_is_reproducible() {
     let (mesh, creases) = (cube(1.0), Creases::default());
     let picture = drawn(&mesh, &creases, &settings());
     assert_eq!(picture.size(), settings().size);
@@ -120,11 +120,13 @@ fn a_picture_has_its_size_a_frame_of_background_and_no_chance_in_it() {
     );
     let png = || {
         let mut bytes = Vec::new();
-        picture.write_png(&mut bytes).expect("memory does not fail");
+        picture
+            .write_png(&mut bytes)
+            .expect("a Vec accepts all writes");
         bytes
     };
     assert_eq!(png(), png());
-    // What is written reads back as it was.
+    // The written PNG has the same pixels when it is read.
     let mut reader = png::Decoder::new(std::io::Cursor::new(png()))
         .read_info()
         .expect("a PNG");
@@ -134,7 +136,7 @@ fn a_picture_has_its_size_a_frame_of_background_and_no_chance_in_it() {
 }
 
 #[test]
-fn three_faces_and_nine_edges_of_a_cube_are_seen() {
+fn three_faces_and_nine_edges_of_a_cube_are_visible() {
     let mesh = cube(1.0);
     let all = Settings {
         edges: true,
@@ -161,7 +163,7 @@ fn three_faces_and_nine_edges_of_a_cube_are_seen() {
 }
 
 #[test]
-fn creases_are_red_where_they_are_seen() {
+fn visible_creases_are_red() {
     let mesh = cube(1.0);
     let seen = edges(&mesh, &[[7, 5], [7, 6], [7, 3]]);
     let hidden = edges(&mesh, &[[0, 1], [0, 2], [0, 4]]);
@@ -176,9 +178,9 @@ fn creases_are_red_where_they_are_seen() {
 }
 
 #[test]
-fn a_line_ends_where_something_else_hides_it() {
-    // A square in the middle, before a larger one: seen from the front it hides the middle third of
-    // the diagonal of the other.
+fn a_line_ends_where_a_face_hides_it() {
+    // A square in front of the middle of a larger one: in the view from the front, it hides the
+    // middle third of the diagonal of the larger one.
     let positions = [
         [-3.0, -3.0, 0.0],
         [3.0, -3.0, 0.0],
@@ -203,7 +205,7 @@ fn a_line_ends_where_something_else_hides_it() {
     let text = svg(&mesh, &diagonal, &front);
     let lines = lines(&text, CREASE);
     assert_eq!(lines.len(), 2, "{text}");
-    // The scale is 200 · 0.86 / 6: from the margin of 14 to a third of 172 beyond.
+    // The scale is 200 · 0.86 / 6; a visible part starts at the margin of 14 and is 172 / 3 long.
     let numbers = |line: &str| -> Vec<f64> {
         let numbers = line.split(['L', ' ']);
         numbers
@@ -241,7 +243,7 @@ fn a_surface_has_two_sides() {
 }
 
 #[test]
-fn meshes_in_a_row_have_one_scale() {
+fn meshes_in_a_row_have_the_same_scale() {
     let (small, large, creases) = (cube(1.0), cube(2.0), Creases::default());
     let subject = |mesh| Subject {
         mesh,
@@ -292,7 +294,7 @@ fn shading_is_smooth_unless_an_angle_or_a_crease_breaks_it() {
         shading: Shading::Flat,
         ..front
     };
-    // How many colours faces have, apart from where they end.
+    // Returns the number of runs of one colour along the middle row.
     let colours = |creases: &Creases, settings: &Settings| {
         let picture = drawn(&roof, creases, settings);
         let mut colours: Vec<&[u8]> = (0..120)
@@ -316,7 +318,7 @@ fn shading_is_smooth_unless_an_angle_or_a_crease_breaks_it() {
     assert_eq!(paths(&sharp, &front), paths(&none, &flat));
     assert_ne!(paths(&none, &front), paths(&none, &flat));
     assert_eq!(paths(&weak, &front), paths(&none, &front));
-    // The edges of a cube are too steep to be smoothed.
+    // The edges of a cube are too sharp for smooth shading.
     let cube = cube(1.0);
     let flat = Settings {
         shading: Shading::Flat,
@@ -327,8 +329,8 @@ fn shading_is_smooth_unless_an_angle_or_a_crease_breaks_it() {
 
 #[test]
 fn polygons_are_painted_from_back_to_front() {
-    // A long strip that runs away from us, and a small square close above its far end: on the mean
-    // the strip is nearer.
+    // A long strip that extends away from the viewer, and a small square just in front of its far
+    // end: by mean depth, the strip is nearer.
     let positions = [
         [0.0, -0.5, 10.0],
         [1.0, -0.5, 10.0],
@@ -363,12 +365,12 @@ fn polygons_are_painted_from_back_to_front() {
         });
         let widths: Vec<f64> = widths.collect();
         assert_eq!(widths.len(), 2, "{text}");
-        assert!(widths[0] > widths[1], "the strip comes first: {text}");
+        assert!(widths[0] > widths[1], "expected the strip first: {text}");
     }
 }
 
 #[test]
-fn extreme_meshes_have_pictures() {
+fn extreme_meshes_can_be_drawn() {
     let triangle = |scale: f32| {
         let corners = [Point::ZERO, Point::X, Point::Y].map(|p| p * scale);
         PolygonMesh::new(corners, [[0, 1, 2]]).expect("valid")
@@ -383,7 +385,7 @@ fn extreme_meshes_have_pictures() {
         assert!(count(&picture, Shows::Crease) > 20, "{scale}");
         assert!(count(&picture, Shows::Outside) > 500, "{scale}");
     }
-    // Seen from its edge, from its end, and without area.
+    // Seen from its edge, from its end, and a mesh without area.
     let line = [Point::ZERO, Point::X, Point::X * 2.0];
     let line = PolygonMesh::new(line, [[0, 1, 2]]).expect("valid");
     for mesh in [triangle(1.0), line] {
@@ -402,7 +404,7 @@ fn extreme_meshes_have_pictures() {
             svg(&mesh, &Creases::default(), &all);
         }
     }
-    // A vertex that no face has may be anywhere, even where a corner is told to be.
+    // A vertex of no face may have any coordinates, even if it is a sharp corner.
     let corners = [Point::ZERO, Point::X, Point::Y, Point::NAN, Point::MAX];
     let mesh = PolygonMesh::new(corners, [[0, 1, 2]]).expect("valid");
     let creases = Creases::new(&mesh, [], [(3, 1.0), (4, 1.0)]).expect("vertices");
@@ -413,7 +415,7 @@ fn extreme_meshes_have_pictures() {
 }
 
 #[test]
-fn what_cannot_be_drawn_is_refused() {
+fn invalid_sizes_views_and_meshes_are_refused() {
     let (mesh, creases) = (cube(1.0), Creases::default());
     let subject = Subject {
         mesh: &mesh,
@@ -484,8 +486,11 @@ fn what_cannot_be_drawn_is_refused() {
 }
 
 #[test]
-fn an_svg_has_an_end_to_its_faces() {
-    let (mesh, creases) = (shapes::grid(300, 300).expect("valid"), Creases::default());
+fn an_svg_with_too_many_faces_is_refused() {
+    let (mesh, creases) = (
+        sixfold_shapes::grid(300, 300).expect("valid"),
+        Creases::default(),
+    );
     let view = View::new(0.0, 0.0, Up::Y).expect("a view");
     let size = Size {
         width: 640,
@@ -501,7 +506,6 @@ fn an_svg_has_an_end_to_its_faces() {
         creases: &creases,
     };
     let error = draw_svg(&[subject], &settings).expect_err("too many");
-    let message =
-        "mesh 1 of the row: 90000 faces are to be seen, and an SVG holds 50000: write a PNG";
+    let message = "mesh 1 of the row: 90000 faces are visible, an SVG can have 50000: write a PNG";
     assert_eq!(error.to_string(), message);
 }

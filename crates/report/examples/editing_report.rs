@@ -1,9 +1,9 @@
-//! Makes `reports/editing`: what edits cost on each structure, as the mesh grows.
+//! Makes `reports/editing`: the cost of edits on each structure, as the mesh grows.
 //!
-//! `cargo run --release -p report --example editing_report -- reports/editing [ROUNDS]`
+//! `cargo run --release -p sixfold-report --example editing_report -- reports/editing [ROUNDS]`
 //!
-//! Every round runs each edit at spread places of each mesh, and each workload, once on each structure,
-//! on a fresh copy; the tables have the medians of thread-CPU time over the rounds.
+//! Every round runs each edit at many places of each mesh, and each workload, once on each
+//! structure, on a fresh copy. The tables show medians of thread-CPU time over the rounds.
 
 mod opening;
 
@@ -14,34 +14,37 @@ use std::fs;
 use std::path::Path;
 
 use opening::median;
-use report::{Panel, panels};
 use serde_json::json;
 use sixfold::{Edit, PolygonMesh, QueryCost, roster, shapes};
-use study::{Editing, Editor, Environment, MachineClock, Policy, Series, SingleEdit, pages};
+use sixfold_report::{Panel, panels};
+use sixfold_study::{
+    Editing, Editor, Environment, MachineClock, Policy, Series, SingleEdit, pages,
+};
 
 /// Sides of the tori: 1,058, 4,232, 16,200, 64,800, 259,200 and 1,036,800 triangles.
 const SIDES: [usize; 6] = [23, 46, 90, 180, 360, 720];
 
-/// How many places an edit is done at, where it does not scan, and where it does.
+/// Number of places at which an edit is done if it does not scan.
 const PLACES: usize = 4096;
+/// Number of places at which an edit is done if it scans.
 const PLACES_SCANNED: usize = 12;
 
-/// How many faces all copies of a mesh have together at the least.
+/// Smallest total number of faces of all copies of a mesh.
 const COPIES: usize = 64_000;
 
-/// How many faces a workload of edits is given at most on a structure that scans.
+/// Largest number of faces for a workload of edits on a structure that scans.
 const MOST_SCANNED: usize = 5_000;
 
-/// Up to here the tables of every structure fit the second-level cache.
+/// Largest number of faces at which the tables of every structure fit into the second-level cache.
 const IN_CACHE: usize = 20_000;
 
-/// What the figures say wherever they were made.
+/// Conclusions that hold on every machine.
 const READING: &str = include_str!("opening/editing.md");
 
 /// One line of a figure: an edit or a workload, on a structure.
 type Line = (&'static str, &'static str);
 
-/// The times of one line at one size, for each edit or element.
+/// Times in nanoseconds per edit or element, for each line and number of faces.
 type Samples = BTreeMap<(Line, usize), Vec<f64>>;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -76,12 +79,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Whether a whole workload scans on the structure.
+/// Returns whether a workload of edits scans on the structure.
 fn scans(backend: &sixfold::BackendInfo) -> bool {
     backend.edits[Edit::CollapseEdge as usize] == Some(QueryCost::Scan)
 }
 
-/// Runs everything on one mesh, in rounds.
+/// Runs all edits and workloads on one mesh, in rounds.
 fn measure(
     polygons: &PolygonMesh,
     rounds: usize,
@@ -96,7 +99,7 @@ fn measure(
                 Some(QueryCost::Scan) => PLACES_SCANNED,
                 Some(_) => PLACES,
             };
-            // Where the soup and the face set are concerned even places have to be searched for.
+            // The soup and the face set have to search even for the places.
             let places = if scans(&backend) {
                 PLACES_SCANNED
             } else {
@@ -118,7 +121,8 @@ fn measure(
     let clock = MachineClock::start();
     for _ in 0..rounds {
         for (line, editor) in &mut jobs {
-            // On a small mesh there are few places: more runs, so that the clock does not show.
+            // A small mesh has few places: use more runs, so that reading the clock takes no
+            // visible time.
             let copies = (COPIES / faces).max(1);
             let series = Series::of_runs(copies as u32, &clock).after(1);
             let time = editor.time(&series).scaled(1.0 / copies as f64);
@@ -133,7 +137,7 @@ fn measure(
     Ok(())
 }
 
-/// Size and time of a line, ascending.
+/// Returns number of faces and median time of a line, ascending.
 fn points(samples: &Samples, line: Line) -> Vec<(f64, f64)> {
     let sizes = samples.iter().filter(|((other, _), _)| *other == line);
     sizes
@@ -141,7 +145,7 @@ fn points(samples: &Samples, line: Line) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// The exponent of growth: the slope of the least squares line through the logarithms.
+/// Returns the exponent of growth: the slope of the least-squares line through the logarithms.
 fn exponent(points: &[(f64, f64)]) -> Option<f64> {
     let logs: Vec<(f64, f64)> = points
         .iter()
@@ -169,15 +173,15 @@ fn text(
     rounds: usize,
     samples: &Samples,
 ) -> Result<String, std::fmt::Error> {
-    let mut text = String::from("# What edits cost on each structure, as the mesh grows\n\n");
+    let mut text = String::from("# Cost of edits on each structure, as the mesh grows\n\n");
     text += &opening::opening(machine, "editing_report", "reports/editing", rounds);
     writeln!(
         text,
-        " Tori of triangles, 1,058 to 1,036,800 of them. Each edit is done at up to {PLACES} places spread over a fresh copy of the mesh, in no order ({PLACES_SCANNED} where the structure scans), after one that nobody times (a table that is exactly full moves when a row is added), and is checked for legality as always; nobody listens to its record.\n\n![Time of an edit against the faces of the mesh](growth.svg)\n"
+        " The meshes are tori of 1,058 to 1,036,800 triangles. Each edit is done at up to {PLACES} places spread over a fresh copy of the mesh, in no particular order ({PLACES_SCANNED} places if the structure scans). An untimed edit comes first, because it reallocates full tables. Legality is checked as usual; edit records are not used.\n\n![Time per edit over the faces of the mesh](growth.svg)\n"
     )?;
     writeln!(
         text,
-        "\n## One edit\n\nTime at 16,200 faces; then the exponent of growth to there from 1,058 (in cache), and on to 1,036,800 (beyond). About 0: constant time. About 1: a scan.\n"
+        "\n## One edit\n\nTime at 16,200 faces, then two exponents of growth: from 1,058 to 16,200 faces (in cache), and from there to 1,036,800 (beyond). About 0 means constant time, about 1 a scan.\n"
     )?;
     table(&mut text, samples, Edit::ALL.map(Edit::name), |points| {
         let at = points.iter().rev().find(|p| p.0 <= IN_CACHE as f64)?;
@@ -193,7 +197,7 @@ fn text(
     })?;
     writeln!(
         text,
-        "\n## Whole workloads\n\nFor each face of the mesh, or edge to be flipped, the time at 1,058 faces and on the largest mesh; the exponent of growth of the whole from 16,200 faces on.\n"
+        "\n## Whole workloads\n\nTime per face of the mesh, or per edge to be flipped, at 1,058 faces and on the largest mesh; then the exponent of growth of the total time from 16,200 faces on.\n"
     )?;
     table(
         &mut text,
@@ -219,7 +223,7 @@ fn text(
     Ok(text)
 }
 
-/// A row for each of `what`, a column for each structure.
+/// Writes a table with a row for each of `what` and a column for each structure.
 fn table<const N: usize>(
     text: &mut String,
     samples: &Samples,
@@ -257,13 +261,13 @@ fn figure(path: &Path, samples: &Samples) -> std::io::Result<()> {
     let panel = |edit: Edit| Panel {
         title: edit.name().into(),
         x_label: "faces of the mesh".into(),
-        y_label: "ns an edit".into(),
+        y_label: "ns per edit".into(),
         lines: { roster().into_iter() }
             .map(|backend| (backend.name, points(samples, (edit.name(), backend.name))))
             .collect(),
     };
     let panels = panels(
-        "Time of an edit against the faces of the mesh",
+        "Time per edit over the faces of the mesh",
         3,
         &shown.map(panel),
     );

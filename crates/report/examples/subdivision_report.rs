@@ -1,9 +1,13 @@
-//! Makes `reports/subdivision`: what a subdivision costs on each structure, by each method.
+//! Makes `reports/subdivision`: the cost of subdivision on each structure, by each method.
 //!
-//! `cargo run --release -p report --example subdivision_report -- reports/subdivision [ROUNDS]`
+//! ```text
+//! cargo run --release -p sixfold-report --example subdivision_report -- reports/subdivision
+//! ```
 //!
-//! Every round runs each scheme, way and structure once at each level, one after the other, on one
-//! thread; the table has the medians of thread-CPU time over the rounds, and its figure shows them.
+//! An optional last argument is the number of rounds.
+//!
+//! Every round runs each scheme, method and structure once at each level, on one thread. The table
+//! and the figure show medians of thread-CPU time over the rounds.
 
 mod opening;
 
@@ -13,33 +17,34 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use report::{Panel, panels};
 use serde_json::json;
 use sixfold::subdivision::{Scheme, SubdivisionError};
 use sixfold::{Creases, PolygonMesh, roster, shapes};
-use study::{Clock, Environment, MachineClock, Policy, Refiner, Refining, Way, pages};
+use sixfold_report::{Panel, panels};
+use sixfold_study::{Clock, Environment, MachineClock, Policy, Refiner, Refining, Way, pages};
 
 /// The schemes of the report; both take the control mesh, of triangles.
 const SCHEMES: [Scheme; 2] = [Scheme::CatmullClark, Scheme::Loop];
 
-/// The most levels.
+/// Largest level.
 const LEVELS: u32 = 4;
 
-/// A run that takes longer than this, at the level before, is not taken a level further.
+/// If a run takes longer than this, the next level is left out.
 const TOO_LONG_NS: f64 = 4e8;
 
-/// What the figures say wherever they were made.
+/// Conclusions that hold on every machine.
 const READING: &str = "
 ## What it shows
 
-Gathering asks EF and VV at every point: what a soup and an indexed face set have to search for, so that their lines
-rise with the size of the mesh. Scattering rescues both: it asks only for what they store, and the face set, which
-has next to nothing to build, is then the quickest of all that go by polygons. Of the structures that know their
-neighbours, only those on which a walk is dear gain by it. Native steps take the rebuilding away, and with it most of
-the time; what is refined into the tables of the run before saves the first touch of new memory as well.
+Gathering queries EF and VV at every point. A soup and an indexed face set have to search for these, so their time per
+face grows with the size of the mesh. Scattering avoids the searches, because it queries only relations that both
+store. The face set, which has little to build, is then the fastest of all that rebuild from polygons. Among the
+structures that store adjacency, only those with expensive walks become faster by scattering. Native steps avoid the
+rebuilding, and with it most of the time. Refining into the tables of the previous run also avoids the first touch of
+new memory.
 ";
 
-/// One line of the figure: a scheme run one way on one structure.
+/// One line of the figure: a scheme, a method and a structure.
 type Line = (&'static str, &'static str, &'static str);
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -72,7 +77,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The times of one line at one level.
+/// The faces of one line at one level, and the times of its runs in nanoseconds.
 #[derive(Default)]
 struct Sample {
     faces: usize,
@@ -80,7 +85,7 @@ struct Sample {
 }
 
 impl Sample {
-    /// Nanoseconds for each face of the last level: the median.
+    /// Returns the median time per face of the last level, in nanoseconds.
     fn ns_per_face(&self) -> f64 {
         opening::median(&self.ns) / self.faces as f64
     }
@@ -131,10 +136,10 @@ fn text(
     rounds: usize,
     samples: &Samples,
 ) -> Result<String, std::fmt::Error> {
-    let mut text = String::from("# What subdivision costs on each structure\n\n");
+    let mut text = String::from("# Cost of subdivision on each structure\n\n");
     text += &opening::opening(machine, "subdivision_report", "reports/subdivision", rounds);
-    text += " Control mesh: a geodesic sphere of 5,120 triangles. Nanoseconds for each face of the last level, all levels made.\n\n";
-    text += "`gather` asks for the neighbourhood of each new point, `scatter` makes one pass over the faces; after both the structure is built anew from polygons. `native_fresh` splits the structure's own tables into tables that are allocated for it, `native` into those of the run before.\n\n![Nanoseconds for each new face, by size](growth.svg)\n";
+    text += " The control mesh is a geodesic sphere of 5,120 triangles. Times are for all levels, in nanoseconds per face of the last level.\n\n";
+    text += "`gather` queries the neighbourhood of each new point, `scatter` makes one pass over the faces; after both, the structure is built again from polygons. `native_fresh` splits the structure's own tables into newly allocated tables, `native` into those of the previous run.\n\n![Nanoseconds per new face, by size](growth.svg)\n";
     for scheme in SCHEMES {
         writeln!(text, "\n## {scheme}\n")?;
         let mut head = String::from("| | structure |");
@@ -164,11 +169,11 @@ fn text(
         }
     }
     text += READING;
-    text += "\n–: left out, since the level before took more than 0.4 s, or the structure does not hold the quads.\n";
+    text += "\n–: left out, because the previous level took more than 0.4 s, or the structure cannot hold quads.\n";
     Ok(text)
 }
 
-/// Time for each new face against the faces of the last level, both logarithmic.
+/// Draws the time per new face over the faces of the last level, with logarithmic axes.
 fn figure(path: &Path, samples: &Samples) -> std::io::Result<()> {
     let ways = [Way::Gather, Way::Scatter, Way::Native];
     let line = |scheme: Scheme, way: Way, backend: &'static str| {
@@ -182,13 +187,13 @@ fn figure(path: &Path, samples: &Samples) -> std::io::Result<()> {
     let panel = |(scheme, way): (Scheme, Way)| Panel {
         title: format!("{scheme}, {way}"),
         x_label: "faces of the last level".into(),
-        y_label: "ns a face".into(),
+        y_label: "ns per face".into(),
         lines: { roster().into_iter() }
             .map(|backend| line(scheme, way, backend.name))
             .collect(),
     };
     let all = SCHEMES.into_iter().flat_map(|s| ways.map(|w| (s, w)));
     let all: Vec<Panel> = all.map(panel).collect();
-    let panels = panels("Nanoseconds for each new face, by size", ways.len(), &all);
+    let panels = panels("Nanoseconds per new face, by size", ways.len(), &all);
     fs::write(path, panels)
 }

@@ -1,20 +1,19 @@
-//! Colours that can be told apart on white and on black, and by eyes that see fewer of them.
+//! Colours that are distinguishable on white and on black, and with colour blindness.
 //!
-//! Figures are drawn once, in fixed colours; a style sheet maps these to others where the page is
-//! dark. Presentation attributes of SVG give way to style rules, so that `[fill="#17181a"]` in a rule is
-//! all it takes.
+//! Figures are drawn once, in fixed colours. On dark pages a style sheet replaces them: style rules
+//! override presentation attributes of SVG, so a rule for `[fill="#17181a"]` is enough.
 
-/// Letters and axes.
+/// Colour of text and axes.
 pub(crate) const INK: &str = "#17181a";
-/// What lies behind.
+/// Colour of the background.
 pub(crate) const PAPER: &str = "#fdfdfc";
-/// Lines to read values by.
+/// Colour of grid lines.
 pub(crate) const GRID: &str = "#dcdcda";
-/// Intervals over bars.
+/// Colour of intervals over bars.
 pub(crate) const WHISKER: &str = "#33353a";
 
-/// Of columns: after Okabe and Ito (2008), who chose them for all kinds of eyes; a lighter one each for
-/// dark pages.
+/// Name, colour on light pages and colour on dark pages of each column; after Okabe and Ito (2008),
+/// for all types of colour vision.
 const COLUMNS: [(&str, &str, &str); 7] = [
     ("polygon-soup", "#7f7f84", "#a3a3a8"),
     ("indexed-face-set", "#d98e04", "#f0b13c"),
@@ -24,13 +23,13 @@ const COLUMNS: [(&str, &str, &str); 7] = [
     ("corner-table", "#c8511b", "#f08553"),
     ("relation-tables", "#b0618f", "#dd93bd"),
 ];
-/// Of columns that are none of ours, in turn.
+/// Colours of external programs.
 const OTHERS: [(&str, &str); 3] = [
     ("#6a5acd", "#a094f0"),
     ("#8c8a1e", "#c9c655"),
     ("#555a60", "#b9bec4"),
 ];
-/// Of tables within a structure, in turn.
+/// Colours of the tables within a structure, in order.
 const TABLES: [(&str, &str); 8] = [
     ("#1f6f9f", "#5fb0de"),
     ("#e0a030", "#f2c063"),
@@ -42,7 +41,7 @@ const TABLES: [(&str, &str); 8] = [
     ("#8f8f8f", "#bcbcbc"),
 ];
 
-/// The colour of a column.
+/// Returns the colour of a column.
 pub(crate) fn of_column(name: &str) -> &'static str {
     let ours = COLUMNS.iter().find(|(column, ..)| *column == name);
     let other = || {
@@ -52,12 +51,12 @@ pub(crate) fn of_column(name: &str) -> &'static str {
     ours.map_or_else(other, |(_, light, _)| light)
 }
 
-/// The colour of the so-manieth kind of table.
+/// Returns the colour of table `number` within a structure.
 pub(crate) fn of_table(number: usize) -> &'static str {
     TABLES[number % TABLES.len()].0
 }
 
-/// The rules that turn a figure dark.
+/// Returns the style rules for dark pages.
 pub(crate) fn dark_rules() -> String {
     let page = [
         (INK, "#e4e4e2"),
@@ -78,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_two_colours_of_one_figure_are_the_same() {
+    fn all_colours_are_different() {
         let mut all: Vec<&str> = COLUMNS.iter().map(|(_, light, _)| *light).collect();
         all.extend(OTHERS.iter().map(|(light, _)| *light));
         all.extend([INK, PAPER, GRID, WHISKER]);

@@ -1,4 +1,4 @@
-//! One figure, and the numbers under it.
+//! One figure with its table of numbers.
 
 use std::sync::Arc;
 
@@ -7,31 +7,31 @@ use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
 use kuva::render::render::{Scene, render_multiple};
 use kuva::{Theme, TickFormat};
-use study::numbers::times;
+use sixfold_study::numbers::times;
 
 use crate::colours::{GRID, INK, PAPER, dark_rules};
 
 /// A figure with its numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Figure {
-    /// A name for links and files: `heat-map`.
+    /// Name for links and files, such as `heat-map`.
     pub id: String,
-    /// What it shows.
+    /// Title.
     pub title: String,
-    /// How to read it.
+    /// Explanation of how to read the figure.
     pub caption: String,
-    /// The picture, as an element that can stand in a page or in a file.
+    /// The picture as an SVG element, for a page or a file.
     pub svg: String,
-    /// What its marks stand for.
+    /// The numbers that the marks show.
     pub table: Table,
-    /// The command that makes it again.
+    /// The command that reproduces the figure.
     pub command: String,
 }
 
-/// Numbers in rows.
+/// A table of numbers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Table {
-    /// Over the columns; the first names the rows.
+    /// Column titles; the first column holds the names of the rows.
     pub header: Vec<String>,
     /// The rows, each as long as the header.
     pub rows: Vec<Vec<String>>,
@@ -50,10 +50,10 @@ impl Table {
     }
 }
 
-/// The length of a bar for the fastest, whose ratio has the logarithm 0: a part of the longest.
+/// Length of the shortest bar, as a part of the longest: the logarithm of the ratio 1 is 0.
 pub(crate) const LEAST: f64 = 0.02;
 
-/// Logarithms of ratios on an axis up to `most`, as the ratios that they are of.
+/// Returns a format that shows logarithms as ratios, for an axis up to `most`.
 pub(crate) fn ratios(most: f64) -> TickFormat {
     let close = most < 0.5;
     TickFormat::Custom(Arc::new(move |log: f64| match 10_f64.powf(log) {
@@ -62,7 +62,7 @@ pub(crate) fn ratios(most: f64) -> TickFormat {
     }))
 }
 
-/// A layout in our colours and letters.
+/// Returns a layout in the colours and fonts of the report.
 pub(crate) fn laid_out(plots: &[Plot], width: f64, height: f64) -> Layout {
     let theme = Theme {
         background: PAPER.into(),
@@ -85,12 +85,13 @@ pub(crate) fn laid_out(plots: &[Plot], width: f64, height: f64) -> Layout {
         .with_body_size(12)
 }
 
-/// The picture of `plots`.
+/// Draws `plots` as SVG.
 pub(crate) fn drawn(title: &str, plots: Vec<Plot>, layout: Layout) -> String {
     finished(title, &render_multiple(plots, layout))
 }
 
-/// `scene` as wide as its place, dark where the page is, with a title for who does not see it.
+/// Renders `scene` as SVG that scales to the page, follows its dark mode, and has `title` as a
+/// label for screen readers.
 pub(crate) fn finished(title: &str, scene: &Scene) -> String {
     let svg = SvgBackend::new().render_scene(scene);
     let Some((head, body)) = svg.split_once('>') else {

@@ -1,4 +1,4 @@
-//! What is drawn of which results.
+//! Selection of the figures for each kind of results.
 
 mod break_even;
 mod growth;
@@ -8,22 +8,22 @@ mod orders;
 mod ranking;
 mod roofline;
 
-use study::numbers::{counted, grouped};
-use study::{Collection, Environment, Labs, MeshReport, Report};
+use sixfold_study::numbers::{counted, grouped};
+use sixfold_study::{Collection, Environment, Labs, MeshReport, Report};
 
 use crate::{Figure, Page, Section};
 
-/// One row of a figure over columns: a structure, or a program of somebody else.
+/// One row of a ranking: a structure or an external program.
 pub(crate) struct Row<'a> {
     pub(crate) backend: &'a str,
-    /// The ratio to the best, and its interval.
+    /// Ratio to the best, with its interval.
     pub(crate) ratio: f64,
     pub(crate) interval: Option<[f64; 2]>,
-    /// Nanoseconds of an element, where that is known.
+    /// Time per element in nanoseconds, if known.
     pub(crate) ns: Option<f64>,
-    /// The same of the first time, on fresh pages, where that is known and differs.
+    /// Time per element of the first run, on fresh pages, if known and different.
     pub(crate) first_ns: Option<f64>,
-    /// What else there is to say: `best`, `tied`, `on 3 of 4 meshes`.
+    /// A remark, such as `best` or `tied for best`.
     pub(crate) note: String,
 }
 
@@ -42,7 +42,7 @@ pub(crate) fn page(collection: &Collection, command: &str) -> Page {
             format!("Mesh data structures on {meshes}")
         }
     };
-    // What was typed for all of it, if that is one command.
+    // The recorded command if all results share one.
     let mut commands = environments(collection).map(|environment| made_by(environment, command));
     let first = commands.next().unwrap_or(command);
     let command = match commands.all(|other| other == first) {
@@ -91,26 +91,26 @@ pub(crate) fn page(collection: &Collection, command: &str) -> Page {
     }
 }
 
-/// What is said of results that were told to stop before their end.
-const CUT_SHORT: &str = "Interrupted: some of this rests on what was finished by then; `sixfold study --resume` takes a report up again.";
+/// Warning about interrupted results.
+const CUT_SHORT: &str = "Interrupted: some results rest only on the finished part; `sixfold study --resume` continues the report.";
 
 fn is_cut_short(collection: &Collection) -> bool {
     let mut studies = collection.studies.iter();
     studies.any(|study| study.interrupted) || collection.labs.interrupted()
 }
 
-/// All environments that figures come from.
+/// Iterates over the environments of all results.
 fn environments(collection: &Collection) -> impl Iterator<Item = &Environment> {
     let studies = collection.studies.iter().map(|study| &study.environment);
     studies.chain(collection.labs.environments())
 }
 
-/// What was typed for these figures, or else for the page.
+/// Returns the recorded command of these results, or else that of the page.
 fn made_by<'a>(environment: &'a Environment, command: &'a str) -> &'a str {
     environment.command.as_deref().unwrap_or(command)
 }
 
-/// A section for each measurement that is no study.
+/// Returns a section for each result of a lab.
 fn labs(labs: &Labs, command: &str) -> Vec<Section> {
     let Labs {
         orders,
@@ -154,7 +154,7 @@ fn labs(labs: &Labs, command: &str) -> Vec<Section> {
         let command = environment.map_or(command, |environment| made_by(environment, command));
         let figure = roofline::of_why(why, &numbered("roofline", i), command);
         sections.extend(figure.map(|figure| Section {
-            title: format!("What queries on {} wait for", why.mesh.name),
+            title: format!("What limits queries on {}", why.mesh.name),
             facts: facts(&why.mesh),
             words: Vec::new(),
             figures: vec![figure],
@@ -175,7 +175,7 @@ fn labs(labs: &Labs, command: &str) -> Vec<Section> {
     sections
 }
 
-/// `orders`, `orders-2`, …
+/// Returns `orders`, `orders-2`, and so on for places 0, 1, …
 fn numbered(name: &str, place: usize) -> String {
     match place {
         0 => name.into(),
@@ -183,7 +183,7 @@ fn numbered(name: &str, place: usize) -> String {
     }
 }
 
-/// Everything there is to draw of one study.
+/// Draws all figures of a single study.
 fn of_one(study: &Report, command: &str) -> Vec<Figure> {
     let command = made_by(&study.environment, command);
     let mut figures = Vec::new();
@@ -194,9 +194,9 @@ fn of_one(study: &Report, command: &str) -> Vec<Figure> {
     figures
 }
 
-/// What is drawn of one of many: their number is what makes a page long.
+/// Draws the figures of one of many studies: fewer, to keep the page short.
 fn of_one_of_many(study: &Report, place: usize, command: &str) -> Vec<Figure> {
-    // Names that differ may come to one slug; their places do not.
+    // Different names can have the same slug, so add the place.
     let of = format!("mesh-{place}-{}-", slug(&study.mesh.name));
     let command = made_by(&study.environment, command);
     let mut figures = Vec::new();
@@ -212,15 +212,12 @@ fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
     figures
 }
 
-/// `a vertex`, `an edge`.
+/// Returns `per vertex`, `per edge`, and so on.
 pub(crate) fn one(per: &str) -> String {
-    match per.starts_with(['a', 'e', 'i', 'o', 'u']) {
-        true => format!("an {per}"),
-        false => format!("a {per}"),
-    }
+    format!("per {per}")
 }
 
-/// A name as links and files can have it.
+/// Converts a name for use in links and file names.
 fn slug(mesh: &str) -> String {
     let fine = |c: char| {
         if c.is_ascii_alphanumeric() {
@@ -255,7 +252,7 @@ fn facts(mesh: &MeshReport) -> String {
     )
 }
 
-/// Where it was measured, in a line.
+/// Describes machine, program and memory settings in one line.
 fn machine(environment: &Environment) -> String {
     let Environment {
         cpu_model,

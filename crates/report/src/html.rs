@@ -1,4 +1,4 @@
-//! The page as one file of HTML that needs nothing else.
+//! The page as one HTML file without external resources.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -6,7 +6,7 @@ use crate::colours::dark_rules;
 use crate::figure::{Figure, Table};
 use crate::{Page, Section};
 
-/// Letters, light and dark, paper and telephones.
+/// Style sheet: fonts, light and dark mode, printing, small screens.
 const STYLE: &str = "\
 :root{color-scheme:light dark;--ink:#17181a;--paper:#fdfdfc;--faint:#66686c;--line:#dcdcda;--link:#1f6fb0}\
 @media (prefers-color-scheme:dark){:root{--ink:#e4e4e2;--paper:#17181a;--faint:#a0a2a6;--line:#3a3b3e;--link:#5ba4e6}}\
@@ -24,7 +24,7 @@ td:first-child,th:first-child{text-align:left}summary{cursor:pointer;color:var(-
 @media print{body{max-width:none}details::details-content{content-visibility:visible}.scroll{overflow:visible}}";
 
 impl Page {
-    /// The page: it opens without a network, and asks for nothing.
+    /// Returns the page as HTML; it loads nothing from a network.
     pub fn html(&self) -> String {
         let dark = format!("@media (prefers-color-scheme:dark){{{}}}", dark_rules());
         let page = html! {
@@ -33,7 +33,7 @@ impl Page {
                 head {
                     meta charset="utf-8";
                     meta name="viewport" content="width=device-width,initial-scale=1";
-                    // Browsers ask for one where none is named.
+                    // Without this, browsers request a favicon.
                     link rel="icon" href="data:,";
                     title { (self.title) }
                     style { (PreEscaped(STYLE)) (PreEscaped(dark)) }
@@ -82,7 +82,7 @@ fn sentences(words: &[String]) -> Markup {
     }
 }
 
-/// Closed until somebody opens it, so that many of them are drawn as fast as one.
+/// Returns the section of one mesh, collapsed at first so that a page with many of them opens fast.
 fn of_mesh(section: &Section) -> Markup {
     html! {
         details {
@@ -93,18 +93,18 @@ fn of_mesh(section: &Section) -> Markup {
     }
 }
 
-/// A figure under a heading; `mesh` is which of several it is of.
+/// Returns a figure under a heading; `mesh` is the name of its mesh if the page has several.
 fn shown(figure: &Figure, heading: &str, mesh: Option<&str>) -> Markup {
     html! {
         section id=(figure.id) {
             @if heading == "h2" { h2 { (figure.title) } } @else { h3 { (figure.title) } }
             figure data-figure=(figure.id) data-mesh=[mesh] {
-                // Wider than a telephone: it can be pushed about there.
+                // Figures are wider than small screens and scroll there.
                 div.scroll { (PreEscaped(without_style(&figure.svg))) }
                 figcaption { (figure.caption) }
             }
             details {
-                summary { "The numbers, and the command" }
+                summary { "Numbers and command" }
                 (rows(&figure.table))
                 pre { code { (figure.command) } }
             }
@@ -112,7 +112,7 @@ fn shown(figure: &Figure, heading: &str, mesh: Option<&str>) -> Markup {
     }
 }
 
-/// A picture for a page, which has the rules that it would bring along.
+/// Returns the SVG without its style rules, which the page already has.
 fn without_style(svg: &str) -> String {
     match (svg.split_once("<style>"), svg.split_once("</style>")) {
         (Some((head, _)), Some((_, body))) => format!("{head}{body}"),

@@ -1,10 +1,10 @@
-//! Studies as something to publish: one page of HTML that stands alone, or Markdown with figures.
+//! Reports on studies: one self-contained HTML page, or Markdown with figures.
 //!
-//! [`Page::of`] draws the figures of a [`Collection`] and of its labs; each has its numbers in a table
-//! under it, and the command that makes it again. [`Page::html`] is one file that opens without a network, in light and dark, on paper and on
-//! a telephone; [`Page::markdown`] is for a repository, with the figures beside it as SVG files. The
-//! marks of a figure carry what they stand for as their titles: people see it when they point at one,
-//! programs read it.
+//! [`Page::of`] draws the figures of a [`Collection`] and of its labs. Each figure has a table of
+//! its numbers, and the command that reproduces it. [`Page::html`] returns one file that needs no
+//! network; it supports light and dark mode, printing and small screens. [`Page::markdown`] returns
+//! a text for a repository, with the figures as SVG files beside it. Each mark of a figure has its
+//! name and value as a title, which is shown when pointing at it and can be read by programs.
 
 mod colours;
 mod figure;
@@ -13,56 +13,56 @@ mod html;
 mod markdown;
 mod panels;
 
-use study::Collection;
+use sixfold_study::Collection;
 
 pub use figure::{Figure, Table};
 pub use panels::{Panel, panels};
 
-/// A report, ready to be written.
+/// A report, before it is written as HTML or Markdown.
 #[derive(Clone, Debug)]
 pub struct Page {
-    /// What it is called.
+    /// Title.
     pub title: String,
-    /// The command that makes it again.
+    /// The command that reproduces the report.
     pub command: String,
-    /// The machine, in a line; one for each that differs.
+    /// Descriptions of the different machines, one line each.
     pub machines: Vec<String>,
-    /// What the figures show, in sentences.
+    /// Sentences on the figures.
     pub words: Vec<String>,
-    /// What may be wrong with it, and what helps.
+    /// Possible problems, with advice.
     pub warnings: Vec<String>,
-    /// Over all meshes, or of the one there is.
+    /// Figures over all meshes, or of the only mesh.
     pub figures: Vec<Figure>,
-    /// What else was measured: orders, sizes, what queries read, workloads.
+    /// Results of the labs: orders, growth, reads of queries, workloads.
     pub labs: Vec<Section>,
-    /// Mesh by mesh, where there are several.
+    /// A section for each mesh if there are several.
     pub meshes: Vec<Section>,
-    /// Meshes that could not be studied, and why.
+    /// Meshes that could not be studied, with the reasons.
     pub failures: Vec<(String, String)>,
-    /// Meshes that are still to be done.
+    /// Meshes that are not studied yet.
     pub missing: Vec<String>,
 }
 
-/// What a report says of one of several meshes, or of one measurement.
+/// The part of a report on one mesh or one lab.
 #[derive(Clone, Debug)]
 pub struct Section {
-    /// What it is of.
+    /// Title.
     pub title: String,
-    /// What that is, in a line.
+    /// Facts about its subject, in one line.
     pub facts: String,
-    /// What the figures show.
+    /// Sentences on the figures.
     pub words: Vec<String>,
     /// Its figures.
     pub figures: Vec<Figure>,
 }
 
 impl Page {
-    /// Draws `collection`, which `command` makes where the results themselves do not say so.
+    /// Draws `collection`. `command` is used for results that do not record their own command.
     pub fn of(collection: &Collection, command: &str) -> Self {
         figures::page(collection, command)
     }
 
-    /// All figures, in the order of the page.
+    /// Iterates over all figures, in the order of the page.
     pub fn all_figures(&self) -> impl Iterator<Item = &Figure> {
         let sections = self.labs.iter().chain(&self.meshes);
         let of_sections = sections.flat_map(|section| &section.figures);

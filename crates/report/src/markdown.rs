@@ -1,4 +1,4 @@
-//! The page for a repository: Markdown, with its figures beside it.
+//! The page as Markdown for a repository, with its figures beside it.
 
 use std::fmt::Write as _;
 
@@ -6,7 +6,7 @@ use crate::Page;
 use crate::figure::{Figure, Table};
 
 impl Page {
-    /// The page; its figures are expected as `figures/ID.svg` beside it.
+    /// Returns the page as Markdown; it links to its figures as `figures/ID.svg`.
     pub fn markdown(&self) -> String {
         let mut text = format!(
             "# {}\n\n```sh\n{}\n```\n\n",
@@ -83,7 +83,7 @@ fn rows(text: &mut String, table: &Table) {
     text.push('\n');
 }
 
-/// Text of which no letter means anything to Markdown, on one line.
+/// Escapes the special characters of Markdown and replaces line breaks by spaces.
 fn plain(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for c in text.chars() {
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_of_files_mean_nothing_to_markdown() {
+    fn file_names_are_escaped() {
         assert_eq!(plain("a|b_[c](d).obj"), "a\\|b\\_\\[c\\](d).obj");
         assert_eq!(plain("a\nb"), "a b");
     }

@@ -1,4 +1,4 @@
-//! Several small figures of lines in one picture.
+//! Several small line charts in one SVG figure.
 
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::figure::Figure as Grid;
@@ -7,23 +7,23 @@ use kuva::render::plots::Plot;
 use crate::colours::of_column;
 use crate::figure::{finished, laid_out};
 
-/// The size of one.
+/// Width and height of one panel.
 const SIZE: [f64; 2] = [400.0, 320.0];
 
-/// One small figure, both axes logarithmic.
+/// One small chart, with logarithmic axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// What it shows.
+    /// Title.
     pub title: String,
-    /// What is along.
+    /// Label of the horizontal axis.
     pub x_label: String,
-    /// What is up.
+    /// Label of the vertical axis.
     pub y_label: String,
-    /// The points of each structure; one without any is left out.
+    /// Points of each structure; structures without points are left out.
     pub lines: Vec<(&'static str, Vec<(f64, f64)>)>,
 }
 
-/// `panels` in rows of so many, as SVG; one legend for all.
+/// Draws `panels` as SVG, in rows of `columns` panels, with one legend for all.
 pub fn panels(title: &str, columns: usize, panels: &[Panel]) -> String {
     let rows = panels.len().div_ceil(columns);
     let (mut plots, mut layouts) = (Vec::new(), Vec::new());
@@ -49,7 +49,7 @@ pub fn panels(title: &str, columns: usize, panels: &[Panel]) -> String {
     finished(title, &grid.render())
 }
 
-/// A line through points, and the points.
+/// Returns a line through `points`, and marks for the points.
 fn line(name: &str, points: &[(f64, f64)]) -> [Plot; 2] {
     let colour = of_column(name);
     let line = LinePlot::new()

@@ -1,11 +1,11 @@
-//! Pages of small studies: their marks are those of the data, and nothing in them comes from outside.
+//! Pages of small studies: their marks show the data, and they load no external resources.
 
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use report::{Figure, Page};
 use sixfold::shapes;
-use study::{Asked, Collection, Operation, Report, Settings, Specimen, study};
+use sixfold_report::{Figure, Page};
+use sixfold_study::{Asked, Collection, Operation, Report, Settings, Specimen, study};
 
 const HOSTILE: &str = "<script>alert('a|b')</script>&.obj";
 
@@ -66,7 +66,7 @@ fn every_figure_has_as_many_marks_as_numbers() {
         // The table is ranked, the fastest first.
         let ratios = ranking.table.rows.iter().map(|row| row[1].parse::<f64>());
         let ratios: Vec<f64> = ratios.map(|ratio| ratio.expect("a number")).collect();
-        // Who ties with it may come to less than 1, for ratios are formed within rounds.
+        // A tied backend can be below 1, because ratios are formed within rounds.
         assert!(
             ratios[0] <= 1.0 && ratios.contains(&1.0),
             "{id}: {ratios:?}"
@@ -95,7 +95,7 @@ fn every_figure_has_as_many_marks_as_numbers() {
 }
 
 #[test]
-fn an_interrupted_page_says_so() {
+fn an_interrupted_page_has_a_warning() {
     let mut whole = collection(&["ball.obj"]);
     let said = |collection: &Collection| {
         let page = Page::of(collection, "sixfold study ball.obj");
@@ -133,14 +133,14 @@ fn a_page_of_several_meshes_has_pooled_figures_and_one_section_each() {
 }
 
 #[test]
-fn nothing_comes_from_outside_and_names_of_files_are_no_code() {
+fn pages_load_nothing_and_names_are_escaped() {
     let page = Page::of(&collection(&[HOSTILE]), "sixfold study '<b>'");
     let html = page.html();
     assert!(!html.contains("<script"), "a name became code");
     assert!(!html.contains("<b>"), "a command became code");
     assert!(html.contains("&lt;script&gt;"));
     let outside = html.replace("http://www.w3.org/2000/svg", "");
-    // A clip path of the same figure is no place outside.
+    // A clip path of the same figure is not an external resource.
     let outside = outside.replace("url(#", "");
     for word in ["http:", "https:", "src=", "@import", "url("] {
         assert!(!outside.contains(word), "{word}");

@@ -1,20 +1,21 @@
-//! Draws every shape of [`shapes::RECIPES`], and the orders of one mesh, into one SVG.
+//! Draws every shape of [`sixfold_shapes::RECIPES`], and the orders of one mesh, into one SVG file.
 //!
-//! Orthographic, by the painter's algorithm: far faces first, near ones over them (Newell, Newell
-//! and Sancha 1972). Coordinates are rounded to a tenth of a pixel, and only + − × ÷ √ are used, so
-//! the picture is the same on every machine.
+//! The projection is orthographic. The painter's algorithm draws far faces first and near faces
+//! over them (Newell, Newell and Sancha 1972). Coordinates are rounded to a tenth of a pixel, and
+//! only + − × ÷ √ are used, so the picture is the same on every machine.
 
 use std::error::Error;
 use std::fmt::Write as _;
 use std::io::Write as _;
 
-use mesh_core::{Facts, PolygonMesh, VertexId};
-use shapes::{Order, RECIPES, Recipe};
+use sixfold_core::{Facts, PolygonMesh, VertexId};
+use sixfold_shapes::{Order, RECIPES, Recipe};
 
-/// The picture's first line. No comment, for XML allows none with two hyphens inside.
-const COMMAND: &str = "<?made-by cargo run --release -p shapes --example contact_sheet > reports/shapes/contact-sheet.svg?>";
+/// First line of the picture. It is a processing instruction, because an XML comment must not
+/// contain two hyphens in a row.
+const COMMAND: &str = "<?made-by cargo run --release -p sixfold-shapes --example contact_sheet > reports/shapes/contact-sheet.svg?>";
 
-/// Parameters that suit a cell, where the defaults are too dense for one or hide what matters.
+/// Parameters for shapes whose defaults are too dense for a cell or hide details.
 const SMALLER: &[(&str, &[(&str, f64)])] = &[
     ("grid", &[("m", 8.0), ("n", 8.0)]),
     ("triangle-grid", &[("m", 8.0), ("n", 8.0)]),
@@ -33,25 +34,25 @@ const SMALLER: &[(&str, &[(&str, f64)])] = &[
     ("smooth-union", &[("faces", 1_500.0)]),
 ];
 
-/// Above so many faces a cell has no room for the edges of each.
+/// Maximum number of faces with drawn edges; a cell is too small for the edges of more.
 const MOST_EDGED: usize = 2_000;
 
 const COLUMNS: usize = 6;
 const CELL: [f64; 2] = [190.0, 226.0];
-/// The square of a cell in which the mesh is drawn: its side, and its centre in the cell.
+/// The square in a cell in which the mesh is drawn: its side, and its centre in the cell.
 const PICTURE: f64 = 158.0;
 const CENTRE: [f64; 2] = [95.0, 94.0];
 const GAP: f64 = 10.0;
 
-/// How many tones each ramp has.
+/// Number of tones of each colour ramp.
 const TONES: usize = 24;
 
 fn main() -> Result<(), Box<dyn Error>> {
     if let Some((name, _)) = SMALLER
         .iter()
-        .find(|(name, _)| shapes::recipe(name).is_none())
+        .find(|(name, _)| sixfold_shapes::recipe(name).is_none())
     {
-        return Err(format!("no shape is called {name}").into());
+        return Err(format!("unknown shape {name:?}").into());
     }
     let mut cells = Vec::new();
     for recipe in RECIPES {
@@ -65,7 +66,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             Paint::Light,
         ));
     }
-    let ordered = shapes::triangle_torus(32, 14)?;
+    let ordered = sixfold_shapes::triangle_torus(32, 14)?;
     for order in Order::ALL {
         let mesh = order.of(&ordered, 1);
         cells.push(cell(
@@ -79,7 +80,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The parameters of a shape as drawn, `m 8 · n 8`; of one that takes none, what it is.
+/// Returns the parameters of a shape as drawn, such as `m 8 · n 8`, or the summary if the shape has
+/// no parameters.
 fn settings(recipe: &Recipe, given: &[(&str, f64)], faces: usize) -> String {
     if faces > MOST_EDGED {
         return "edges not drawn".to_owned();
@@ -95,7 +97,8 @@ fn settings(recipe: &Recipe, given: &[(&str, f64)], faces: usize) -> String {
     shown.collect::<Vec<_>>().join(" · ")
 }
 
-/// The cells row by row, on a ground of their own that follows the reader's theme.
+/// Builds the SVG with all cells, row by row. The background follows the colour theme of the
+/// reader.
 fn sheet(cells: &[String]) -> Result<String, std::fmt::Error> {
     let rows = cells.len().div_ceil(COLUMNS);
     let width = COLUMNS as f64 * (CELL[0] + GAP) + GAP;
@@ -128,20 +131,21 @@ fn sheet(cells: &[String]) -> Result<String, std::fmt::Error> {
 /// How the faces of a cell are coloured.
 #[derive(Clone, Copy, PartialEq)]
 enum Paint {
-    /// By the light that falls on them.
+    /// By brightness, from one light.
     Light,
-    /// By their row in the list.
+    /// By their row in the face list.
     Order,
 }
 
-/// From dark to light, for each ramp: its letter, and its first and last colour.
+/// The colour ramps: letter, darkest colour and lightest colour of each.
 const RAMPS: [(char, [f64; 3], [f64; 3]); 3] = [
     ('a', [44.0, 66.0, 92.0], [190.0, 212.0, 232.0]),
     ('b', [112.0, 72.0, 34.0], [238.0, 208.0, 160.0]),
     ('c', [62.0, 26.0, 84.0], [246.0, 226.0, 170.0]),
 ];
 
-/// One class for each tone of each ramp, and the colours of ground and text in both themes.
+/// Returns the style sheet: one class for each tone of each ramp, and the colours of background and
+/// text in both themes.
 fn style() -> Result<String, std::fmt::Error> {
     let mut css = String::from(
         "<style>
@@ -156,7 +160,7 @@ path{stroke-linejoin:round}.fine{stroke-width:3}.bold{stroke-width:6}
             let t = tone as f64 / (TONES - 1) as f64;
             let fill = std::array::from_fn(|i| dark[i] + t * (light[i] - dark[i]));
             let line = fill.map(|channel: f64| 0.62 * channel);
-            // Without edges the stroke only closes the hairlines between faces.
+            // If edges are not drawn, the stroke only closes the hairlines between faces.
             writeln!(
                 css,
                 ".{letter}{tone}{{fill:{fill};stroke:{line}}}.plain .{letter}{tone}{{stroke:{fill}}}",
@@ -197,11 +201,11 @@ fn unit(a: Vector) -> Vector {
     }
 }
 
-/// Where we look from: the directions to the right, upwards, and towards us.
+/// The view: the directions to the right, upwards, and towards the viewer.
 struct View([Vector; 3]);
 
 impl View {
-    /// From above for what lies in a plane; else from a corner and above.
+    /// Views flat meshes from above, and others from a corner and above.
     fn of(mesh: &PolygonMesh) -> Self {
         let mut heights = mesh.positions().iter().map(|p| p.z);
         let flat = heights
@@ -210,7 +214,8 @@ impl View {
         if flat {
             return Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
         }
-        // Pythagorean triples, for whole-number cosines and sines: about 28° and 37°.
+        // Pythagorean triples give rational cosines and sines: an azimuth of about 62° from the x
+        // axis and an elevation of about 37°.
         let [ca, sa] = [8.0 / 17.0, 15.0 / 17.0];
         let [ce, se] = [4.0 / 5.0, 3.0 / 5.0];
         let towards = [ce * ca, ce * sa, se];
@@ -223,7 +228,7 @@ impl View {
     }
 }
 
-/// A face as seen: its corners on the picture, its depth, and its tone.
+/// A projected face: its corners in the picture, its depth, and its tone.
 struct Seen {
     corners: Vec<[i64; 2]>,
     depth: f64,
@@ -231,7 +236,7 @@ struct Seen {
     tone: usize,
 }
 
-/// One cell: the mesh, its name, its parameters and its counts.
+/// Draws one cell: the mesh, its name, its parameters and its counts.
 fn cell(name: &str, settings: &str, mesh: &PolygonMesh, paint: Paint) -> String {
     let facts = Facts::of(mesh);
     let weight = match mesh.face_count() {
@@ -264,7 +269,8 @@ fn cell(name: &str, settings: &str, mesh: &PolygonMesh, paint: Paint) -> String 
     svg
 }
 
-/// The faces from far to near; of a closed mesh, whose faces look outward, those that face us.
+/// Projects the faces and sorts them from far to near. Of a closed mesh, only the faces that look
+/// towards the viewer are returned.
 fn seen(mesh: &PolygonMesh, closed: bool, paint: Paint) -> Vec<Seen> {
     let view = View::of(mesh);
     let points: Vec<Vector> = mesh
@@ -309,7 +315,7 @@ fn seen(mesh: &PolygonMesh, closed: bool, paint: Paint) -> Vec<Seen> {
     faces
 }
 
-/// The middle of the points as seen, and the scale at which they fill the picture.
+/// Returns the centre of the projected points, and the scale at which they fill the picture.
 fn frame(points: &[Vector]) -> ([f64; 2], f64) {
     let side = |i: usize| {
         let low = points.iter().map(|p| p[i]).fold(f64::INFINITY, f64::min);
@@ -323,7 +329,7 @@ fn frame(points: &[Vector]) -> ([f64; 2], f64) {
     ([x, y], PICTURE / wide.max(high))
 }
 
-/// Twice the area of a polygon, as a vector along its normal (Newell).
+/// Returns a vector along the normal of a polygon whose length is twice the area (Newell).
 fn area(mut corners: impl Iterator<Item = Vector>) -> Vector {
     let Some(first) = corners.next() else {
         return [0.0; 3];
@@ -337,7 +343,8 @@ fn area(mut corners: impl Iterator<Item = Vector>) -> Vector {
     sum
 }
 
-/// A face as a path in tenths of a pixel, every corner but the first relative to the one before.
+/// Formats a face as a path in tenths of a pixel. Every corner except the first is relative to the
+/// previous one.
 fn path(face: &Seen) -> String {
     let mut path = format!("<path class=\"{}{}\" d=\"M", face.ramp, face.tone);
     let mut last = [0, 0];

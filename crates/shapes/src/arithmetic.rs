@@ -1,13 +1,14 @@
-//! Sine, cosine and exponential from + − × ÷ alone.
+//! Sine, cosine and exponential function from + − × ÷ only.
 //!
-//! The platform's own differ in the last bits from machine to machine; IEEE arithmetic and square
-//! roots do not. So a shape has the same coordinates everywhere, and a checksum can prove it.
+//! The functions of the platform differ in the last bits between machines; IEEE arithmetic and
+//! square roots do not. So a shape has the same coordinates on every machine, and a checksum can
+//! verify this.
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, LN_2, LOG2_E};
 
-/// Cosine and sine of `k / n` of a full turn; exact at the quarters, and `n` must not be 0.
+/// Returns cosine and sine of `k / n` of a full turn; exact at quarter turns. `n` must not be 0.
 ///
-/// The turn is cut into eight mirrored octants in whole numbers, so that points which mirror each
+/// Integer arithmetic reduces the turn to one of eight mirrored octants. So points that mirror each
 /// other do so to the last bit.
 pub(crate) fn turn(k: usize, n: usize) -> [f64; 2] {
     let eighths = 8 * (k % n);
@@ -29,7 +30,7 @@ pub(crate) fn turn(k: usize, n: usize) -> [f64; 2] {
     }
 }
 
-/// Cosine and sine of an angle of at most π/4, by their power series.
+/// Returns cosine and sine of an angle of at most π/4, by their power series.
 fn small_angle(angle: f64) -> [f64; 2] {
     let square = angle * angle;
     let (mut cosine, mut sine) = (1.0, 1.0);
@@ -41,7 +42,8 @@ fn small_angle(angle: f64) -> [f64; 2] {
     [cosine, sine * angle]
 }
 
-/// e to the power −`x`, for `x` at least 0; 0 where that is below the normal numbers.
+/// Returns exp(−`x`) for `x` ≥ 0, or 0 for `x` above 700, so that all nonzero results are normal
+/// numbers.
 pub(crate) fn exp_minus(x: f64) -> f64 {
     if x > 700.0 {
         return 0.0;
@@ -52,7 +54,7 @@ pub(crate) fn exp_minus(x: f64) -> f64 {
     for i in (1..=14).rev() {
         power = 1.0 + power * rest / f64::from(i);
     }
-    // 2^−halvings, by its exponent bits: 700 · log2 e is below 1023.
+    // The exponent bits of 2^−halvings; 700 · log2 e is below 1023.
     power * f64::from_bits((1023 - halvings as u64) << 52)
 }
 

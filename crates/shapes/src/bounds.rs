@@ -1,15 +1,15 @@
-//! Boxes that hold a solid, and the lattices over them.
+//! Bounding boxes of solids, and lattices over the boxes.
 
 use crate::error::ShapeError;
 use crate::marching::{Lattice, MARGIN};
 
-/// The most cubes of a lattice.
+/// Maximum number of cubes of a lattice.
 const MAX_CUBES: f64 = (1_u64 << 29) as f64;
 
-/// The most lattice points of one layer: two layers are kept.
+/// Maximum number of lattice points in one layer; two layers are kept in memory.
 const MAX_LAYER: f64 = (1_u64 << 22) as f64;
 
-/// A box with sides along the axes; low corner, high corner.
+/// A box with sides along the axes, from its low corner to its high corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Bounds {
     low: [f64; 3],
@@ -17,7 +17,8 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
-    /// `half` either way from `centre`; `None` if a side is negative.
+    /// Builds the box that extends by `half` in both directions from `centre`; `None` if a side is
+    /// negative.
     pub(crate) fn around(centre: [f64; 3], half: [f64; 3]) -> Option<Self> {
         half.iter().all(|&side| side >= 0.0).then(|| Self {
             low: std::array::from_fn(|axis| centre[axis] - half[axis]),
@@ -25,7 +26,7 @@ impl Bounds {
         })
     }
 
-    /// What holds both.
+    /// Returns the smallest box that contains both boxes.
     pub(crate) fn hull(a: Option<Self>, b: Option<Self>) -> Option<Self> {
         match (a, b) {
             (Some(a), Some(b)) => Some(Self {
@@ -36,7 +37,7 @@ impl Bounds {
         }
     }
 
-    /// What is in both.
+    /// Returns the intersection of both boxes.
     pub(crate) fn overlap(a: Option<Self>, b: Option<Self>) -> Option<Self> {
         let (a, b) = (a?, b?);
         let low: [f64; 3] = std::array::from_fn(|axis| a.low[axis].max(b.low[axis]));
@@ -46,22 +47,22 @@ impl Bounds {
             .then_some(Self { low, high })
     }
 
-    /// Whether a point is in the box.
+    /// Returns whether a point is in the box.
     #[cfg(test)]
     pub(crate) fn holds(&self, point: [f64; 3]) -> bool {
         (0..3).all(|axis| (self.low[axis]..=self.high[axis]).contains(&point[axis]))
     }
 
-    /// The longest side.
+    /// Returns the length of the longest side.
     pub(crate) fn longest(&self) -> f64 {
         let [x, y, z]: [f64; 3] = std::array::from_fn(|axis| self.high[axis] - self.low[axis]);
         x.max(y).max(z)
     }
 
-    /// The part that is left without the outer slices, of sixteen each way, that are `empty`; `None`
-    /// if all are.
+    /// Returns the smallest box of blocks that are not `empty`, out of sixteen blocks along each
+    /// axis; `None` if all are empty.
     ///
-    /// `empty(centre, radius)` may be true of a ball only if there is nothing in it.
+    /// `empty(centre, radius)` may return true only if the ball contains no part of the solid.
     pub(crate) fn tightened(&self, empty: impl Fn([f64; 3], f64) -> bool) -> Option<Self> {
         const SLICES: usize = 16;
         let step: [f64; 3] =
@@ -84,8 +85,9 @@ impl Bounds {
         left
     }
 
-    /// A lattice of cubes of side `spacing` around the box, a cube or two wider on every side: by
-    /// `shift`, of which each part is from 0 to 1, more on the low side.
+    /// Builds a lattice of cubes of side `spacing` that extends beyond the box by one or two cubes
+    /// on every side. Each component of `shift`, from 0 to 1, moves the lattice towards the low
+    /// side.
     pub(crate) fn lattice(&self, spacing: f64, shift: [f64; 3]) -> Result<Lattice, ShapeError> {
         let cells: [f64; 3] =
             std::array::from_fn(|axis| ((self.high[axis] - self.low[axis]) / spacing).ceil() + 3.0);
@@ -96,7 +98,7 @@ impl Bounds {
         }
         let origin: [f64; 3] =
             std::array::from_fn(|axis| self.low[axis] - (1.0 + shift[axis]) * spacing);
-        // Two vertices differ by MARGIN · spacing or more along some axis, which f32 has to show.
+        // Two vertices differ by at least MARGIN · spacing along some axis; f32 must resolve this.
         let extent = (0..3).fold(0.0_f64, |extent, axis| {
             let end = origin[axis] + cells[axis] * spacing;
             extent.max(origin[axis].abs()).max(end.abs())

@@ -1,6 +1,6 @@
-//! A mesh being written down.
+//! A mesh while it is being built.
 
-use mesh_core::{FaceList, Point, PolygonMesh, VertexId, row};
+use sixfold_core::{FaceList, Point, PolygonMesh, VertexId, row};
 
 /// Positions and faces in the order in which they are added.
 pub(crate) struct Draft {
@@ -9,7 +9,7 @@ pub(crate) struct Draft {
 }
 
 impl Draft {
-    /// An empty draft with room for some vertices and corners.
+    /// Creates an empty draft with capacity for the given numbers of vertices and corners.
     pub(crate) fn with_capacity(vertices: usize, corners: usize) -> Self {
         Self {
             positions: Vec::with_capacity(vertices),
@@ -17,7 +17,7 @@ impl Draft {
         }
     }
 
-    /// Adds a vertex, rounded to `f32` and with −0 as 0; its number.
+    /// Adds a vertex and returns its number. The position is rounded to `f32`, and −0 becomes 0.
     pub(crate) fn vertex(&mut self, position: [f64; 3]) -> u32 {
         let name = row(self.positions.len());
         let position = position.map(|x| x as f32 + 0.0);
@@ -29,17 +29,17 @@ impl Draft {
     pub(crate) fn face(&mut self, corners: impl IntoIterator<Item = u32>) {
         let corners = corners.into_iter().map(VertexId::new);
         let pushed = self.faces.push(corners);
-        pushed.expect("the size was checked before the draft was begun");
+        pushed.expect("the number of corners is checked before a draft is created");
     }
 
-    /// How many faces there are so far.
+    /// Returns the number of faces added so far.
     pub(crate) fn face_count(&self) -> usize {
         self.faces.len()
     }
 
-    /// The mesh.
+    /// Returns the finished mesh.
     pub(crate) fn finish(self) -> PolygonMesh {
         let mesh = PolygonMesh::from_faces(self.positions, self.faces);
-        mesh.expect("a shape names only vertices it has, each once a face")
+        mesh.expect("the faces of a shape use existing vertices, each at most once per face")
     }
 }

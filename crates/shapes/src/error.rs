@@ -1,11 +1,11 @@
-//! What a generator refuses, before it allocates anything.
+//! The errors that a generator returns before it allocates anything.
 
-/// Why there is no such shape.
+/// Why a shape cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the message says what each field is")]
+#[expect(missing_docs, reason = "the message shows the meaning of each field")]
 pub enum ShapeError {
-    /// A parameter beyond what the shape allows.
+    /// A parameter is outside the range of the shape.
     #[error("{parameter} = {value}: choose from {least} to {greatest}")]
     OutOfRange {
         parameter: &'static str,
@@ -13,15 +13,15 @@ pub enum ShapeError {
         least: f64,
         greatest: f64,
     },
-    /// Each parameter is allowed, but together they ask for too much.
-    #[error("{shape} with {} has {corners} corners, beyond {limit}: choose smaller numbers", list(.parameters))]
+    /// Each parameter is in its range, but together they give too many corners.
+    #[error("{shape} with {} has {corners} corners, more than {limit}: choose smaller numbers", list(.parameters))]
     TooMany {
         shape: &'static str,
         parameters: Vec<(&'static str, usize)>,
         corners: u64,
         limit: u64,
     },
-    /// A count that is no whole number.
+    /// A count is not a whole number.
     #[error("{parameter} = {value}: choose a whole number from {least} to {greatest}")]
     NotWhole {
         parameter: &'static str,
@@ -29,48 +29,49 @@ pub enum ShapeError {
         least: f64,
         greatest: f64,
     },
-    /// A name that the shape does not know.
+    /// The shape has no parameter of this name.
     #[error("{shape} has no parameter {given:?}: {}", allowed(.parameters))]
     UnknownParameter {
         shape: &'static str,
         given: String,
         parameters: Vec<&'static str>,
     },
-    /// One parameter given twice.
-    #[error("{shape} is given {parameter} twice: leave one out")]
+    /// A parameter is given twice.
+    #[error("parameter {parameter} of {shape} is given twice: remove one")]
     RepeatedParameter {
         shape: &'static str,
         parameter: &'static str,
     },
-    /// Control points that fill no grid.
+    /// The control points do not fill a grid.
     #[error("{points} control points in rows of {columns}: every row must be full")]
     RaggedNet { points: usize, columns: usize },
-    /// A field that is not positive far away.
-    #[error("the solid has no bounds: raise the level of the blobs, or inflate by less")]
+    /// The field is not positive far away.
+    #[error("the solid is unbounded: raise the level of the blobs, or inflate by less")]
     Unbounded,
-    /// A field without an inside, or none that a lattice finds.
-    #[error("no lattice point lies in the solid: make it thicker, or ask for more faces")]
+    /// The solid is empty, or too thin for the lattice.
+    #[error("the solid contains no lattice point: make it thicker, or choose more faces")]
     Nothing,
-    /// A lattice that memory, or `f32`, cannot hold.
+    /// The lattice is too large for memory, or too fine for `f32`.
     #[error(
-        "a lattice of spacing {spacing:e} is too fine there: ask for fewer faces, or move the solid to the origin"
+        "a lattice of spacing {spacing:e} is too fine for this solid: choose fewer faces, or move the solid to the origin"
     )]
     TooFine { spacing: f64 },
-    /// A surface whose number of faces jumps past the one asked for.
-    #[error("no lattice gives {faces} faces: ask for about {nearest}")]
+    /// No lattice gives the requested number of faces, because the number changes in jumps.
+    #[error("no lattice gives {faces} faces: choose about {nearest}")]
     Missed { faces: usize, nearest: usize },
 }
 
-/// The most corners that a generator makes: as many as every structure can number (2³¹ − 1).
+/// Maximum number of corners of a shape: every structure can number this many (2³¹ − 1).
 pub(crate) const MAX_CORNERS: u64 = (1 << 31) - 1;
 
-/// The most cells along a side: `f32` tells all whole and half numbers up to twice this apart.
+/// Maximum number of cells along a side. `f32` represents all whole and half numbers up to twice
+/// this number.
 pub(crate) const MAX_SIDE: usize = 1 << 22;
 
-/// The most steps around a circle: `f32` tells neighbours apart all the way round.
+/// Maximum number of steps around a circle. With `f32`, adjacent points still differ everywhere.
 pub(crate) const MAX_AROUND: usize = 1 << 20;
 
-/// Refuses a `value` outside `least..=greatest`.
+/// Returns an error if `value` is outside `least..=greatest`.
 pub(crate) fn within(
     parameter: &'static str,
     value: usize,
@@ -89,7 +90,7 @@ pub(crate) fn within(
     })
 }
 
-/// Refuses a `value` outside `least..=greatest`, or NaN.
+/// Returns an error if `value` is NaN or outside `least..=greatest`.
 pub(crate) fn between(
     parameter: &'static str,
     value: f64,
@@ -107,7 +108,7 @@ pub(crate) fn between(
     })
 }
 
-/// Refuses more than [`MAX_CORNERS`].
+/// Returns an error if there are more than [`MAX_CORNERS`] corners.
 pub(crate) fn corners_within(
     shape: &'static str,
     parameters: &[(&'static str, usize)],
@@ -124,7 +125,7 @@ pub(crate) fn corners_within(
     }
 }
 
-/// `m = 3, n = 4`.
+/// Formats parameters as `m = 3, n = 4`.
 fn list(parameters: &[(&'static str, usize)]) -> String {
     let pairs: Vec<String> = parameters
         .iter()
@@ -133,10 +134,10 @@ fn list(parameters: &[(&'static str, usize)]) -> String {
     pairs.join(", ")
 }
 
-/// `choose from m, n`.
+/// Formats the allowed names as `choose from m, n`.
 fn allowed(parameters: &[&'static str]) -> String {
     match parameters {
-        [] => "it takes none".to_owned(),
+        [] => "it has no parameters".to_owned(),
         names => format!("choose from {}", names.join(", ")),
     }
 }

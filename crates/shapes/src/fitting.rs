@@ -1,32 +1,33 @@
-//! The lattice that gives a surface the number of faces that was asked for.
+//! The search for a lattice that gives a surface the requested number of faces.
 
-use mesh_core::PolygonMesh;
+use sixfold_core::PolygonMesh;
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, within};
 use crate::marching::{Solid, polygonised as marched};
 
-/// The fewest faces to ask for.
+/// Minimum number of faces that can be requested.
 pub(crate) const MIN_FACES: usize = 100;
 
-/// The most faces to ask for.
+/// Maximum number of faces that can be requested.
 pub(crate) const MAX_FACES: usize = 4_000_000;
 
-/// How many lattices are tried.
+/// Maximum number of lattices that are tried.
 const TRIES: u32 = 24;
 
-/// How many cubes are searched for a solid before there is held to be none.
+/// Size of a lattice, in cubes, above which the solid counts as empty if no face was found.
 const FRUITLESS: f64 = (1 << 22) as f64;
 
-/// Refuses a number of faces that is not to be asked for.
+/// Returns an error if the number of faces is out of range.
 pub(crate) fn check_faces(faces: usize) -> Result<(), ShapeError> {
     within("faces", faces, MIN_FACES, MAX_FACES)
 }
 
-/// The surface of `solid`, which `bounds` hold, as about `faces` triangles.
+/// Builds the surface of `solid`, which lies within `bounds`, from about `faces` triangles.
 ///
-/// The number of faces goes with the square of the fineness, so each lattice tells the spacing of
-/// the next. Where a surface follows the lattice the number jumps; so each is shifted anew as well.
+/// The number of faces is inversely proportional to the square of the spacing, so each lattice
+/// gives an estimate for the spacing of the next one. If a surface is parallel to the lattice, the
+/// number jumps. Therefore each lattice also has another shift.
 pub(crate) fn polygonised(
     solid: &impl Solid,
     bounds: Bounds,
@@ -35,7 +36,7 @@ pub(crate) fn polygonised(
     let tolerance = (faces / 20).max(20);
     let mut spacing = bounds.longest() / 16.0;
     if spacing == 0.0 {
-        return Err(ShapeError::Nothing); // A point encloses nothing.
+        return Err(ShapeError::Nothing); // The bounds are a single point.
     }
     let mut nearest = 0;
     for attempt in 0..TRIES {
@@ -59,8 +60,8 @@ pub(crate) fn polygonised(
     }
 }
 
-/// Shifts that fill the cube evenly: multiples of the powers of the inverse plastic ratio of
-/// dimension three (Roberts 2018).
+/// Returns a shift. The shifts fill the cube evenly: they are multiples of the powers of the
+/// inverse plastic ratio in three dimensions (Roberts 2018).
 fn shift(attempt: u32) -> [f64; 3] {
     const STEPS: [f64; 3] = [
         0.819_172_513_396_164_4,

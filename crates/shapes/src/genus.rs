@@ -1,11 +1,11 @@
 //! A closed surface of any genus.
 
-use mesh_core::PolygonMesh;
+use sixfold_core::PolygonMesh;
 
 use crate::draft::Draft;
 use crate::error::{MAX_SIDE, ShapeError, corners_within, within};
 
-/// A bar of unit cubes with `g` holes through it: a closed surface of quads and genus `g`.
+/// Builds a bar of unit cubes with `g` holes through it: a closed surface of quads with genus `g`.
 ///
 /// V = 16(g + 1), E = 36g + 28, F = 18g + 14; χ = 2 − 2g.
 ///
@@ -19,7 +19,7 @@ use crate::error::{MAX_SIDE, ShapeError, corners_within, within};
 ///
 /// # Errors
 ///
-/// `g` above 2²².
+/// Fails if `g` is above 2²².
 pub fn genus(g: usize) -> Result<PolygonMesh, ShapeError> {
     within("g", g, 0, MAX_SIDE)?;
     let corners = corners_within("genus", &[("g", g)], 4 * (18 * g as u64 + 14))?;
@@ -34,7 +34,7 @@ pub fn genus(g: usize) -> Result<PolygonMesh, ShapeError> {
     }
     let solid = |x: usize, y: usize| x < length && y < width && !(x % 2 == 1 && y == 1);
     let at = |x: usize, y: usize, z: usize| ((x * (width + 1) + y) * 2 + z) as u32;
-    // A wall above a → b, seen from the right of that direction.
+    // Adds the vertical wall above a → b; it faces to the right of that direction.
     let wall = |draft: &mut Draft, [ax, ay]: [usize; 2], [bx, by]: [usize; 2]| {
         draft.face([at(ax, ay, 0), at(bx, by, 0), at(bx, by, 1), at(ax, ay, 1)]);
     };

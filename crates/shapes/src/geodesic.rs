@@ -1,18 +1,18 @@
-//! The geodesic sphere: an icosahedron divided and projected.
+//! The geodesic sphere: a subdivided icosahedron, projected to the unit sphere.
 
-use mesh_core::PolygonMesh;
+use sixfold_core::PolygonMesh;
 
 use crate::draft::Draft;
 use crate::error::{ShapeError, within};
 use crate::platonic::{ICOSAHEDRON_FACES, ICOSAHEDRON_VERTICES};
 
-/// The greatest frequency: 60 f² corners are at most 2³¹ − 1.
+/// Maximum frequency: 60 f² corners must not exceed 2³¹ − 1.
 pub(crate) const MAX_FREQUENCY: usize = 5_982;
 
-/// The icosahedron with every edge cut into `frequency` parts, projected to the unit sphere.
+/// Builds an icosahedron with each edge cut into `frequency` parts, projected to the unit sphere.
 ///
-/// V = 10f² + 2, E = 30f², F = 20f²; twelve vertices of valence 5, all others 6. Class I of
-/// Buckminster Fuller's spheres, at any frequency.
+/// V = 10f² + 2, E = 30f², F = 20f². Twelve vertices have valence 5, all others have valence 6.
+/// This is class I of Buckminster Fuller's spheres, at any frequency.
 ///
 /// ```text
 ///          c
@@ -26,7 +26,7 @@ pub(crate) const MAX_FREQUENCY: usize = 5_982;
 ///
 /// # Errors
 ///
-/// `frequency` outside 1 to 5982.
+/// Fails if `frequency` is outside 1 to 5982.
 pub fn geodesic(frequency: usize) -> Result<PolygonMesh, ShapeError> {
     within("frequency", frequency, 1, MAX_FREQUENCY)?;
     let f = frequency;
@@ -63,14 +63,14 @@ pub fn geodesic(frequency: usize) -> Result<PolygonMesh, ShapeError> {
     Ok(draft.finish())
 }
 
-/// The names of the lattice points of one divided face, row by row.
+/// Vertex numbers of the lattice points of one subdivided face, row by row.
 struct Triangle {
     frequency: usize,
     names: Vec<u32>,
 }
 
 impl Triangle {
-    /// The points that `face` shares with others; the inner ones are yet to be set.
+    /// Fills in the points that the face shares with other faces. The inner points are set later.
     fn of(frequency: usize, [a, b, c]: [u32; 3], edges: &[[u32; 2]]) -> Self {
         let f = frequency;
         let names = vec![0; (f + 1) * (f + 2) / 2];
@@ -98,7 +98,7 @@ impl Triangle {
     }
 }
 
-/// The name of the point `k` steps from `from` towards `to`.
+/// Returns the vertex number of the point `k` steps from `from` towards `to`.
 fn on_edge(frequency: usize, from: u32, to: u32, k: usize, edges: &[[u32; 2]]) -> u32 {
     if k == 0 {
         return from;
@@ -111,17 +111,17 @@ fn on_edge(frequency: usize, from: u32, to: u32, k: usize, edges: &[[u32; 2]]) -
     (12 + edge * (frequency - 1) + step - 1) as u32
 }
 
-/// The thirty edges of the icosahedron, sorted, the lower end first.
+/// Returns the thirty edges of the icosahedron, sorted, each with its lower end first.
 fn edges() -> Vec<[u32; 2]> {
     let sides = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
     let sides = ICOSAHEDRON_FACES.iter().flat_map(sides);
-    // Each edge is run once in each direction.
+    // Each edge occurs as a side once in each direction.
     let mut edges: Vec<[u32; 2]> = sides.filter(|[a, b]| a < b).collect();
     edges.sort_unstable();
     edges
 }
 
-/// The weighted mean of three corners, pushed out to the unit sphere.
+/// Returns the weighted mean of three corners, projected to the unit sphere.
 fn on_sphere(weights: [(u32, usize); 3]) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for (corner, weight) in weights {

@@ -1,7 +1,7 @@
-//! Solids as fields: negative inside, zero on the surface, positive outside.
+//! Solids as scalar fields: negative inside, zero on the surface, positive outside.
 //!
-//! Fields are built from balls, rings, boxes and blobs, put together as sets or blended, and made
-//! into closed triangle meshes of any topology by [`Field::polygonised`].
+//! The basic fields are balls, tori, boxes and blobs. Set operations and blends combine them.
+//! [`Field::polygonised`] turns a field into a closed triangle mesh of any topology.
 //!
 //! | | field |
 //! |---|---|
@@ -11,71 +11,74 @@
 //! | smooth union | (f + g − √(f² + g² − 2αfg)) / (1 + α) |
 //! | blobs | level − Σ a·exp(−b·\|p − c\|²) |
 //!
-//! The smooth union (Rvachev's R-function) is zero where the union is, and smooth everywhere else;
-//! so its blend shows on the other levels: [inflate](Field::inflated) it a little.
+//! The smooth union (Rvachev's R-function) is zero on the surface of the union and smooth
+//! everywhere else. Its blend is visible on other levels only: [inflate](Field::inflated) the field
+//! a little.
 //!
 //! ```
-//! use shapes::implicit::Field;
+//! use sixfold_shapes::implicit::Field;
 //!
 //! let ball = Field::sphere([0.0; 3], 0.5)?;
 //! let ring = Field::torus([0.0; 3], [0.0, 0.0, 1.0], 1.0, 0.2)?;
 //! let mesh = ball.union(ring)?.polygonised(2_000)?;
 //! assert!(mesh.face_count().abs_diff(2_000) <= 100);
-//! # Ok::<(), shapes::ShapeError>(())
+//! # Ok::<(), sixfold_shapes::ShapeError>(())
 //! ```
 
-use mesh_core::PolygonMesh;
+use sixfold_core::PolygonMesh;
 
 use crate::error::{ShapeError, between, within};
 use crate::fitting;
 use crate::node::{Node, square};
 
-/// The greatest coordinate, radius or level.
+/// Maximum radius, level and absolute value of a coordinate.
 const GREATEST: f64 = 1e6;
 
-/// The least radius or sharpness.
+/// Minimum radius, level and sharpness.
 const LEAST: f64 = 1e-6;
 
-/// The most fields within each other. A chain of unions is as deep as it is long; many parts want to
-/// be joined in pairs, and the pairs in pairs.
+/// Maximum nesting depth of fields. A chain of unions is as deep as it is long. To join many parts,
+/// join them in pairs, then join the pairs in pairs.
 const MAX_DEPTH: usize = 500;
 
-/// One bell of a sum: `strength` · exp(−`sharpness` · |p − `centre`|²).
+/// One Gaussian bell of a sum: `strength` · exp(−`sharpness` · |p − `centre`|²).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blob {
-    /// Where it is highest.
+    /// Centre of the bell.
     pub centre: [f64; 3],
-    /// How high it is there; negative makes a dent.
+    /// Height at the centre; a negative height makes a dent.
     pub strength: f64,
-    /// How fast it falls off.
+    /// Rate at which the bell falls off with the squared distance.
     pub sharpness: f64,
 }
 
-/// A solid of bounded size, as a function that is negative inside.
+/// A solid, as a function that is negative inside it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
     node: Node,
-    /// How many fields lie within each other at most: evaluation recurses, and stacks end.
+    /// Nesting depth; limited because evaluation is recursive and the stack is finite.
     depth: usize,
 }
 
 impl Field {
-    /// The ball around `centre`; the field is the distance from its surface.
+    /// Builds the ball around `centre`. The field is the signed distance from its surface.
     ///
     /// # Errors
     ///
-    /// A coordinate beyond ±10⁶, or a radius outside 10⁻⁶ to 10⁶.
+    /// Fails if a coordinate is beyond ±10⁶ or the radius is outside 10⁻⁶ to 10⁶.
     pub fn sphere(centre: [f64; 3], radius: f64) -> Result<Self, ShapeError> {
         check_point("centre", centre)?;
         between("radius", radius, LEAST, GREATEST)?;
         Ok(Self::simple(Node::Sphere { centre, radius }))
     }
 
-    /// The tube of radius `tube` around a circle of radius `ring` about `axis`; a distance too.
+    /// Builds the tube of radius `tube` around a circle of radius `ring` about `axis`. The field is
+    /// the signed distance from its surface.
     ///
     /// # Errors
     ///
-    /// A coordinate beyond ±10⁶, an axis whose length, or a radius that is outside 10⁻⁶ to 10⁶.
+    /// Fails if a coordinate is beyond ±10⁶, or if a radius or the length of the axis is outside
+    /// 10⁻⁶ to 10⁶.
     pub fn torus(
         centre: [f64; 3],
         axis: [f64; 3],
@@ -97,11 +100,12 @@ impl Field {
         }))
     }
 
-    /// The box that reaches `half` either way from `centre` along each axis; a distance too.
+    /// Builds the box that extends by `half` in both directions from `centre` along each axis. The
+    /// field is the signed distance from its surface.
     ///
     /// # Errors
     ///
-    /// A coordinate beyond ±10⁶, or a half side outside 10⁻⁶ to 10⁶.
+    /// Fails if a coordinate is beyond ±10⁶ or half a side is outside 10⁻⁶ to 10⁶.
     pub fn cuboid(centre: [f64; 3], half: [f64; 3]) -> Result<Self, ShapeError> {
         check_point("centre", centre)?;
         for side in half {
@@ -110,12 +114,12 @@ impl Field {
         Ok(Self::simple(Node::Cuboid { centre, half }))
     }
 
-    /// Where the sum of the blobs is above `level` (Blinn 1982).
+    /// Builds the solid in which the sum of the blobs is above `level` (Blinn 1982).
     ///
     /// # Errors
     ///
-    /// A coordinate or strength beyond ±10⁶, a sharpness or level outside 10⁻⁶ to 10⁶, or more than
-    /// 10⁶ blobs.
+    /// Fails if a coordinate or strength is beyond ±10⁶, if a sharpness or the level is outside
+    /// 10⁻⁶ to 10⁶, or if there are more than 10⁶ blobs.
     pub fn blobs(blobs: &[Blob], level: f64) -> Result<Self, ShapeError> {
         between("blobs", blobs.len() as f64, 0.0, GREATEST)?;
         for blob in blobs {
@@ -128,48 +132,49 @@ impl Field {
         Ok(Self::simple(Node::Blobs { blobs, level }))
     }
 
-    /// What is in either.
+    /// Returns the union: the points that are in at least one of the two solids.
     ///
     /// # Errors
     ///
-    /// More than 500 fields within each other.
+    /// Fails if the nesting depth exceeds 500.
     pub fn union(self, other: Self) -> Result<Self, ShapeError> {
         self.with(other, Node::Union)
     }
 
-    /// What is in both.
+    /// Returns the intersection: the points that are in both solids.
     ///
     /// # Errors
     ///
-    /// More than 500 fields within each other.
+    /// Fails if the nesting depth exceeds 500.
     pub fn intersection(self, other: Self) -> Result<Self, ShapeError> {
         self.with(other, Node::Intersection)
     }
 
-    /// What is in this one and not in the other.
+    /// Returns the difference: the points that are in this solid and not in `other`.
     ///
     /// # Errors
     ///
-    /// More than 500 fields within each other.
+    /// Fails if the nesting depth exceeds 500.
     pub fn difference(self, other: Self) -> Result<Self, ShapeError> {
         self.with(other, Node::Difference)
     }
 
-    /// What is in either, with smooth levels around it: the most for `alpha` = 0, none for 1.
+    /// Returns the union with smooth levels around it: smoothest for `alpha` = 0, not smoothed for
+    /// `alpha` = 1.
     ///
     /// # Errors
     ///
-    /// `alpha` outside 0 to 1, or more than 500 fields within each other.
+    /// Fails if `alpha` is outside 0 to 1 or the nesting depth exceeds 500.
     pub fn smooth_union(self, other: Self, alpha: f64) -> Result<Self, ShapeError> {
         between("alpha", alpha, 0.0, 1.0)?;
         self.with(other, |parts| Node::SmoothUnion { parts, alpha })
     }
 
-    /// The level `by` instead of zero: larger, or smaller where it is negative.
+    /// Moves the surface to the level `by`: the solid grows, or shrinks if `by` is negative.
     ///
     /// # Errors
     ///
-    /// `by` beyond ±10⁶, or more than 500 fields within each other.
+    /// Fails if `by` is beyond ±10⁶ or the nesting depth exceeds 500.
     pub fn inflated(self, by: f64) -> Result<Self, ShapeError> {
         between("by", by, -GREATEST, GREATEST)?;
         let part = Box::new(self.node);
@@ -185,7 +190,7 @@ impl Field {
         Self::nested(join(Box::new([self.node, other.node])), depth)
     }
 
-    /// A field of parts that are at most `depth` deep.
+    /// Builds a field from parts that are nested at most `depth` deep.
     fn nested(node: Node, depth: usize) -> Result<Self, ShapeError> {
         within("depth", depth + 1, 1, MAX_DEPTH)?;
         let depth = depth + 1;
@@ -196,29 +201,30 @@ impl Field {
         Self { node, depth: 1 }
     }
 
-    /// The field at a point: negative inside, positive outside.
+    /// Evaluates the field at a point: negative inside, positive outside.
     pub fn at(&self, point: [f64; 3]) -> f64 {
         self.node.at(point)
     }
 
-    /// The surface as about `faces` triangles: closed, consistently oriented outward, manifold.
+    /// Builds the surface from about `faces` triangles: closed, manifold, oriented outward.
     ///
-    /// The count is met within 5 %, or within 20 faces where that is more. The lattice of marching
-    /// tetrahedra (Doi and Koide 1991) is as fine as that needs; parts thinner than it may be
-    /// missed, and gaps closed. No two vertices share a place. The field is evaluated near the
-    /// surface only.
+    /// The number of faces is met within 5 %, or within 20 faces if that is more. It determines how
+    /// fine the lattice of the marching tetrahedra is (Doi and Koide 1991). Parts that are thinner
+    /// than the lattice may be missing, and such gaps may be closed. No two vertices share a
+    /// position. The field is evaluated near the surface only.
     ///
     /// # Errors
     ///
-    /// `faces` outside 100 to 4,000,000; a solid without bounds, or in which no lattice point lies;
-    /// a count that no lattice meets; a lattice too fine for `f32` at that place.
+    /// Fails if `faces` is outside 100 to 4,000,000, if the solid is unbounded or contains no
+    /// lattice point, if no lattice gives that number of faces, or if the lattice is too fine for
+    /// memory or for `f32` at these coordinates.
     pub fn polygonised(&self, faces: usize) -> Result<PolygonMesh, ShapeError> {
         fitting::check_faces(faces)?;
         let bounds = self.node.bounds()?.ok_or(ShapeError::Nothing)?;
         fitting::polygonised(&self.node, bounds, faces)
     }
 
-    /// The surface on a lattice of the given spacing.
+    /// Builds the surface on a lattice of the given spacing.
     pub(crate) fn polygonised_at(&self, spacing: f64) -> Result<PolygonMesh, ShapeError> {
         let bounds = self.node.bounds()?.ok_or(ShapeError::Nothing)?;
         let lattice = bounds.lattice(spacing, [0.0; 3])?;

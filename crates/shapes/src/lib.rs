@@ -1,4 +1,4 @@
-//! Meshes made by formula, with counts known in closed form.
+//! Meshes that are built by formula, with element counts in closed form.
 //!
 //! | shape | V | E | F | χ |
 //! |---|---|---|---|---|
@@ -23,19 +23,20 @@
 //! | [`grid_with_holes`], h holes | (m + 1)(n + 1) | 2mn + m + n | mn − h | 1 − h |
 //! | [`implicit`] surfaces, [`default_study`] | F/2 + χ | 3F/2 | F | by topology |
 //!
-//! Closed shapes are oriented outward, flat ones counter-clockwise seen from above. Every vertex has
-//! a place of its own. No platform's sine is called, so a shape is the same on every machine.
-//! Parameters beyond the documented ranges are refused with a [`ShapeError`] before anything is
-//! allocated. [`Order`] changes the order of any mesh; [`RECIPES`] lists all shapes by name.
+//! Faces of closed shapes are oriented outward. Faces of flat shapes run counter-clockwise as seen
+//! from above. No two vertices share a position (for a patch, this depends on the control net). The
+//! code calls no trigonometric function of the platform, so a shape is the same on every machine.
+//! Parameters outside the documented ranges return a [`ShapeError`] before anything is allocated.
+//! [`Order`] changes the order of any mesh; [`RECIPES`] lists all shapes by name.
 //!
 //! ```
-//! use mesh_core::Facts;
+//! use sixfold_core::Facts;
 //!
-//! let torus = shapes::recipe("torus").expect("a shape of that name");
+//! let torus = sixfold_shapes::recipe("torus").expect("a shape of that name");
 //! let mesh = torus.make(&[("m", 40.0), ("n", 20.0)])?;
-//! assert_eq!(mesh, shapes::torus(40, 20)?);
-//! assert_eq!(Facts::of(&shapes::morton(&mesh)).genus, Some(1));
-//! # Ok::<(), shapes::ShapeError>(())
+//! assert_eq!(mesh, sixfold_shapes::torus(40, 20)?);
+//! assert_eq!(Facts::of(&sixfold_shapes::morton(&mesh)).genus, Some(1));
+//! # Ok::<(), sixfold_shapes::ShapeError>(())
 //! ```
 
 mod arithmetic;

@@ -1,39 +1,40 @@
-//! Marching tetrahedra: the surface of a solid, as triangles.
+//! Marching tetrahedra: triangulates the surface of a solid.
 
 use crate::draft::Draft;
 
-/// How near to a lattice point a crossing may come, as a part of the lattice edge.
+/// Minimum distance of a crossing from a lattice point, as a fraction of the lattice edge.
 ///
-/// Nearer ones are moved off it: otherwise the crossings of all the edges there would coincide.
+/// Nearer crossings are moved away; otherwise the crossings of all edges at the point would
+/// coincide.
 pub(crate) const MARGIN: f64 = 0.08;
 
-/// How often a crossing found by a straight line is bettered.
+/// Number of refinement steps after a crossing was found by linear interpolation.
 const REFINEMENTS: usize = 2;
 
-/// The lattice points along a side of the blocks that are asked about as a whole.
+/// Number of lattice points along a side of the blocks whose sign is tested as a whole.
 const BLOCK: usize = 8;
 
-/// What is negative inside and positive outside.
+/// A solid as a function: negative inside, positive outside.
 pub(crate) trait Solid {
-    /// The value at a point.
+    /// Returns the value at a point.
     fn at(&self, point: [f64; 3]) -> f64;
 
-    /// 1 or −1 if all values in a ball are known to have that sign.
+    /// Returns 1 or −1 if all values in a ball certainly have that sign.
     fn sign_over(&self, centre: [f64; 3], radius: f64) -> Option<f64>;
 }
 
 /// A lattice of cubes.
 pub(crate) struct Lattice {
-    /// The lowest lattice point.
+    /// Lattice point with the lowest coordinates.
     pub(crate) origin: [f64; 3],
-    /// The side of a cube.
+    /// Side length of a cube.
     pub(crate) spacing: f64,
-    /// How many cubes there are along each axis.
+    /// Number of cubes along each axis.
     pub(crate) cells: [usize; 3],
 }
 
 impl Lattice {
-    /// How many cubes there are.
+    /// Returns the number of cubes.
     pub(crate) fn cubes(&self) -> f64 {
         self.cells.iter().map(|&count| count as f64).product()
     }
@@ -42,15 +43,15 @@ impl Lattice {
         [0, 1, 2].map(|axis| self.origin[axis] + self.spacing * at[axis] as f64)
     }
 
-    /// Whether a lattice point lies on the outside of the lattice.
+    /// Returns whether a lattice point is on the outside of the lattice.
     fn is_outermost(&self, at: [usize; 3]) -> bool {
         (0..3).any(|axis| at[axis] == 0 || at[axis] == self.cells[axis])
     }
 }
 
-/// The paths along the sides of a cube from corner 000 to corner 111, as bits zyx: six tetrahedra.
+/// The paths along the edges of a cube from corner 000 to corner 111 (bits zyx): six tetrahedra.
 ///
-/// Those whose four corners, in the order of the path, turn to the left come first.
+/// The first three paths have positive orientation, the last three have negative orientation.
 const PATHS: [[usize; 4]; 6] = [
     [0, 1, 3, 7],
     [0, 2, 6, 7],
@@ -60,14 +61,14 @@ const PATHS: [[usize; 4]; 6] = [
     [0, 4, 6, 7],
 ];
 
-/// The surface between the lattice points where `solid` is negative (inside) and all others.
+/// Builds the surface between the lattice points where `solid` is negative (inside) and all others.
 ///
-/// Every cube falls into six tetrahedra around its diagonal (Kuhn), the same way in all cubes, so
-/// that neighbours agree; each tetrahedron is crossed by one triangle or two (Doi and Koide 1991).
-/// There is one vertex on each lattice edge whose ends differ, so the surface is a closed,
-/// consistently oriented manifold whatever the values: outermost points count as outside.
-/// O(lattice points) time, though values are asked for near the surface only; two layers of them are
-/// kept.
+/// Every cube is divided into six tetrahedra around its diagonal (Kuhn), in the same way in all
+/// cubes, so that adjacent cubes match. In each crossed tetrahedron, the surface is one triangle or
+/// two (Doi and Koide 1991). Each lattice edge with one end inside has one vertex. Outermost points
+/// count as outside. So the surface is a closed, consistently oriented manifold for any values.
+/// Time: O(lattice points). The solid is evaluated near the surface only, and two layers of values
+/// are kept.
 pub(crate) fn polygonised<S: Solid>(solid: &S, lattice: &Lattice) -> Draft {
     let [nx, ny, nz] = lattice.cells;
     let mut march = March {
@@ -85,7 +86,7 @@ pub(crate) fn polygonised<S: Solid>(solid: &S, lattice: &Lattice) -> Draft {
         ],
         touched: [Vec::new(), Vec::new()],
     };
-    // The lowest layer is outermost: all outside, as the values begin.
+    // The lowest layer is outermost, so all its points are outside, which is the initial value.
     for z in 0..nz {
         march.sample(z + 1);
         for y in 0..ny {
@@ -103,23 +104,23 @@ pub(crate) fn polygonised<S: Solid>(solid: &S, lattice: &Lattice) -> Draft {
     march.draft
 }
 
-/// Two layers of the lattice on their way upwards.
+/// Two layers of the lattice, which move upwards.
 struct March<'a, S> {
     solid: &'a S,
     lattice: &'a Lattice,
     draft: Draft,
-    /// The values on the lower and on the upper layer.
+    /// Values on the lower and on the upper layer.
     values: [Vec<f64>; 2],
-    /// By lattice point, by direction (bits zyx): the vertex on the lattice edge there.
+    /// For each lattice point and direction (bits zyx): the vertex on that lattice edge.
     crossings: [Vec<[Option<u32>; 8]>; 2],
-    /// Where there are crossings; a point comes once for each.
+    /// Lattice points with crossings; a point occurs once per crossing.
     touched: [Vec<usize>; 2],
-    /// By block of the upper layer's slab: the sign of all values there, where it is known.
+    /// For each block of the upper layer's slab: the sign of all its values, if it is certain.
     signs: Vec<Option<f64>>,
 }
 
 impl<S: Solid> March<'_, S> {
-    /// Finds the values on the upper layer, which is layer `z`.
+    /// Computes the values on the upper layer, which is layer `z`.
     fn sample(&mut self, z: usize) {
         let [nx, ny, _] = self.lattice.cells;
         if z == 1 || z.is_multiple_of(BLOCK) {
@@ -138,8 +139,9 @@ impl<S: Solid> March<'_, S> {
         }
     }
 
-    /// Asks about the blocks of slab `z`, each with the points next to it: where all have one sign,
-    /// no lattice edge that ends in the block is crossed, and so no value in it is needed.
+    /// Tests the sign of each block of slab `z`, together with the points next to the block. If all
+    /// have one sign, no lattice edge that ends in the block is crossed, so its values are not
+    /// needed.
     fn sign_blocks(&mut self, z: usize) {
         let [nx, ny, _] = self.lattice.cells;
         let spacing = self.lattice.spacing;
@@ -166,7 +168,7 @@ impl<S: Solid> March<'_, S> {
         }
     }
 
-    /// Where corner `bits` of a cube is in its layer.
+    /// Returns the index of corner `bits` of a cube within its layer.
     fn column(&self, [x, y, _]: [usize; 3], bits: usize) -> usize {
         (y + (bits >> 1 & 1)) * (self.lattice.cells[0] + 1) + x + (bits & 1)
     }
@@ -178,7 +180,7 @@ impl<S: Solid> March<'_, S> {
         inside: &[bool; 8],
         leftward: bool,
     ) {
-        // The corners with those inside first, and whether that order still turns as the path did.
+        // Sorts the corners that are inside to the front; `even` is the orientation of the result.
         let mut corners = path;
         let mut even = leftward;
         for end in (1..4).rev() {
@@ -190,7 +192,7 @@ impl<S: Solid> March<'_, S> {
             }
         }
         if !even {
-            // Exchange two on the same side of the surface: the last two, or the first two.
+            // Swaps two corners on the same side of the surface: the first two, or the last two.
             if inside[corners[2]] {
                 corners.swap(0, 1);
             } else {
@@ -216,10 +218,10 @@ impl<S: Solid> March<'_, S> {
         }
     }
 
-    /// Two triangles along the diagonal from the earliest vertex.
+    /// Adds two triangles along the diagonal from the vertex with the lowest number.
     ///
-    /// Names decide, not lengths: so the faces depend on nothing but which lattice points are
-    /// inside, and valences vary as they do in meshes from scanners.
+    /// The numbers decide, not the lengths. So the faces depend only on which lattice points are
+    /// inside, and the valences vary as they do in meshes from scanners.
     fn quad(&mut self, [a, b, c, d]: [u32; 4]) {
         if a.min(c) < b.min(d) {
             self.draft.face([a, b, c]);
@@ -230,9 +232,10 @@ impl<S: Solid> March<'_, S> {
         }
     }
 
-    /// The vertex on the lattice edge between two corners of a cube, of which one is inside.
+    /// Returns the vertex on the lattice edge between two corners of a cube; one of them is inside.
     fn crossing(&mut self, cube: [usize; 3], (p, q): (usize, usize)) -> u32 {
-        // Along a path the bits only grow, so one end's are among the other's.
+        // Along a path, bits are only added. So the bits of one end are a subset of the other's
+        // bits.
         let (low, high) = (p & q, p | q);
         let (layer, column) = (low >> 2, self.column(cube, low));
         if let Some(name) = self.crossings[layer][column][high ^ low] {
@@ -249,12 +252,13 @@ impl<S: Solid> March<'_, S> {
         name
     }
 
-    /// Where the field is zero between two points of opposite sides, not too near to either.
+    /// Finds a point where the field is zero, between two points on opposite sides of the surface
+    /// and not too near to either.
     fn root(&self, ends: [[f64; 3]; 2], [mut start, mut end]: [f64; 2]) -> [f64; 3] {
         let (mut low, mut high) = (0.0, 1.0);
         let crossing = |low: f64, high: f64, start: f64, end: f64| {
             let part = start / (start - end);
-            // Values too large to divide leave the middle.
+            // If the values are too large to divide, the middle is used.
             let part = if part.is_finite() { part } else { 0.5 };
             low + part * (high - low)
         };
@@ -272,12 +276,12 @@ impl<S: Solid> March<'_, S> {
     }
 }
 
-/// The point at `part` of the way between two others.
+/// Interpolates between two points; `part` is from 0 to 1.
 fn along([a, b]: [[f64; 3]; 2], part: f64) -> [f64; 3] {
     std::array::from_fn(|axis| a[axis] + part * (b[axis] - a[axis]))
 }
 
-/// The lattice point at a corner of a cube.
+/// Returns the lattice point at a corner of a cube.
 fn corner([x, y, z]: [usize; 3], bits: usize) -> [usize; 3] {
     [x + (bits & 1), y + (bits >> 1 & 1), z + (bits >> 2)]
 }
@@ -285,7 +289,7 @@ fn corner([x, y, z]: [usize; 3], bits: usize) -> [usize; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mesh_core::Facts;
+    use sixfold_core::Facts;
 
     impl<F: Fn([f64; 3]) -> f64> Solid for F {
         fn at(&self, point: [f64; 3]) -> f64 {
@@ -305,7 +309,8 @@ mod tests {
             cells: [9, 7, 8],
         };
         for seed in 0..100_u64 {
-            // A number between −1 and 1 from the bits of the place: no two points agree.
+            // A hash of the position, between −1 and 1, so that the values at different points
+            // differ.
             let noise = |point: [f64; 3]| {
                 let bits = point.iter().fold(seed, |hash, x| {
                     (hash ^ x.to_bits())
@@ -329,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn one_point_inside_is_surrounded() {
+    fn one_inside_point_gives_a_closed_surface_around_it() {
         let lattice = Lattice {
             origin: [-1.0; 3],
             spacing: 1.0,
@@ -337,17 +342,17 @@ mod tests {
         };
         let inside = |point: [f64; 3]| if point == [0.0; 3] { -1.0 } else { 1.0 };
         let mesh = polygonised(&inside, &lattice).finish();
-        // The link of a lattice point: one vertex on each of its 14 edges, a triangle in each of
-        // its 24 tetrahedra.
+        // The link of a lattice point: one vertex on each of its 14 edges, and one triangle in each
+        // of its 24 tetrahedra.
         assert_eq!((mesh.vertex_count(), mesh.face_count()), (14, 24));
         for (f, face) in mesh.faces().iter() {
             let [a, b, c] = [0, 1, 2].map(|i| mesh.position(face[i]));
-            assert!((b - a).cross(c - a).dot(a) > 0.0, "{f} looks inward");
+            assert!((b - a).cross(c - a).dot(a) > 0.0, "{f} is oriented inward");
         }
     }
 
     #[test]
-    fn values_beyond_numbers_do_no_harm() {
+    fn nan_and_infinite_values_give_a_closed_finite_mesh() {
         let lattice = Lattice {
             origin: [0.0; 3],
             spacing: 1.0,

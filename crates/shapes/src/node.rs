@@ -1,4 +1,4 @@
-//! How a field is put together: its values, their range over a ball, and where it ends.
+//! The expression tree of a field: its values, their range over a ball, and bounds of the solid.
 
 use crate::arithmetic::exp_minus;
 use crate::bounds::Bounds;
@@ -6,10 +6,11 @@ use crate::error::ShapeError;
 use crate::implicit::Blob;
 use crate::marching::Solid;
 
-/// How often bounds are tightened at least; further rounds must each take a quarter off.
+/// Minimum number of rounds of tightening the bounds. Each further round must shorten the longest
+/// side by at least a quarter.
 const TIGHTENINGS: u32 = 3;
 
-/// How a field is put together.
+/// A node of the expression tree of a field.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Node {
     Sphere {
@@ -18,7 +19,7 @@ pub(crate) enum Node {
     },
     Torus {
         centre: [f64; 3],
-        /// Of length 1.
+        /// A unit vector.
         axis: [f64; 3],
         ring: f64,
         tube: f64,
@@ -45,7 +46,7 @@ pub(crate) enum Node {
 }
 
 impl Node {
-    /// The field at a point.
+    /// Evaluates the field at a point.
     pub(crate) fn at(&self, point: [f64; 3]) -> f64 {
         match self {
             Self::Sphere { centre, radius } => square(from(*centre, point)).sqrt() - radius,
@@ -57,7 +58,7 @@ impl Node {
             } => {
                 let out = from(*centre, point);
                 let along = out[0] * axis[0] + out[1] * axis[1] + out[2] * axis[2];
-                // Rounding may bring the difference below zero near the axis.
+                // Rounding may make the difference negative near the axis.
                 let off = (square(out) - along * along).max(0.0).sqrt() - ring;
                 (off * off + along * along).sqrt() - tube
             }
@@ -84,11 +85,11 @@ impl Node {
         }
     }
 
-    /// Bounds of the field over a ball: its least and its greatest value lie between them.
+    /// Returns a lower and an upper bound of the field over a ball.
     fn range(&self, centre: [f64; 3], radius: f64) -> [f64; 2] {
         let both = |parts: &[Self; 2]| [0, 1].map(|i| parts[i].range(centre, radius));
         match self {
-            // Distances change no faster than the point moves.
+            // A distance field changes at most as fast as the point moves.
             Self::Sphere { .. } | Self::Torus { .. } | Self::Cuboid { .. } => {
                 let value = self.at(centre);
                 [value - radius, value + radius]
@@ -104,7 +105,7 @@ impl Node {
                 }
                 range
             }
-            // The others grow, or never fall, as their parts grow.
+            // The other operations are monotonic in their parts.
             Self::Union(parts) => {
                 let [f, g] = both(parts);
                 [0, 1].map(|end| f[end].min(g[end]))
@@ -125,12 +126,12 @@ impl Node {
         }
     }
 
-    /// Bounds of the solid; `None` where it is certain that there is none.
+    /// Returns bounds of the solid; `None` if the solid is certainly empty.
     pub(crate) fn bounds(&self) -> Result<Option<Bounds>, ShapeError> {
         let Some(mut bounds) = self.reach(0.0)? else {
             return Ok(None);
         };
-        // A chain of smooth unions can reach far beyond what there is.
+        // The bounds of a chain of smooth unions can be much larger than the solid.
         for round in 0.. {
             let empty = |centre, radius| self.range(centre, radius)[0] > 0.0;
             let Some(tighter) = bounds.tightened(empty) else {
@@ -144,14 +145,15 @@ impl Node {
         Ok(Some(bounds))
     }
 
-    /// Bounds of the points where the field is at most `level`; `None` if there are none.
+    /// Returns bounds of the points where the field is at most `level`; `None` if there are no such
+    /// points.
     fn reach(&self, level: f64) -> Result<Option<Bounds>, ShapeError> {
         Ok(match self {
             Self::Sphere { centre, radius } => Bounds::around(*centre, [radius + level; 3]),
             Self::Torus {
                 centre, ring, tube, ..
             } => {
-                // A ball will do, whichever way the axis points.
+                // The bounds of a ball are sufficient, whatever the direction of the axis.
                 let thickness = tube + level;
                 (thickness >= 0.0)
                     .then(|| Bounds::around(*centre, [ring + thickness; 3]))
@@ -165,7 +167,8 @@ impl Node {
             }
             Self::Difference(parts) => parts[0].reach(level)?,
             Self::SmoothUnion { parts, alpha } => {
-                // It grows with f and with g and is least, beside min(f, g), where they are equal.
+                // It grows with f and with g. Relative to min(f, g), it is smallest if f and g are
+                // equal.
                 let share = (2.0 - (2.0 - 2.0 * alpha).sqrt()) / (1.0 + alpha);
                 let level = level.max(0.0) / share;
                 Bounds::hull(parts[0].reach(level)?, parts[1].reach(level)?)
@@ -189,25 +192,25 @@ impl Solid for Node {
     }
 }
 
-/// Rvachev's union, which never falls as `f` or `g` grows.
+/// Evaluates Rvachev's smooth union, which is monotonically increasing in `f` and in `g`.
 fn smooth_union(f: f64, g: f64, alpha: f64) -> f64 {
     let under = f * f + g * g - 2.0 * alpha * f * g;
     (f + g - under.max(0.0).sqrt()) / (1.0 + alpha)
 }
 
-/// Bounds of the points where the blobs sum up to `sum` or more.
+/// Returns bounds of the points where the blobs add up to `sum` or more.
 fn blob_reach(blobs: &[Blob], sum: f64) -> Result<Option<Bounds>, ShapeError> {
     if sum <= 0.0 {
         return Err(ShapeError::Unbounded);
     }
-    // Where they reach it together, one of them reaches its share.
+    // Where the blobs together reach `sum`, at least one of them reaches this share.
     let share = sum / blobs.len() as f64;
     let bounds = blobs.iter().map(|blob| {
         let ratio = blob.strength / share;
         if ratio < 1.0 {
             return None;
         }
-        // exp(−x) ≤ (1 + x/8)⁻⁸, which square roots can solve for x.
+        // exp(−x) ≤ (1 + x/8)⁻⁸, and this bound can be solved for x with square roots.
         let x = 8.0 * (ratio.sqrt().sqrt().sqrt() - 1.0);
         Bounds::around(blob.centre, [(x / blob.sharpness).sqrt(); 3])
     });
@@ -218,7 +221,7 @@ fn from(centre: [f64; 3], point: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| point[axis] - centre[axis])
 }
 
-/// The square of a vector's length.
+/// Returns the square of the length of a vector.
 pub(crate) fn square([x, y, z]: [f64; 3]) -> f64 {
     x * x + y * y + z * z
 }
@@ -229,7 +232,7 @@ mod tests {
     use crate::marching::polygonised;
 
     #[test]
-    fn ranges_and_bounds_hold_every_value() {
+    fn ranges_and_bounds_contain_every_value() {
         let ball = |x, radius| {
             Box::new(Node::Sphere {
                 centre: [x, 0.1, 0.0],
@@ -282,7 +285,7 @@ mod tests {
             inflated(&smooth(0.4), -0.1),
             inflated(&blobs, 0.1),
         ];
-        // Points of a lattice, and balls around some of them that hold others.
+        // Tests the points of a lattice, and balls around some of them that contain other points.
         let place = |i: usize, n: usize| 4.0 * i as f64 / n as f64 - 2.0;
         let lattice = |n: usize| {
             let index = move |i: usize| [i % n, i / n % n, i / (n * n)].map(|i| place(i, n - 1));
@@ -298,7 +301,7 @@ mod tests {
                 }
             }
             assert!(inside > 0, "{node:?}");
-            // Passing over whole blocks changes nothing.
+            // Skipping whole blocks must not change the mesh.
             let fine = bounds.lattice(0.08, [0.3; 3]).expect("a coarse lattice");
             let all = polygonised(&|point: [f64; 3]| node.at(point), &fine).finish();
             let some = polygonised(&node, &fine).finish();

@@ -1,26 +1,26 @@
-//! The same mesh in another order: names and places in memory change, nothing else.
+//! The same mesh in another order: only handles and places in memory change.
 
 use std::fmt;
 use std::str::FromStr;
 
-use mesh_core::{FaceId, FaceList, Point, PolygonMesh, VertexId, row};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde_with::{DeserializeFromStr, SerializeDisplay};
+use sixfold_core::{FaceId, FaceList, Point, PolygonMesh, VertexId, row};
 
 /// An order of the vertices and faces of a mesh.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, DeserializeFromStr, SerializeDisplay,
 )]
 pub enum Order {
-    /// As it is.
+    /// The order of the mesh as it is.
     #[default]
     Given,
-    /// At random: [`shuffled`].
+    /// Random order: [`shuffled`].
     Shuffled,
     /// Along a space-filling curve: [`morton`].
     Morton,
-    /// As a walk over the edges meets them: [`breadth_first`].
+    /// The order of a breadth-first walk over the faces: [`breadth_first`].
     BreadthFirst,
 }
 
@@ -33,7 +33,7 @@ impl Order {
         Self::BreadthFirst,
     ];
 
-    /// What users call it: `breadth-first`.
+    /// Returns the name for users, such as `breadth-first`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Given => "given",
@@ -43,12 +43,12 @@ impl Order {
         }
     }
 
-    /// The mesh in this order; `seed` matters to [`Shuffled`](Self::Shuffled) alone.
+    /// Returns the mesh in this order. Only [`Shuffled`](Self::Shuffled) uses `seed`.
     pub fn of(self, mesh: &PolygonMesh, seed: u64) -> PolygonMesh {
         self.with_names(mesh, seed).mesh
     }
 
-    /// The same, and what each element is called there.
+    /// Returns the mesh in this order, and the new handle of each element.
     pub fn with_names(self, mesh: &PolygonMesh, seed: u64) -> Reordered {
         match self {
             Self::Given => Reordered {
@@ -63,14 +63,14 @@ impl Order {
     }
 }
 
-/// A mesh in another order, and the names that its elements have there.
+/// A mesh in another order, with the new handles of its elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reordered {
-    /// The mesh.
+    /// The reordered mesh.
     pub mesh: PolygonMesh,
-    /// By the name of a vertex before: its name now.
+    /// New handle of each vertex, indexed by its old row.
     pub vertices: Vec<VertexId>,
-    /// By the name of a face before: its name now.
+    /// New handle of each face, indexed by its old row.
     pub faces: Vec<FaceId>,
 }
 
@@ -80,9 +80,9 @@ impl fmt::Display for Order {
     }
 }
 
-/// A name that no order has.
+/// The error for an unknown name of an order.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no order is called {given:?}: choose from {}", Order::ALL.map(Order::name).join(", "))]
+#[error("unknown order {given:?}: choose from {}", Order::ALL.map(Order::name).join(", "))]
 pub struct UnknownOrder {
     /// The name that was given.
     pub given: String,
@@ -99,9 +99,10 @@ impl FromStr for Order {
     }
 }
 
-/// The mesh with its vertices and faces in random order, and each face starting anywhere; O(corners).
+/// Returns the mesh with its vertices and faces in random order. Each face starts at a random
+/// corner. O(corners).
 ///
-/// The same seed gives the same order on every machine (ChaCha8; Fisher and Yates).
+/// The same seed gives the same order on every machine (ChaCha8, shuffle of Fisher and Yates).
 pub fn shuffled(mesh: &PolygonMesh, seed: u64) -> PolygonMesh {
     by_chance(mesh, seed).mesh
 }
@@ -113,11 +114,12 @@ fn by_chance(mesh: &PolygonMesh, seed: u64) -> Reordered {
     reordered(mesh, &vertices, &faces, |degree| below(degree, &mut random))
 }
 
-/// The mesh along the curve of Morton (1966): what is near in space is mostly near in memory.
+/// Returns the mesh in the order of the space-filling curve of Morton (1966): elements that are
+/// near each other in space are mostly near each other in memory.
 ///
-/// Vertices are sorted by their place in a box of 2²¹ steps a side, the bits of the three
-/// coordinates interlaced; faces by the mean of their vertices. Ties keep the order given.
-/// O(n log n).
+/// Positions are mapped to a grid of 2²¹ steps per side, and the bits of the three coordinates
+/// are interleaved. Vertices are sorted by this code; faces by the code of the mean of their
+/// vertices. Elements with equal codes keep their order. O(n log n).
 pub fn morton(mesh: &PolygonMesh) -> PolygonMesh {
     along_the_curve(mesh).mesh
 }
@@ -131,7 +133,7 @@ fn along_the_curve(mesh: &PolygonMesh) -> Reordered {
     let longest = (0..3).fold(0.0_f64, |longest, axis| {
         longest.max(f64::from(high[axis]) - low[axis])
     });
-    // Where there is no extent the scale is not finite; then everything saturates to one end.
+    // If the mesh has no extent, the scale is not finite; all codes then saturate to one end.
     let scale = f64::from((1 << 21) - 1) / longest;
     let code = |point: [f64; 3]| {
         let spread = |axis: usize| spread_bits(((point[axis] - low[axis]) * scale) as u32);
@@ -152,10 +154,10 @@ fn along_the_curve(mesh: &PolygonMesh) -> Reordered {
     reordered(mesh, &vertices, &faces, |_| 0)
 }
 
-/// The mesh as a breadth-first walk over its faces meets it, from vertex 0; O(corners).
+/// Returns the mesh in the order of a breadth-first walk over its faces from vertex 0; O(corners).
 ///
-/// The walk visits the faces around each vertex in turn, and calls up the vertices of each; where it
-/// ends it goes on at the lowest vertex that is left.
+/// For each vertex in turn, the walk visits the faces around it and appends their vertices that are
+/// new. When no vertex is waiting, it continues at the lowest vertex not reached so far.
 pub fn breadth_first(mesh: &PolygonMesh) -> PolygonMesh {
     by_a_walk(mesh).mesh
 }
@@ -191,10 +193,10 @@ fn by_a_walk(mesh: &PolygonMesh) -> Reordered {
     reordered(mesh, &vertices, &faces, |_| 0)
 }
 
-/// The faces around every vertex, in their order.
+/// The faces around every vertex, in ascending order.
 struct FacesAround {
     faces: Vec<u32>,
-    /// Where the faces of each vertex end.
+    /// End of each vertex's range in `faces`.
     ends: Vec<u32>,
 }
 
@@ -226,8 +228,8 @@ impl FacesAround {
     }
 }
 
-/// The mesh with `vertices` and `faces` in these orders; a face of some degree starts at the corner
-/// that `start` says.
+/// Returns the mesh with its `vertices` and `faces` in these orders. A face of degree `d` starts at
+/// its corner `start(d)`.
 fn reordered(
     mesh: &PolygonMesh,
     vertices: &[u32],
@@ -247,16 +249,18 @@ fn reordered(
         let corners = mesh.faces().face(FaceId::new(face));
         let (late, early) = corners.split_at(start(corners.len()));
         let corners = early.iter().chain(late).map(|v| names[v.index()]);
-        list.push(corners).expect("as many corners as before");
+        list.push(corners)
+            .expect("the number of corners is unchanged");
     }
     Reordered {
-        mesh: PolygonMesh::from_faces(positions, list).expect("the same faces as before"),
+        mesh: PolygonMesh::from_faces(positions, list)
+            .expect("the faces are those of a valid mesh"),
         vertices: names,
         faces: places,
     }
 }
 
-/// The numbers below `count` in random order.
+/// Returns the numbers below `count` in random order.
 fn permutation(count: usize, random: &mut ChaCha8Rng) -> Vec<u32> {
     let mut numbers: Vec<u32> = (0..row(count)).collect();
     for last in (1..count).rev() {
@@ -265,12 +269,13 @@ fn permutation(count: usize, random: &mut ChaCha8Rng) -> Vec<u32> {
     numbers
 }
 
-/// A random number below `bound`, by the high half of a product; its bias, bound / 2⁶⁴, is nothing.
+/// Returns a random number below `bound`: the high half of a product. Its bias, bound / 2⁶⁴, is
+/// negligible.
 fn below(bound: usize, random: &mut ChaCha8Rng) -> usize {
     ((u128::from(random.next_u64()) * bound as u128) >> 64) as usize
 }
 
-/// The low 21 bits of `x`, each followed by two zeros.
+/// Returns the low 21 bits of `x`, each followed by two zero bits.
 fn spread_bits(x: u32) -> u64 {
     let mut x = u64::from(x.min((1 << 21) - 1));
     x = (x | x << 32) & 0x001F_0000_0000_FFFF;
@@ -285,7 +290,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bits_are_spread_to_every_third_place() {
+    fn bits_are_spread_to_every_third_position() {
         for bit in 0..21 {
             assert_eq!(spread_bits(1 << bit), 1 << (3 * bit), "bit {bit}");
         }
@@ -293,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn a_permutation_holds_every_number_once() {
+    fn a_permutation_contains_every_number_once() {
         let mut random = ChaCha8Rng::seed_from_u64(7);
         for count in [0, 1, 2, 3, 100] {
             let mut numbers = permutation(count, &mut random);
@@ -303,8 +308,8 @@ mod tests {
     }
 
     #[test]
-    fn a_seed_names_an_order() {
-        // Fixed for all time: results published with a seed must stay reproducible.
+    fn a_seed_gives_a_fixed_order() {
+        // These values must never change: results published with a seed must stay reproducible.
         let mut random = ChaCha8Rng::seed_from_u64(1);
         assert_eq!(permutation(8, &mut random), [5, 6, 2, 4, 1, 7, 0, 3]);
     }

@@ -1,21 +1,21 @@
 //! Curved patches over a net of control points: Bézier and uniform B-spline.
 
-use mesh_core::{Point, PolygonMesh};
+use sixfold_core::{Point, PolygonMesh};
 
 use crate::error::{MAX_AROUND, ShapeError, between, within};
 use crate::planar::sheet;
 
-/// The greatest degree of a curve in a patch.
+/// Maximum degree of a curve in a patch.
 pub(crate) const MAX_DEGREE: usize = 32;
 
-/// The most control points along one direction.
+/// Maximum number of control points along one direction.
 pub(crate) const MAX_NET: usize = 1024;
 
-/// Control points in rows: the corners of a grid that a patch follows.
+/// A grid of control points, row by row, for a patch.
 ///
 /// # Invariants
 ///
-/// - N1  Every row has the same number of points; both ways there are 2 to 1024.
+/// - N1  Every row has the same number of points; there are 2 to 1024 rows and columns.
 /// - N2  Every coordinate is finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ControlNet {
@@ -24,12 +24,12 @@ pub struct ControlNet {
 }
 
 impl ControlNet {
-    /// A net of rows of `columns` points each, row after row.
+    /// Builds a net from its rows, one after the other; each has `columns` points.
     ///
     /// # Errors
     ///
-    /// A last row that is not full, fewer than 2 or more than 1024 points either way, or a
-    /// coordinate that is not finite.
+    /// Fails if the last row is not full, if there are fewer than 2 or more than 1024 rows or
+    /// columns, or if a coordinate is not finite.
     pub fn new(columns: usize, points: &[Point]) -> Result<Self, ShapeError> {
         within("columns", columns, 2, MAX_NET)?;
         if !points.len().is_multiple_of(columns) {
@@ -52,20 +52,20 @@ impl ControlNet {
         Ok(Self { columns, points })
     }
 
-    /// A net over the square from −1 to 1, at the height x² − y²: a saddle.
+    /// Builds a saddle over the square from −1 to 1; the control points have the height x² − y².
     ///
     /// # Errors
     ///
-    /// `columns` or `rows` outside 2 to 1024.
+    /// Fails if `columns` or `rows` is outside 2 to 1024.
     pub fn saddle(columns: usize, rows: usize) -> Result<Self, ShapeError> {
         Self::over_square(columns, rows, |_, _, x, y| x * x - y * y)
     }
 
-    /// A net over the square from −1 to 1, with hills and hollows on every other point.
+    /// Builds a net over the square from −1 to 1; every second point of a row is a hill or hollow.
     ///
     /// # Errors
     ///
-    /// `columns` or `rows` outside 2 to 1024.
+    /// Fails if `columns` or `rows` is outside 2 to 1024.
     pub fn waves(columns: usize, rows: usize) -> Result<Self, ShapeError> {
         const HEIGHTS: [f64; 4] = [0.0, 0.5, 0.0, -0.5];
         Self::over_square(columns, rows, |i, j, _, _| HEIGHTS[(i + 2 * (j % 2)) % 4])
@@ -90,32 +90,32 @@ impl ControlNet {
         })
     }
 
-    /// How many points a row has.
+    /// Returns the number of points in a row.
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// How many rows there are.
+    /// Returns the number of rows.
     pub fn rows(&self) -> usize {
         self.points.len() / self.columns
     }
 
-    /// The points of column `i`, from the first row to the last.
+    /// Iterates over the points of column `i`, from the first row to the last.
     fn column(&self, i: usize) -> impl Iterator<Item = [f64; 3]> {
         self.points[i..].iter().copied().step_by(self.columns)
     }
 }
 
-/// The Bézier patch of a net as `m` × `n` quads; it meets the net at its four corners.
+/// Builds the Bézier patch of a net as `m` × `n` quads. It meets the net at its four corners.
 ///
-/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn. The degree is one less than the points
-/// either way. Whether vertices coincide depends on the net. O(degree²) a vertex, by the
-/// construction of de Casteljau.
+/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn. In each direction, the degree is one less
+/// than the number of control points. Whether vertices coincide depends on the net. Time:
+/// O(degree²) per vertex, by the construction of de Casteljau.
 ///
 /// # Errors
 ///
-/// A net with more than 33 points either way, `m` or `n` outside 1 to 2²⁰, or more than 2³¹ − 1
-/// corners.
+/// Fails if the net has more than 33 rows or columns, if `m` or `n` is outside 1 to 2²⁰, or if
+/// there are more than 2³¹ − 1 corners.
 pub fn bezier_patch(net: &ControlNet, m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     within("columns", net.columns(), 2, MAX_DEGREE + 1)?;
     within("rows", net.rows(), 2, MAX_DEGREE + 1)?;
@@ -124,16 +124,17 @@ pub fn bezier_patch(net: &ControlNet, m: usize, n: usize) -> Result<PolygonMesh,
     })
 }
 
-/// The uniform B-spline patch of a net as `m` × `n` quads, of one `degree` both ways.
+/// Builds the uniform B-spline patch of a net as `m` × `n` quads, of the same `degree` in both
+/// directions.
 ///
-/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn. It spans (columns − degree) ×
-/// (rows − degree) pieces and meets the net nowhere in general. Whether vertices coincide depends
-/// on the net. O(degree²) a vertex, by the recurrence of de Boor.
+/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn. The patch has (columns − degree) ×
+/// (rows − degree) pieces. In general it does not pass through a control point. Whether vertices
+/// coincide depends on the net. Time: O(degree²) per vertex, by the recurrence of de Boor.
 ///
 /// # Errors
 ///
-/// A `degree` outside 1 to 32 or not below the points either way, `m` or `n` outside 1 to 2²⁰, or
-/// more than 2³¹ − 1 corners.
+/// Fails if `degree` is outside 1 to 32 or not less than the number of rows and columns, if `m` or
+/// `n` is outside 1 to 2²⁰, or if there are more than 2³¹ − 1 corners.
 pub fn b_spline_patch(
     net: &ControlNet,
     degree: usize,
@@ -143,7 +144,7 @@ pub fn b_spline_patch(
     let least = net.columns().min(net.rows());
     within("degree", degree, 1, MAX_DEGREE.min(least - 1))?;
     tessellated("b-spline-patch", net, [m, n], |points, k, steps| {
-        // Pieces and steps in whole numbers, so that the ends are reached exactly.
+        // Integer arithmetic selects the piece, so that the ends are reached exactly.
         let pieces = points.len() - degree;
         let piece = (k * pieces / steps).min(pieces - 1);
         let part = (k * pieces - piece * steps) as f64 / steps as f64;
@@ -151,8 +152,8 @@ pub fn b_spline_patch(
     })
 }
 
-/// The grid of points that `curve` gives: first along every column of the net, then along the row
-/// of points so found. `curve(points, k, steps)` may spoil the points.
+/// Builds the grid of points on a patch. `curve` is applied to every column of the net, then to the
+/// row of resulting points. `curve(points, k, steps)` may overwrite the points.
 fn tessellated(
     shape: &'static str,
     net: &ControlNet,
@@ -179,7 +180,7 @@ fn tessellated(
     })
 }
 
-/// The point at `t` of the Bézier curve of `points`, which are spoilt.
+/// Returns the point at `t` of the Bézier curve of `points`. Overwrites `points`.
 fn de_casteljau(points: &mut [[f64; 3]], t: f64) -> [f64; 3] {
     for last in (1..points.len()).rev() {
         for i in 0..last {
@@ -189,8 +190,8 @@ fn de_casteljau(points: &mut [[f64; 3]], t: f64) -> [f64; 3] {
     points[0]
 }
 
-/// The point at `t`, 0 to 1, of the piece of a uniform B-spline that `points` govern; they are
-/// spoilt.
+/// Returns the point at `t`, from 0 to 1, of the piece of a uniform B-spline that `points` control.
+/// Overwrites `points`.
 fn de_boor(points: &mut [[f64; 3]], t: f64) -> [f64; 3] {
     let degree = points.len() - 1;
     for round in 1..=degree {
@@ -202,7 +203,7 @@ fn de_boor(points: &mut [[f64; 3]], t: f64) -> [f64; 3] {
     points[degree]
 }
 
-/// The point at `part` of the way from `a` to `b`; `a` at 0 and `b` at 1, exactly.
+/// Interpolates from `a` at `part` = 0 to `b` at `part` = 1; both ends are exact.
 fn between_points(a: [f64; 3], b: [f64; 3], part: f64) -> [f64; 3] {
     std::array::from_fn(|axis| (1.0 - part) * a[axis] + part * b[axis])
 }
@@ -210,7 +211,7 @@ fn between_points(a: [f64; 3], b: [f64; 3], part: f64) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mesh_core::VertexId;
+    use sixfold_core::VertexId;
 
     fn point(mesh: &PolygonMesh, v: usize) -> Point {
         mesh.position(VertexId::new(v as u32))
@@ -241,8 +242,8 @@ mod tests {
 
     #[test]
     fn a_bezier_patch_of_degree_two_is_the_polynomial_of_its_saddle() {
-        // The control heights 1, −1, 1 of u² on [−1, 1] would be the blossom; x² at −1, 0, 1 gives
-        // the polynomial (1 + x²) / 2.
+        // The control heights x² at −1, 0, 1 give the polynomial (1 + x²) / 2. The heights for x²
+        // itself would be 1, −1, 1.
         let net = ControlNet::saddle(3, 3).expect("small");
         let mesh = bezier_patch(&net, 8, 8).expect("small");
         for &p in mesh.positions() {
@@ -252,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cubic_b_spline_passes_where_the_mask_says() {
+    fn a_cubic_b_spline_passes_through_the_points_of_its_limit_mask() {
         // At a knot: (p0 + 4 p1 + p2) / 6, the limit mask of the cubic B-spline.
         let points: Vec<Point> = [3.0, -1.0, 4.0, 1.0, 5.0]
             .iter()
@@ -274,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn a_b_spline_of_degree_one_is_its_net() {
+    fn a_b_spline_of_degree_one_equals_its_net() {
         let net = ControlNet::waves(4, 6).expect("small");
         let mesh = b_spline_patch(&net, 1, 3, 5).expect("small");
         for (got, control) in mesh.positions().iter().zip(&net.points) {
@@ -311,7 +312,7 @@ mod tests {
                 "degree {degree}"
             );
         }
-        let net = ControlNet::saddle(34, 2).expect("a net, but not for Bézier");
+        let net = ControlNet::saddle(34, 2).expect("a valid net with too many columns for Bézier");
         assert!(bezier_patch(&net, 1, 1).is_err());
     }
 }

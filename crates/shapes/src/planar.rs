@@ -1,22 +1,23 @@
-//! Pieces of the plane: grids of quads and triangles, with and without holes.
+//! Flat meshes: grids of quads and triangles with and without holes, and tilings.
 
-use mesh_core::PolygonMesh;
+use sixfold_core::PolygonMesh;
 
 use crate::draft::Draft;
 use crate::error::{MAX_SIDE, ShapeError, corners_within, within};
 
-/// `m` × `n` unit squares: the regular tiling {4, 4}.
+/// Builds `m` × `n` unit squares: the regular tiling {4, 4}.
 ///
 /// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn.
 ///
 /// # Errors
 ///
-/// `m` or `n` outside 1 to 2²², or more than 2³¹ − 1 corners.
+/// Fails if `m` or `n` is outside 1 to 2²², or if there are more than 2³¹ − 1 corners.
 pub fn grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     sheet("grid", m, n, |i, j| [i as f64, j as f64, 0.0])
 }
 
-/// `m` × `n` quads, the corner at column `i` and row `j` where `place(i, j)` says, row by row.
+/// Builds `m` × `n` quads, row by row. The vertex at column `i` and row `j` has the position
+/// `place(i, j)`.
 pub(crate) fn sheet(
     shape: &'static str,
     m: usize,
@@ -27,13 +28,13 @@ pub(crate) fn sheet(
     cells(shape, [m, n], corners, place, |_, _| Cell::Quad)
 }
 
-/// `m` × `n` unit squares, each cut in two by the diagonal from lower left to upper right.
+/// Builds `m` × `n` unit squares, each cut in two by the diagonal from lower left to upper right.
 ///
 /// V = (m + 1)(n + 1), E = 3mn + m + n, F = 2mn.
 ///
 /// # Errors
 ///
-/// `m` or `n` outside 1 to 2²², or more than 2³¹ − 1 corners.
+/// Fails if `m` or `n` is outside 1 to 2²², or if there are more than 2³¹ − 1 corners.
 pub fn triangle_grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     let corners = 6 * area(m, n)?;
     cells("triangle-grid", [m, n], corners, on_lattice, |_, _| {
@@ -41,13 +42,13 @@ pub fn triangle_grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     })
 }
 
-/// `m` × `n` unit squares, every other one cut in two, as on a chess board.
+/// Builds `m` × `n` unit squares, every second one cut in two, like the squares of a chess board.
 ///
-/// With c = ⌊mn/2⌋ of them cut: V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1) + c, F = mn + c.
+/// c = ⌊mn/2⌋ squares are cut: V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1) + c, F = mn + c.
 ///
 /// # Errors
 ///
-/// `m` or `n` outside 1 to 2²², or more than 2³¹ − 1 corners.
+/// Fails if `m` or `n` is outside 1 to 2²², or if there are more than 2³¹ − 1 corners.
 pub fn mixed_grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     let squares = area(m, n)?;
     let corners = 4 * squares + 2 * (squares / 2);
@@ -59,18 +60,18 @@ pub fn mixed_grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     })
 }
 
-/// `m` × `n` pairs of equilateral triangles of side 1: the regular tiling {3, 6}.
+/// Builds `m` × `n` pairs of equilateral triangles of side 1: the regular tiling {3, 6}.
 ///
 /// V = (m + 1)(n + 1), E = 3mn + m + n, F = 2mn.
 ///
 /// ```text
-///      ╱╲╱╲╱╲╱      every other row of vertices is half a step to the right
+///      ╱╲╱╲╱╲╱      every second row of vertices is shifted half a step to the right
 ///      ╲╱╲╱╲╱╲
 /// ```
 ///
 /// # Errors
 ///
-/// `m` or `n` outside 1 to 2²², or more than 2³¹ − 1 corners.
+/// Fails if `m` or `n` is outside 1 to 2²², or if there are more than 2³¹ − 1 corners.
 pub fn triangle_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     let corners = 6 * area(m, n)?;
     let height = 3.0_f64.sqrt() / 2.0;
@@ -85,13 +86,14 @@ pub fn triangle_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     cells("triangle-tiling", [m, n], corners, place, cell)
 }
 
-/// `m` × `n` unit squares without the a × b in the middle, a = ⌊m/3⌋ and b = ⌊n/3⌋: a frame.
+/// Builds a frame: `m` × `n` unit squares without the a × b squares in the middle, a = ⌊m/3⌋ and
+/// b = ⌊n/3⌋.
 ///
 /// V = (m + 1)(n + 1) − (a − 1)(b − 1), E = m(n + 1) + n(m + 1) − a(b − 1) − b(a − 1), F = mn − ab.
 ///
 /// # Errors
 ///
-/// `m` or `n` outside 3 to 2²², or more than 2³¹ − 1 corners.
+/// Fails if `m` or `n` is outside 3 to 2²², or if there are more than 2³¹ − 1 corners.
 pub fn grid_with_hole(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     within("m", m, 3, MAX_SIDE)?;
     within("n", n, 3, MAX_SIDE)?;
@@ -105,13 +107,13 @@ pub fn grid_with_hole(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     cells("grid-with-hole", [m, n], corners, on_lattice, cell)
 }
 
-/// `m` × `n` unit squares of which `holes` are left out, no two of them touching.
+/// Builds `m` × `n` unit squares without `holes` of them. No two holes touch.
 ///
 /// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn − holes; 1 + holes boundary loops.
 ///
 /// ```text
 ///   ┌──┬──┬──┬──┬──┐
-///   ├──┼──┼──┼──┼──┤      m = 5, n = 3, holes = 2, filled in row by row
+///   ├──┼──┼──┼──┼──┤      m = 5, n = 3, holes = 2; holes are placed row by row
 ///   ├──┤  ├──┤  ├──┤
 ///   ├──┼──┼──┼──┼──┤
 ///   └──┴──┴──┴──┴──┘
@@ -119,12 +121,12 @@ pub fn grid_with_hole(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
 ///
 /// # Errors
 ///
-/// `m` or `n` outside 1 to 2²², more than ⌊(m − 1)/2⌋ · ⌊(n − 1)/2⌋ holes, or more than 2³¹ − 1
-/// corners.
+/// Fails if `m` or `n` is outside 1 to 2²², if `holes` exceeds ⌊(m − 1)/2⌋ · ⌊(n − 1)/2⌋, or if
+/// there are more than 2³¹ − 1 corners.
 pub fn grid_with_holes(m: usize, n: usize, holes: usize) -> Result<PolygonMesh, ShapeError> {
     let squares = area(m, n)?;
     let (across, up) = ((m - 1) / 2, (n - 1) / 2);
-    // Where the product is too large for this machine, the squares are too many as well.
+    // If the product overflows, the number of squares is too large as well.
     within("holes", holes, 0, across.saturating_mul(up))?;
     let corners = 4 * (squares - holes as u64);
     let cell = |i: usize, j: usize| {
@@ -137,26 +139,27 @@ pub fn grid_with_holes(m: usize, n: usize, holes: usize) -> Result<PolygonMesh, 
     cells("grid-with-holes", [m, n], corners, on_lattice, cell)
 }
 
-/// `m` × `n` regular hexagons of side 1, every other row half a step to the right: {6, 3}.
+/// Builds `m` × `n` regular hexagons of side 1: the regular tiling {6, 3}. Every second row is
+/// shifted half a step to the right.
 ///
 /// V = 2(m + 1)(n + 1) − 2, E = 3mn + 2m + 2n − 1, F = mn.
 ///
 /// ```text
 ///     │   │   │       m = 2, n = 2
-///    ╱ ╲ ╱ ╲ ╱        Between two rows of hexagons runs a zigzag of 2m + 2 vertices;
-///   │   │   │         below the first and above the last, one of 2m + 1.
+///    ╱ ╲ ╱ ╲ ╱        Between two rows of hexagons there is a zigzag of 2m + 2 vertices;
+///   │   │   │         the zigzags below the first and above the last row have 2m + 1.
 ///    ╲ ╱ ╲ ╱
 /// ```
 ///
 /// # Errors
 ///
-/// `m` or `n` outside 1 to 2²², or more than 2³¹ − 1 corners.
+/// Fails if `m` or `n` is outside 1 to 2²², or if there are more than 2³¹ − 1 corners.
 pub fn hexagon_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     let corners = 6 * area(m, n)?;
     let corners = corners_within("hexagon-tiling", &[("m", m), ("n", n)], corners)?;
     let mut draft = Draft::with_capacity(2 * (m + 1) * (n + 1) - 2, corners);
     let half_width = 3.0_f64.sqrt() / 2.0;
-    // By zigzag: what to add to a vertex's step to the right to get its name.
+    // For each zigzag, the number to add to the step of a vertex to get the number of the vertex.
     let mut before = Vec::with_capacity(n + 1);
     let mut count = 0_i64;
     for j in 0..=n {
@@ -186,20 +189,20 @@ pub fn hexagon_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     Ok(draft.finish())
 }
 
-/// What becomes of one square of a grid.
+/// How one square of a grid is meshed.
 #[derive(Clone, Copy)]
 enum Cell {
-    /// It stays.
+    /// One quad.
     Quad,
     /// Two triangles along the diagonal from lower left to upper right.
     Rising,
     /// Two triangles along the diagonal from upper left to lower right.
     Falling,
-    /// Nothing; the vertices inside a larger hole go with it.
+    /// No face; vertices inside a larger hole are omitted too.
     Hole,
 }
 
-/// The number of squares, for sides that are allowed.
+/// Returns the number of squares, or an error if a side is out of range.
 fn area(m: usize, n: usize) -> Result<u64, ShapeError> {
     within("m", m, 1, MAX_SIDE)?;
     within("n", n, 1, MAX_SIDE)?;
@@ -210,7 +213,8 @@ fn on_lattice(i: usize, j: usize) -> [f64; 3] {
     [i as f64, j as f64, 0.0]
 }
 
-/// `m` × `n` squares, each as `cell` says, which have `corners` together; row by row.
+/// Builds `m` × `n` squares, row by row. `cell(i, j)` selects how each square is meshed; `corners`
+/// is the total number of corners.
 fn cells(
     shape: &'static str,
     [m, n]: [usize; 2],
@@ -221,7 +225,8 @@ fn cells(
     let corners = corners_within(shape, &[("m", m), ("n", n)], corners)?;
     let mut draft = Draft::with_capacity((m + 1) * (n + 1), corners);
     let hole = |i: usize, j: usize| matches!(cell(i, j), Cell::Hole);
-    // By column, on the line below the cells and on the line above: the vertex, if there is one.
+    // The vertex of each column, if it exists, on the line below the current row of cells and on
+    // the line above it.
     let mut below = vec![None; m + 1];
     let mut above = vec![None; m + 1];
     for j in 0..=n {

@@ -1,4 +1,4 @@
-//! The five Platonic solids, outward oriented.
+//! The five Platonic solids, oriented outward.
 //!
 //! | solid | V | E | F | dual |
 //! |---|---|---|---|---|
@@ -8,14 +8,14 @@
 //! | dodecahedron | 20 | 30 | 12 | icosahedron |
 //! | icosahedron | 12 | 30 | 20 | dodecahedron |
 
-use mesh_core::PolygonMesh;
+use sixfold_core::PolygonMesh;
 
 use crate::draft::Draft;
 
-/// The golden ratio, (1 + √5) / 2; in the standard library from Rust 1.94 on.
+/// The golden ratio, (1 + √5) / 2. The standard library has it since Rust 1.94.
 const PHI: f64 = 1.618_033_988_749_895;
 
-/// Four triangles: every other corner of the cube ±1.
+/// Builds a tetrahedron: four triangles, on every second corner of the cube ±1.
 pub fn tetrahedron() -> PolygonMesh {
     solid(
         &[
@@ -28,7 +28,7 @@ pub fn tetrahedron() -> PolygonMesh {
     )
 }
 
-/// Six squares: the corners (±1, ±1, ±1).
+/// Builds a cube: six squares, with the corners (±1, ±1, ±1).
 ///
 /// ```text
 ///      7────────6
@@ -62,7 +62,7 @@ pub fn cube() -> PolygonMesh {
     )
 }
 
-/// Eight triangles: a vertex either way along each axis.
+/// Builds an octahedron: eight triangles, with vertices at ±1 on each axis.
 pub fn octahedron() -> PolygonMesh {
     solid(
         &[
@@ -86,7 +86,8 @@ pub fn octahedron() -> PolygonMesh {
     )
 }
 
-/// Twelve pentagons: the corners of the cube ±1, and (0, ±φ, ±1/φ) with its cyclic turns.
+/// Builds a dodecahedron: twelve pentagons, with vertices at the corners of the cube ±1, and at
+/// (0, ±φ, ±1/φ) and its cyclic permutations.
 pub fn dodecahedron() -> PolygonMesh {
     const Q: f64 = PHI - 1.0;
     solid(
@@ -129,7 +130,8 @@ pub fn dodecahedron() -> PolygonMesh {
     )
 }
 
-/// Twenty triangles: (0, ±1, ±φ) with its cyclic turns.
+/// Builds an icosahedron: twenty triangles, with vertices at (0, ±1, ±φ) and its cyclic
+/// permutations.
 pub fn icosahedron() -> PolygonMesh {
     solid(&ICOSAHEDRON_VERTICES, &ICOSAHEDRON_FACES)
 }

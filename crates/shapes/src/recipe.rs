@@ -1,6 +1,6 @@
-//! Every shape by name, with its parameters as data: what the command line offers.
+//! Every shape by name, with its parameters as data, for the command line.
 
-use mesh_core::PolygonMesh;
+use sixfold_core::PolygonMesh;
 
 use crate::error::{MAX_AROUND, MAX_SIDE, ShapeError, between};
 use crate::fitting::{MAX_FACES, MIN_FACES};
@@ -10,32 +10,32 @@ use crate::patch::{MAX_DEGREE, MAX_NET};
 use crate::{ControlNet, genus, geodesic, planar, platonic, solids, study, surfaces};
 use crate::{b_spline_patch, bezier_patch};
 
-/// A shape that can be asked for by name.
+/// A shape that can be selected by name.
 #[derive(Clone, Copy, Debug)]
 pub struct Recipe {
-    /// What users call it: `triangle-torus`.
+    /// Name for users, such as `triangle-torus`.
     pub name: &'static str,
-    /// What it is, in one line.
+    /// Description in one line.
     pub summary: &'static str,
-    /// What it takes, in order.
+    /// Parameters, in order.
     pub parameters: &'static [Parameter],
     build: fn(&[f64]) -> Result<PolygonMesh, ShapeError>,
 }
 
-/// A number that a recipe takes.
+/// A numeric parameter of a recipe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
-    /// What users call it.
+    /// Name for users.
     pub name: &'static str,
-    /// What it sets.
+    /// Description in a few words.
     pub meaning: &'static str,
-    /// Its value where none is given.
+    /// Default value.
     pub default: f64,
-    /// The least value allowed.
+    /// Minimum value.
     pub least: f64,
-    /// The greatest value allowed; a shape may refuse less where its parameters go together.
+    /// Maximum value; in combination with other parameters, a shape may allow less.
     pub greatest: f64,
-    /// Whether it must be a whole number.
+    /// Whether the value must be a whole number.
     pub whole: bool,
 }
 
@@ -57,7 +57,7 @@ impl Parameter {
         }
     }
 
-    /// Refuses what is out of range, or a fraction where a count is needed.
+    /// Returns an error if `value` is out of range, or not whole although it must be.
     fn check(&self, value: f64) -> Result<(), ShapeError> {
         let Self {
             name: parameter,
@@ -78,12 +78,12 @@ impl Parameter {
 }
 
 impl Recipe {
-    /// The shape with `values` given by name, and the defaults for the rest.
+    /// Builds the shape with `values` given by name, and default values for the other parameters.
     ///
     /// # Errors
     ///
-    /// A name that is not among the parameters or given twice, a value out of range or not whole
-    /// where it must be, or what the shape itself refuses.
+    /// Fails if a name is unknown or given twice, if a value is out of range or not whole although
+    /// it must be, or if the shape itself returns an error.
     pub fn make(&self, values: &[(&str, f64)]) -> Result<PolygonMesh, ShapeError> {
         let mut given: Vec<Option<f64>> = vec![None; self.parameters.len()];
         for &(name, value) in values {
@@ -116,7 +116,7 @@ impl Recipe {
     }
 }
 
-/// The recipe called `name`.
+/// Returns the recipe with this name.
 pub fn recipe(name: &str) -> Option<&'static Recipe> {
     RECIPES.iter().find(|recipe| recipe.name == name)
 }
@@ -137,13 +137,14 @@ const TORUS: &[Parameter] = &[
 
 const STEPS_M: Parameter = Parameter::count("m", "cells from left to right", 20, 1, MAX_AROUND);
 const STEPS_N: Parameter = Parameter::count("n", "cells from bottom to top", 20, 1, MAX_AROUND);
-/// A target of at least `least` triangles: below it, the lattice is too wide for the thin parts.
+/// The parameter for the number of triangles. With fewer than `least`, the lattice would be too
+/// coarse for the thin parts of the shape.
 const fn faces(least: usize) -> Parameter {
-    let meaning = "triangles, met within 5 % or 20";
+    let meaning = "triangles, within 5 % or 20";
     Parameter::count("faces", meaning, 5_000, least, MAX_FACES)
 }
 
-/// Every shape, in the order in which help lists them.
+/// All shapes, in the order of the help text.
 pub const RECIPES: &[Recipe] = &[
     Recipe {
         name: "tetrahedron",
@@ -207,7 +208,7 @@ pub const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "grid-with-hole",
-        summary: "unit squares without a third each way in the middle",
+        summary: "unit squares with a hole: the middle third in both directions",
         parameters: &[
             Parameter::count("m", "cells from left to right", 20, 3, MAX_SIDE),
             Parameter::count("n", "cells from bottom to top", 20, 3, MAX_SIDE),
@@ -216,11 +217,11 @@ pub const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "grid-with-holes",
-        summary: "unit squares with any number of one-cell holes that have room",
+        summary: "unit squares with one-cell holes that do not touch",
         parameters: &[
             GRID[0],
             GRID[1],
-            Parameter::count("holes", "cells left out", 12, 0, 1 << 27),
+            Parameter::count("holes", "number of holes", 12, 0, 1 << 27),
         ],
         build: |v| planar::grid_with_holes(count(v[0]), count(v[1]), count(v[2])),
     },
@@ -283,7 +284,7 @@ pub const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "genus",
-        summary: "a bar of quads with holes through it, closed",
+        summary: "a closed bar of quads with holes through it",
         parameters: &[Parameter::count("g", "holes", 2, 0, MAX_SIDE)],
         build: |v| genus::genus(count(v[0])),
     },
@@ -291,7 +292,7 @@ pub const RECIPES: &[Recipe] = &[
         name: "bezier-patch",
         summary: "a Bézier patch over a saddle of control points",
         parameters: &[
-            Parameter::count("degree", "degree both ways", 3, 1, MAX_DEGREE),
+            Parameter::count("degree", "degree in both directions", 3, 1, MAX_DEGREE),
             STEPS_M,
             STEPS_N,
         ],
@@ -308,10 +309,10 @@ pub const RECIPES: &[Recipe] = &[
         name: "b-spline-patch",
         summary: "a uniform B-spline patch over waves of control points",
         parameters: &[
-            Parameter::count("degree", "degree both ways", 3, 1, MAX_DEGREE),
+            Parameter::count("degree", "degree in both directions", 3, 1, MAX_DEGREE),
             Parameter::count(
                 "points",
-                "control points both ways, above the degree",
+                "control points in both directions, more than the degree",
                 9,
                 2,
                 MAX_NET,
@@ -327,13 +328,13 @@ pub const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "blobs",
-        summary: "a sum of bells, closed triangles of marching tetrahedra",
+        summary: "a sum of Gaussian bells, triangulated by marching tetrahedra",
         parameters: &[faces(MIN_FACES)],
         build: |v| blobs()?.polygonised(count(v[0])),
     },
     Recipe {
         name: "csg",
-        summary: "a cube and a ball in one, without three bars through both: genus 5",
+        summary: "the intersection of a cube and a ball minus three bars: genus 5",
         parameters: &[faces(1_000)],
         build: |v| csg()?.polygonised(count(v[0])),
     },
@@ -355,13 +356,13 @@ pub const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "default-study",
-        summary: "the irregular mesh that a study without a file is made on",
+        summary: "the irregular mesh that a study uses if no file is given",
         parameters: NONE,
         build: |_| Ok(study::default_study()),
     },
 ];
 
-/// A value that was checked to be a whole number in a small range.
+/// Converts a value that is known to be a whole number in a small range.
 fn count(value: f64) -> usize {
     value as usize
 }

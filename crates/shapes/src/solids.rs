@@ -1,20 +1,20 @@
-//! Solids around an axis: prism, antiprism, and the sphere of meridians and parallels.
+//! Solids around an axis: prism, antiprism, and a sphere of meridians and parallels.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
-use mesh_core::PolygonMesh;
+use sixfold_core::PolygonMesh;
 
 use crate::arithmetic::turn;
 use crate::draft::Draft;
 use crate::error::{MAX_AROUND, ShapeError, corners_within, within};
 
-/// Two `n`-gons joined by `n` quads; `n = 4` is a cube.
+/// Builds two `n`-gons joined by `n` quads; `n = 4` gives a cube.
 ///
 /// V = 2n, E = 3n, F = n + 2.
 ///
 /// # Errors
 ///
-/// `n` outside 3 to 2²⁰.
+/// Fails if `n` is outside 3 to 2²⁰.
 pub fn prism(n: usize) -> Result<PolygonMesh, ShapeError> {
     within("n", n, 3, MAX_AROUND)?;
     let mut draft = Draft::with_capacity(2 * n, 6 * n);
@@ -29,13 +29,14 @@ pub fn prism(n: usize) -> Result<PolygonMesh, ShapeError> {
     Ok(draft.finish())
 }
 
-/// Two `n`-gons, one turned by half a step, joined by `2n` triangles; `n = 3` is an octahedron.
+/// Builds two `n`-gons, one rotated by half a step, joined by `2n` triangles; `n = 3` gives an
+/// octahedron.
 ///
 /// V = 2n, E = 4n, F = 2n + 2.
 ///
 /// # Errors
 ///
-/// `n` outside 3 to 2²⁰.
+/// Fails if `n` is outside 3 to 2²⁰.
 pub fn antiprism(n: usize) -> Result<PolygonMesh, ShapeError> {
     within("n", n, 3, MAX_AROUND)?;
     let mut draft = Draft::with_capacity(2 * n, 8 * n);
@@ -51,13 +52,15 @@ pub fn antiprism(n: usize) -> Result<PolygonMesh, ShapeError> {
     Ok(draft.finish())
 }
 
-/// A sphere of `m` meridians and `n` bands between the poles: triangles at the poles, else quads.
+/// Builds a sphere of `m` meridians and `n` bands between the poles: triangles at the poles, quads
+/// elsewhere.
 ///
 /// V = m(n − 1) + 2, E = m(2n − 1), F = mn.
 ///
 /// # Errors
 ///
-/// `m` outside 3 to 2²⁰, `n` outside 2 to 2²⁰, or more than 2³¹ − 1 corners.
+/// Fails if `m` is outside 3 to 2²⁰, if `n` is outside 2 to 2²⁰, or if there are more than
+/// 2³¹ − 1 corners.
 pub fn uv_sphere(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     within("m", m, 3, MAX_AROUND)?;
     within("n", n, 2, MAX_AROUND)?;
@@ -93,7 +96,7 @@ pub fn uv_sphere(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     Ok(draft.finish())
 }
 
-/// `n` vertices on the unit circle at height `z`, turned by `half_steps`.
+/// Adds `n` vertices on the unit circle at height `z`, rotated by `half_steps` half steps.
 fn ring(draft: &mut Draft, n: usize, half_steps: usize, z: f64) {
     for i in 0..n {
         let [x, y] = turn(2 * i + half_steps, 2 * n);
@@ -101,7 +104,7 @@ fn ring(draft: &mut Draft, n: usize, half_steps: usize, z: f64) {
     }
 }
 
-/// The first `n` vertices as a face seen from below, and the next `n` as one seen from above.
+/// Adds the first `n` vertices as a face that looks down, and the next `n` as a face that looks up.
 fn caps(draft: &mut Draft, n: u32) {
     draft.face((0..n).rev());
     draft.face(n..2 * n);

@@ -1,34 +1,35 @@
-//! Surfaces that close on themselves: the torus and the Möbius strip.
+//! Surfaces that close around an axis: the torus and the Möbius strip.
 
-use mesh_core::PolygonMesh;
+use sixfold_core::PolygonMesh;
 
 use crate::arithmetic::turn;
 use crate::draft::Draft;
 use crate::error::{MAX_AROUND, ShapeError, corners_within, within};
 
-/// The radius of the torus's tube; the circle that it follows has radius 1.
+/// Radius of the tube of the torus, and half the width of the strip. The circle along the centre
+/// has radius 1.
 const TUBE: f64 = 0.4;
 
-/// A torus of `m` × `n` quads: `m` around the axis, `n` around the tube.
+/// Builds a torus of `m` × `n` quads: `m` around the axis, `n` around the tube.
 ///
 /// V = mn, E = 2mn, F = mn; χ = 0.
 ///
 /// # Errors
 ///
-/// `m` or `n` outside 3 to 2²⁰, or more than 2³¹ − 1 corners.
+/// Fails if `m` or `n` is outside 3 to 2²⁰, or if there are more than 2³¹ − 1 corners.
 pub fn torus(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     rolled("torus", m, n, 4, |draft, [a, b, c, d]| {
         draft.face([a, b, c, d]);
     })
 }
 
-/// A torus of `m` × `n` quads, each cut in two: every vertex has valence 6.
+/// Builds a torus of `m` × `n` quads, each cut in two: every vertex has valence 6.
 ///
 /// V = mn, E = 3mn, F = 2mn; χ = 0.
 ///
 /// # Errors
 ///
-/// `m` or `n` outside 3 to 2²⁰, or more than 2³¹ − 1 corners.
+/// Fails if `m` or `n` is outside 3 to 2²⁰, or if there are more than 2³¹ − 1 corners.
 pub fn triangle_torus(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     rolled("triangle-torus", m, n, 6, |draft, [a, b, c, d]| {
         draft.face([a, b, c]);
@@ -36,7 +37,7 @@ pub fn triangle_torus(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     })
 }
 
-/// A torus, each of its cells as `cell` makes it, with `degrees` corners a cell.
+/// Builds a torus. `cell` adds the faces of one cell, which have `degrees` corners in total.
 fn rolled(
     shape: &'static str,
     m: usize,
@@ -67,25 +68,26 @@ fn rolled(
     Ok(draft.finish())
 }
 
-/// A strip of `n` quads joined to its start with half a twist: one side, one boundary loop.
+/// Builds a strip of `n` quads that is joined to its start with half a twist: a one-sided surface
+/// with one boundary loop.
 ///
 /// V = 2n, E = 3n, F = n; χ = 0.
 ///
 /// ```text
-///   b0 ── b1 ── b2 ··· ── bn = a0      the last rung joins the first, turned over
+///   b0 ── b1 ── b2 ··· ── bn = a0      the last rung is the first one, turned over
 ///   │     │     │         │
 ///   a0 ── a1 ── a2 ··· ── an = b0
 /// ```
 ///
 /// # Errors
 ///
-/// `n` outside 3 to 2²⁰.
+/// Fails if `n` is outside 3 to 2²⁰.
 pub fn moebius(n: usize) -> Result<PolygonMesh, ShapeError> {
     within("n", n, 3, MAX_AROUND)?;
     let mut draft = Draft::with_capacity(2 * n, 4 * n);
     for i in 0..n {
         let [x, y] = turn(i, n);
-        // The rung turns by half a turn while it goes round once.
+        // The rung rotates by half a turn while it moves once around the axis.
         let [out, up] = turn(i, 2 * n).map(|x| TUBE * x);
         for side in [-1.0, 1.0] {
             let radius = 1.0 + side * out;

@@ -1,11 +1,11 @@
-//! Every shape has the counts, the topology and the geometry that its documentation says.
+//! Every shape has the counts, the topology and the geometry that are documented.
 
-use mesh_core::{Facts, Point, PolygonMesh, VertexId};
-use shapes::{ControlNet, ShapeError};
+use sixfold_core::{Facts, Point, PolygonMesh, VertexId};
+use sixfold_shapes::{ControlNet, ShapeError};
 
 type Made = Result<PolygonMesh, ShapeError>;
 
-/// What a shape must be; a disk unless said otherwise.
+/// The expected counts and topology of a shape.
 struct Expected {
     vertices: usize,
     edges: usize,
@@ -34,7 +34,7 @@ impl Expected {
     }
 }
 
-/// Holds `mesh` to what is expected, and to what holds for all shapes; its facts.
+/// Compares `mesh` with what is expected, and checks what holds for all shapes. Returns its facts.
 fn check(name: &str, mesh: &PolygonMesh, expected: &Expected) -> Facts {
     let facts = Facts::of(mesh);
     assert_eq!(facts.vertices, expected.vertices, "vertices of {name}");
@@ -71,7 +71,7 @@ fn check(name: &str, mesh: &PolygonMesh, expected: &Expected) -> Facts {
         facts.degenerate_faces,
     ];
     assert_eq!(none, [0; 5], "{name}");
-    // A shape with one side has edges where its faces disagree; no other has.
+    // Only a one-sided shape has edges at which the orientations of the faces disagree.
     assert_eq!(
         facts.inconsistent_edges > 0,
         expected.genus.is_none(),
@@ -85,7 +85,7 @@ fn check(name: &str, mesh: &PolygonMesh, expected: &Expected) -> Facts {
     assert_eq!(
         places.len(),
         mesh.vertex_count(),
-        "two vertices of {name} in one place"
+        "two vertices of {name} at one position"
     );
     if closed {
         assert!(volume(mesh) > 0.0, "{name} is inside out");
@@ -97,7 +97,7 @@ fn bits(point: &Point) -> [u32; 3] {
     point.to_array().map(|x| (x + 0.0).to_bits())
 }
 
-/// The volume that a closed mesh encloses, negative where it is inside out.
+/// Returns the volume that a closed mesh encloses, negative if the mesh is inside out.
 fn volume(mesh: &PolygonMesh) -> f64 {
     let mut volume = 0.0;
     for (_, face) in mesh.faces().iter() {
@@ -109,7 +109,7 @@ fn volume(mesh: &PolygonMesh) -> f64 {
     volume
 }
 
-/// Every face of a flat shape runs counter-clockwise seen from above.
+/// Checks that every face of a flat shape runs counter-clockwise as seen from above.
 fn check_flat(name: &str, mesh: &PolygonMesh) {
     for (f, face) in mesh.faces().iter() {
         let mut doubled = 0.0;
@@ -122,7 +122,7 @@ fn check_flat(name: &str, mesh: &PolygonMesh) {
     }
 }
 
-/// All sides of a mesh have this length.
+/// Checks that all sides of a mesh have this length.
 fn check_sides(name: &str, mesh: &PolygonMesh, length: f32) {
     for (f, face) in mesh.faces().iter() {
         for (&a, &b) in face.iter().zip(face.iter().cycle().skip(1)) {
@@ -135,10 +135,12 @@ fn check_sides(name: &str, mesh: &PolygonMesh, length: f32) {
     }
 }
 
-/// How often each value occurs, as pairs.
-fn hist(spread: &Option<mesh_core::Spread>) -> Vec<(usize, usize)> {
+/// Returns pairs of a value and its number of occurrences.
+fn hist(spread: &Option<sixfold_core::Spread>) -> Vec<(usize, usize)> {
     let hist = spread.as_ref().and_then(|spread| spread.hist.clone());
-    hist.expect("a mesh of few degrees").into_iter().collect()
+    hist.expect("a mesh with few different degrees")
+        .into_iter()
+        .collect()
 }
 
 #[test]
@@ -146,24 +148,29 @@ fn platonic_solids_and_their_duals() {
     let solids = [
         (
             "tetrahedron",
-            shapes::tetrahedron(),
+            sixfold_shapes::tetrahedron(),
             [4, 6, 4],
             8.0_f32.sqrt(),
         ),
-        ("cube", shapes::cube(), [8, 12, 6], 2.0),
+        ("cube", sixfold_shapes::cube(), [8, 12, 6], 2.0),
         (
             "octahedron",
-            shapes::octahedron(),
+            sixfold_shapes::octahedron(),
             [6, 12, 8],
             2.0_f32.sqrt(),
         ),
         (
             "dodecahedron",
-            shapes::dodecahedron(),
+            sixfold_shapes::dodecahedron(),
             [20, 30, 12],
             5.0_f32.sqrt() - 1.0,
         ),
-        ("icosahedron", shapes::icosahedron(), [12, 30, 20], 2.0),
+        (
+            "icosahedron",
+            sixfold_shapes::icosahedron(),
+            [12, 30, 20],
+            2.0,
+        ),
     ];
     let facts = solids.map(|(name, mesh, [v, e, f], side)| {
         let facts = check(name, &mesh, &Expected::closed(v, e, f, 0));
@@ -174,7 +181,7 @@ fn platonic_solids_and_their_duals() {
         }
         (name, facts)
     });
-    // The vertices of one are the faces of the other, valence and degree change places.
+    // The vertices of a solid are the faces of its dual; valence and degree are exchanged.
     for (i, dual) in [0, 2, 1, 4, 3].into_iter().enumerate() {
         let ((name, a), (other, b)) = (&facts[i], &facts[dual]);
         assert_eq!(
@@ -191,22 +198,22 @@ fn platonic_solids_and_their_duals() {
 fn prisms_and_antiprisms() {
     for n in (3..40).chain([1000]) {
         let name = format!("prism {n}");
-        let mesh = shapes::prism(n).expect(&name);
+        let mesh = sixfold_shapes::prism(n).expect(&name);
         let facts = check(&name, &mesh, &Expected::closed(2 * n, 3 * n, n + 2, 0));
         assert_eq!(hist(&facts.valence), [(3, 2 * n)], "{name}");
         let name = format!("antiprism {n}");
-        let mesh = shapes::antiprism(n).expect(&name);
+        let mesh = sixfold_shapes::antiprism(n).expect(&name);
         let facts = check(&name, &mesh, &Expected::closed(2 * n, 4 * n, 2 * n + 2, 0));
         assert_eq!(hist(&facts.valence), [(4, 2 * n)], "{name}");
     }
     check_sides(
         "prism 4",
-        &shapes::prism(4).expect("a cube"),
+        &sixfold_shapes::prism(4).expect("a cube"),
         2.0_f32.sqrt(),
     );
     check_sides(
         "antiprism 3",
-        &shapes::antiprism(3).expect("an octahedron"),
+        &sixfold_shapes::antiprism(3).expect("an octahedron"),
         3.0_f32.sqrt(),
     );
 }
@@ -216,7 +223,7 @@ fn spheres() {
     for m in 3..12 {
         for n in 2..12 {
             let name = format!("uv-sphere {m} {n}");
-            let mesh = shapes::uv_sphere(m, n).expect(&name);
+            let mesh = sixfold_shapes::uv_sphere(m, n).expect(&name);
             let expected = Expected::closed(m * (n - 1) + 2, m * (2 * n - 1), m * n, 0);
             check(&name, &mesh, &expected);
             check_unit(&name, &mesh);
@@ -224,7 +231,7 @@ fn spheres() {
     }
     for f in 1..=16 {
         let name = format!("geodesic {f}");
-        let mesh = shapes::geodesic(f).expect(&name);
+        let mesh = sixfold_shapes::geodesic(f).expect(&name);
         let expected = Expected::closed(10 * f * f + 2, 30 * f * f, 20 * f * f, 0);
         let facts = check(&name, &mesh, &expected);
         check_unit(&name, &mesh);
@@ -235,7 +242,7 @@ fn spheres() {
             valences[..if f == 1 { 1 } else { 2 }],
             "{name}"
         );
-        // Every triangle looks away from the centre, not only most of them.
+        // Every triangle looks away from the centre.
         for (face, corners) in mesh.faces().iter() {
             let [a, b, c] = [0, 1, 2].map(|i| mesh.position(corners[i]));
             assert!((b - a).cross(c - a).dot(a) > 0.0, "{face} of {name}");
@@ -260,12 +267,19 @@ fn grids_and_tilings() {
                 check_flat(&name, &mesh);
                 (check(&name, &mesh, &expected), mesh)
             };
-            let (_, squares) = flat("grid", shapes::grid(m, n), Expected::disk(v, e, f));
+            let (_, squares) = flat("grid", sixfold_shapes::grid(m, n), Expected::disk(v, e, f));
             check_sides("grid", &squares, 1.0);
             let halves = || Expected::disk(v, e + f, 2 * f);
-            flat("triangle-grid", shapes::triangle_grid(m, n), halves());
-            let (facts, triangles) =
-                flat("triangle-tiling", shapes::triangle_tiling(m, n), halves());
+            flat(
+                "triangle-grid",
+                sixfold_shapes::triangle_grid(m, n),
+                halves(),
+            );
+            let (facts, triangles) = flat(
+                "triangle-tiling",
+                sixfold_shapes::triangle_tiling(m, n),
+                halves(),
+            );
             check_sides("triangle-tiling", &triangles, 1.0);
             let inner = |facts: &Facts, valence| {
                 let of = |&(v, count)| (v == valence).then_some(count);
@@ -274,9 +288,13 @@ fn grids_and_tilings() {
             assert!(inner(&facts, 6) >= (m - 1) * (n - 1), "{{3, 6}} {m} {n}");
             let cut = f / 2;
             let mixed = Expected::disk(v, e + cut, f + cut);
-            flat("mixed-grid", shapes::mixed_grid(m, n), mixed);
+            flat("mixed-grid", sixfold_shapes::mixed_grid(m, n), mixed);
             let hexagons = Expected::disk(2 * v - 2, 3 * f + 2 * m + 2 * n - 1, f);
-            let (facts, hexagons) = flat("hexagon-tiling", shapes::hexagon_tiling(m, n), hexagons);
+            let (facts, hexagons) = flat(
+                "hexagon-tiling",
+                sixfold_shapes::hexagon_tiling(m, n),
+                hexagons,
+            );
             check_sides("hexagon-tiling", &hexagons, 1.0);
             assert_eq!(hist(&facts.face_degree), [(6, f)]);
             assert!(
@@ -297,7 +315,7 @@ fn grids_with_holes() {
             if m >= 3 && n >= 3 {
                 let (a, b) = (m / 3, n / 3);
                 let name = format!("grid-with-hole {m} {n}");
-                let mesh = shapes::grid_with_hole(m, n).expect(&name);
+                let mesh = sixfold_shapes::grid_with_hole(m, n).expect(&name);
                 check_flat(&name, &mesh);
                 let expected = Expected {
                     boundary_loops: 2,
@@ -308,14 +326,14 @@ fn grids_with_holes() {
             let room = ((m - 1) / 2) * ((n - 1) / 2);
             for holes in 0..=room {
                 let name = format!("grid-with-holes {m} {n} {holes}");
-                let mesh = shapes::grid_with_holes(m, n, holes).expect(&name);
+                let mesh = sixfold_shapes::grid_with_holes(m, n, holes).expect(&name);
                 let expected = Expected {
                     boundary_loops: 1 + holes,
                     ..Expected::disk(v, e, f - holes)
                 };
                 check(&name, &mesh, &expected);
             }
-            let error = shapes::grid_with_holes(m, n, room + 1).expect_err("no room");
+            let error = sixfold_shapes::grid_with_holes(m, n, room + 1).expect_err("no room");
             let message = format!("holes = {}: choose from 0 to {room}", room + 1);
             assert_eq!(error.to_string(), message);
         }
@@ -329,29 +347,29 @@ fn patches() {
         for (columns, rows) in [(2, 2), (2, 5), (4, 4), (33, 3)] {
             let name = format!("bezier-patch {columns} × {rows}, {m} {n}");
             let net = ControlNet::saddle(columns, rows).expect(&name);
-            let mesh = shapes::bezier_patch(&net, m, n).expect(&name);
+            let mesh = sixfold_shapes::bezier_patch(&net, m, n).expect(&name);
             check(&name, &mesh, &Expected::disk(v, e, f));
         }
         for (columns, rows, degree) in [(2, 2, 1), (4, 4, 3), (9, 5, 3), (6, 8, 5)] {
             let name = format!("b-spline-patch {columns} × {rows} of {degree}, {m} {n}");
             let net = ControlNet::waves(columns, rows).expect(&name);
-            let mesh = shapes::b_spline_patch(&net, degree, m, n).expect(&name);
+            let mesh = sixfold_shapes::b_spline_patch(&net, degree, m, n).expect(&name);
             check(&name, &mesh, &Expected::disk(v, e, f));
         }
     }
 }
 
 #[test]
-fn tori_handles_and_the_moebius_strip() {
+fn tori_surfaces_of_any_genus_and_the_moebius_strip() {
     for m in 3..12 {
         for n in 3..12 {
             let cells = m * n;
             let name = format!("torus {m} {n}");
-            let mesh = shapes::torus(m, n).expect(&name);
+            let mesh = sixfold_shapes::torus(m, n).expect(&name);
             let facts = check(&name, &mesh, &Expected::closed(cells, 2 * cells, cells, 1));
             assert_eq!(hist(&facts.valence), [(4, cells)], "{name}");
             let name = format!("triangle-torus {m} {n}");
-            let mesh = shapes::triangle_torus(m, n).expect(&name);
+            let mesh = sixfold_shapes::triangle_torus(m, n).expect(&name);
             let facts = check(
                 &name,
                 &mesh,
@@ -362,7 +380,7 @@ fn tori_handles_and_the_moebius_strip() {
     }
     for g in 0..40 {
         let name = format!("genus {g}");
-        let mesh = shapes::genus(g).expect(&name);
+        let mesh = sixfold_shapes::genus(g).expect(&name);
         let expected = Expected::closed(16 * (g + 1), 36 * g + 28, 18 * g + 14, g as i64);
         check(&name, &mesh, &expected);
         let solid = (3 * (2 * g + 1) - g) as f64;
@@ -373,7 +391,7 @@ fn tori_handles_and_the_moebius_strip() {
     }
     for n in 3..60 {
         let name = format!("moebius {n}");
-        let mesh = shapes::moebius(n).expect(&name);
+        let mesh = sixfold_shapes::moebius(n).expect(&name);
         let expected = Expected {
             genus: None,
             ..Expected::disk(2 * n, 3 * n, n)
@@ -385,8 +403,8 @@ fn tori_handles_and_the_moebius_strip() {
 }
 
 #[test]
-fn the_default_study_is_the_same_everywhere() {
-    let mesh = shapes::default_study();
+fn the_default_study_is_the_same_on_every_machine() {
+    let mesh = sixfold_shapes::default_study();
     let (v, e, f) = (
         mesh.vertex_count(),
         3 * mesh.face_count() / 2,
@@ -398,13 +416,14 @@ fn the_default_study_is_the_same_everywhere() {
     let common = valence.hist.iter().flat_map(|hist| hist.values()).max();
     assert!(
         common.is_some_and(|&common| 2 * common < v),
-        "no valence rules: {valence:?}"
+        "more than half of the vertices have the same valence: {valence:?}"
     );
     for (face, corners) in mesh.faces().iter() {
         let [a, b, c] = [0, 1, 2].map(|i| mesh.position(corners[i]));
         assert!((b - a).cross(c - a).length() > 1e-6, "{face} is a sliver");
     }
-    // FNV-1a over every coordinate and corner: figures published for this mesh stay comparable.
+    // FNV-1a over every coordinate and corner. If it is unchanged, results that were published for
+    // this mesh stay comparable.
     let words = mesh.positions().iter().flat_map(bits);
     let words = words.chain(mesh.faces().corners().iter().map(|v| v.index() as u32));
     let hash = words.fold(0xCBF2_9CE4_8422_2325_u64, |hash, word| {

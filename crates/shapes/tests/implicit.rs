@@ -1,8 +1,8 @@
-//! Implicit surfaces: fields by their formulas, surfaces by their topology.
+//! Implicit surfaces: checks fields against their formulas, and surfaces against their topology.
 
-use mesh_core::{Facts, PolygonMesh};
-use shapes::implicit::{Blob, Field};
-use shapes::recipe;
+use sixfold_core::{Facts, PolygonMesh};
+use sixfold_shapes::implicit::{Blob, Field};
+use sixfold_shapes::recipe;
 
 fn ball(x: f64, radius: f64) -> Field {
     Field::sphere([x, 0.0, 0.0], radius).expect("a ball")
@@ -47,7 +47,7 @@ fn fields_follow_their_formulas() {
             let smooth = f.clone().smooth_union(g.clone(), alpha).expect("alpha");
             let expected = (a + b - (a * a + b * b - 2.0 * alpha * a * b).sqrt()) / (1.0 + alpha);
             close(smooth.at(point), expected);
-            // Blends only add, and only off the surface.
+            // Outside the union, a blend only adds to the solid.
             assert!(smooth.at(point) <= a.min(b) + 1e-12 || a.min(b) < 0.0);
         }
         close(f.clone().inflated(0.25).expect("by").at(point), a - 0.25);
@@ -63,7 +63,7 @@ fn fields_follow_their_formulas() {
     close(sum.at([1.0, 2.0, 0.0]), expected);
 }
 
-/// A closed, oriented manifold with about `faces` triangles, all vertices apart.
+/// Checks for a closed, oriented manifold with about `faces` triangles and distinct positions.
 fn check(name: &str, mesh: &PolygonMesh, faces: usize) -> Facts {
     let facts = Facts::of(mesh);
     let tolerance = (faces / 20).max(20);
@@ -170,23 +170,26 @@ fn recipes_have_their_topology() {
 fn vertices_lie_on_the_surface() {
     let field = ring([1.0, 2.0, -0.5]);
     let mesh = field.polygonised(20_000).expect("a ring");
-    // A surface of area A crosses some 4.49 A / h² of the lattice edges, by Cauchy's formula, and
-    // has twice as many faces. A crossing is moved off a lattice point by 0.08 √3 h at most.
+    // By Cauchy's formula, a surface of area A crosses about 4.49 A / h² lattice edges. It has
+    // twice as many faces. A crossing is moved away from a lattice point by at most 0.08 √3 h.
     let area = 4.0 * std::f64::consts::PI.powi(2) * 0.3;
     let spacing = (8.98 * area / mesh.face_count() as f64).sqrt();
-    let off = |p: &mesh_core::Point| field.at(p.to_array().map(f64::from)).abs() / spacing;
+    let off = |p: &sixfold_core::Point| field.at(p.to_array().map(f64::from)).abs() / spacing;
     let off: Vec<f64> = mesh.positions().iter().map(off).collect();
-    assert!(off.iter().all(|&off| off < 0.16), "some vertex is far off");
+    assert!(
+        off.iter().all(|&off| off < 0.16),
+        "a vertex is far from the surface"
+    );
     let near = off.iter().filter(|&&off| off < 1e-3).count();
     assert!(
         near > off.len() * 3 / 4,
-        "only {near} of {} are near",
+        "only {near} of {} vertices are near the surface",
         off.len()
     );
 }
 
 #[test]
-fn a_long_chain_of_blends_is_a_worm() {
+fn a_long_chain_of_blended_balls_has_genus_zero() {
     let bead = |i: u32| ball(0.5 * f64::from(i), 1.0);
     let worm = (1..60).try_fold(bead(0), |worm, i| worm.smooth_union(bead(i), 0.0));
     let worm = worm
@@ -198,13 +201,13 @@ fn a_long_chain_of_blends_is_a_worm() {
 }
 
 #[test]
-fn small_targets_keep_the_topology_that_the_recipe_promises() {
+fn small_targets_keep_the_topology_of_the_recipe() {
     for (name, genus, targets) in [
         ("csg", 5, [1_000.0, 1_111.0, 1_500.0, 2_345.0]),
         ("smooth-union", 2, [1_500.0, 1_777.0, 2_100.0, 2_345.0]),
     ] {
         for target in targets {
-            let recipe = shapes::recipe(name).expect("listed");
+            let recipe = sixfold_shapes::recipe(name).expect("listed");
             let mesh = recipe.make(&[("faces", target)]).expect("within its range");
             let facts = Facts::of(&mesh);
             assert_eq!(facts.genus, Some(genus), "{name} faces={target}");

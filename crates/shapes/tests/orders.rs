@@ -1,22 +1,23 @@
-//! An order changes names and places in memory, and nothing else.
+//! An order changes only handles and places in memory.
 
-use mesh_core::{Facts, Point, PolygonMesh, VertexId};
-use shapes::{Order, breadth_first, morton, shuffled};
+use sixfold_core::{Facts, Point, PolygonMesh, VertexId};
+use sixfold_shapes::{Order, breadth_first, morton, shuffled};
 
 fn meshes() -> Vec<PolygonMesh> {
     let made = [
-        shapes::genus(2),
-        shapes::mixed_grid(6, 7),
-        shapes::moebius(9),
-        shapes::grid_with_holes(9, 9, 5),
+        sixfold_shapes::genus(2),
+        sixfold_shapes::mixed_grid(6, 7),
+        sixfold_shapes::moebius(9),
+        sixfold_shapes::grid_with_holes(9, 9, 5),
         PolygonMesh::new([Point::X, Point::Y, Point::Z, Point::ONE], [[1, 3, 2]])
-            .map_err(|_| unreachable!("a triangle beside an isolated vertex")),
+            .map_err(|_| unreachable!("a triangle and an isolated vertex are valid")),
         Ok(PolygonMesh::default()),
     ];
     made.map(|mesh| mesh.expect("small parameters")).into()
 }
 
-/// The faces as cycles of places, each turned to start at its least; sorted.
+/// Returns the sorted positions, and the sorted faces as cycles of positions. Each cycle starts at
+/// its least position.
 fn content(mesh: &PolygonMesh) -> (Vec<[u32; 3]>, Vec<Vec<[u32; 3]>>) {
     let place = |v: VertexId| mesh.position(v).to_array().map(f32::to_bits);
     let mut places: Vec<_> = mesh.vertices().map(place).collect();
@@ -46,7 +47,7 @@ fn every_order_keeps_the_mesh() {
 }
 
 #[test]
-fn names_lead_to_the_same_places_and_corners() {
+fn new_handles_have_the_same_positions_and_corners() {
     for mesh in meshes() {
         for order in Order::ALL {
             let after = order.with_names(&mesh, 3);
@@ -67,13 +68,14 @@ fn names_lead_to_the_same_places_and_corners() {
 }
 
 #[test]
-fn shuffling_depends_on_the_seed_alone() {
-    let mesh = shapes::torus(10, 10).expect("small");
+fn shuffling_depends_only_on_the_seed() {
+    let mesh = sixfold_shapes::torus(10, 10).expect("small");
     assert_eq!(shuffled(&mesh, 5), shuffled(&mesh, 5));
     assert_ne!(shuffled(&mesh, 5), shuffled(&mesh, 6));
     assert_ne!(shuffled(&mesh, 5), mesh);
-    // Faces are turned too. In a grid each starts at its lower left; then a quarter of them do.
-    let mesh = shapes::grid(10, 10).expect("small");
+    // Faces are rotated too. In a grid, each face starts at its lower left corner; after shuffling,
+    // about a quarter of them do.
+    let mesh = sixfold_shapes::grid(10, 10).expect("small");
     let mut starts = [0; 4];
     let turned = shuffled(&mesh, 5);
     for (_, face) in turned.faces().iter() {
@@ -88,11 +90,12 @@ fn shuffling_depends_on_the_seed_alone() {
 }
 
 #[test]
-fn morton_and_breadth_first_forget_the_order_before() {
-    let mesh = shapes::default_study();
+fn morton_and_breadth_first_improve_a_shuffled_order() {
+    let mesh = sixfold_shapes::default_study();
     let sorted = morton(&shuffled(&mesh, 1));
     assert_eq!(sorted.positions(), morton(&mesh).positions());
-    // What is near on the surface is near in memory: the mean step along a side.
+    // Vertices that are near on the surface are near in memory. This is the mean distance of the
+    // rows of the two ends of a side.
     let step = |mesh: &PolygonMesh| {
         let sides = mesh
             .faces()
@@ -116,7 +119,7 @@ fn morton_and_breadth_first_forget_the_order_before() {
 }
 
 #[test]
-fn a_walk_meets_faces_in_the_order_of_their_first_vertex() {
+fn breadth_first_faces_are_sorted_by_their_lowest_vertex() {
     for mesh in meshes() {
         let walked = breadth_first(&shuffled(&mesh, 2));
         let firsts = walked
@@ -124,7 +127,7 @@ fn a_walk_meets_faces_in_the_order_of_their_first_vertex() {
             .iter()
             .map(|(_, face)| face.iter().min().copied());
         assert!(firsts.is_sorted(), "{walked:?}");
-        // A vertex is called up by a face that an earlier vertex sees, but for where a walk starts.
+        // Every vertex is reached through a face of an earlier vertex, except the starts of walks.
         let components = Facts::of(&mesh).components + Facts::of(&mesh).isolated_vertices;
         let mut called = vec![false; walked.vertex_count()];
         for (_, face) in walked.faces().iter() {
@@ -139,7 +142,7 @@ fn a_walk_meets_faces_in_the_order_of_their_first_vertex() {
 }
 
 #[test]
-fn places_that_are_no_numbers_are_ordered_too() {
+fn meshes_with_nan_and_infinite_positions_are_ordered_too() {
     let odd = [
         Point::NAN,
         Point::INFINITY,

@@ -1,10 +1,10 @@
-//! Impossible parameters are refused by name, before anything is allocated.
+//! Invalid parameters return an error that names them, before anything is allocated.
 
-use mesh_core::PolygonMesh;
-use shapes::implicit::{Blob, Field};
-use shapes::{RECIPES, ShapeError, recipe};
+use sixfold_core::PolygonMesh;
+use sixfold_shapes::implicit::{Blob, Field};
+use sixfold_shapes::{RECIPES, ShapeError, recipe};
 
-/// A shape with one parameter, or with two.
+/// Functions that build a shape from one parameter, or from two.
 type One = fn(usize) -> Result<PolygonMesh, ShapeError>;
 type Two = fn(usize, usize) -> Result<PolygonMesh, ShapeError>;
 
@@ -13,11 +13,11 @@ fn counts_out_of_range() {
     let around = 1 << 20;
     let side = 1 << 22;
     let ones: [(&str, One, usize, usize); 5] = [
-        ("n", shapes::prism, 3, around),
-        ("n", shapes::antiprism, 3, around),
-        ("n", shapes::moebius, 3, around),
-        ("frequency", shapes::geodesic, 1, 5982),
-        ("g", shapes::genus, 0, side),
+        ("n", sixfold_shapes::prism, 3, around),
+        ("n", sixfold_shapes::antiprism, 3, around),
+        ("n", sixfold_shapes::moebius, 3, around),
+        ("frequency", sixfold_shapes::geodesic, 1, 5982),
+        ("g", sixfold_shapes::genus, 0, side),
     ];
     for (parameter, make, least, greatest) in ones {
         for value in (0..least).chain([greatest + 1, usize::MAX]) {
@@ -29,15 +29,15 @@ fn counts_out_of_range() {
         }
     }
     let twos: [(Two, [usize; 2], usize); 9] = [
-        (shapes::grid, [1, 1], side),
-        (shapes::triangle_grid, [1, 1], side),
-        (shapes::mixed_grid, [1, 1], side),
-        (shapes::grid_with_hole, [3, 3], side),
-        (shapes::triangle_tiling, [1, 1], side),
-        (shapes::hexagon_tiling, [1, 1], side),
-        (shapes::torus, [3, 3], around),
-        (shapes::triangle_torus, [3, 3], around),
-        (shapes::uv_sphere, [3, 2], around),
+        (sixfold_shapes::grid, [1, 1], side),
+        (sixfold_shapes::triangle_grid, [1, 1], side),
+        (sixfold_shapes::mixed_grid, [1, 1], side),
+        (sixfold_shapes::grid_with_hole, [3, 3], side),
+        (sixfold_shapes::triangle_tiling, [1, 1], side),
+        (sixfold_shapes::hexagon_tiling, [1, 1], side),
+        (sixfold_shapes::torus, [3, 3], around),
+        (sixfold_shapes::triangle_torus, [3, 3], around),
+        (sixfold_shapes::uv_sphere, [3, 2], around),
     ];
     for (make, [m, n], greatest) in twos {
         for value in (0..m).chain([greatest + 1, usize::MAX]) {
@@ -48,7 +48,7 @@ fn counts_out_of_range() {
             let error = make(m, value).expect_err("n");
             assert_eq!(error, out_of_range("n", value as f64, n, greatest));
         }
-        // Each alone is allowed: some 10¹² cells would take terabytes.
+        // Each value is allowed, but about 10¹² cells would take terabytes.
         let error = make(greatest, greatest).expect_err("too many");
         let ShapeError::TooMany {
             parameters,
@@ -77,12 +77,12 @@ fn out_of_range(parameter: &'static str, value: f64, least: usize, greatest: usi
 fn messages_name_parameter_value_and_range() {
     let message = |made: Result<PolygonMesh, ShapeError>| made.expect_err("refused").to_string();
     assert_eq!(
-        message(shapes::torus(2, 5)),
+        message(sixfold_shapes::torus(2, 5)),
         "m = 2: choose from 3 to 1048576"
     );
     assert_eq!(
-        message(shapes::grid(40_000, 50_000)),
-        "grid with m = 40000, n = 50000 has 8000000000 corners, beyond 2147483647: choose smaller numbers"
+        message(sixfold_shapes::grid(40_000, 50_000)),
+        "grid with m = 40000, n = 50000 has 8000000000 corners, more than 2147483647: choose smaller numbers"
     );
     let torus = recipe("torus").expect("a shape");
     assert_eq!(
@@ -99,20 +99,20 @@ fn messages_name_parameter_value_and_range() {
     );
     assert_eq!(
         message(torus.make(&[("m", 3.0), ("m", 4.0)])),
-        "torus is given m twice: leave one out"
+        "parameter m of torus is given twice: remove one"
     );
     let cube = recipe("cube").expect("a shape");
     assert_eq!(
         message(cube.make(&[("n", 3.0)])),
-        "cube has no parameter \"n\": it takes none"
+        "cube has no parameter \"n\": it has no parameters"
     );
     let error = "spiral"
-        .parse::<shapes::Order>()
+        .parse::<sixfold_shapes::Order>()
         .expect_err("no such order");
     let orders = "choose from given, shuffled, morton, breadth-first";
     assert_eq!(
         error.to_string(),
-        format!("no order is called \"spiral\": {orders}")
+        format!("unknown order \"spiral\": {orders}")
     );
 }
 
@@ -126,7 +126,7 @@ fn every_recipe_works_and_refuses() {
             .all(|b| b.is_ascii_lowercase() || b == b'-');
         assert!(kebab && !recipe.summary.is_empty(), "{}", recipe.name);
         assert_eq!(
-            shapes::recipe(recipe.name).map(|found| found.name),
+            sixfold_shapes::recipe(recipe.name).map(|found| found.name),
             Some(recipe.name)
         );
         let mesh = recipe.make(&[]).expect(recipe.name);
@@ -139,7 +139,8 @@ fn every_recipe_works_and_refuses() {
                 "{}",
                 recipe.name
             );
-            // The least may be too little for the default of another parameter, which then is named.
+            // The minimum may be too small for the default of another parameter. Then the error
+            // names that parameter.
             if let Err(error) = with(parameter.least) {
                 let other = matches!(error, ShapeError::OutOfRange { parameter: p, .. } if p != parameter.name);
                 assert!(other, "{} {}: {error}", recipe.name, parameter.name);
@@ -171,11 +172,11 @@ fn every_recipe_works_and_refuses() {
     names.sort_unstable();
     names.dedup();
     assert_eq!(names.len(), RECIPES.len());
-    assert!(shapes::recipe("teapot").is_none());
+    assert!(sixfold_shapes::recipe("teapot").is_none());
 }
 
 #[test]
-fn fields_that_make_no_solid() {
+fn invalid_fields_and_empty_solids() {
     let nan = f64::NAN;
     assert!(Field::sphere([nan, 0.0, 0.0], 1.0).is_err());
     assert!(Field::sphere([0.0; 3], 0.0).is_err());
@@ -226,9 +227,9 @@ fn fields_that_make_no_solid() {
     let nothing = [
         ball().intersection(far).expect("two parts"),
         ball().difference(ball()).expect("two parts"),
-        ball().inflated(-2.0).expect("less than nothing"),
+        ball().inflated(-2.0).expect("an empty solid"),
         ball().inflated(-1.0).expect("a point"),
-        Field::blobs(&[blob], 2.0).expect("a level never reached"),
+        Field::blobs(&[blob], 2.0).expect("a level that is never reached"),
         Field::blobs(&[], 1.0).expect("no blobs"),
     ];
     for field in nothing {
@@ -241,10 +242,10 @@ fn fields_that_make_no_solid() {
     let distant = Field::sphere([1e6, 0.0, 0.0], 0.01).expect("small and far away");
     let error = distant
         .polygonised(500)
-        .expect_err("f32 has no such places");
+        .expect_err("too fine for f32 so far from the origin");
     assert!(matches!(error, ShapeError::TooFine { .. }), "{error}");
 
-    // A chain too long for the stack ends in an error; the same parts in pairs are fine.
+    // A chain that would overflow the stack returns an error; the same parts in pairs are accepted.
     let chain = (0..10_000).try_fold(ball(), |chain, _| chain.union(ball()));
     let error = chain.expect_err("too deep");
     assert_eq!(error, out_of_range("depth", 501.0, 1, 500));

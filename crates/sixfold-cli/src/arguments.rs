@@ -1,4 +1,4 @@
-//! What can be asked for.
+//! The command-line arguments.
 
 mod comparing;
 mod memory;
@@ -12,9 +12,9 @@ mod why;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use ::study::{CacheState, External, Operation, Policy};
 use clap::{Args, Parser, Subcommand};
 use sixfold::shapes::Order;
+use sixfold_study::{CacheState, External, Operation, Policy};
 
 pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
 pub(crate) use memory::Memory;
@@ -29,17 +29,18 @@ use crate::many::{Chosen, Shard};
 
 const EXAMPLES: &str = "Examples:
   sixfold                                    study the built-in mesh
-  sixfold study bunny.obj                    study your own
+  sixfold study bunny.obj                    study your own mesh
   sixfold pick --workload smoothing bunny.obj
-  sixfold inspect bunny.obj                  what it is, and which backends can hold it
+  sixfold inspect bunny.obj                  its facts, and which backends can hold it
   sixfold generate geodesic frequency=20 -o ball.obj
   sixfold subdivide --scheme loop --levels 2 bunny.obj -o smooth.obj
   sixfold decimate --ratio 0.1 bunny.obj -o small.obj
 
-Exit codes: 0 done; 1 done, and the answer is no; 2 wrong usage or unusable input;
-3 not supported by this backend or scheme; 4 interrupted, finished part kept.";
+Exit codes: 0 success; 1 finished with a negative answer, such as results that differ;
+2 wrong usage or unusable input; 3 not supported by this backend or scheme;
+4 interrupted, finished results are kept.";
 
-/// What help on `study` says before the names.
+/// Text after the options in `study --help`; the lists of names follow it.
 pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study bunny.obj
   sixfold study bunny.obj --backends half-edge,face-vertex --operations vv_smooth,build
@@ -47,33 +48,34 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study bunny.obj --json - --csv bunny.csv
   sixfold study bunny.obj --external mine='./mine {mesh}'
   sixfold study bunny.obj --report bunny            a page with figures
-  sixfold study scans --report results              all OBJ files in a folder; --resume goes on
+  sixfold study scans --report results              all OBJ files in a folder; --resume continues
 
-How it measures: every round runs each operation on each backend, one after the other, in random
-order, on the processor time of the thread; the table shows medians. The seed decides that order
-and which elements are sampled; how many is decided by the clock. One backend is entered twice: what
-its two columns differ by is the noise, and no more than that is a tie. Ctrl-C ends it between two
-samples and keeps what is finished. A second Ctrl-C ends it at once, with code 130.
+How it measures: each round runs every operation once on every backend, in random order. The clock
+is the processor time of the thread; the table shows medians. The seed determines the order and
+which elements are sampled; measured times determine how many are sampled. One backend is measured
+in two columns: their difference is the noise, and smaller differences count as ties. Ctrl-C stops
+after the current sample and keeps the finished results. A second Ctrl-C stops at once, with exit
+code 130.
 
-Memory: --heap kept makes freed pages stay with the process, so that no sample pays for fresh ones;
-what operations take on fresh pages is shown as `first time`. --heap system leaves that to the
-platform's allocator: times of what allocates then depend on what ran before. With --caches cold
+Memory: --heap kept keeps freed pages in the process, so that no sample pays for fresh pages;
+`first time` shows the time on fresh pages. --heap system leaves freed pages to the allocator of the
+platform: the times of operations that allocate then depend on what ran before. With --caches cold
 each sample is one run, after the caches were filled with other data. `compare` and `merge` refuse
-to mix results of different heaps or caches.
+to mix results with different --heap or --caches.
 
-Exit codes: 0 done; 1 backends found different results, a fault in Sixfold, or another program
-did; 2 wrong usage or unusable input; 3 no backend asked for can hold the mesh; 4 interrupted,
-finished part kept.";
+Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold) or in an external
+program; 2 wrong usage or unusable input; 3 none of the selected backends can hold the mesh;
+4 interrupted, finished results are kept.";
 
 const MERGE_EXAMPLES: &str = "Examples:
   sixfold study scans --shard 1/2 --report one      on one machine
   sixfold study scans --shard 2/2 --report two      on another
   sixfold merge one two --report all
 
-Shards are of the same meshes, by name, and were made with the same settings; a mesh that several
-have is taken from the first.
+All shards must have the same list of mesh names and the same settings. If several shards contain a
+mesh, the first of them is used.
 
-Exit codes: 0 done; 1 backends found different results, a fault in Sixfold; 2 wrong usage, or
+Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold); 2 wrong usage, or
 shards that do not belong together.";
 
 const REPORT_EXAMPLES: &str = "Examples:
@@ -81,17 +83,18 @@ const REPORT_EXAMPLES: &str = "Examples:
   sixfold report growth.json --to growth
   sixfold report results pick.json orders.json --to all
 
-Exit codes: 0 done; 2 wrong usage, or a file that is no result, was cut off, or has another schema.";
+Exit codes: 0 success; 2 wrong usage, or a file that is incomplete, not a result, or of another
+schema.";
 
 const INSPECT_EXAMPLES: &str = "Examples:
   sixfold inspect bunny.obj
-  sixfold inspect bunny.obj --json -         for machines
+  sixfold inspect bunny.obj --json -         machine-readable
 
-Exit codes: 0 done; 2 wrong usage or unusable input; 4 interrupted.";
+Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted.";
 
-/// Which mesh data structure fits this mesh and this workload? Measured, with evidence.
+/// Measure which mesh data structure fits a mesh and a workload.
 ///
-/// Builds every backend from the same mesh, runs the same operations on each and compares.
+/// Builds every backend from the same mesh, runs the same operations on each and compares times.
 /// Without a command it studies a built-in mesh of about 20,000 triangles for about 20 seconds.
 #[derive(Debug, Parser)]
 #[command(name = "sixfold", version, after_help = EXAMPLES, verbatim_doc_comment)]
@@ -102,58 +105,58 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Measure what each backend costs for a mesh
+    /// Measure the time and memory of each backend for a mesh
     Study(Study),
-    /// Say which backend fits a mesh and a workload
+    /// Find the backend that fits a mesh and a workload
     Pick(Pick),
-    /// List the built-in workloads, and who does this
+    /// List the built-in workloads and the programs they model
     Workloads(Workloads),
-    /// Say what queries read, and whether that is what they take their time for
+    /// Explain the time of queries by the memory that they read
     Why(Why),
-    /// Measure what the order of a mesh in memory costs each backend
+    /// Measure how the order of a mesh in memory affects each backend
     Orders(Orders),
-    /// Measure how the cost of each backend grows with the mesh
+    /// Measure how the cost of each backend grows with the size of the mesh
     Growth(Growth),
-    /// Put the shards of a study of many meshes together
+    /// Merge the shards of a study of many meshes
     Merge(Merge),
-    /// Draw results that were written before, on one page
+    /// Draw saved results on one page
     Report(Draw),
-    /// Say what changed between two studies, beyond noise
+    /// Show what changed between two studies beyond the noise
     Compare(Compare),
-    /// Say what a mesh is, and which backends can hold it
+    /// Show facts about a mesh, and which backends can hold it
     Inspect(Inspect),
-    /// Say what each backend takes in memory, counted in three ways that must agree
+    /// Show the memory of each backend, counted in three ways that must agree
     Memory(Memory),
     /// Write a built-in shape
     Generate(Generate),
-    /// Say what subdivision schemes there are, and what runs on which backend
+    /// List the subdivision schemes, and which backends support them
     Schemes(Schemes),
-    /// Refine a mesh by a subdivision scheme
+    /// Refine a mesh with a subdivision scheme
     Subdivide(Subdivide),
     /// Move vertices towards their neighbours
     Smooth(Smooth),
-    /// Make a vertex of each face, and a face of each vertex
+    /// Turn each face into a vertex, and each vertex into a face
     Dual(Dual),
     /// Cut polygons into triangles
     Triangulate(Triangulate),
-    /// Say what edits each backend offers, and how much of the mesh they look at
+    /// List the edits of each backend, and how much of the mesh they visit
     Edits(Edits),
-    /// Make a mesh coarser: collapse edges, the least harmful first
+    /// Make a mesh coarser: collapse the edges with the least error first
     Decimate(Decimate),
-    /// Make all edges about as long as asked, and all triangles about regular
+    /// Remesh with edges of one length and nearly equilateral triangles
     Remesh(Remesh),
     /// Draw meshes with their edges and creases, as PNG or SVG
     Render(Render),
 }
 
-/// Measure what each backend costs for a mesh.
+/// Measure the time and memory of each backend for a mesh.
 ///
-/// Prints the mesh in facts, who can hold it, and for each backend the time of every operation and
-/// the bytes for each vertex.
+/// Prints facts about the mesh, which backends can hold it, and for each backend the time of every
+/// operation and the bytes per vertex.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Study {
-    /// The mesh, an OBJ file; or several, or folders; without any a built-in one
+    /// OBJ files, or folders that contain them; without any, a built-in mesh
     #[arg(value_name = "FILE.obj|DIR")]
     pub(crate) meshes: Vec<PathBuf>,
     /// Only these backends, by name
@@ -162,18 +165,18 @@ pub(crate) struct Study {
     /// Only these operations, by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
     pub(crate) operations: Vec<Operation>,
-    /// How long to measure each mesh: 20s, 500ms, 2m
+    /// Time to measure each mesh: 20s, 500ms, 2m
     #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
-    /// What decides the order, and which elements are sampled
+    /// Seed of the random order and of the sampled elements
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) memory: MemoryState,
-    /// Another program as one more column; may be given again
+    /// Measure another program as one more column; may be repeated
     #[arg(long = "external", value_name = "NAME=COMMAND")]
     pub(crate) externals: Vec<External>,
-    /// How long such a program may take for one answer
+    /// Time limit for one answer of such a program
     #[arg(long, value_name = "TIME", default_value = "60s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) patience: Duration,
     /// Cut every polygon into a fan of triangles first
@@ -185,27 +188,27 @@ pub(crate) struct Study {
     /// Write everything as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
-    /// Write one line for each result as CSV (- for standard output)
+    /// Write one line per result as CSV (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,
-    /// Write report.html, report.md, results.json and results.csv there
+    /// Write report.html, report.md, results.json and results.csv to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
-    /// Of one mesh: orders,growth,why, or none, or all (if not given)
+    /// Labs of a one-mesh report: orders,growth,why; all (default); none
     #[arg(long, value_name = "NAME,…", requires = "report")]
     pub(crate) labs: Option<Chosen>,
-    /// Go on with what --report has in its folder
+    /// Continue the study in the folder of --report
     #[arg(long, requires = "report")]
     pub(crate) resume: bool,
-    /// Only every n-th mesh, from the i-th on: for `sixfold merge`
+    /// Study every n-th mesh, from the i-th on; then use `sixfold merge`
     #[arg(long, value_name = "i/n", requires = "report")]
     pub(crate) shard: Option<Shard>,
 }
 
-/// What is done to freed pages and to the caches while times are measured.
+/// How freed pages and the caches are treated while times are measured.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(crate) struct MemoryState {
-    /// Freed pages: kept by this process, or system
+    /// Freed pages: kept in this process, or system
     #[arg(long, value_name = "POLICY", default_value = "kept")]
     pub(crate) heap: Policy,
     /// Caches before each sample: warm or cold
@@ -216,17 +219,17 @@ pub(crate) struct MemoryState {
 fn cache_state(name: &str) -> Result<CacheState, String> {
     let mut all = CacheState::ALL.into_iter();
     all.find(|state| state.name() == name)
-        .ok_or_else(|| format!("there is no cache state `{name}`: choose `warm` or `cold`"))
+        .ok_or_else(|| format!("unknown cache state `{name}`: choose `warm` or `cold`"))
 }
 
-/// Put the shards of a study of many meshes together.
+/// Merge the shards of a study of many meshes.
 #[derive(Debug, Args)]
 #[command(after_help = MERGE_EXAMPLES)]
 pub(crate) struct Merge {
-    /// What `sixfold study --shard i/n --report DIR` wrote
+    /// Results of `sixfold study --shard i/n --report DIR`
     #[arg(value_name = "DIR|FILE.json", required = true)]
     pub(crate) shards: Vec<PathBuf>,
-    /// Write report.html, report.md, results.json and results.csv there
+    /// Write report.html, report.md, results.json and results.csv to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
     /// Write results.json as this file (- for standard output)
@@ -234,24 +237,24 @@ pub(crate) struct Merge {
     pub(crate) json: Option<PathBuf>,
 }
 
-/// Draw results that were written before, on one page.
+/// Draw saved results on one page.
 ///
-/// Results of `study`, `orders`, `growth`, `why` and `pick`, of one or of all of them; one study at
-/// most. Measures nothing.
+/// Takes results of `study`, `orders`, `growth`, `why` and `pick`, with at most one study. Measures
+/// nothing.
 #[derive(Debug, Args)]
 #[command(after_help = REPORT_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Draw {
-    /// What --json wrote, or the folder of --report
+    /// Files written by --json, or folders written by --report
     #[arg(value_name = "FILE.json|DIR", required = true)]
     pub(crate) results: Vec<PathBuf>,
-    /// Write report.html, report.md and figures there
+    /// Write report.html, report.md and figures to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) to: PathBuf,
 }
 
 impl Default for Study {
     fn default() -> Self {
-        let settings = ::study::Settings::default();
+        let settings = sixfold_study::Settings::default();
         Self {
             meshes: Vec::new(),
             backends: Vec::new(),
@@ -273,9 +276,9 @@ impl Default for Study {
     }
 }
 
-/// Say what a mesh is, and which backends can hold it.
+/// Show facts about a mesh, and which backends can hold it.
 ///
-/// Measures nothing. Faces that name a vertex twice, or have fewer than three corners, are counted.
+/// Measures nothing. Counts the faces that repeat a vertex or have fewer than three corners.
 #[derive(Debug, Args)]
 #[command(after_help = INSPECT_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Inspect {
@@ -290,25 +293,25 @@ pub(crate) struct Inspect {
 /// Write a built-in shape.
 #[derive(Debug, Args)]
 pub(crate) struct Generate {
-    /// The shape: see the list below
+    /// The shape, from the list below
     #[arg(value_name = "SHAPE")]
     pub(crate) shape: String,
-    /// Its parameters
+    /// Parameters of the shape
     #[arg(value_name = "name=value", value_parser = setting)]
     pub(crate) settings: Vec<(String, f64)>,
-    /// Its order: given, shuffled, morton, breadth-first
+    /// Order: given, shuffled, morton, breadth-first
     #[arg(long, value_name = "ORDER", default_value = "given")]
     pub(crate) order: Order,
-    /// What decides the order `shuffled`
+    /// Seed of the order `shuffled`
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
-    /// Where to write it (- for standard output)
+    /// The file to write (- for standard output)
     #[arg(short, long, value_name = "FILE.obj")]
     pub(crate) output: PathBuf,
 }
 
 fn backend(name: &str) -> Result<String, String> {
-    let settings = ::study::Settings {
+    let settings = sixfold_study::Settings {
         backends: vec![name.trim().into()],
         ..Default::default()
     };
@@ -323,7 +326,7 @@ fn operation(name: &str) -> Result<Operation, String> {
     parsed.map_err(|error| error.to_string())
 }
 
-/// `20s`, `500ms`, `2m`: more than nothing, and at most a week.
+/// Parses `20s`, `500ms` or `2m`: above 0 and at most a week.
 fn duration(text: &str) -> Result<Duration, String> {
     const LONGEST_S: f64 = 7.0 * 24.0 * 3600.0;
     let units = [("ms", 1e-3), ("s", 1.0), ("m", 60.0)];
@@ -335,14 +338,14 @@ fn duration(text: &str) -> Result<Duration, String> {
         Some(seconds) if seconds > 0.0 && seconds <= LONGEST_S => {
             Ok(Duration::from_secs_f64(seconds))
         }
-        Some(_) => Err("a budget is more than nothing and at most a week".into()),
-        None => Err("write a budget as 20s, 500ms or 2m".into()),
+        Some(_) => Err("a time must be above 0 and at most a week".into()),
+        None => Err("write a time as 20s, 500ms or 2m".into()),
     }
 }
 
 fn seed(text: &str) -> Result<u64, String> {
     let parsed = text.trim().parse();
-    parsed.map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
+    parsed.map_err(|_| format!("the seed must be a whole number from 0 to {}", u64::MAX))
 }
 
 fn setting(text: &str) -> Result<(String, f64), String> {
@@ -358,12 +361,12 @@ mod tests {
     use clap::CommandFactory;
 
     #[test]
-    fn the_command_line_is_sound() {
+    fn the_definition_of_the_command_line_is_valid() {
         Arguments::command().debug_assert();
     }
 
     #[test]
-    fn budgets_have_a_unit_and_are_more_than_nothing() {
+    fn times_have_a_unit_and_are_positive() {
         for (text, milliseconds) in [
             ("20s", 20_000),
             ("500ms", 500),

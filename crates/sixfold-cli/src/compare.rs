@@ -1,10 +1,10 @@
-//! `sixfold compare`: what changed between two studies.
+//! `sixfold compare`: shows what changed between two studies.
 
 use std::path::Path;
 use std::process::ExitCode;
 
-use ::study::{Change, Changes, Comparing, Report, Verdict, compare};
 use comfy_table::{Cell, CellAlignment};
+use sixfold_study::{Change, Changes, Comparing, Report, Verdict, compare};
 
 use crate::arguments::Compare;
 use crate::failure::Failure;
@@ -12,12 +12,12 @@ use crate::load;
 use crate::output::{Output, check_kept, is_stdout};
 use crate::tables::table;
 use crate::text::{Text, hanging};
-use ::study::numbers::{duration, grouped};
+use sixfold_study::numbers::{duration, grouped};
 
-/// Something is slower, and that was not to be.
+/// The exit code if a figure is slower, with `--fail-if-slower`.
 const SLOWER: u8 = 1;
 
-/// Reads both studies, and says what changed.
+/// Reads both studies and shows what changed.
 pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     let Compare { before, after, .. } = arguments;
     for study in [before, after] {
@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     let changes = compare(&before, &after, how).map_err(Failure::usage)?;
     if changes.rows.is_empty() {
         return Err(Failure::usage(format!(
-            "{} and {} have no operation on one backend in common: nothing to compare",
+            "{} and {} have no operation on the same backend in common: nothing to compare",
             arguments.before.display(),
             arguments.after.display()
         )));
@@ -77,7 +77,7 @@ fn print(changes: &Changes, all: bool, text: &mut Text) {
         ("second", &changes.only_after),
     ] {
         if !only.is_empty() {
-            let words = format!("Only the {which} has {}.", only.join(", "));
+            let words = format!("Only in the {which} study: {}.", only.join(", "));
             text.say(&hanging("- ", &words));
         }
     }
@@ -93,7 +93,7 @@ fn shown(rows: &[&Change]) -> String {
         let interval = row.ci_low.zip(row.ci_high);
         let interval = interval.map(|(low, high)| format!("{low:.2} to {high:.2}"));
         let verdict = match row.verdict {
-            _ if row.other_checksum => "another checksum",
+            _ if row.other_checksum => "different checksum",
             Verdict::Faster => "faster",
             Verdict::Slower => "slower",
             Verdict::Same => "",

@@ -1,4 +1,4 @@
-//! `sixfold edits`: which edits each structure offers, and how much of the mesh they look at.
+//! `sixfold edits`: lists the edits of each structure, and how much of the mesh they visit.
 
 use std::process::ExitCode;
 
@@ -31,10 +31,10 @@ pub(crate) fn run(arguments: &Edits) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// One row for each edit, one column for each backend.
+/// Returns the table with a row per edit and a column per backend.
 fn matrix() -> String {
     let backends = roster();
-    let mut costs = table_of_backends("looks at");
+    let mut costs = table_of_backends("visits");
     for edit in Edit::ALL {
         let offered = backends.iter().map(|backend| backend.edits[edit as usize]);
         let words = offered.map(|cost| Cell::new(cost.map_or("–", word)));
@@ -52,7 +52,7 @@ fn word(cost: QueryCost) -> &'static str {
     }
 }
 
-/// What the words mean, and who refuses more than the table says.
+/// Explains the words in the table, and which structures also refuse edits.
 fn legend() -> String {
     let backends = roster();
     let manifold = backends
@@ -60,20 +60,20 @@ fn legend() -> String {
         .filter(|backend| !backend.capabilities.non_manifold_edges);
     let manifold: Vec<&str> = manifold.map(|backend| backend.name).collect();
     let lines = [
-        "constant: a few rows, whatever the mesh. local: the faces around what is edited. \
+        "constant: a few rows, for any mesh. local: the faces around the edited element. \
          scan: all faces."
             .to_owned(),
-        "–: the structure has no such edit.".to_owned(),
+        "–: the structure does not support the edit.".to_owned(),
         format!(
-            "{} hold oriented manifolds alone, and refuse an edit that would make anything else; \
-             the others do it.",
+            "{} hold only oriented manifolds, and refuse an edit with another result; the other \
+             structures do not.",
             manifold.join(", ")
         ),
     ];
     lines.map(|line| hanging("", &line)).join("\n")
 }
 
-/// What machines read of one edit.
+/// Returns the JSON of one edit.
 fn row(edit: Edit) -> Value {
     let backends = roster().into_iter().map(|backend| {
         let cost = backend.edits[edit as usize];

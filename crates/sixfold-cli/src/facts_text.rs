@@ -1,12 +1,12 @@
-//! A mesh in facts, and what each backend says to it.
+//! Text of the facts about a mesh, and of the verdict of each backend.
 
-use ::study::{BackendReport, MeshReport};
 use sixfold::{Facts, Spread};
+use sixfold_study::{BackendReport, MeshReport};
 
 use crate::text::{hanging, tame};
-use ::study::numbers::{counted, grouped};
+use sixfold_study::numbers::{counted, grouped};
 
-/// The mesh in a compact block of lines.
+/// Returns the facts about a mesh as a compact block of lines.
 pub(crate) fn facts_text(mesh: &MeshReport) -> String {
     let facts = &mesh.facts;
     let mut lines = vec![hanging("mesh         ", &tame(&mesh.name))];
@@ -56,7 +56,7 @@ fn orientation(facts: &Facts) -> String {
     let edges = counted(facts.inconsistent_edges, "edge", "edges");
     match (facts.consistently_oriented, facts.orientable) {
         (Some(true), Some(true)) => "consistent".into(),
-        (Some(true), _) => "consistent along the edges of two faces, but not orientable".into(),
+        (Some(true), _) => "consistent along edges with two faces, but not orientable".into(),
         (_, Some(true)) => format!("orientable, but the two faces disagree along {edges}"),
         _ => format!("not orientable; the two faces disagree along {edges}"),
     }
@@ -108,7 +108,7 @@ fn blemishes(facts: &Facts) -> Vec<String> {
         .collect()
 }
 
-/// Which backends can hold the mesh, and why the others cannot.
+/// Returns the list of backends: which can hold the mesh, and why the others cannot.
 pub(crate) fn verdicts_text(mesh: &MeshReport, backends: &[BackendReport]) -> String {
     let name = backends.iter().map(|b| b.name.chars().count()).max();
     let width = name.unwrap_or(0);
@@ -126,10 +126,10 @@ pub(crate) fn verdicts_text(mesh: &MeshReport, backends: &[BackendReport]) -> St
     if backends.iter().any(|backend| !backend.holds) {
         let changed = match mesh.changes.is_empty() {
             true => "",
-            false => "; f counts what is left",
+            false => "; f counts the remaining faces",
         };
         lines.push(format!(
-            "{:<13}(names count from 0: v0 is the first vertex of the file{changed})",
+            "{:<13}(numbers start at 0: v0 is the first vertex of the file{changed})",
             ""
         ));
     }

@@ -1,18 +1,18 @@
-//! Why a command ends without its result.
+//! Errors that end a command without its result.
 
 use std::fmt::Display;
 
-/// What to say, and with which code to exit.
+/// An error message with the exit code.
 #[derive(Debug)]
 pub(crate) struct Failure {
     /// The exit code.
     pub(crate) code: u8,
-    /// One clear message that says what to do next.
+    /// The message, with a hint what to do next.
     pub(crate) message: String,
 }
 
 impl Failure {
-    /// Wrong usage, or unusable input.
+    /// Returns a failure for wrong usage or unusable input.
     pub(crate) fn usage(message: impl Display) -> Self {
         Self {
             code: 2,
@@ -20,14 +20,14 @@ impl Failure {
         }
     }
 
-    /// A mesh that the backend asked for does not hold, where another may.
+    /// Returns a failure for a mesh that the selected backend cannot hold but another may.
     pub(crate) fn not_held(refusal: impl Display) -> Self {
         Self::unsupported(format!(
-            "{refusal}; or take another --backend: `sixfold inspect` says which hold the mesh"
+            "{refusal}; or choose another --backend: `sixfold inspect` shows which can hold the mesh"
         ))
     }
 
-    /// Not supported by the backends asked for.
+    /// Returns a failure for something that the selected backends do not support.
     pub(crate) fn unsupported(message: impl Display) -> Self {
         Self {
             code: 3,

@@ -1,8 +1,8 @@
-//! `sixfold generate`: built-in shapes.
+//! `sixfold generate`: writes built-in shapes.
 
 use std::process::ExitCode;
 
-use sixfold::mesh_io::write_obj;
+use sixfold::io::write_obj;
 use sixfold::shapes::{Parameter, RECIPES, Recipe, recipe};
 
 use crate::arguments::Generate;
@@ -10,10 +10,10 @@ use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
 use crate::progress::end_on_interrupt;
 use crate::text::{Text, hanging, tame};
-use ::study::numbers::counted;
-use ::study::unknown;
+use sixfold_study::numbers::counted;
+use sixfold_study::unknown;
 
-/// Writes the shape asked for.
+/// Writes the selected shape.
 pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
     end_on_interrupt();
     let shape = &arguments.shape;
@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What help says after the options: examples and the list of shapes.
+/// Returns the help text after the options: examples and the list of shapes.
 pub(crate) fn help() -> String {
     let mut lines: Vec<String> = vec![
         "Examples:".into(),
@@ -46,7 +46,7 @@ pub(crate) fn help() -> String {
         "  sixfold generate geodesic frequency=20 -o ball.obj".into(),
         "  sixfold generate torus m=256 n=128 --order shuffled --seed 7 -o - | head".into(),
         String::new(),
-        "Exit codes: 0 done; 2 wrong usage; 4 interrupted, nothing written.".into(),
+        "Exit codes: 0 success; 2 wrong usage; 4 interrupted, nothing written.".into(),
         String::new(),
         "Shapes:".into(),
     ];
@@ -57,7 +57,7 @@ pub(crate) fn help() -> String {
     lines.join("\n")
 }
 
-/// A shape in a line, and each of its parameters in one more.
+/// Describes a shape in a line, and each of its parameters in another.
 fn described(recipe: &Recipe, width: usize) -> Vec<String> {
     let Recipe { name, summary, .. } = recipe;
     let mut lines = vec![hanging(&format!("  {name:<width$}  "), summary)];

@@ -1,13 +1,13 @@
-//! `sixfold growth`: how costs grow with the mesh, and where the caches end.
+//! `sixfold growth`: measures how costs grow with the size of the mesh, and where the caches end.
 
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use ::study::{
+use comfy_table::{Attribute, Cell, CellAlignment};
+use sixfold_study::{
     Fit, GROWING, Growing, GrowthError, GrowthReport, GrowthSettings, Operation, ResultRow,
     Settings, SizeReport, Slope, Standing, StudyError,
 };
-use comfy_table::{Attribute, Cell, CellAlignment};
 
 use crate::arguments::{GROWTH_EXAMPLES, Growth};
 use crate::failure::Failure;
@@ -19,9 +19,10 @@ use crate::progress::{Bar, interrupt_flag};
 use crate::study::{names, setting};
 use crate::tables::styled;
 use crate::text::{Text, hanging};
-use ::study::numbers::{counted, grouped};
+use sixfold_study::numbers::{counted, grouped};
 
-/// Sweeps over the sizes; text first, so that no file that fails can take it along.
+/// Measures all sizes and shows the result. Text is printed first, so that it is not lost if a file
+/// fails.
 pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     check_places(None, &[("--json", arguments.json.as_ref())])?;
     let settings = GrowthSettings {
@@ -54,20 +55,20 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     ended(done, report.mismatches(), report.interrupted)
 }
 
-/// Measures all sizes, if there is room for the largest.
+/// Measures all sizes, if enough memory is free for the largest.
 pub(crate) fn measured(
     settings: &GrowthSettings,
     stop: &AtomicBool,
 ) -> Result<GrowthReport, Failure> {
-    let needed = ::study::growth_bytes(settings).map_err(Failure::usage)?;
+    let needed = sixfold_study::growth_bytes(settings).map_err(Failure::usage)?;
     let largest = counted(settings.to, "face", "faces");
     check_room(
         &format!("a mesh of {largest} on each backend"),
         needed,
-        "take a smaller --to, or name fewer --backends",
+        "choose a smaller --to, or fewer --backends",
     )?;
     let bar = Bar::new();
-    let report = ::study::growth(settings, stop, &mut |at| bar.show(at));
+    let report = sixfold_study::growth(settings, stop, &mut |at| bar.show(at));
     bar.clear();
     let mut report = report.map_err(|error| match error {
         GrowthError::Study(StudyError::NoneHolds { .. }) => Failure::unsupported(error),
@@ -77,7 +78,7 @@ pub(crate) fn measured(
     Ok(report)
 }
 
-/// What help says after the options: examples, how it measures, and the names that there are.
+/// Returns the help text after the options: examples, the method, and the lists of names.
 pub(crate) fn help() -> String {
     let width = GROWING.iter().map(|shape| shape.name.len()).max();
     let width = width.unwrap_or(0);
@@ -130,12 +131,12 @@ fn print(report: &GrowthReport, text: &mut Text) {
     text.say(&hanging("", &how));
 }
 
-const LEGEND: &str = "ns for each element, and the nearest cache that has room for the structure (–: \
-    none, or not known); * best at that size; = tied for best; ~ from a sample of the elements; \
-    ? estimated, not run. power: total time goes with the number of faces to that power, ± its standard \
-    error; in cache: of the sizes that fit into the last one.";
+const LEGEND: &str = "ns per element, and the smallest cache that can hold the structure (–: none, \
+    or unknown); * best at that size; = tied with the best; ~ from a sample of the elements; \
+    ? estimated, not run. power: the total time grows as this power of the number of faces, \
+    ± standard error; in cache, beyond: for sizes that fit into the last cache, and larger ones.";
 
-/// One row for each size and line, one column for each backend.
+/// Returns the table with a row per size and fitted line, and a column per backend.
 fn table(report: &GrowthReport, operation: Operation, bold: bool) -> String {
     let mut header = vec![Cell::new(format!(
         "{operation}\nns per {}",
@@ -198,7 +199,7 @@ fn right(text: String) -> Cell {
     Cell::new(text).set_alignment(CellAlignment::Right)
 }
 
-/// `24.9 L2*`: the price of an element, the cache that has room for the structure, and a sign.
+/// Formats a cell as `24.9 L2*`: ns per element, the cache that can hold the structure, and a sign.
 fn cell(size: &SizeReport, row: &ResultRow, bold: bool) -> Cell {
     let price = match (row.ns_per_element, row.estimated_ns, row.elements) {
         (Some(each), ..) => Some((if row.sampled { "~" } else { "" }, each)),
@@ -223,9 +224,9 @@ fn cell(size: &SizeReport, row: &ResultRow, bold: bool) -> Cell {
     }
 }
 
-/// For each cache, the number of faces at which each structure outgrows it.
+/// Returns the table of the number of faces at which each structure outgrows each cache.
 fn cache_table(report: &GrowthReport, bold: bool) -> String {
-    let mut header = vec![Cell::new("outgrows a cache\nat so many faces")];
+    let mut header = vec![Cell::new("faces at which it\noutgrows a cache")];
     header.extend(
         report
             .backends

@@ -1,15 +1,15 @@
-//! The allocator of the program: the system's, with counters.
+//! The allocator of the program: the system allocator with counters.
 
 use std::alloc::System;
 
-use ::study::{AllocationCounter, Heap};
 use peakmem_alloc::{PeakMemAlloc, PeakMemAllocTrait};
+use sixfold_study::{AllocationCounter, Heap};
 use stats_alloc::StatsAlloc;
 
-/// Counts what comes and goes; hands everything on to the system, as it was asked for.
+/// Counts allocations and deallocations; forwards every request unchanged to the system.
 static LIVE: StatsAlloc<System> = StatsAlloc::system();
 
-/// Counts how much there has been at once.
+/// Counts the peak of allocated bytes.
 #[global_allocator]
 static PEAK: PeakMemAlloc<&StatsAlloc<System>> = PeakMemAlloc::new(&LIVE);
 
@@ -19,7 +19,7 @@ pub(crate) struct Counters;
 impl Heap for Counters {
     fn live(&self) -> usize {
         let stats = LIVE.stats();
-        // Growing and shrinking blocks are in both already.
+        // Both counters already include blocks that grow or shrink.
         stats
             .bytes_allocated
             .saturating_sub(stats.bytes_deallocated)
@@ -46,13 +46,13 @@ mod tests {
 
     const BYTES: usize = 256 << 20;
 
-    /// So large a block that what tests beside this one allocate does not count.
+    /// The tolerance is so large that allocations of concurrent tests do not matter.
     fn about(figure: usize, expected: usize) -> bool {
         figure.abs_diff(expected) < BYTES / 8
     }
 
     #[test]
-    fn blocks_are_counted_as_they_come_grow_shrink_and_go() {
+    fn blocks_are_counted_when_they_are_allocated_grow_shrink_and_are_freed() {
         let before = Counters.live();
         Counters.restart_peak();
         let live = || Counters.live().saturating_sub(before);

@@ -1,4 +1,4 @@
-//! `sixfold inspect`: facts and verdicts.
+//! `sixfold inspect`: shows facts about a mesh, and which backends can hold it.
 
 use std::process::ExitCode;
 
@@ -10,7 +10,7 @@ use crate::output::{Output, check_places, is_stdout};
 use crate::progress::end_on_interrupt;
 use crate::text::Text;
 
-/// Says what the mesh is and who can hold it.
+/// Prints the facts and the verdict of each backend.
 pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
     end_on_interrupt();
     check_places(
@@ -18,13 +18,13 @@ pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
         &[("--json", arguments.json.as_ref())],
     )?;
     let specimen = load::specimen(&arguments.mesh)?;
-    let inspection = ::study::inspect(&specimen);
+    let inspection = sixfold_study::inspect(&specimen);
     let json = Output::open_if(arguments.json.as_ref())?;
     let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
     text.say(&facts_text(&inspection.mesh));
     text.say("");
     text.say(&verdicts_text(&inspection.mesh, &inspection.backends));
-    // The text is out before a file can fail.
+    // Text is printed first, so that it is not lost if a file fails.
     let mut done = text.finish();
     if let Some(output) = json {
         done = done.and(output.finish(|writer| inspection.write_json(writer)));

@@ -1,27 +1,27 @@
-//! From a file to a mesh that can be looked into.
+//! Reads meshes and results from files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use ::study::{ReadError, Specimen};
-use sixfold::mesh_io::{LeftOut, ObjMesh, read_obj};
+use sixfold::io::{LeftOut, ObjMesh, read_obj};
 use sixfold::{Creases, PolygonMesh, shapes};
+use sixfold_study::{ReadError, Specimen};
 
 use crate::failure::Failure;
 use crate::output::is_stdout;
 use crate::text::complain;
 use crate::triangulate::triangulated;
-use ::study::numbers::counted;
+use sixfold_study::numbers::counted;
 
-/// How many of the faces that were left out are shown with their place.
+/// Maximum number of omitted faces that are listed with their line.
 const SHOWN: usize = 5;
 
-/// Reads an OBJ file, and says what of it is passed over.
+/// Reads an OBJ file, and prints a note for each part that is ignored.
 pub(crate) fn read(path: &Path) -> Result<ObjMesh, Failure> {
-    // What means standard output elsewhere would be a file called `-` here.
+    // `-` means standard output for other arguments; here it would name a file.
     if is_stdout(path) {
         return Err(Failure::usage(
-            "-: standard input is not read: write the mesh to a file and name that",
+            "-: standard input is not read: write the mesh to a file and name the file",
         ));
     }
     let mesh = read_obj(path).map_err(Failure::usage)?;
@@ -31,14 +31,15 @@ pub(crate) fn read(path: &Path) -> Result<ObjMesh, Failure> {
     Ok(mesh)
 }
 
-/// The mesh of the file at `path`, without its degenerate faces; these are named.
+/// Returns the mesh in the file at `path` without its degenerate faces, and lists these.
 pub(crate) fn specimen(path: &Path) -> Result<Specimen, Failure> {
     let (specimen, left_out) = from_file(path)?;
     tell(path, &left_out);
     Ok(specimen)
 }
 
-/// The same for a study: nothing is left out if `strict`, and polygons are cut up on demand.
+/// Returns the mesh for a study. Refuses degenerate faces if `strict`; cuts polygons if
+/// `triangulate`.
 pub(crate) fn for_study(path: &Path, strict: bool, triangulate: bool) -> Result<Specimen, Failure> {
     let (mut specimen, left_out) = from_file(path)?;
     let file = path.display();
@@ -46,19 +47,19 @@ pub(crate) fn for_study(path: &Path, strict: bool, triangulate: bool) -> Result<
         let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
         let first = &left_out[0];
         return Err(Failure::usage(format!(
-            "{file}: {faces}, the first at {first}: mend the file, or study it without --strict"
+            "{file}: {faces}, the first at {first}: repair the file, or study it without --strict"
         )));
     }
     if specimen.polygons.face_count() == 0 {
         let what = match left_out.len() {
-            0 => "points and no faces".to_owned(),
+            0 => "points but no faces".to_owned(),
             n => format!(
-                "no faces but {}",
-                counted(n, "degenerate one", "degenerate ones")
+                "no faces except {}",
+                counted(n, "degenerate face", "degenerate faces")
             ),
         };
         return Err(Failure::usage(format!(
-            "{file}: {what}, so there is nothing to study: try `sixfold inspect`"
+            "{file}: {what}, so there is nothing to study: use `sixfold inspect` instead"
         )));
     }
     tell(path, &left_out);
@@ -68,8 +69,8 @@ pub(crate) fn for_study(path: &Path, strict: bool, triangulate: bool) -> Result<
     Ok(specimen)
 }
 
-/// The mesh of the file at `path`, without its degenerate faces, and the sharpness that the file
-/// tells.
+/// Returns the mesh in the file at `path` without its degenerate faces, and the creases in the
+/// file.
 pub(crate) fn with_creases(path: &Path) -> Result<(PolygonMesh, Creases), Failure> {
     let mesh = read(path)?;
     let (creases, loose) = mesh.creases();
@@ -81,19 +82,19 @@ pub(crate) fn with_creases(path: &Path) -> Result<(PolygonMesh, Creases), Failur
     Ok((polygons, creases))
 }
 
-/// The same for a command that carries no sharpness over: if there is any, that is said.
+/// Returns the mesh for a command that drops creases, and prints a note if there are any.
 pub(crate) fn without_creases(path: &Path) -> Result<PolygonMesh, Failure> {
     let (polygons, creases) = with_creases(path)?;
     if !creases.is_empty() {
         let file = path.display();
         complain(&format!(
-            "note: {file}: sharp edges and vertices are not carried over"
+            "note: {file}: sharp edges and vertices are not kept"
         ));
     }
     Ok(polygons)
 }
 
-/// The file of results that `place` means: of the folder of a report the one with all of them.
+/// Returns the file of results: `results.json` if `place` is the folder of a report, else `place`.
 pub(crate) fn results_in(place: &Path) -> PathBuf {
     match place.is_dir() {
         true => place.join("results.json"),
@@ -101,7 +102,7 @@ pub(crate) fn results_in(place: &Path) -> PathBuf {
     }
 }
 
-/// The results in the file at `path`, which `parse` makes sense of.
+/// Reads the file at `path` and parses its results with `parse`.
 pub(crate) fn results<T>(
     path: &Path,
     parse: impl Fn(&str) -> Result<T, ReadError>,
@@ -112,12 +113,12 @@ pub(crate) fn results<T>(
     parse(&text).map_err(|error| Failure::usage(format!("{file}: {error}")))
 }
 
-/// The built-in mesh.
+/// Returns the built-in mesh.
 pub(crate) fn built_in() -> Specimen {
     Specimen::new("default study (built in)", shapes::default_study())
 }
 
-/// Says which faces were left out of the file, and where they are.
+/// Prints which faces of the file were left out, with their lines.
 fn tell(path: &Path, left_out: &[LeftOut]) {
     if left_out.is_empty() {
         return;

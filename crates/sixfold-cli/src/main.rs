@@ -1,14 +1,14 @@
 //! The `sixfold` command: which mesh data structure fits this mesh and this workload?
 //!
-//! Only this crate knows arguments, standard output and exit codes:
+//! Only this crate handles arguments, standard output and exit codes:
 //!
 //! | code | means |
 //! |---|---|
-//! | 0 | done |
-//! | 1 | done, and the answer is no: no backend qualifies; something is slower; results differ |
-//! | 2 | wrong usage, or unusable input |
-//! | 3 | not supported: no backend asked for can hold the mesh |
-//! | 4 | interrupted; the finished part is kept |
+//! | 0 | success |
+//! | 1 | negative answer: no backend qualifies, a figure is slower, or results differ |
+//! | 2 | wrong usage or unusable input |
+//! | 3 | not supported: none of the selected backends can hold the mesh |
+//! | 4 | interrupted; finished results are kept |
 
 mod arguments;
 mod compare;
@@ -53,7 +53,7 @@ use arguments::{Arguments, Command};
 use failure::Failure;
 
 fn main() -> ExitCode {
-    // Help lists shapes, backends and operations as the registries have them.
+    // These help texts list the names of shapes, backends and operations.
     let command = Arguments::command()
         .mut_subcommand("study", |study| study.after_help(study::help()))
         .mut_subcommand("orders", |orders| orders.after_help(orders::help()))
@@ -96,7 +96,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints what clap has to say: help and version, or what is wrong with the arguments.
+/// Prints the message of clap: the help, the version, or an error in the arguments.
 fn told(error: &clap::Error) -> Result<ExitCode, Failure> {
     if let (ErrorKind::InvalidSubcommand, Some(ContextValue::String(word))) =
         (error.kind(), error.get(ContextKind::InvalidSubcommand))
@@ -105,12 +105,13 @@ fn told(error: &clap::Error) -> Result<ExitCode, Failure> {
             .is_some_and(|ending| ending.eq_ignore_ascii_case("obj"))
     {
         return Err(Failure::usage(format!(
-            "`{word}` is a file and no command: did you mean `sixfold study {word}`?"
+            "`{word}` is a file, not a command: did you mean `sixfold study {word}`?"
         )));
     }
     let mut typed = std::env::args_os().map(|typed| typed.to_string_lossy().into_owned());
     if error.use_stderr() && typed.any(|typed| text::tame(&typed) != typed) {
-        // What was typed comes back in the message, and must not steer the terminal: no colours then.
+        // The message repeats the arguments. Print it without colours and with control characters
+        // escaped, so that the arguments cannot control the terminal.
         let plain = error.render().to_string();
         plain.lines().for_each(text::complain);
         return Ok(ExitCode::from(2));

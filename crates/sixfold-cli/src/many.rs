@@ -1,4 +1,4 @@
-//! Studies of many meshes: one after the other, each kept as soon as it is finished.
+//! Studies of many meshes, one after the other; each is saved as soon as it is finished.
 
 mod drawn;
 mod folder;
@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use ::study::{Asked, Collection, Report, Settings, Specimen, StudyError};
+use sixfold_study::{Asked, Collection, Report, Settings, Specimen, StudyError};
 
 use crate::arguments::Study;
 use crate::failure::Failure;
@@ -20,7 +20,7 @@ use crate::measured::{studies_ended, tell_of_debug_build, typed};
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
 use crate::text::{Text, complain, hanging, tame};
-use ::study::numbers::counted;
+use sixfold_study::numbers::counted;
 
 pub(crate) use drawn::run as draw;
 pub(crate) use labs::Chosen;
@@ -30,11 +30,11 @@ pub(crate) use meshes::Shard;
 use folder::{Folder, Piece};
 use meshes::{Mesh, found};
 
-/// Why a mesh is not studied that loads well.
-const NOBODY: &str = "no backend asked for can hold it";
+/// The reason if a mesh loads but cannot be studied.
+const NOBODY: &str = "none of the selected backends can hold it";
 
-/// Studies the meshes that are asked for, but for those that are finished; what does not load is
-/// listed, and the rest goes on.
+/// Studies the selected meshes, except those that are finished already. Lists meshes that do not
+/// load, and continues with the rest.
 pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Failure> {
     let meshes = found(&arguments.meshes)?;
     let outputs = [
@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
     let single = meshes.len() == 1;
     if arguments.csv.is_some() && !single {
         return Err(Failure::usage(
-            "--csv is for one mesh: --report DIR writes the samples of all into results.csv",
+            "--csv is for one mesh: --report DIR writes the samples of all meshes to results.csv",
         ));
     }
     let wanted = labs::wanted(arguments.labs.as_ref(), single)?;
@@ -81,14 +81,14 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         }
         let place = format!("{} of {count}", done + 1);
         let Some(result) = one(mesh, arguments, settings, &place, &stop) else {
-            break; // told to stop in the midst of it
+            break; // interrupted during this mesh
         };
         if !single {
             text.say(&line(&place, mesh, &result));
         }
         let piece = Piece::new(mesh, &collection.settings, result);
         if let Some(folder) = &folder {
-            // Between two studies: no writing shows in a figure.
+            // Between two studies, so that writing does not disturb the measurements.
             folder.keep(&piece)?;
         }
         piece.settle(&mut collection);
@@ -129,7 +129,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         written?;
         let mut reasons = collection.failures.iter().map(|failed| &failed.reason);
         return Err(match reasons.all(|reason| reason == NOBODY) {
-            true => Failure::unsupported(format!("{NOBODY}: none of the meshes")),
+            true => Failure::unsupported(format!("all meshes failed: {NOBODY}")),
             false => Failure::usage("none of the meshes could be studied"),
         });
     }
@@ -155,7 +155,7 @@ fn asked(arguments: &Study, settings: &Settings) -> Asked {
     }
 }
 
-/// The study of one mesh, or why there is none; `None` if told to stop before its end.
+/// Returns the study of one mesh or the reason why it failed; `None` if interrupted.
 fn one(
     mesh: &Mesh,
     arguments: &Study,
@@ -169,9 +169,9 @@ fn one(
         (Err(failure), Some(path)) => return Some(Err(without_path(&failure.message, path))),
     };
     let bar = Bar::new();
-    let report = ::study::study(&specimen, settings, stop, &mut |at| {
+    let report = sixfold_study::study(&specimen, settings, stop, &mut |at| {
         let stage = format!("{place}, {}: {}", mesh.name, at.stage);
-        bar.show(::study::Progress {
+        bar.show(sixfold_study::Progress {
             stage: &stage,
             ..at
         });
@@ -188,7 +188,7 @@ fn one(
     }
 }
 
-/// The mesh itself.
+/// Loads the mesh.
 fn specimen(mesh: &Mesh, arguments: &Study) -> Result<Specimen, Failure> {
     match &mesh.path {
         None => Ok(load::built_in()),
@@ -196,7 +196,7 @@ fn specimen(mesh: &Mesh, arguments: &Study) -> Result<Specimen, Failure> {
     }
 }
 
-/// A message about a file without the file, which the list names anyhow.
+/// Removes the file name from a message, because the list shows it already.
 fn without_path(message: &str, path: &Path) -> String {
     let Some(rest) = message.strip_prefix(&path.display().to_string()) else {
         return message.to_owned();
@@ -221,7 +221,7 @@ fn line(place: &str, mesh: &Mesh, result: &Result<Report, String>) -> String {
     }
 }
 
-/// What all of them come to.
+/// Prints the results of all meshes together.
 fn print(collection: &Collection, text: &mut Text) {
     let studied = counted(collection.studies.len(), "mesh", "meshes");
     text.say("");
@@ -232,7 +232,7 @@ fn print(collection: &Collection, text: &mut Text) {
     }
     if !collection.missing.is_empty() {
         let missing = counted(collection.missing.len(), "mesh is", "meshes are");
-        text.say(&format!("! {missing} still to be done"));
+        text.say(&format!("! {missing} not studied yet"));
     }
     if !collection.pooled.is_empty() {
         text.say("");

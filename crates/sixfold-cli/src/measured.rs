@@ -1,24 +1,24 @@
-//! What all commands that measure say, and how they end.
+//! Messages and exit codes shared by all commands that measure.
 
 use std::process::ExitCode;
 
 use crate::failure::Failure;
 use crate::progress::INTERRUPTED;
 use crate::text::complain;
-use ::study::numbers::counted;
-use ::study::{Agreement, Report, ResultRow};
+use sixfold_study::numbers::counted;
+use sixfold_study::{Agreement, Report, ResultRow};
 
-/// Backends found different results for the same work.
+/// The exit code if backends found different results for the same work.
 const MISMATCH: u8 = 1;
 
-/// Says so where the program was built without optimisation.
+/// Prints a note if the program was built without optimisation.
 pub(crate) fn tell_of_debug_build() {
     if cfg!(debug_assertions) {
-        complain("note: this is a debug build, and its times mean nothing: build with --release");
+        complain("note: the times of a debug build mean nothing: build with --release");
     }
 }
 
-/// What was typed, as it can be typed again.
+/// Returns the command line, quoted so that it can be run again.
 pub(crate) fn typed() -> String {
     let words = std::env::args_os().skip(1);
     let words = words.map(|word| word.to_string_lossy().into_owned());
@@ -26,8 +26,8 @@ pub(crate) fn typed() -> String {
     shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
 }
 
-/// The end of a command whose text and files are `written`: a fault of ours comes before what could not
-/// be written, and that before an interruption.
+/// Prints the last messages of a command and returns its exit code. Results that differ are
+/// reported before errors of writing (`written`), and those before an interruption.
 pub(crate) fn ended(
     written: Result<(), Failure>,
     mismatches: usize,
@@ -36,7 +36,7 @@ pub(crate) fn ended(
     if mismatches > 0 {
         let results = counted(mismatches, "result differs", "results differ");
         complain(&format!(
-            "error: {results} from the others for the same work: a fault in Sixfold, please report it"
+            "error: {results} from those of other backends for the same work: a fault in Sixfold, please report it"
         ));
     }
     written?;
@@ -44,14 +44,14 @@ pub(crate) fn ended(
         return Ok(ExitCode::from(MISMATCH));
     }
     if interrupted {
-        complain("interrupted: what was finished is kept");
+        complain("interrupted: finished results are kept");
         return Ok(ExitCode::from(INTERRUPTED));
     }
     Ok(ExitCode::SUCCESS)
 }
 
-/// The end of a command that made `studies`, and found so many `mismatches` besides: programs of others
-/// that do another work are told of.
+/// Ends a command that made `studies` and found `mismatches` elsewhere. Also reports external
+/// programs with different results.
 pub(crate) fn studies_ended<'r>(
     written: Result<(), Failure>,
     studies: impl IntoIterator<Item = &'r Report>,
@@ -73,7 +73,7 @@ pub(crate) fn studies_ended<'r>(
     })
 }
 
-/// Says by how much a program of somebody else differs.
+/// Reports the difference of an external program.
 fn tell_of_other_work(study: &Report, row: &ResultRow) {
     let ours = study.rows(row.operation);
     let mut ours = ours.filter(|other| other.agreement == Agreement::Same);
@@ -84,7 +84,7 @@ fn tell_of_other_work(study: &Report, row: &ResultRow) {
     });
     let (name, operation, mesh) = (&row.backend, row.operation, &study.mesh.name);
     complain(&format!(
-        "error: {mesh}: {name}: {operation} comes to {theirs}, and to {ours} on our backends: other work, so its times compare nothing"
+        "error: {mesh}: {name}: the checksum of {operation} is {theirs}, but {ours} on the built-in backends: different work, so its times are not comparable"
     ));
 }
 
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_fault_comes_before_an_interruption() {
+    fn mismatches_take_precedence_over_an_interruption() {
         let code = |mismatches, interrupted| {
             let ended = ended(Ok(()), mismatches, interrupted).expect("all is written");
             format!("{ended:?}")

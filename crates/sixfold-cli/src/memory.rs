@@ -1,12 +1,12 @@
-//! `sixfold memory`: what each backend takes, by its formula, its tables and the allocator.
+//! `sixfold memory`: the memory of each backend, by its formula, its tables and the allocator.
 
 use std::process::ExitCode;
 
-use ::study::{
+use comfy_table::{Cell, CellAlignment, Table};
+use sixfold_study::{
     Audit, Audited, Backend, BackendReport, MOST_SCANNED_FACES, OperationBytes, Settings, audit,
     count_allocations,
 };
-use comfy_table::{Cell, CellAlignment, Table};
 
 use crate::arguments::Memory;
 use crate::facts_text::{facts_text, verdicts_text};
@@ -17,12 +17,12 @@ use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Stage, end_on_interrupt};
 use crate::tables::table;
 use crate::text::{Text, complain, hanging};
-use ::study::numbers::{counted, grouped};
+use sixfold_study::numbers::{counted, grouped};
 
-/// Two of the three ways differ.
+/// The exit code if two of the three counts differ.
 const DIFFERENT: u8 = 1;
 
-/// Weighs what was asked for, and shows it.
+/// Counts the memory of the selected backends and shows it.
 pub(crate) fn run(arguments: &Memory) -> Result<ExitCode, Failure> {
     end_on_interrupt();
     check_places(
@@ -56,20 +56,20 @@ pub(crate) fn run(arguments: &Memory) -> Result<ExitCode, Failure> {
         Some(output) => output.finish(|writer| audit.write_json(writer)),
         None => Ok(()),
     };
-    // That is an answer: who was asked, and why each refuses.
+    // This is also a result: the selected backends, and why each refuses the mesh.
     if let Some(none) = audit.none_holds() {
         write(json)?;
         return Err(Failure::unsupported(none));
     }
     let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
     print(&audit, &mut text);
-    // The text is out before a file can fail.
+    // Text is printed first, so that it is not lost if a file fails.
     let done = text.finish().and(write(json));
     let code = judged(&audit.faults());
     done.map(|()| code)
 }
 
-/// Says where the three ways differ, if they do; that is an answer of its own.
+/// Reports the `faults`, and returns the exit code for them.
 fn judged(faults: &[String]) -> ExitCode {
     for fault in faults {
         complain(&format!(
@@ -101,7 +101,7 @@ fn print(audit: &Audit, text: &mut Text) {
     }
 }
 
-/// The three ways for each backend that holds the mesh, and its tables beneath.
+/// Returns the three counts for each backend that holds the mesh, with its tables below it.
 fn bytes_table(audit: &Audit) -> String {
     let header = [
         "bytes",
@@ -116,7 +116,7 @@ fn bytes_table(audit: &Audit) -> String {
     for one in &audit.backends {
         let backend = &one.backend;
         let bytes = |bytes: Option<usize>| bytes.map_or(String::new(), grouped);
-        // A figure that differs from the one before it has a sign.
+        // A figure that differs from the one before it is marked `!`.
         let beside = |figure: Option<usize>, before: Option<usize>| {
             let sign = if figure == before { " " } else { "!" };
             format!("{}{sign}", bytes(figure))
@@ -156,10 +156,10 @@ fn bytes_table(audit: &Audit) -> String {
     table.trim_fmt()
 }
 
-/// What that is for each vertex, beside a large closed mesh of triangles.
+/// Returns bytes and words per vertex, and the words per vertex of a large closed triangle mesh.
 fn words_table(audit: &Audit) -> String {
     let header = [
-        "for each vertex",
+        "per vertex",
         "bytes",
         "words",
         "words in a closed triangle mesh",
@@ -178,8 +178,8 @@ fn words_table(audit: &Audit) -> String {
     table.trim_fmt()
 }
 
-/// The bytes that operations allocate for each byte of their result: a row for each operation that
-/// some structure can run, a column for each structure. `None` if nothing was counted.
+/// Returns the table of bytes that operations allocate per byte of their result: a row for each
+/// operation that some structure can run, a column per structure. `None` if nothing was counted.
 fn operations_table(audit: &Audit) -> Option<String> {
     let counted = |one: &&Audited| !one.operations.is_empty();
     let columns: Vec<&Audited> = audit.backends.iter().filter(counted).collect();
@@ -206,7 +206,7 @@ fn operations_table(audit: &Audit) -> Option<String> {
     Some(table.trim_fmt())
 }
 
-/// An empty table under `header`, whose figures stand to the right.
+/// Returns an empty table with `header`, with right-aligned figures.
 fn headed<const COLUMNS: usize>(header: &[&str; COLUMNS]) -> Table {
     let aligned = |(i, text): (usize, &&str)| Cell::new(text).set_alignment(side(i));
     table(header.iter().enumerate().map(aligned).collect())
@@ -228,22 +228,22 @@ fn side(column: usize) -> CellAlignment {
     }
 }
 
-/// What the tables show, in sentences.
+/// Describes the tables in sentences.
 fn words(audit: &Audit) -> Vec<String> {
     let held: Vec<&Audited> = audit.backends.iter().filter(|b| b.backend.holds).collect();
     let mut words = Vec::new();
     let faults = audit.faults();
     match faults.is_empty() {
         true => words.push(
-            "Formula, tables and allocator agree to the byte: no table has room to spare, and \
-             nothing is held outside the tables."
+            "Formula, tables and allocator agree to the byte: no table has spare capacity, and \
+             there are no blocks outside the tables."
                 .to_owned(),
         ),
         false => words.extend(faults.into_iter().map(|fault| format!("! {fault}."))),
     }
     words.push(
-        "A word is 4 bytes, an index or a coordinate. The last column is the formula for 2 faces \
-         and 3 edges a vertex, as the literature counts."
+        "A word is 4 bytes: an index or a coordinate. The last column is the formula for 2 faces \
+         and 3 edges per vertex, as in the literature."
             .to_owned(),
     );
     words.extend(words_of_operations(audit));
@@ -251,8 +251,8 @@ fn words(audit: &Audit) -> Vec<String> {
         let backend = &one.backend;
         if let Some(merged @ 1..) = backend.merged_vertices {
             words.push(format!(
-                "{} merges {} with others at the same place. Its bytes are those of its corners all \
-                 the same, and a vertex here is one of the file.",
+                "{} merges {} with others at the same position. Its bytes do not change, because it \
+                 stores corners; figures per vertex count the vertices of the file.",
                 backend.name,
                 counted(merged, "vertex", "vertices")
             ));
@@ -261,7 +261,7 @@ fn words(audit: &Audit) -> Vec<String> {
     words
 }
 
-/// The legend of the table of operations; empty without that table.
+/// Returns the legend of the table of operations; empty without that table.
 fn words_of_operations(audit: &Audit) -> Vec<String> {
     let operations = || audit.backends.iter().flat_map(|one| &one.operations);
     let mut words = Vec::new();
@@ -292,8 +292,8 @@ fn words_of_operations(audit: &Audit) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use ::study::{Backend, Heap, Specimen};
     use sixfold::{HalfEdgeMesh, shapes};
+    use sixfold_study::{Backend, Heap, Specimen};
 
     use super::*;
     use crate::text::WIDTH;
@@ -314,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_is_marked_said_and_ends_with_its_own_code() {
+    fn counts_that_differ_are_marked_and_reported_with_an_exit_code() {
         let cube = Specimen::new("cube", shapes::cube());
         let audit = audit(&cube, &[Backend::of::<HalfEdgeMesh>()], &Idle, &mut |_| ());
         // 24 halves of 12 bytes, 8 vertices of 16, and 6 faces.

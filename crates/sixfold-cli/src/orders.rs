@@ -1,14 +1,14 @@
-//! `sixfold orders`: what the order of a mesh in memory costs.
+//! `sixfold orders`: measures how the order of a mesh in memory affects each backend.
 
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use ::study::{
+use comfy_table::{Attribute, Cell, CellAlignment, Table};
+use sixfold::shapes::Order;
+use sixfold_study::{
     Agreement, Comparison, FEW_OPERATIONS, OrderRow, OrdersError, OrdersReport, Settings, Specimen,
     Standing, StudyError,
 };
-use comfy_table::{Attribute, Cell, CellAlignment, Table};
-use sixfold::shapes::Order;
 
 use crate::arguments::{ORDERS_EXAMPLES, Orders};
 use crate::facts_text::{facts_text, verdicts_text};
@@ -21,9 +21,10 @@ use crate::progress::{Bar, interrupt_flag};
 use crate::study::{names, setting};
 use crate::tables::styled;
 use crate::text::{Text, hanging};
-use ::study::numbers::figure;
+use sixfold_study::numbers::figure;
 
-/// Measures the mesh in all orders; text first, so that no file that fails can take it along.
+/// Measures the mesh in all orders and shows the result. Text is printed first, so that it is not
+/// lost if a file fails.
 pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     check_places(
         arguments.mesh.as_deref(),
@@ -56,20 +57,20 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     ended(done, report.mismatches(), report.interrupted)
 }
 
-/// Measures the mesh in all orders, if there is room for them.
+/// Measures the mesh in all orders, if enough memory is free.
 pub(crate) fn measured(
     specimen: &Specimen,
     settings: &Settings,
     stop: &AtomicBool,
 ) -> Result<OrdersReport, Failure> {
-    let needed = ::study::orders_bytes(specimen, settings).map_err(Failure::usage)?;
+    let needed = sixfold_study::orders_bytes(specimen, settings).map_err(Failure::usage)?;
     check_room(
         "the mesh in four orders on each backend",
         needed,
-        "name fewer --backends, or take a smaller mesh",
+        "choose fewer --backends, or a smaller mesh",
     )?;
     let bar = Bar::new();
-    let report = ::study::orders(specimen, settings, stop, &mut |at| bar.show(at));
+    let report = sixfold_study::orders(specimen, settings, stop, &mut |at| bar.show(at));
     bar.clear();
     let mut report = report.map_err(|error| match error {
         OrdersError::Study(StudyError::NoneHolds { .. }) => Failure::unsupported(error),
@@ -79,14 +80,14 @@ pub(crate) fn measured(
     Ok(report)
 }
 
-/// What help says after the options: examples, how it measures, and the names that there are.
+/// Returns the help text after the options: examples, the method, and the lists of names.
 pub(crate) fn help() -> String {
     format!("{ORDERS_EXAMPLES}\n\n{}\n{}", names(), few())
 }
 
-/// The operations that are measured where none are named.
+/// Lists the operations that are measured by default.
 pub(crate) fn few() -> String {
-    hanging("Unless named: ", &FEW_OPERATIONS.join(", "))
+    hanging("By default:  ", &FEW_OPERATIONS.join(", "))
 }
 
 fn print(report: &OrdersReport, text: &mut Text) {
@@ -119,11 +120,11 @@ fn print(report: &OrdersReport, text: &mut Text) {
     text.say(&hanging("", &how));
 }
 
-const LEGEND: &str = "ns for each element, and how many times as long as the best order of that \
-    backend; * its best order; = tied for it; ~ from a sample of the elements; ? estimated, not run; \
-    m of a mesh with merged vertices; ! WRONG; worst/best: – no difference beyond the noise.";
+const LEGEND: &str = "ns per element, and the ratio to the best order of that backend; * its best \
+    order; = tied with it; ~ from a sample of the elements; ? estimated, not run; m on a mesh with \
+    merged vertices; ! WRONG; worst/best: – no difference beyond the noise.";
 
-/// One row for each backend, one column for each order.
+/// Returns the table with a row per backend and a column per order.
 fn table(comparison: &Comparison, rows: &[&OrderRow], bold: bool) -> String {
     let operation = comparison.operation;
     let first = format!("{operation}\nns per {}", operation.per());
@@ -153,7 +154,7 @@ fn right(text: String) -> Cell {
     Cell::new(text).set_alignment(CellAlignment::Right)
 }
 
-/// `24.9 1.52× `: the price of an element, its ratio to the best order, and a sign.
+/// Formats a cell as `24.9 1.52× `: ns per element, the ratio to the best order, and a sign.
 fn cell(OrderRow { row, .. }: &OrderRow, bold: bool) -> Cell {
     let price = match (row.ns_per_element, row.estimated_ns, row.elements) {
         (Some(each), ..) => Some((if row.sampled { "~" } else { "" }, each)),
@@ -182,7 +183,7 @@ fn cell(OrderRow { row, .. }: &OrderRow, bold: bool) -> Cell {
     }
 }
 
-/// A figure in six columns at most.
+/// Formats a figure in at most six characters.
 pub(crate) fn short(number: f64) -> String {
     match number {
         n if n >= 99_999.5 => format!("{n:.1e}"),

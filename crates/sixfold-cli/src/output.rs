@@ -1,4 +1,4 @@
-//! Data for machines: whole files or none, or standard output.
+//! Output of data: to files that are written completely or not at all, or to standard output.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -9,13 +9,14 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::failure::Failure;
 
-/// Drafts that are neither files yet nor cleared away. Whoever holds the lock decides about them.
+/// Drafts that are neither renamed to their files nor deleted yet. Renaming and deleting need the
+/// lock.
 static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// A place for data, opened before the work begins so that nobody waits for a failure.
+/// A place for data. It is opened before the work begins, so that a wrong place fails at once.
 ///
-/// A file is written under another name beside it and takes its own when it is complete; if that
-/// never comes, what was there before is still there.
+/// A file is written under a temporary name beside it (the draft) and renamed when it is complete.
+/// If the program ends earlier, an old file at that place is unchanged.
 pub(crate) struct Output {
     shown: String,
     target: Target,
@@ -23,7 +24,7 @@ pub(crate) struct Output {
 
 enum Target {
     Stdout,
-    /// A device or pipe: nothing that could be kept.
+    /// A device or pipe, which is written to directly.
     Stream(File),
     File {
         file: File,
@@ -32,12 +33,12 @@ enum Target {
     },
 }
 
-/// Whether `path` means standard output.
+/// Returns whether `path` means standard output.
 pub(crate) fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Refuses an output in the place of an input, which is `what`.
+/// Returns an error if an output would overwrite `input`; `what` describes the input.
 pub(crate) fn check_kept(
     what: &str,
     input: &Path,
@@ -48,7 +49,7 @@ pub(crate) fn check_kept(
         let Some(path) = path else { continue };
         if place(path) == kept && !is_stdout(path) {
             return Err(Failure::usage(format!(
-                "{option} would overwrite {what} {}: name another place",
+                "{option} would overwrite {what} {}: choose another file",
                 path.display()
             )));
         }
@@ -56,7 +57,7 @@ pub(crate) fn check_kept(
     Ok(())
 }
 
-/// Refuses two outputs to one place, and an output in the place of the mesh.
+/// Returns an error if two outputs have the same place, or if one would overwrite the mesh.
 pub(crate) fn check_places(
     mesh: Option<&Path>,
     outputs: &[(&str, Option<&PathBuf>)],
@@ -72,7 +73,7 @@ pub(crate) fn check_places(
         let (place, shown) = (place(path), path.display());
         if let Some((other, _)) = taken.iter().find(|(_, there)| *there == place) {
             return Err(Failure::usage(format!(
-                "{other} and {option} both write to {shown}: name two places"
+                "{other} and {option} both write to {shown}: choose two different files"
             )));
         }
         taken.push((option, place));
@@ -80,7 +81,7 @@ pub(crate) fn check_places(
     Ok(())
 }
 
-/// One name for a file, however it is written, and whether or not it is there.
+/// Returns the same path for all spellings of a file, whether or not the file exists.
 fn place(path: &Path) -> PathBuf {
     let known = || {
         if is_stdout(path) {
@@ -96,9 +97,10 @@ fn place(path: &Path) -> PathBuf {
     known().unwrap_or_else(|| path.to_owned())
 }
 
-/// Clears all drafts away and ends the program: what a signal may call while others write.
+/// Deletes all drafts and ends the program. A signal handler may call this while other threads
+/// write.
 pub(crate) fn exit_without_drafts(code: i32) -> ! {
-    // Held to the end, so that no draft becomes a file or begins meanwhile.
+    // The lock is held to the end, so that no draft is renamed or created meanwhile.
     let drafts = drafts();
     for draft in drafts.iter() {
         let _ = fs::remove_file(draft);
@@ -121,11 +123,11 @@ impl Output {
             });
         }
         let failed = |cause: io::Error| cannot_write(&shown, &cause);
-        // A link stays a link: what it points at is replaced.
+        // A link stays a link: the file that it points to is replaced.
         let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let target = match fs::metadata(&path) {
             Ok(there) if there.is_dir() => {
-                let message = format!("{shown}: is a directory: name a file in it");
+                let message = format!("{shown}: is a directory: name a file inside it");
                 return Err(Failure::usage(message));
             }
             Ok(there) if !there.is_file() => {
@@ -133,7 +135,7 @@ impl Output {
             }
             old => {
                 if old.is_ok() {
-                    // A file that may not be written may not be replaced either.
+                    // A file without write permission must not be replaced either.
                     File::options().write(true).open(&path).map_err(failed)?;
                 }
                 let draft = draft_of(&path);
@@ -144,7 +146,8 @@ impl Output {
                 let target = Target::File { file, draft, path };
                 let output = Self { shown, target };
                 if let (Ok(old), Target::File { file, .. }) = (old, &output.target) {
-                    // Before there is anything to read: who might not read the old may not read this.
+                    // Set before writing, so that users without access to the old file never get
+                    // access to the new one.
                     let kept = file.set_permissions(old.permissions());
                     kept.map_err(|cause| output.failure(&cause))?;
                 }
@@ -154,12 +157,12 @@ impl Output {
         Ok(Self { shown, target })
     }
 
-    /// Opens `path` if there is one.
+    /// Opens `path` if it is given.
     pub(crate) fn open_if(path: Option<&PathBuf>) -> Result<Option<Self>, Failure> {
         path.map(|path| Self::open(path)).transpose()
     }
 
-    /// Writes it all with `write`, and gives the file its name.
+    /// Writes the data with `write`, and renames the draft to the file.
     pub(crate) fn finish(
         mut self,
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -173,15 +176,15 @@ impl Output {
             }),
         };
         match done {
-            // Whoever read standard output has seen enough.
+            // The reader of standard output closed it early: that is not an error.
             Err(cause) if cause.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-            // No fault of the place, but of the mesh; what the system refuses has its own number.
+            // The mesh is at fault, not the place: errors of the system have an error number.
             Err(cause)
                 if cause.kind() == io::ErrorKind::InvalidInput
                     && cause.raw_os_error().is_none() =>
             {
                 Err(Failure::usage(format!(
-                    "{}: not written, {cause}: scale the mesh down, coordinates are 32 bits",
+                    "{}: not written, {cause}: scale the mesh down, because coordinates have 32 bits",
                     self.shown
                 )))
             }
@@ -196,7 +199,7 @@ impl Output {
 }
 
 impl Drop for Output {
-    /// Clears the draft away, unless it has become the file.
+    /// Deletes the draft, unless it was renamed to the file.
     fn drop(&mut self) {
         if let Target::File { draft, .. } = &self.target {
             let mut drafts = drafts();
@@ -206,10 +209,10 @@ impl Drop for Output {
     }
 }
 
-/// The failure of writing to the place `shown`.
+/// Returns the failure of writing to the place `shown`.
 pub(crate) fn cannot_write(shown: &str, cause: &io::Error) -> Failure {
     Failure::usage(format!(
-        "{shown}: cannot be written ({cause}): choose another place"
+        "{shown}: cannot be written ({cause}): choose another file"
     ))
 }
 
@@ -219,7 +222,7 @@ fn written(to: impl Write, write: impl FnOnce(&mut dyn Write) -> io::Result<()>)
     to.flush()
 }
 
-/// A name beside `path` that no other run uses.
+/// Returns a name beside `path` that no other run uses.
 fn draft_of(path: &Path) -> PathBuf {
     let mut name = OsString::from(".");
     name.push(path.file_name().unwrap_or_default());

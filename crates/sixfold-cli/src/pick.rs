@@ -1,10 +1,10 @@
-//! `sixfold pick`: the answer for a mesh and a workload.
+//! `sixfold pick`: finds the backend that fits a mesh and a workload.
 
 use std::path::Path;
 use std::process::ExitCode;
 
-use ::study::{Answer, BreakEven, Question, Ranked, Specimen};
 use comfy_table::{Cell, CellAlignment};
+use sixfold_study::{Answer, BreakEven, Question, Ranked, Specimen};
 
 use crate::arguments::Pick;
 use crate::failure::Failure;
@@ -15,18 +15,18 @@ use crate::progress::{Bar, interrupt_flag};
 use crate::tables::table;
 use crate::text::{Text, complain, hanging, tame};
 use crate::workloads::workload;
-use ::study::numbers::{counted, duration, figure, grouped};
+use sixfold_study::numbers::{counted, duration, figure, grouped};
 
-/// No backend qualifies.
+/// The exit code if no backend qualifies.
 const NONE: u8 = 1;
 
-/// Measures, and shows the answer; text first, so that no file that fails can take it along.
+/// Measures and shows the answer. Text is printed first, so that it is not lost if a file fails.
 pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     for mesh in &arguments.meshes {
         check_places(Some(mesh), &[("--json", arguments.json.as_ref())])?;
     }
     let workload = workload(&arguments.workload)?;
-    // Before the draft of the output, so that Ctrl-C can leave none behind.
+    // Before the draft of the output is opened, so that Ctrl-C cannot leave a draft behind.
     let stop = interrupt_flag(arguments.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
     let specimens = specimens(arguments)?;
@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     };
     tell_of_debug_build();
     let bar = Bar::new();
-    let answer = ::study::pick(&specimens, &question, &stop, &mut |done, what| {
+    let answer = sixfold_study::pick(&specimens, &question, &stop, &mut |done, what| {
         bar.at(done, what)
     });
     bar.clear();
@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     let code = ended(done, answer.mismatches.len(), answer.interrupted)?;
     if answer.ranking.is_empty() && !answer.interrupted {
         complain(
-            "error: no backend qualifies: loosen --needs, --max-memory or --backends, or mend the mesh (`sixfold inspect`)",
+            "error: no backend qualifies: relax --needs, --max-memory or --backends, or repair the mesh (see `sixfold inspect`)",
         );
         return Ok(ExitCode::from(NONE));
     }
@@ -95,11 +95,11 @@ fn print(answer: &Answer, specimens: &[Specimen], text: &mut Text) {
         .collect();
     let rebuilt = match answer.workload.rebuilds {
         0 => String::new(),
-        times => format!(", built anew {}", counted(times as usize, "time", "times")),
+        times => format!(", rebuilt {}", counted(times as usize, "time", "times")),
     };
     let mix = mix.join(", ");
     text.say(&hanging(
-        "Its mix:  ",
+        "Mix:      ",
         &format!("{mix}; {}; {operations}{rebuilt}", answer.workload.access),
     ));
     text.say("");
@@ -113,7 +113,7 @@ fn print(answer: &Answer, specimens: &[Specimen], text: &mut Text) {
     for out in &answer.excluded {
         text.say(&hanging(
             "- ",
-            &format!("Not {}: {}.", out.backend, out.reason),
+            &format!("{} is excluded: {}.", out.backend, out.reason),
         ));
     }
     for warning in &answer.warnings {
@@ -121,7 +121,8 @@ fn print(answer: &Answer, specimens: &[Specimen], text: &mut Text) {
     }
 }
 
-/// The backends, best first, with what each costs, holds, and when it pays.
+/// Returns the table of backends, best first: times, memory, and after how many operations each
+/// pays off.
 fn ranking(answer: &Answer) -> String {
     let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
     let header = [
@@ -163,9 +164,9 @@ fn ranking(answer: &Answer) -> String {
     }
     let mut text = rows.trim_fmt();
     let legend = [
-        "~ a sample of the elements stands for all, for it looks at all faces to answer",
-        "? not run in full, for that would outlast the budget: an estimate",
-        "= nobody can tell it from the best",
+        "~ measured on a sample of the elements, because each query scans all faces",
+        "? estimated, because a full run would exceed the budget",
+        "= tied with the best: not measurably different from it",
     ];
     for (line, _) in legend.into_iter().zip(notes).filter(|(_, note)| *note) {
         text += "\n";
@@ -176,14 +177,16 @@ fn ranking(answer: &Answer) -> String {
         .iter()
         .find_map(|ranked| ranked.over.as_deref());
     if let Some(over) = tables {
-        text += &format!("\nrelation-tables: flat tables of just what is asked, made of {over}");
+        text += &format!(
+            "\nrelation-tables: flat tables of only the relations in the mix, made from {over}"
+        );
     }
-    text + "\n1st build: on fresh pages; again: where freed pages are used again\n\
-            pays after: the operations until the first build has paid off, compared with keeping the\n\
+    text + "\n1st build: on fresh pages; again: on freed pages that are used again\n\
+            pays after: operations until the first build has paid off, compared with keeping the\n\
             indexed face set"
 }
 
-/// `1.04`, `12.3`, `1,230`.
+/// Formats a ratio as `1.04`, `12.3` or `1,230`.
 fn ratio(ratio: f64) -> String {
     match ratio < 1.0 {
         true => format!("{ratio:.2}"),

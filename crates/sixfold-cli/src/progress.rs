@@ -1,24 +1,24 @@
-//! Progress on a terminal, and what Ctrl-C does.
+//! Progress on a terminal, and the handling of Ctrl-C.
 
 use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use ::study::{Policy, Progress, pages};
 use indicatif::{ProgressBar, ProgressStyle};
+use sixfold_study::{Policy, Progress, pages};
 
 use crate::output::exit_without_drafts;
 use crate::text::complain;
 
-/// How finely the bar moves.
+/// Number of steps of a full bar.
 const STEPS: u64 = 1000;
 
-/// A bar on standard error, if that is a terminal.
+/// A progress bar on standard error, if that is a terminal.
 pub(crate) struct Bar(Option<ProgressBar>);
 
 impl Bar {
-    /// An empty bar.
+    /// Returns an empty bar.
     pub(crate) fn new() -> Self {
         if !io::stderr().is_terminal() {
             return Self(None);
@@ -28,14 +28,14 @@ impl Bar {
         Self(Some(ProgressBar::new(STEPS).with_style(style)))
     }
 
-    /// Shows how much is done, and what is going on.
+    /// Shows which fraction is done, and what is running.
     pub(crate) fn at(&self, done: f64, what: &str) {
         let Self(Some(bar)) = self else { return };
         bar.set_position((done * STEPS as f64) as u64);
         bar.set_message(what.to_owned());
     }
 
-    /// Shows where the study stands.
+    /// Shows the progress of a study.
     pub(crate) fn show(&self, progress: Progress<'_>) {
         let Progress {
             done,
@@ -46,7 +46,7 @@ impl Bar {
         self.at(done, &format!("{stage} {operation} on {backend}"));
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub(crate) fn clear(&self) {
         if let Self(Some(bar)) = self {
             bar.finish_and_clear();
@@ -54,11 +54,11 @@ impl Bar {
     }
 }
 
-/// A bar of faces that have been made, on standard error if that is a terminal.
+/// A progress bar of new faces, on standard error if that is a terminal.
 pub(crate) struct Faces(Option<ProgressBar>);
 
 impl Faces {
-    /// A bar for work that makes `faces` in all.
+    /// Returns a bar for work that makes `faces` faces in total.
     pub(crate) fn of(faces: usize) -> Self {
         if !io::stderr().is_terminal() {
             return Self(None);
@@ -70,14 +70,14 @@ impl Faces {
         Self(Some(bar))
     }
 
-    /// Counts `faces` more, made by level `level`.
+    /// Adds the `faces` faces of level `level`.
     pub(crate) fn made(&self, level: u32, faces: usize) {
         let Self(Some(bar)) = self else { return };
         bar.inc(faces as u64);
         bar.set_message(format!("level {level} done"));
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub(crate) fn clear(&self) {
         if let Self(Some(bar)) = self {
             bar.finish_and_clear();
@@ -85,11 +85,11 @@ impl Faces {
     }
 }
 
-/// A bar of steps of any kind, on standard error if that is a terminal.
+/// A progress bar of steps of any kind, on standard error if that is a terminal.
 pub(crate) struct Steps(Option<ProgressBar>);
 
 impl Steps {
-    /// A bar for so many steps; `what` says what they are.
+    /// Returns a bar for `steps` steps; `what` describes them.
     pub(crate) fn of(steps: usize, what: &str) -> Self {
         if !io::stderr().is_terminal() {
             return Self(None);
@@ -102,14 +102,14 @@ impl Steps {
         Self(Some(bar))
     }
 
-    /// Shows that so many of them are done.
+    /// Shows that `steps` steps are done.
     pub(crate) fn reached(&self, steps: usize) {
         if let Self(Some(bar)) = self {
             bar.set_position(steps as u64);
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub(crate) fn clear(&self) {
         if let Self(Some(bar)) = self {
             bar.finish_and_clear();
@@ -117,11 +117,11 @@ impl Steps {
     }
 }
 
-/// A line that turns while something takes a while, on standard error if that is a terminal.
+/// A line with a spinner during long work, on standard error if that is a terminal.
 pub(crate) struct Waiting(Option<ProgressBar>);
 
 impl Waiting {
-    /// Says what is being done.
+    /// Shows what is being done.
     pub(crate) fn shown(what: String) -> Self {
         if !io::stderr().is_terminal() {
             return Self(None);
@@ -131,7 +131,7 @@ impl Waiting {
         Self(Some(line))
     }
 
-    /// Takes the line away.
+    /// Removes the line.
     pub(crate) fn clear(&self) {
         if let Self(Some(line)) = self {
             line.finish_and_clear();
@@ -139,18 +139,18 @@ impl Waiting {
     }
 }
 
-/// A line that says what is being done, on standard error if that is a terminal. It stands still: no
-/// thread of its own allocates while somebody counts.
+/// A line that shows the present step, on standard error if that is a terminal. It has no thread of
+/// its own, because allocations of that thread would be counted.
 pub(crate) struct Stage(Option<ProgressBar>);
 
 impl Stage {
-    /// An empty line.
+    /// Returns an empty line.
     pub(crate) fn new() -> Self {
         let shown = io::stderr().is_terminal();
         Self(shown.then(ProgressBar::new_spinner))
     }
 
-    /// Says what is next.
+    /// Shows the next step.
     pub(crate) fn show(&self, what: String) {
         if let Self(Some(line)) = self {
             line.set_message(what);
@@ -158,7 +158,7 @@ impl Stage {
         }
     }
 
-    /// Takes the line away.
+    /// Removes the line.
     pub(crate) fn clear(&self) {
         if let Self(Some(line)) = self {
             line.finish_and_clear();
@@ -166,29 +166,29 @@ impl Stage {
     }
 }
 
-/// The exit code of a command that was ended before its time.
+/// The exit code of an interrupted command.
 pub(crate) const INTERRUPTED: u8 = 4;
 
-/// Ends the program at the first Ctrl-C, for commands with no part worth keeping.
+/// Ends the program at the first Ctrl-C. For commands that have no partial results to keep.
 pub(crate) fn end_on_interrupt() {
-    // Where there can be no handler, Ctrl-C does what it always did.
+    // If no handler can be set, Ctrl-C keeps its default effect.
     let _ = ctrlc::set_handler(|| {
         complain("interrupted");
         exit_without_drafts(INTERRUPTED.into());
     });
 }
 
-/// A flag that the first Ctrl-C sets; the second ends the program at once.
+/// Returns a flag that the first Ctrl-C sets; the second ends the program at once.
 ///
-/// Puts `heap` in force first: the handler has a thread of its own, and the number of heaps is fixed when
-/// the first thread starts.
+/// Applies `heap` first: the handler starts a thread, and the number of heaps is fixed when the
+/// first thread starts.
 pub(crate) fn interrupt_flag(heap: Policy) -> Arc<AtomicBool> {
     pages::put_in_force(heap);
-    /// What shells expect of a program that was interrupted.
+    /// The exit code that shells use for an interrupted program.
     const AT_ONCE: i32 = 130;
     let flag = Arc::new(AtomicBool::new(false));
     let set = Arc::clone(&flag);
-    // Where there can be no handler, Ctrl-C does what it always did.
+    // If no handler can be set, Ctrl-C keeps its default effect.
     let _ = ctrlc::set_handler(move || {
         if set.swap(true, Ordering::Relaxed) {
             exit_without_drafts(AT_ONCE);

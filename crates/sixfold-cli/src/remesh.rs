@@ -1,10 +1,10 @@
-//! `sixfold decimate` and `remesh`: other triangles for the same surface, edit by edit.
+//! `sixfold decimate` and `remesh`: changes the triangles of a surface by local edits.
 
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 
-use sixfold::mesh_io::write_obj;
+use sixfold::io::write_obj;
 use sixfold::remeshing::{
     Boundary, Decimation, RemeshError, Remeshing, Stop, decimate_watched, remesh_watched,
 };
@@ -18,9 +18,9 @@ use crate::load;
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Steps, end_on_interrupt};
 use crate::text::{Text, complain, tame};
-use ::study::numbers::{counted, grouped};
+use sixfold_study::numbers::{counted, grouped};
 
-/// From so many faces on it is said why a structure that scans takes long.
+/// Number of faces from which a note explains why a structure that scans is slow.
 const LONG_SCAN: usize = 1000;
 
 /// Decimates the mesh and writes it.
@@ -44,14 +44,15 @@ pub(crate) fn remesh(arguments: &Remesh) -> Result<ExitCode, Failure> {
     edited(place, &arguments.backend, &remeshing)
 }
 
-/// Reads a mesh, has it edited on `backend`, and writes what comes of it.
+/// Reads a mesh, edits it on `backend`, and writes the result.
 fn edited([from, to]: [&Path; 2], backend: &str, work: &impl Work) -> Result<ExitCode, Failure> {
     check_places(Some(from), &[("--output", Some(&to.to_owned()))])?;
     end_on_interrupt();
     let polygons = load::without_creases(from)?;
-    // Before a structure of triangles alone says it in its own words.
+    // Checked here, because the error of a structure for triangles would not name the command that
+    // helps.
     check_triangles(&polygons)?;
-    // Opened before the work, so that nobody waits for a failure.
+    // Opened before the work, so that a wrong place fails at once.
     let output = Output::open(to)?;
     let mut on = On {
         polygons: &polygons,
@@ -75,7 +76,7 @@ fn edited([from, to]: [&Path; 2], backend: &str, work: &impl Work) -> Result<Exi
     Ok(ExitCode::SUCCESS)
 }
 
-/// Refuses the first face that is no triangle.
+/// Returns an error for the first face that is not a triangle.
 fn check_triangles(polygons: &PolygonMesh) -> Result<(), Failure> {
     match polygons.first_polygon() {
         Some((face, degree)) => Err(refused(RemeshError::NotATriangle { face, degree })),
@@ -83,7 +84,7 @@ fn check_triangles(polygons: &PolygonMesh) -> Result<(), Failure> {
     }
 }
 
-/// A refusal, with the command or the option that helps.
+/// Converts an error, and adds the command or the option that helps.
 fn refused(error: RemeshError) -> Failure {
     match error {
         RemeshError::NotATriangle { .. } => {
@@ -100,7 +101,7 @@ fn refused(error: RemeshError) -> Failure {
                 _ => "more than 1e308".to_owned(),
             };
             Failure::unsupported(format!(
-                "edges of {length:?} would take {faces} triangles, and {} are allowed: choose a greater --edge-length, or allow more with --max-faces",
+                "edges of length {length:?} need {faces} triangles, but only {} are allowed: increase --edge-length or --max-faces",
                 grouped(limit)
             ))
         }
@@ -108,7 +109,7 @@ fn refused(error: RemeshError) -> Failure {
     }
 }
 
-/// Says beforehand that a structure without a table for what an edit needs takes its time.
+/// Prints a note if edits on the structure scan all faces, because that is slow on a large mesh.
 fn tell_of_scans<M: MeshEdit + Representation>(faces: usize) {
     let scans = |edits: &[Option<QueryCost>]| {
         [Edit::CollapseEdge, Edit::BisectEdge, Edit::FlipEdge]
@@ -122,23 +123,23 @@ fn tell_of_scans<M: MeshEdit + Representation>(faces: usize) {
     let others = backends.iter().filter(|backend| !scans(&backend.edits));
     let others: Vec<&str> = others.map(|backend| backend.name).collect();
     complain(&format!(
-        "note: {} looks through all {} faces again and again for each edit, and that takes long: {} look around the edge alone",
+        "note: {} scans all {} faces for each edit, which is slow: {} visit only the faces around the edge",
         M::NAME,
         grouped(faces),
         others.join(", ")
     ));
 }
 
-/// Edits that are done with a structure.
+/// Edits on a structure.
 trait Work {
-    /// Does them; what there is to say of it.
+    /// Does the edits, and describes them.
     fn done<M: MeshEdit + Representation>(&self, mesh: &mut M) -> Result<Told, RemeshError>;
 }
 
-/// What was done, in words.
+/// A description of the edits.
 struct Told {
     edits: String,
-    /// Why it is not all that was asked for.
+    /// The reason if the target was not reached.
     short: Option<String>,
 }
 
@@ -146,7 +147,7 @@ impl Work for Decimation {
     fn done<M: MeshEdit + Representation>(&self, mesh: &mut M) -> Result<Told, RemeshError> {
         let before = mesh.face_count();
         let target = self.target.of(before)?;
-        let bar = Steps::of(before.saturating_sub(target), "faces taken away");
+        let bar = Steps::of(before.saturating_sub(target), "faces removed");
         let report = decimate_watched(mesh, self, &mut |faces| {
             bar.reached(before.saturating_sub(faces));
             ControlFlow::Continue(())
@@ -159,7 +160,7 @@ impl Work for Decimation {
                 Boundary::Follow => "",
             };
             format!(
-                "the target of {} was not reached: any other collapse would {fixed}turn a face over, or change what is connected",
+                "the target of {} was not reached: any other collapse would {fixed}flip a face or change the topology",
                 counted(target, "face", "faces")
             )
         });
@@ -183,7 +184,7 @@ impl Work for Remeshing {
         let iterations = counted(report.iterations, "iteration", "iterations");
         let short = (report.stop != Stop::Done).then(|| {
             format!(
-                "ended after {iterations}: --max-faces {} left no room to split, so that edges are longer than asked for",
+                "stopped after {iterations}: --max-faces {} prevents more splits, so edges are longer than --edge-length",
                 self.most_faces
             )
         });
@@ -197,7 +198,7 @@ impl Work for Remeshing {
     }
 }
 
-/// Work to be done with a structure that is chosen at run time.
+/// Work on a structure that is selected at run time.
 struct On<'a, W> {
     polygons: &'a PolygonMesh,
     work: &'a W,

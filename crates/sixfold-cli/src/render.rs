@@ -1,11 +1,13 @@
-//! `sixfold render`: pictures of meshes.
+//! `sixfold render`: draws pictures of meshes.
 
 use std::path::Path;
 use std::process::ExitCode;
 
-use ::render::{MeshFault, Picture, RenderError, Settings, Size, Subject, View, draw, draw_svg};
-use sixfold::mesh_io::read_creases;
+use sixfold::io::read_creases;
 use sixfold::{Creases, PolygonMesh};
+use sixfold_render::{
+    MeshFault, Picture, RenderError, Settings, Size, Subject, View, draw, draw_svg,
+};
 
 use crate::arguments::Render;
 use crate::failure::Failure;
@@ -13,7 +15,7 @@ use crate::load;
 use crate::output::{Output, check_kept};
 use crate::progress::{Waiting, end_on_interrupt};
 use crate::text::{Text, tame};
-use ::study::numbers::counted;
+use sixfold_study::numbers::counted;
 
 /// Draws the meshes into one picture.
 pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
@@ -30,7 +32,7 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     let loaded = loaded(arguments)?;
     let subject = |(mesh, creases)| Subject { mesh, creases };
     let subjects: Vec<Subject<'_>> = loaded.iter().map(|(m, c)| subject((m, c))).collect();
-    // Opened before the work, so that nobody waits for a failure.
+    // Opened before the work, so that a wrong place fails at once.
     let output = Output::open(&arguments.output)?;
     let faces: usize = loaded.iter().map(|(mesh, _)| mesh.face_count()).sum();
     let waiting = Waiting::shown(format!("drawing {}", counted(faces, "face", "faces")));
@@ -67,14 +69,14 @@ enum Drawn {
 }
 
 impl Format {
-    /// What the ending of `path` says.
+    /// Returns the format for the extension of `path`.
     fn of(path: &Path) -> Result<Self, Failure> {
         let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
         match ending.as_ref().and_then(|ending| ending.to_str()) {
             Some("png") => Ok(Self::Png),
             Some("svg") => Ok(Self::Svg),
             _ => Err(Failure::usage(format!(
-                "--output {}: a picture is called OUT.png or OUT.svg",
+                "--output {}: name the picture OUT.png or OUT.svg",
                 path.display()
             ))),
         }
@@ -94,14 +96,14 @@ fn settings(arguments: &Render) -> Result<Settings, Failure> {
     })
 }
 
-/// The meshes, each with the creases of its file and of the crease file that goes with it.
+/// Loads the meshes, each with the creases in its file and in its crease file.
 fn loaded(arguments: &Render) -> Result<Vec<(PolygonMesh, Creases)>, Failure> {
     let (meshes, files) = (&arguments.meshes, &arguments.creases);
     if files.len() > meshes.len() {
         let files = counted(files.len(), "crease file", "crease files");
         let meshes = counted(meshes.len(), "mesh", "meshes");
         return Err(Failure::usage(format!(
-            "{files} for {meshes}: --creases goes with the meshes in their order, one for each"
+            "{files} for {meshes}: give at most one --creases per mesh, in the order of the meshes"
         )));
     }
     let mut loaded = Vec::with_capacity(meshes.len());
@@ -116,7 +118,7 @@ fn loaded(arguments: &Render) -> Result<Vec<(PolygonMesh, Creases)>, Failure> {
     Ok(loaded)
 }
 
-/// A mesh is called by its file.
+/// Converts an error; a mesh is named by its file.
 fn failure(arguments: &Render, error: &RenderError) -> Failure {
     match error {
         RenderError::Mesh { mesh, fault } => {

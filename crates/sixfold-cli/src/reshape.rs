@@ -1,9 +1,9 @@
-//! `sixfold smooth`, `dual` and `triangulate`: other shapes and faces, no finer mesh.
+//! `sixfold smooth`, `dual` and `triangulate`: changes positions or faces without refinement.
 
 use std::path::Path;
 use std::process::ExitCode;
 
-use sixfold::mesh_io::write_obj;
+use sixfold::io::write_obj;
 use sixfold::operators::{Smoothing, SmoothingError, dual, oriented, smoothed, triangulated};
 use sixfold::{PolygonMesh, Representation, Visitor, visit};
 
@@ -13,7 +13,7 @@ use crate::load;
 use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Waiting, end_on_interrupt};
 use crate::text::{Text, tame};
-use ::study::numbers::counted;
+use sixfold_study::numbers::counted;
 
 /// Smooths the mesh and writes it.
 pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
@@ -30,7 +30,7 @@ pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
     })
 }
 
-/// Makes the dual and writes it.
+/// Builds the dual and writes it.
 pub(crate) fn make_dual(arguments: &Dual) -> Result<ExitCode, Failure> {
     let place = [arguments.mesh.as_path(), &arguments.output];
     reshaped(place, "the dual", |polygons| {
@@ -54,7 +54,7 @@ pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> 
     })
 }
 
-/// Reads a mesh, has it changed, and writes what comes of it.
+/// Reads a mesh, applies `change`, and writes the result.
 fn reshaped(
     [from, to]: [&Path; 2],
     what: &str,
@@ -63,7 +63,7 @@ fn reshaped(
     check_places(Some(from), &[("--output", Some(&to.to_owned()))])?;
     end_on_interrupt();
     let polygons = load::without_creases(from)?;
-    // Opened before the work, so that nobody waits for a failure.
+    // Opened before the work, so that a wrong place fails at once.
     let output = Output::open(to)?;
     let faces = counted(polygons.face_count(), "face", "faces");
     let waiting = Waiting::shown(format!("working on {faces}"));
@@ -80,7 +80,7 @@ fn reshaped(
     Ok(ExitCode::SUCCESS)
 }
 
-/// Something that is done with a structure.
+/// Work on a structure.
 trait Work {
     fn done<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, Failure>;
 }
@@ -107,7 +107,7 @@ impl Work for Dualised {
     }
 }
 
-/// Does `work` with the structure called `backend`.
+/// Does `work` on the structure with the name `backend`.
 fn on_backend(
     backend: &str,
     polygons: &PolygonMesh,

@@ -1,24 +1,24 @@
-//! The table: a row for each operation, a column for each backend.
+//! The table of a study: a row per operation, a column per backend.
 
-use ::study::{
-    Agreement, BackendReport, ControlRow, FIRST_TIME_SHOWN, Operation, Refusal, Report, ResultRow,
-    Standing,
-};
 use comfy_table::{
     Attribute, Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle,
 };
+use sixfold_study::{
+    Agreement, BackendReport, ControlRow, FIRST_TIME_SHOWN, Operation, Refusal, Report, ResultRow,
+    Standing,
+};
 
 use crate::text::{WIDTH, hanging, wrapped};
-use ::study::numbers::{duration, figure};
+use sixfold_study::numbers::{duration, figure};
 
-/// Two blanks between columns, and one line under the header.
+/// Two spaces between columns, and a line under the header.
 pub(crate) const STYLE: TableStyle =
     TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
-/// The table of times and bytes, and what its signs mean.
+/// Returns the table of times and bytes, with a legend of its signs.
 pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     let columns: Vec<&BackendReport> = report.backends.iter().filter(|b| b.holds).collect();
-    // Intervals have room beside a few columns only; the JSON has them all.
+    // Intervals fit only beside a few columns; the JSON has all of them.
     let intervals = columns.len() <= 4;
     let mut table = Table::new();
     table
@@ -30,7 +30,7 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
         table.force_no_tty();
     }
     let mut signs = Signs::default();
-    // What is said below a row of the table.
+    // Warnings to be printed below a row of the table.
     let mut doubts: Vec<(usize, String)> = Vec::new();
     let mut header = vec![Cell::new("nanoseconds"), Cell::new("per")];
     header.extend(columns.iter().map(|backend| {
@@ -72,12 +72,12 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
         doubts.extend(doubt(report, operation).map(|doubt| (row, doubt)));
     }
     add_bytes(&mut table, &columns, intervals, bold, &mut signs);
-    // All six and their names fit into a hundred columns.
+    // With this padding all six backends fit into 100 columns.
     if let Some(names) = table.column_mut(0) {
         names.set_padding((0, 1));
     }
     let table_text = table.trim_fmt();
-    // Each row is one line; the header may be several.
+    // Each row is one line; the header may have several.
     let header = table_text.lines().count() - table.row_count();
     let mut lines: Vec<String> = Vec::new();
     for (number, line) in table_text.lines().enumerate() {
@@ -93,7 +93,8 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     text
 }
 
-/// The line below an operation that allocates, where the first time differs: a cell for each backend.
+/// Returns the row of first times below an operation, if they differ from the medians on some
+/// backend.
 fn first_times(
     rows: &[&ResultRow],
     columns: &[&BackendReport],
@@ -114,14 +115,14 @@ fn first_times(
     Some(line)
 }
 
-/// What is said below the line of an operation whose control differs from itself.
+/// Returns the warning below an operation if the two columns of the control differ.
 fn doubt(report: &Report, operation: Operation) -> Option<String> {
     let control = report.control.as_ref()?;
     let of_it = |row: &&ControlRow| row.operation == operation;
     let row = control.operations.iter().find(of_it)?;
     row.is_unsteady().then(|| {
         format!(
-            "{}, measured twice, differs from itself by {:.0} % here: smaller differences are no result. Measure again, with a longer --budget or --operations {} alone.",
+            "the two columns of {} differ by {:.0} % here: smaller differences are not significant. Measure again with a longer --budget, or with --operations {} only.",
             control.backend,
             100.0 * (row.difference() - 1.0),
             row.operation
@@ -129,7 +130,8 @@ fn doubt(report: &Report, operation: Operation) -> Option<String> {
     })
 }
 
-/// Bytes for each vertex: really held, and by the layout.
+/// Adds two rows with bytes per vertex: those held by the tables, and those computed from the
+/// layout.
 fn add_bytes(
     table: &mut Table,
     columns: &[&BackendReport],
@@ -167,7 +169,7 @@ fn add_bytes(
     table.add_row(held).add_row(theory);
 }
 
-/// A figure and how far it may be off, in a field of its own if there is one.
+/// Formats a figure, followed by its interval if `intervals`.
 fn aligned(figure: String, spread: &str, intervals: bool) -> String {
     match intervals {
         true => format!("{figure} {spread:>5}"),
@@ -175,7 +177,7 @@ fn aligned(figure: String, spread: &str, intervals: bool) -> String {
     }
 }
 
-/// A figure with its signs, bold if it is the best.
+/// Returns the cell of a figure with its signs, bold if it is the best.
 fn marked(figure: String, standing: char, note: char, bold: bool) -> Cell {
     let cell = Cell::new(format!("{figure} {standing}{note}")).set_alignment(CellAlignment::Right);
     if bold && standing == '*' {
@@ -214,7 +216,7 @@ fn cell(row: &ResultRow, intervals: bool, bold: bool, signs: &mut Signs) -> Cell
     marked(text, standing, note, bold)
 }
 
-/// How far the interval reaches from the median, in percent: `±3%`.
+/// Formats the half-width of the interval in percent of the median: `±3%`.
 fn spread(row: &ResultRow, signs: &mut Signs) -> String {
     let known = (row.median_ns, row.ci_low_ns, row.ci_high_ns);
     let (Some(median), Some(low), Some(high)) = known else {
@@ -229,11 +231,11 @@ fn spread(row: &ResultRow, signs: &mut Signs) -> String {
     }
 }
 
-/// The signs that occur, for the legend to explain them and no others.
+/// The signs that occur in the table; the legend explains only these.
 #[derive(Default)]
 struct Signs {
     noted: Vec<char>,
-    /// There are lines of first times.
+    /// Whether the table has rows of first times.
     first_times: bool,
 }
 
@@ -250,25 +252,25 @@ impl Signs {
             ('*', "best"),
             (
                 '=',
-                "tied for best: no difference beyond the noise, or less than 2 % (2 × below three samples)",
+                "tied with the best: differs less than the noise or 2 % (2 × with fewer than three samples)",
             ),
             (
                 'h',
-                "own heap: this program's allocator is not told to keep pages",
+                "own heap: the allocator of this program does not keep freed pages",
             ),
             ('~', "from a sample of the elements"),
             ('?', "estimated, not run"),
             ('±', "95 % interval of the median"),
-            ('m', "of a mesh with merged vertices"),
+            ('m', "on a mesh with merged vertices"),
             ('!', "WRONG: differs from the other backends"),
         ];
         let there = meanings
             .iter()
             .filter(|(sign, _)| self.noted.contains(sign));
-        let first_times = "first time: a run on fresh pages, with tables of exact size";
+        let first_times = "first time: one run on fresh pages, with tables of exact size";
         let first_times = self.first_times.then(|| first_times.to_owned());
         let parts = there.map(|(sign, meaning)| format!("{sign} {meaning}"));
-        // Broken between meanings only.
+        // Lines are broken only between meanings.
         let mut lines: Vec<String> = Vec::new();
         for part in parts.chain(first_times) {
             match lines.last_mut() {
@@ -286,7 +288,7 @@ impl Signs {
     }
 }
 
-/// Why a row was only estimated, and what can be done about it.
+/// Explains why a row is only estimated, and what to do about it.
 fn unrun(row: &ResultRow) -> Option<String> {
     let time = duration(row.estimated_ns?);
     let ResultRow {
@@ -294,7 +296,7 @@ fn unrun(row: &ResultRow) -> Option<String> {
     } = row;
     Some(match row.by_name_only {
         true => format!(
-            "? {operation} on {backend} was left out, some {time} a run: name it to --operations"
+            "? {operation} on {backend} was left out (about {time} per run): to run it, name it in --operations"
         ),
         false => format!(
             "? {operation} on {backend} was not run: one run would take about {time}, too long for the budget"
@@ -302,8 +304,7 @@ fn unrun(row: &ResultRow) -> Option<String> {
     })
 }
 
-/// What is not there and why: one line for each reason, and the operations that it keeps from a
-/// backend.
+/// Lists the reasons for missing figures: one line per reason, with its operations and backends.
 fn refused(report: &Report) -> Vec<String> {
     let mut lines: Vec<(&str, Vec<&str>, Vec<&str>)> = Vec::new();
     for backend in &report.backends {
@@ -335,8 +336,8 @@ fn refused(report: &Report) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use ::study::{Control, Environment, MeshReport, SCHEMA};
     use sixfold::{Facts, PolygonMesh, roster};
+    use sixfold_study::{Control, Environment, MeshReport, SCHEMA};
 
     use super::*;
 
@@ -452,7 +453,7 @@ mod tests {
         }
     }
 
-    /// The whole table with each sign in it, from fixed figures.
+    /// Compares the whole table, with every sign in it and fixed figures, with a golden file.
     #[test]
     fn golden() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/table.txt");

@@ -1,4 +1,4 @@
-//! `sixfold schemes`: what kinds of subdivision there are, and what runs where.
+//! `sixfold schemes`: lists the subdivision schemes, and which backends support them.
 
 use std::process::ExitCode;
 
@@ -13,7 +13,7 @@ use crate::output::{Output, is_stdout};
 use crate::tables::{table, table_of_backends};
 use crate::text::Text;
 
-/// Prints the classification, and the table of schemes and backends.
+/// Prints the classification and the table of schemes and backends.
 pub(crate) fn run(arguments: &Schemes) -> Result<ExitCode, Failure> {
     let json = Output::open_if(arguments.json.as_ref())?;
     let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &Schemes) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// One row for each scheme: what kind it is.
+/// Returns the tables that classify the schemes, with a row per scheme.
 fn classification() -> String {
     let heads = [
         "scheme",
@@ -89,7 +89,7 @@ fn classification() -> String {
     format!("{}\n\n{}", kinds.trim_fmt(), sources.trim_fmt())
 }
 
-/// One row for each scheme, one column for each backend: the methods there are.
+/// Returns the table of methods, with a row per scheme and a column per backend.
 fn matrix() -> String {
     let mut methods = table_of_backends("methods");
     let mut once = false;
@@ -102,10 +102,10 @@ fn matrix() -> String {
         methods.add_row(row);
     }
     let mut text = methods.trim_fmt();
-    text += "\n\nG gather: the neighbourhood is asked for at each new point. S scatter: one pass over the";
-    text += "\nfaces. N native: the structure splits its own tables, on all threads; the others rebuild it.";
+    text += "\n\nG gather: each new point queries its neighbours. S scatter: one pass over faces.";
+    text += "\nN native: the structure splits its own tables, on all threads; G and S rebuild it.";
     if once {
-        text += "\n1  one step only: the structure cannot hold what it makes.";
+        text += "\n1  one step only: the structure cannot hold the result.";
     }
     text
 }

@@ -1,9 +1,11 @@
-//! `sixfold study`: measure and show.
+//! `sixfold study`: measures operations on every backend and shows the result.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use ::study::{Environment, Operation, Report, SCHEMA, Settings, Specimen, StudyError, Timer};
+use sixfold_study::{
+    Environment, Operation, Report, SCHEMA, Settings, Specimen, StudyError, Timer,
+};
 
 use crate::arguments::{STUDY_EXAMPLES, Study};
 use crate::facts_text::{facts_text, verdicts_text};
@@ -15,9 +17,9 @@ use crate::output::{Output, check_places, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
 use crate::results_table::results_table;
 use crate::text::{Text, hanging};
-use ::study::numbers::counted;
+use sixfold_study::numbers::counted;
 
-/// Measures what was asked for; text first, so that no file that fails can take it along.
+/// Measures and shows the result. Text is printed first, so that it is not lost if a file fails.
 pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     let settings = Settings {
         backends: arguments.backends.clone(),
@@ -42,7 +44,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
             ("--csv", arguments.csv.as_ref()),
         ],
     )?;
-    // Before the drafts of the outputs, so that Ctrl-C can leave none behind.
+    // Before the drafts of the outputs are opened, so that Ctrl-C cannot leave a draft behind.
     let stop = interrupt_flag(settings.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
     let csv = Output::open_if(arguments.csv.as_ref())?;
@@ -52,14 +54,14 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     };
     tell_of_debug_build();
     let bar = Bar::new();
-    let report = ::study::study(&specimen, &settings, &stop, &mut |at| bar.show(at));
+    let report = sixfold_study::study(&specimen, &settings, &stop, &mut |at| bar.show(at));
     bar.clear();
     let report = match report {
         Ok(mut report) => {
             report.environment.command = Some(typed());
             report
         }
-        // That is an answer: who was asked, and why each refuses.
+        // This is also a result: the selected backends, and why each refuses the mesh.
         Err(error @ StudyError::NoneHolds { .. }) => {
             let refusals = refusals(&specimen, &settings)?;
             write_files(&refusals, json, csv)?;
@@ -77,12 +79,12 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     studies_ended(done, [&report], 0, report.interrupted)
 }
 
-/// What help says after the options: examples, how it measures, and the names that there are.
+/// Returns the help text after the options: examples, the method, and the lists of names.
 pub(crate) fn help() -> String {
     format!("{STUDY_EXAMPLES}\n\n{}", names())
 }
 
-/// The names of all backends and operations.
+/// Lists the names of all backends and operations.
 pub(crate) fn names() -> String {
     let backends = sixfold::roster();
     let backends: Vec<&str> = backends.iter().map(|backend| backend.name).collect();
@@ -92,7 +94,7 @@ pub(crate) fn names() -> String {
     format!("{backends}\n{operations}")
 }
 
-/// Writes the files asked for; each is tried, whatever comes of the other.
+/// Writes the selected files; tries the second even if the first fails.
 pub(crate) fn write_files(
     report: &Report,
     json: Option<Output>,
@@ -108,10 +110,11 @@ pub(crate) fn write_files(
     done
 }
 
-/// The report on a mesh that no backend asked for can hold: their reasons, and no results.
+/// Returns the report on a mesh that none of the selected backends can hold: reasons but no
+/// results.
 fn refusals(specimen: &Specimen, settings: &Settings) -> Result<Report, Failure> {
     let asked = settings.chosen_backends().map_err(Failure::usage)?;
-    let inspection = ::study::inspect(specimen);
+    let inspection = sixfold_study::inspect(specimen);
     let mut backends = inspection.backends;
     backends.retain(|backend| asked.iter().any(|one| one.name() == backend.name));
     Ok(Report {
@@ -130,7 +133,7 @@ fn refusals(specimen: &Specimen, settings: &Settings) -> Result<Report, Failure>
     })
 }
 
-/// Facts, verdicts, the table, and what it shows in words.
+/// Prints the facts, the verdicts, the table, and the findings in words.
 pub(crate) fn print(report: &Report, text: &mut Text) {
     text.say(&facts_text(&report.mesh));
     text.say("");
@@ -153,18 +156,18 @@ pub(crate) fn print(report: &Report, text: &mut Text) {
     }
 }
 
-/// What the engine itself costs.
+/// Describes the overhead of the clock.
 fn overhead(timer: Timer) -> String {
     let share = timer.largest_share.map_or("unknown".into(), |share| {
         format!("{:.2} % of the shortest sample", 100.0 * share)
     });
     format!(
-        "Reading the clock takes {:.0} ns, which is subtracted; what may be left of it is {share}.",
+        "Reading the clock takes {:.0} ns, which is subtracted; the remaining error is at most {share}.",
         timer.overhead_ns
     )
 }
 
-/// How and where it was measured, in a line.
+/// Describes the machine and the settings in a line.
 pub(crate) fn setting(environment: &Environment, most_rounds: usize) -> String {
     let Environment {
         rustc,

@@ -1,4 +1,4 @@
-//! `sixfold subdivide`: a mesh refined by a scheme.
+//! `sixfold subdivide`: refines a mesh with a subdivision scheme.
 
 mod forecast;
 mod limit;
@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPoolBuilder;
-use sixfold::mesh_io::{read_creases, write_creases, write_obj};
+use sixfold::io::{read_creases, write_creases, write_obj};
 use sixfold::subdivision::{
     Boundary, Method, Scheme, Step, Subdivision, SubdivisionError, subdivide, subdivide_native,
 };
@@ -23,9 +23,9 @@ use crate::load;
 use crate::output::{Output, check_kept, check_places, is_stdout};
 use crate::progress::{Faces, end_on_interrupt};
 use crate::text::{Text, tame};
-use ::study::numbers::{counted, duration, figure, grouped};
 use forecast::Forecast;
 use limit::Limits;
+use sixfold_study::numbers::{counted, duration, figure, grouped};
 
 /// Refines the mesh and writes it.
 pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         arguments.limit.is_some(),
     )?;
     forecast.check(arguments.force)?;
-    // Opened before the work, so that nobody waits for a failure.
+    // Opened before the work, so that a wrong place fails at once.
     let output = Output::open(&arguments.output)?;
     let limit = Output::open_if(arguments.limit.as_ref())?;
     let left = Output::open_if(arguments.creases_left.as_ref())?;
@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     for line in &job.done {
         text.say(&line.told());
     }
-    // Taken before the first file is there: all are written, or none.
+    // Computed before the first file is written: all files are written, or none.
     let limits = match limit {
         Some(output) => Some((output, Limits::of(&subdivision, &step, arguments.levels)?)),
         None => None,
@@ -103,13 +103,13 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The scheme with its options; one that the scheme does not look at is refused.
+/// Returns the scheme with its options; refuses an option that the scheme does not have.
 fn options(arguments: &Subdivide) -> Result<Subdivision, Failure> {
     let scheme = arguments.scheme;
     let kind = scheme.kind();
     let foreign = |option: &str, schemes: &str| {
         Failure::unsupported(format!(
-            "{scheme} does not know {option}: leave it out, or choose {schemes}"
+            "{scheme} has no option {option}: leave it out, or choose {schemes}"
         ))
     };
     let creases = "catmull-clark or loop";
@@ -130,7 +130,7 @@ fn options(arguments: &Subdivide) -> Result<Subdivision, Failure> {
     }
     if arguments.limit.is_some() && arguments.boundary == Some(Boundary::None) {
         return Err(Failure::unsupported(
-            "--limit needs the faces that --boundary none leaves out: leave one of the two out",
+            "--limit needs the faces that --boundary none leaves out: leave one of the two options out",
         ));
     }
     let usual = Subdivision::new(scheme);
@@ -142,19 +142,20 @@ fn options(arguments: &Subdivide) -> Result<Subdivision, Failure> {
     })
 }
 
-/// A scheme without rules for creases refuses a mesh file that tells of some.
+/// Refuses a mesh file with creases if the scheme has no rules for creases.
 fn check_tags(arguments: &Subdivide, creases: &Creases) -> Result<(), Failure> {
     let scheme = arguments.scheme;
     if creases.is_empty() || scheme.kind().creases {
         return Ok(());
     }
     Err(Failure::unsupported(format!(
-        "{}: the file has sharp edges or vertices, and {scheme} has no rule for them: take its lines `t crease` and `t corner` out, or choose catmull-clark or loop",
+        "{}: the file has sharp edges or vertices, and {scheme} has no rule for them: remove the lines `t crease` and `t corner`, or choose catmull-clark or loop",
         arguments.mesh.display()
     )))
 }
 
-/// The method asked for, or the best that the backend has for the scheme; checked before any work.
+/// Returns the selected method, or the best that the backend supports for the scheme. Checks it
+/// before the work begins.
 fn method(arguments: &Subdivide) -> Result<Method, Failure> {
     let Subdivide {
         scheme, backend, ..
@@ -167,7 +168,7 @@ fn method(arguments: &Subdivide) -> Result<Method, Failure> {
     if arguments.levels > 1 && !row.holds_result {
         let makes = scheme.kind().makes;
         return Err(Failure::unsupported(format!(
-            "{scheme} makes {makes}, and {backend} holds triangles alone: level 2 cannot be made on it, choose another backend"
+            "{scheme} makes {makes}, but {backend} holds only triangles: choose another backend for level 2"
         )));
     }
     let best = row.best();
@@ -186,7 +187,7 @@ fn method(arguments: &Subdivide) -> Result<Method, Failure> {
     }
 }
 
-/// A subdivision to be done with a structure that is chosen at run time.
+/// A subdivision on a structure that is selected at run time.
 struct Job<'a> {
     subdivision: Subdivision,
     method: Method,
@@ -197,7 +198,7 @@ struct Job<'a> {
     done: Vec<Done>,
 }
 
-/// One level that has been made.
+/// One finished level.
 struct Done {
     level: u32,
     faces: usize,
@@ -210,7 +211,7 @@ impl Done {
         let ns = time.as_nanos() as f64;
         let each = figure(ns / *faces as f64);
         let (faces, time) = (grouped(*faces), duration(ns));
-        format!("level {level:<3} {faces:>14} faces  {time:>9}  {each:>6} ns a face")
+        format!("level {level:<3} {faces:>14} faces  {time:>9}  {each:>6} ns per face")
     }
 }
 
@@ -221,7 +222,7 @@ impl Job<'_> {
                 let pool = ThreadPoolBuilder::new().num_threads(threads).build();
                 let pool = pool.map_err(|error| {
                     Failure::usage(format!(
-                        "{threads} threads cannot be had ({error}): take fewer"
+                        "{threads} threads cannot be started ({error}): use fewer"
                     ))
                 })?;
                 pool.install(|| visit_refinable(backend, self))
@@ -237,7 +238,7 @@ impl Job<'_> {
         }
     }
 
-    /// What is told the levels as they are made.
+    /// Returns a callback that records each finished level.
     fn watch<'b>(bar: &'b Faces, done: &'b mut Vec<Done>) -> impl FnMut(u32, usize) + 'b {
         let mut began = Instant::now();
         move |level, faces| {

@@ -1,11 +1,11 @@
-//! Tables of what there is and what runs where.
+//! Tables of words and figures.
 
 use comfy_table::{Cell, ContentArrangement, Table};
 use sixfold::roster;
 
 use crate::results_table::STYLE;
 
-/// A table of words under `header`, as wide as they are.
+/// Returns an empty table with `header`, without line breaks in cells.
 pub(crate) fn table(header: Vec<Cell>) -> Table {
     let mut table = Table::new();
     table
@@ -16,7 +16,7 @@ pub(crate) fn table(header: Vec<Cell>) -> Table {
     table
 }
 
-/// A table of figures under `header`, of which some may be bold.
+/// Returns an empty table with `header` for figures, some of them bold if `bold`.
 pub(crate) fn styled(header: Vec<Cell>, bold: bool) -> Table {
     let mut table = table(header);
     if bold {
@@ -28,7 +28,7 @@ pub(crate) fn styled(header: Vec<Cell>, bold: bool) -> Table {
     table
 }
 
-/// A table of words with a column for each backend; `rows` says what the rows are.
+/// Returns an empty table with a column per backend; `rows` is the heading of the first column.
 pub(crate) fn table_of_backends(rows: &str) -> Table {
     let backends = roster();
     let names = backends.iter().map(|backend| backend.name);

@@ -1,16 +1,16 @@
-//! Text for people: on standard output, or nowhere while that carries data.
+//! Text for users: on standard output, or suppressed if data is written there.
 
 use std::io::{self, IsTerminal, Write};
 
 use crate::failure::Failure;
 use crate::output::cannot_write;
 
-pub(crate) use ::study::tame;
+pub(crate) use sixfold_study::tame;
 
-/// How many columns text may take.
+/// Maximum width of text in columns.
 pub(crate) const WIDTH: usize = 100;
 
-/// Where the text of a command goes.
+/// The text output of a command.
 pub(crate) struct Text {
     shown: bool,
     bold: bool,
@@ -18,7 +18,7 @@ pub(crate) struct Text {
 }
 
 impl Text {
-    /// Text on standard output, unless data goes there.
+    /// Returns the text output, which prints only if `shown`.
     pub(crate) fn shown(shown: bool) -> Self {
         let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
         let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
@@ -29,13 +29,13 @@ impl Text {
         }
     }
 
-    /// Whether letters may be bold.
+    /// Returns whether bold text is allowed.
     pub(crate) fn bold(&self) -> bool {
         self.bold
     }
 
-    /// Prints `text` and ends the line. After a failure it prints no more: files are still to be
-    /// written, and [`Text::finish`] tells.
+    /// Prints `text` as a line. After a failure it prints nothing more, so that files can still be
+    /// written; [`Text::finish`] returns the failure.
     pub(crate) fn say(&mut self, text: &str) {
         if self.shown
             && let Err(cause) = writeln!(io::stdout().lock(), "{text}")
@@ -45,14 +45,14 @@ impl Text {
         }
     }
 
-    /// Whether all the text got out.
+    /// Returns an error if some text could not be printed.
     pub(crate) fn finish(self) -> Result<(), Failure> {
         let done = self.failed.map_or_else(|| io::stdout().flush(), Err);
         all_out(done)
     }
 }
 
-/// What came of printing. A reader that has gone away is no error: nobody is there to be told.
+/// Converts an error of printing. A reader that closed the pipe early is not an error.
 pub(crate) fn all_out(done: io::Result<()>) -> Result<(), Failure> {
     match done {
         Err(cause) if cause.kind() != io::ErrorKind::BrokenPipe => {
@@ -62,13 +62,13 @@ pub(crate) fn all_out(done: io::Result<()>) -> Result<(), Failure> {
     }
 }
 
-/// Prints a line on standard error, if anybody is there. It stays one line, whatever file names and
-/// files put into it.
+/// Prints a line on standard error; ignores errors. Control characters and line breaks in it, such
+/// as from file names, are escaped.
 pub(crate) fn complain(line: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", tame(line));
 }
 
-/// `text` in lines of at most `width` columns, broken at blanks; a longer word has its own line.
+/// Breaks `text` at spaces into lines of at most `width` columns; a longer word gets its own line.
 pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
@@ -83,7 +83,8 @@ pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// `first`, then the lines of `text`, all but the first of them set in as far as `first` is wide.
+/// Returns `first` and the lines of `text`, where all but the first are indented by the width of
+/// `first`.
 pub(crate) fn hanging(first: &str, text: &str) -> String {
     let indent = first.chars().count();
     let lines = wrapped(text, WIDTH - indent);
@@ -96,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_break_at_blanks() {
+    fn lines_break_at_spaces() {
         assert_eq!(wrapped("one two three", 7), ["one two", "three"]);
         assert_eq!(wrapped("longerthanthat a", 4), ["longerthanthat", "a"]);
         assert_eq!(hanging("name  ", "reason"), "name  reason");

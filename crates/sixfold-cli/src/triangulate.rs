@@ -1,13 +1,13 @@
-//! `--triangulate`: polygons cut into fans, and what that does to the mesh.
+//! `--triangulate`: cuts polygons into fans, and reports how that changes the mesh.
 
-use ::study::Specimen;
 use sixfold::{Facts, PolygonMesh, VertexId};
+use sixfold_study::Specimen;
 
 use crate::failure::Failure;
 use crate::text::complain;
-use ::study::numbers::{counted, grouped};
+use sixfold_study::numbers::{counted, grouped};
 
-/// The mesh with every polygon cut into a fan; what else changes by that is on record, and said.
+/// Returns the mesh with every polygon cut into a fan. Records and prints what else changes.
 pub(crate) fn triangulated(specimen: Specimen) -> Result<Specimen, Failure> {
     let old = &specimen.polygons;
     let polygons = old
@@ -24,12 +24,12 @@ pub(crate) fn triangulated(specimen: Specimen) -> Result<Specimen, Failure> {
     if folded > 0 {
         let fans = counted(folded, "fan folds over", "fans fold over");
         news.push(format!(
-            "{fans}, since the faces are not convex from their first corners"
+            "{fans}, because the faces are not star-shaped around their first corners"
         ));
     }
     for new in &news {
         complain(&format!(
-            "note: {}: --triangulate changes more than faces: {new}",
+            "note: {}: --triangulate changes more than the faces: {new}",
             specimen.name
         ));
     }
@@ -38,7 +38,7 @@ pub(crate) fn triangulated(specimen: Specimen) -> Result<Specimen, Failure> {
     changes.extend(news);
     Ok(Specimen {
         name: specimen.name,
-        // The facts are those of the mesh that is studied; what was left out stays on record.
+        // The facts are those of the studied mesh; the count of omitted faces is kept.
         facts: Facts {
             degenerate_faces: specimen.facts.degenerate_faces,
             ..facts
@@ -48,7 +48,7 @@ pub(crate) fn triangulated(specimen: Specimen) -> Result<Specimen, Failure> {
     })
 }
 
-/// What a cut inside a face should leave alone, and did not: a diagonal may be an edge already.
+/// Lists the counts that the cut changed although it should not: a diagonal may already be an edge.
 fn differences(old: &Facts, new: &Facts) -> Vec<String> {
     let counts = [
         (
@@ -72,12 +72,12 @@ fn differences(old: &Facts, new: &Facts) -> Vec<String> {
     ];
     let changed = counts.into_iter().filter(|(_, old, new)| old != new);
     changed
-        .map(|(what, old, new)| format!("{what} {} before, {} now", grouped(old), grouped(new)))
+        .map(|(what, old, new)| format!("{what}: {} before, {} now", grouped(old), grouped(new)))
         .collect()
 }
 
-/// How many faces have a triangle in their fan that looks the other way than the face: it lies over
-/// others. O(corners).
+/// Counts the faces whose fan has a triangle with the opposite orientation, which overlaps others.
+/// O(corners).
 fn folded_fans(mesh: &PolygonMesh) -> usize {
     let faces = mesh.faces().iter();
     faces.filter(|(_, face)| folds(mesh, face)).count()
@@ -89,14 +89,14 @@ fn folds(mesh: &PolygonMesh, face: &[VertexId]) -> bool {
         return false;
     };
     let first = at(first);
-    // Their sum is the normal of the face, with twice its area for length.
+    // The sum of the cross products is the normal of the face; its length is twice the area.
     let triangles = || {
         rest.windows(2)
             .map(|pair| cross(minus(at(pair[0]), first), minus(at(pair[1]), first)))
     };
     let normal = triangles().fold([0.0; 3], |sum, n| [0, 1, 2].map(|i| sum[i] + n[i]));
     let whole = dot(normal, normal);
-    // Corners in a line give triangles of no area; rounding must not turn them.
+    // Collinear corners give triangles with area 0; the tolerance allows for rounding errors.
     triangles().any(|triangle| dot(triangle, normal) < -1e-6 * whole)
 }
 

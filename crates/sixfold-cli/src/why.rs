@@ -1,10 +1,10 @@
-//! `sixfold why`: what queries read, and whether that is what they take their time for.
+//! `sixfold why`: explains the time of queries by the memory that they read.
 
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use ::study::{MachineClock, MemorySpeed, Policy, Specimen, StudyError, Timing, WhySettings};
+use sixfold_study::{MachineClock, MemorySpeed, Policy, Specimen, StudyError, Timing, WhySettings};
 
 use crate::arguments::Why;
 use crate::facts_text::{facts_text, verdicts_text};
@@ -16,13 +16,14 @@ use crate::progress::{Bar, Waiting, interrupt_flag};
 use crate::text::{Text, hanging};
 use crate::why_text::{legend, memory_text, relation_text, sentence};
 
-/// Counts, measures if asked to, and shows; text first, so that no file that fails can take it along.
+/// Counts, measures unless `--counts-only`, and shows the result. Text is printed first, so that it
+/// is not lost if a file fails.
 pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     check_places(
         arguments.mesh.as_deref(),
         &[("--json", arguments.json.as_ref())],
     )?;
-    // Before the draft of the output, so that Ctrl-C can leave none behind.
+    // Before the draft of the output is opened, so that Ctrl-C cannot leave a draft behind.
     let stop = interrupt_flag(Policy::Kept);
     let json = Output::open_if(arguments.json.as_ref())?;
     let specimen = match &arguments.mesh {
@@ -52,16 +53,16 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     ended(done, why.mismatches(), why.interrupted)
 }
 
-/// Counts, and measures if there is a `budget`.
+/// Counts reads, and measures times if there is a `budget`.
 pub(crate) fn measured(
     specimen: &Specimen,
     mut settings: WhySettings,
     budget: Option<Duration>,
     stop: &AtomicBool,
-) -> Result<::study::Why, Failure> {
+) -> Result<sixfold_study::Why, Failure> {
     settings.timing = budget.and_then(|budget| timing(budget, stop));
     let bar = Bar::new();
-    let why = ::study::why(specimen, &settings, stop, &mut |at| bar.show(at));
+    let why = sixfold_study::why(specimen, &settings, stop, &mut |at| bar.show(at));
     bar.clear();
     let mut why = why.map_err(|error| match error {
         StudyError::NoneHolds { .. } => Failure::unsupported(error),
@@ -73,9 +74,9 @@ pub(crate) fn measured(
     Ok(why)
 }
 
-/// Measures the memory; `None` if interrupted meanwhile.
+/// Measures the speed of memory; returns `None` if interrupted.
 fn timing(budget: Duration, stop: &AtomicBool) -> Option<Timing> {
-    let waiting = Waiting::shown("measuring how fast memory is read".into());
+    let waiting = Waiting::shown("measuring the speed of memory".into());
     let memory = MemorySpeed::measure(&MachineClock::start(), stop);
     waiting.clear();
     Some(Timing {
@@ -84,7 +85,7 @@ fn timing(budget: Duration, stop: &AtomicBool) -> Option<Timing> {
     })
 }
 
-fn print(why: &::study::Why, sentences: bool, text: &mut Text) {
+fn print(why: &sixfold_study::Why, sentences: bool, text: &mut Text) {
     text.say(&facts_text(&why.mesh));
     text.say("");
     text.say(&verdicts_text(&why.mesh, &why.backends));

@@ -1,19 +1,19 @@
-//! The tables of `sixfold why`: one for each relation, a row for each backend.
+//! The tables of `sixfold why`: one per relation, with a row per backend.
 
-use ::study::{Bound, Model, Rung, TableReads, Timed, Why, WhyRow};
 use comfy_table::{Cell, CellAlignment};
 use sixfold::Relation;
+use sixfold_study::{Bound, Model, Rung, TableReads, Timed, Why, WhyRow};
 
 use crate::tables::table;
 use crate::text::{hanging, wrapped};
-use ::study::numbers::{bytes, figure, grouped};
+use sixfold_study::numbers::{bytes, figure, grouped};
 
-/// Columns for the names of tables: what is left beside the figures.
+/// Width of the column `reads by table` in characters: the space beside the figures.
 const TABLES: usize = 36;
-/// A blank at which no line ends, while lines are broken.
+/// A space at which lines are not broken.
 const NO_BREAK: char = '\u{a0}';
 
-/// What a relation yields, in a few words.
+/// Describes what a relation yields, in a few words.
 fn meaning(relation: Relation) -> &'static str {
     match relation {
         Relation::VertexVertices => "the other ends of the edges at a vertex",
@@ -28,7 +28,7 @@ fn meaning(relation: Relation) -> &'static str {
     }
 }
 
-/// How fast memory is read, by the size of the buffer.
+/// Returns the speed of memory for each size of the buffer.
 pub(crate) fn memory_text(rungs: &[Rung]) -> String {
     let line = |name: &str, what: &str, of: &dyn Fn(&Rung) -> String| {
         let figures: String = rungs
@@ -49,7 +49,7 @@ pub(crate) fn memory_text(rungs: &[Rung]) -> String {
     .join("\n")
 }
 
-/// The rows of one relation, with times or with the tables that are read.
+/// Returns the table of one relation, with times or with the tables that are read.
 pub(crate) fn relation_text(rows: &[WhyRow], timed: bool) -> String {
     let Some(first) = rows.first() else {
         return String::new();
@@ -60,7 +60,7 @@ pub(crate) fn relation_text(rows: &[WhyRow], timed: bool) -> String {
         true => &["floor", "waits", "measured", "bound by"],
         false => &["reads by table"],
     };
-    let heads = ["a query:"].iter().chain(&heads).chain(more);
+    let heads = ["per query:"].iter().chain(&heads).chain(more);
     let mut block = table(heads.map(Cell::new).collect());
     for row in rows {
         block.add_row(cells(row, timed));
@@ -110,10 +110,10 @@ fn cells(row: &WhyRow, timed: bool) -> Vec<Cell> {
     cells.into_iter().map(Cell::new).collect()
 }
 
-/// `halves 6.00, leaving 1.00`, the most read first.
+/// Formats reads as `halves 6.00, leaving 1.00`, the most read table first.
 fn by_table(tables: &[TableReads]) -> String {
     if tables.is_empty() {
-        return "none: the name says it".into();
+        return "none: the handle is the answer".into();
     }
     let mut tables: Vec<&TableReads> = tables.iter().collect();
     tables.sort_by(|a, b| b.reads.total_cmp(&a.reads));
@@ -125,7 +125,7 @@ fn by_table(tables: &[TableReads]) -> String {
     lines.replace(NO_BREAK, " ")
 }
 
-/// A number in five letters: `0`, `<.001`, `0.052`, `7.00`, `60.5k`, `3.63M`.
+/// Formats a number in at most five characters: `0`, `<.001`, `0.052`, `7.00`, `60.5k`, `3.63M`.
 fn short(number: f64) -> String {
     match number {
         0.0 => "0".into(),
@@ -137,7 +137,7 @@ fn short(number: f64) -> String {
     }
 }
 
-/// A row in words.
+/// Describes a row in a sentence.
 pub(crate) fn sentence(row: &WhyRow) -> String {
     let WhyRow {
         backend,
@@ -149,7 +149,7 @@ pub(crate) fn sentence(row: &WhyRow) -> String {
     text += &match reads.reads {
         0.0 => "a query reads nothing".into(),
         number => format!(
-            "{} reads in {} lines, {} bytes a query",
+            "{} reads in {} lines, {} bytes per query",
             short(number),
             short(reads.lines),
             short(reads.bytes)
@@ -160,11 +160,10 @@ pub(crate) fn sentence(row: &WhyRow) -> String {
     }
     let swept = bytes(reads.sweep_bytes());
     text += &match reads.moved_bytes {
-        0.0 => "; nor does a sweep".into(),
+        0.0 => "; a sweep reads nothing either".into(),
         moved => format!(
-            "; a sweep touches {swept} and moves {} bytes {} {per}",
-            short(moved),
-            article(per)
+            "; a sweep touches {swept} and moves {} bytes per {per}",
+            short(moved)
         ),
     };
     match timed {
@@ -173,7 +172,7 @@ pub(crate) fn sentence(row: &WhyRow) -> String {
     }
 }
 
-/// What the bytes and the jumps take, what is measured, and what follows.
+/// Describes the times for the bytes and for the jumps, the measured time, and what bounds it.
 fn in_time(timed: &Timed) -> String {
     let Timed {
         ns_per_element,
@@ -186,24 +185,16 @@ fn in_time(timed: &Timed) -> String {
     let (measured, floor, waits) = (short(*ns_per_element), short(*floor_ns), short(*waits_ns));
     let speed = short(speed.gb_per_s);
     let verdict = match bound {
-        Bound::Bandwidth => "bound by the bytes that move",
-        Bound::Latency => "bound by waiting for lines that could not be foreseen",
-        Bound::Work => "bound by the steps of the query itself, and not by memory",
+        Bound::Bandwidth => "bound by memory bandwidth",
+        Bound::Latency => "bound by the latency of lines that cannot be prefetched",
+        Bound::Work => "bound by the work of the query itself, not by memory",
     };
     format!(
-        ", {floor} ns at {speed} GB/s, and waits {waits} ns for what jumps; measured {measured} ns: {verdict}."
+        "; at {speed} GB/s that takes {floor} ns; jumps take {waits} ns; measured {measured} ns: {verdict}."
     )
 }
 
-fn article(word: &str) -> &'static str {
-    if word.starts_with(['a', 'e', 'i', 'o', 'u']) {
-        "an"
-    } else {
-        "a"
-    }
-}
-
-/// What each column is.
+/// Explains the columns.
 pub(crate) fn legend(why: &Why) -> String {
     let Model {
         line_bytes,
@@ -215,65 +206,65 @@ pub(crate) fn legend(why: &Why) -> String {
     let first = [
         (
             "answers",
-            "elements that a query yields; figures are means over all queries",
+            "elements that a query returns; all figures are means over all queries",
         ),
         (
             "reads",
-            "rows of tables that it reads, each as often as it is read",
+            "rows of tables that a query reads; repeated reads count again",
         ),
         (
             "lines",
             &format!(
-                "cache lines of {line_bytes} bytes that it touches, each once; a table begins with a line"
+                "cache lines of {line_bytes} bytes that it touches, each counted once; tables begin at a line"
             ),
         ),
-        ("bytes", "what it reads in these lines, each byte once"),
+        ("bytes", "bytes read in these lines, each counted once"),
         (
             "jumps",
             &format!(
-                "in a sweep over all elements in their order, the lines for each element that are not \
-                 among the last {} fetched, nor are the {reach} on either side: no prefetcher foresees them",
+                "lines per element, in a sweep over all elements in order, that a prefetcher cannot \
+                 predict: neither they nor the {reach} lines on either side are among the last {} fetched",
                 grouped(cache_lines as usize)
             ),
         ),
         (
             "moved",
-            "bytes for each element that a sweep has to move at least: each of its lines once; \
-             in a row with ~, all lines of a query",
+            "minimum bytes per element that a sweep moves: each of its lines once; in a row with ~, \
+             all lines of a query",
         ),
     ];
     let timed = [
         (
             "floor",
-            "ns to move them: read in order, from the largest buffer above that is no larger than what \
-             the sweep touches",
+            "ns to move these bytes in order, at the speed of the largest buffer above that is not larger \
+             than the memory that the sweep touches",
         ),
         (
             "waits",
-            "ns for the jumps, if each waits for the one before, in the same buffer",
+            "ns for the jumps, if each waits for the previous one, in the same buffer",
         ),
         (
             "measured",
-            "ns for each element of the sweep, the median; ~ from a sample",
+            "ns per element of the sweep, median; ~ from a sample",
         ),
         (
             "bound by",
-            "bandwidth, where the floor is half of the time or more; else latency, where the waits are; \
-             else work: reading what is near, comparing, branching",
+            "bandwidth, if floor is at least half of the measured time; else latency, if waits is; else \
+             work: reading nearby data, comparing, branching",
         ),
     ];
-    let counted = [("by table", "how the reads of a query fall on the tables")];
+    let counted = [("by table", "reads of a query in each table")];
     let listing = match why.memory.is_some() {
         true => {
-            "Jumps, moved and measured include listing the elements. What a structure without a table \
-             of edges sets up to list them is in measured alone."
+            "Jumps, moved and measured include the iteration over the elements. If a structure has no \
+             table of edges, its preparation to list them is only in measured."
         }
-        false => "Jumps and moved include listing the elements.",
+        false => "Jumps and moved include the iteration over the elements.",
     };
     let last = [
         (
             "~",
-            &*format!("{sample} elements, evenly spaced, stand for all"),
+            &*format!("measured on {sample} evenly spaced elements instead of all"),
         ),
         ("", listing),
     ];
@@ -292,7 +283,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_take_five_letters() {
+    fn numbers_take_five_characters() {
         let numbers = [
             0.0, 0.0004, 0.0521, 7.0, 999.4, 999.6, 60_480.0, 999_600.0, 3.63e6, 2e9,
         ];
@@ -312,10 +303,10 @@ mod tests {
         };
         let text = by_table(&[read("leaving", 1.0), read("halves", 6.0)]);
         assert_eq!(text, "halves 6.00, leaving 1.00");
-        // Nobody breaks a line between a table and its figure.
+        // No line is broken between a table and its figure.
         let many = ["vertex", "opposite", "corner"].map(|table| read(table, 1.0));
         let text = by_table(&many);
         assert_eq!(text, "vertex 1.00, opposite 1.00,\ncorner 1.00");
-        assert_eq!(by_table(&[]), "none: the name says it");
+        assert_eq!(by_table(&[]), "none: the handle is the answer");
     }
 }

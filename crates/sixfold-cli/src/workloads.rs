@@ -1,17 +1,17 @@
-//! `sixfold workloads`: which workloads there are, and what a mix may have.
+//! `sixfold workloads`: lists the built-in workloads, and what a mix may contain.
 
 use std::path::Path;
 use std::process::ExitCode;
 
-use ::study::{Action, Workload, built_in, built_ins};
 use serde_json::json;
+use sixfold_study::{Action, Workload, built_in, built_ins};
 
 use crate::arguments::Workloads;
 use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
 use crate::text::{Text, hanging};
 
-/// Files that are no workloads are not read to their end to find that out.
+/// Maximum size of a workload file in bytes; larger files are refused without reading them.
 const LONGEST_FILE: u64 = 1 << 20;
 
 /// Lists the workloads, shows the file of one, or lists operations.
@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &Workloads) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The workload called `word`, or in the file of that name.
+/// Returns the built-in workload `word`, or the workload in the file of that name.
 pub(crate) fn workload(word: &str) -> Result<Workload, Failure> {
     let path = Path::new(word);
     let is_file = path.extension().is_some_and(|ending| ending == "toml");
@@ -53,7 +53,7 @@ pub(crate) fn workload(word: &str) -> Result<Workload, Failure> {
     let length = std::fs::metadata(path).map_err(told)?.len();
     if length > LONGEST_FILE {
         return Err(Failure::usage(format!(
-            "{word}: {length} bytes are no workload: it has a few lines (`sixfold workloads --show smoothing`)"
+            "{word}: {length} bytes are too many for a workload, which has a few lines: see `sixfold workloads --show smoothing`"
         )));
     }
     let text = std::fs::read_to_string(path).map_err(told)?;
@@ -63,7 +63,7 @@ pub(crate) fn workload(word: &str) -> Result<Workload, Failure> {
 
 fn unknown(name: &str) -> Failure {
     let names: Vec<&str> = built_ins().map(|(name, _)| name).collect();
-    let message = ::study::unknown("workload", name, &names);
+    let message = sixfold_study::unknown("workload", name, &names);
     Failure::usage(format!("{message}, or name a file that ends in .toml"))
 }
 
@@ -82,8 +82,8 @@ fn list() -> String {
         let mix = mix.collect::<Vec<_>>().join(", ");
         let rebuilt = match workload.rebuilds {
             0 => String::new(),
-            1 => ", built anew once".into(),
-            times => format!(", built anew {times} times"),
+            1 => ", rebuilt once".into(),
+            times => format!(", rebuilt {times} times"),
         };
         let access = workload.access;
         let operations = workload.operations;
@@ -110,7 +110,7 @@ fn operations() -> String {
         String::new(),
         hanging(
             "",
-            "A weight is a number, or a text as in \"2 per face\". `access` is sequential, random or patches.",
+            "A weight is a number, or a text such as \"2 per face\". `access` is sequential, random or patches.",
         ),
     ]
     .join("\n")

@@ -1,8 +1,8 @@
-//! Every bad input: one clear error, the documented code, nothing written, no panic.
+//! Bad input: one clear error, the documented exit code, nothing written, no panic.
 
 use crate::run::{Run, Sixfold, TETRAHEDRON};
 
-/// One `error:` line that says `says`, nothing on standard output, and no new file.
+/// Asserts one `error:` line that contains `says`, an empty standard output, and no new file.
 pub(crate) fn refused(sixfold: &Sixfold, arguments: &[&str], code: i32, says: &str) -> Run {
     let before = sixfold.names();
     let run = sixfold.run(arguments);
@@ -47,7 +47,7 @@ fn unusable_files_are_refused_by_both_commands() {
 }
 
 #[test]
-fn points_alone_have_facts_but_no_study() {
+fn a_file_of_points_has_facts_but_no_study() {
     let sixfold = Sixfold::new();
     sixfold.file("points.obj", "v 0 0 0\nv 1 0 0\n");
     let run = sixfold.run(&["inspect", "points.obj"]);
@@ -57,7 +57,7 @@ fn points_alone_have_facts_but_no_study() {
 }
 
 #[test]
-fn degenerate_faces_are_left_out_aloud_or_refused() {
+fn degenerate_faces_are_left_out_with_a_note_or_refused() {
     let sixfold = Sixfold::new();
     let text = format!("{TETRAHEDRON}f 1 1 2\nf 1 2\n");
     sixfold.file("degenerate.obj", &text);
@@ -87,7 +87,7 @@ fn degenerate_faces_are_left_out_aloud_or_refused() {
         &sixfold,
         &["study", "nothing_else.obj"],
         2,
-        "no faces but 1 degenerate",
+        "no faces except 1 degenerate",
     );
 }
 
@@ -101,10 +101,7 @@ fn wrong_usage_says_what_is_allowed() {
             "half-edge",
         ),
         (&["study", "mesh.obj", "--operations", "fly"], "vv_smooth"),
-        (
-            &["study", "mesh.obj", "--budget", "0s"],
-            "more than nothing",
-        ),
+        (&["study", "mesh.obj", "--budget", "0s"], "above 0"),
         (&["study", "mesh.obj", "--budget", "soon"], "500ms"),
         (
             &["study", "mesh.obj", "--json", "no/such/folder.json"],
@@ -113,7 +110,7 @@ fn wrong_usage_says_what_is_allowed() {
         (&["study", "mesh.obj", "--json", "."], "directory"),
         (
             &["study", "mesh.obj", "--json", "-", "--csv", "-"],
-            "two places",
+            "two different files",
         ),
         (&["generate", "teapot", "-o", "x.obj"], "icosahedron"),
         (&["generate", "torus", "q=3", "-o", "x.obj"], "q"),
@@ -131,13 +128,13 @@ fn wrong_usage_says_what_is_allowed() {
 }
 
 #[test]
-fn a_mesh_that_nobody_asked_for_can_hold_has_its_own_code() {
+fn a_mesh_that_no_selected_backend_can_hold_has_its_own_exit_code() {
     let sixfold = Sixfold::new();
     let book = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
     sixfold.file("book.obj", book);
     let arguments = ["study", "book.obj", "--backends", "half-edge"];
     refused(&sixfold, &arguments, 3, "f0, f1, f2");
-    // Others can, and that is no error.
+    // Other backends can hold it, and that is not an error.
     let run = sixfold.run(&["study", "book.obj", "--budget", "50ms"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let mut refusals = run.stdout.lines().filter(|line| line.contains("refuses"));

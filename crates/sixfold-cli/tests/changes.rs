@@ -1,11 +1,12 @@
-//! `sixfold compare` as users meet it.
+//! Tests of `sixfold compare` with the real binary.
 
 use serde_json::Value;
 
 use crate::bad_input::refused;
 use crate::run::{Sixfold, TETRAHEDRON, done, text};
 
-/// A study of a tetrahedron in `a.json`, and in `b.json` the same with every time of half-edge doubled.
+/// Writes a study of a tetrahedron to `a.json`, and the same study with all half-edge times doubled
+/// to `b.json`.
 fn two_studies() -> Sixfold {
     let sixfold = Sixfold::new();
     sixfold.file("t.obj", TETRAHEDRON);
@@ -49,7 +50,7 @@ fn two_studies() -> Sixfold {
 }
 
 #[test]
-fn a_change_is_shown_and_can_end_a_build() {
+fn a_change_is_shown_and_can_set_the_exit_code() {
     let sixfold = two_studies();
     let run = done(
         &sixfold,
@@ -77,9 +78,9 @@ fn a_change_is_shown_and_can_end_a_build() {
     assert!(all.stdout.contains("corner-table"), "{}", all.stdout);
     let failing = ["compare", "a.json", "b.json", "--fail-if-slower"];
     assert_eq!(sixfold.run(&failing).code, Some(1));
-    // Nothing is slower than itself, or than twice itself.
+    // Nothing is slower in a comparison with itself, or if the second study is the faster one.
     let same = ["compare", "a.json", "a.json", "--fail-if-slower"];
-    assert!(!done(&sixfold, &same).stdout.contains("Only the"));
+    assert!(!done(&sixfold, &same).stdout.contains("Only in the"));
     done(
         &sixfold,
         &["compare", "b.json", "a.json", "--fail-if-slower"],
@@ -89,7 +90,7 @@ fn a_change_is_shown_and_can_end_a_build() {
 }
 
 #[test]
-fn what_is_no_study_is_refused_in_one_message() {
+fn files_that_are_not_studies_are_refused_in_one_message() {
     let sixfold = two_studies();
     let whole = text(&sixfold, "a.json");
     sixfold.file("half.json", &whole[..whole.len() / 2]);
@@ -119,10 +120,10 @@ fn what_is_no_study_is_refused_in_one_message() {
     ];
     done(&sixfold, &fewer);
     for (file, says) in [
-        ("half.json", "ends too soon"),
+        ("half.json", "ends too early"),
         ("old.json", "schema 7"),
         ("foreign.json", "no `schema`"),
-        ("words.json", "is no JSON, line 1"),
+        ("words.json", "is not JSON, line 1"),
         ("pick.json", "`sixfold pick`"),
         ("none.json", "cannot be read"),
         (".", "cannot be read"),

@@ -1,4 +1,4 @@
-//! Orders and growth as users meet them: what machines read, what is refused, what Ctrl-C keeps.
+//! Tests of `sixfold orders` and `growth`: JSON, refusals, and Ctrl-C.
 
 use serde_json::Value;
 
@@ -9,13 +9,13 @@ fn parsed(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
-/// The members of a list in an object.
+/// Returns the members of a list in an object.
 fn list<'v>(value: &'v Value, name: &str) -> &'v [Value] {
     let list = value[name].as_array();
     list.unwrap_or_else(|| panic!("no list {name} in {value}"))
 }
 
-/// The names in an object, sorted.
+/// Returns the keys of an object, sorted.
 fn names(value: &Value) -> Vec<&str> {
     let object = value.as_object();
     let object = object.unwrap_or_else(|| panic!("no object: {value}"));
@@ -25,7 +25,7 @@ fn names(value: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn orders_are_data_for_machines() {
+fn orders_writes_json() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 12);
     let arguments = [
@@ -105,7 +105,7 @@ fn orders_are_data_for_machines() {
 }
 
 #[test]
-fn growth_is_data_for_machines() {
+fn growth_writes_json() {
     let sixfold = Sixfold::new();
     let arguments = [
         "growth",
@@ -127,7 +127,7 @@ fn growth_is_data_for_machines() {
         "growth.json",
     ];
     let run = done(&sixfold, &arguments);
-    // Quads: one structure refuses, the others have a column.
+    // The faces are quads: one structure refuses them, the others have a column.
     assert!(run.stdout.contains("corner-table refuses"), "{run:?}");
     assert!(run.stdout.contains("power"), "{run:?}");
     let report = parsed(&crate::run::text(&sixfold, "growth.json"));
@@ -195,7 +195,7 @@ fn growth_is_data_for_machines() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused() {
+fn invalid_arguments_are_refused() {
     let sixfold = Sixfold::new();
     sixfold.file("mesh.obj", TETRAHEDRON);
     sixfold.file("points.obj", "v 0 0 0\n");
@@ -243,7 +243,7 @@ fn what_makes_no_sense_is_refused() {
             3,
             "corner-table",
         ),
-        // Hundreds of gigabytes: told before anything is made.
+        // Hundreds of gigabytes: refused before anything is built.
         (&["growth", "--to", "500000000"], 3, "smaller --to"),
     ] {
         refused(&sixfold, arguments, code, says);
@@ -255,7 +255,7 @@ fn what_makes_no_sense_is_refused() {
 fn an_interrupted_sweep_keeps_the_sizes_that_are_finished() {
     let sixfold = Sixfold::new();
     let arguments = ["growth", "--budget", "40s", "--json", "kept.json"];
-    // The first size has half a second of the budget.
+    // The first size takes half a second of the budget.
     sixfold.interrupted(&arguments, "INT", std::time::Duration::from_secs(4));
     let report = parsed(&crate::run::text(&sixfold, "kept.json"));
     assert_eq!(report["interrupted"], true);

@@ -1,4 +1,4 @@
-//! Other programs as columns: what they measure, and what happens when they go wrong.
+//! External programs as columns: their results, and their failures.
 
 use std::path::Path;
 use std::process::Command;
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::run::{Run, Sixfold, TETRAHEDRON};
 
-/// The programs are in Python; where that is not installed they cannot be tried.
+/// Returns whether Python is installed, which the programs need.
 fn python() -> bool {
     let found = Command::new("python3").arg("--version").output();
     let there = found.is_ok_and(|output| output.status.success());
@@ -24,7 +24,7 @@ fn repository() -> &'static Path {
     here.parent().and_then(Path::parent).expect("two floors up")
 }
 
-/// A study of a tetrahedron beside a program that goes wrong like that.
+/// Studies a tetrahedron with an external program that fails in the way that `mode` names.
 fn beside(mode: &str, more: &[&str]) -> (Sixfold, Run) {
     let sixfold = Sixfold::new();
     sixfold.file("t.obj", TETRAHEDRON);
@@ -67,7 +67,7 @@ fn refusal(report: &Value, operation: &str) -> String {
 }
 
 #[test]
-fn the_example_of_the_documents_does_the_same_work() {
+fn the_documented_example_does_the_same_work() {
     if !python() {
         return;
     }
@@ -112,7 +112,7 @@ fn the_example_of_the_documents_does_the_same_work() {
 }
 
 #[test]
-fn what_a_program_refuses_is_shown_as_refused() {
+fn a_refusal_of_a_program_is_shown() {
     if !python() {
         return;
     }
@@ -134,7 +134,7 @@ fn what_a_program_refuses_is_shown_as_refused() {
 }
 
 #[test]
-fn a_program_that_goes_wrong_is_told_of_and_the_study_goes_on() {
+fn a_failing_program_is_reported_and_the_study_continues() {
     if !python() {
         return;
     }
@@ -143,12 +143,12 @@ fn a_program_that_goes_wrong_is_told_of_and_the_study_goes_on() {
         ("other version", &[], "version 7 of the protocol"),
         ("rubbish", &[], "Segmentation fault (not really)"),
         ("crashes at once", &[], "no licence found"),
-        ("endless line", &[], "without end"),
-        ("wrong unit", &[], "and was waited for"),
-        ("no time", &[], "without `wall_ns`"),
+        ("endless line", &[], "longer than 65536 bytes"),
+        ("wrong unit", &[], "but its answer took"),
+        ("no time", &[], "no `wall_ns`"),
         ("hangs", &["--patience", "300ms"], "within 0.3 s"),
         ("crashes later", &[], "out of luck"),
-        ("answers twice", &[], "without being asked"),
+        ("answers twice", &[], "without a request"),
     ] {
         let start = Instant::now();
         let (sixfold, run) = beside(mode, more);
@@ -171,7 +171,7 @@ fn a_program_that_goes_wrong_is_told_of_and_the_study_goes_on() {
 }
 
 #[test]
-fn as_many_elements_are_asked_for() {
+fn a_program_with_another_number_of_elements_is_a_mismatch() {
     if !python() {
         return;
     }
@@ -183,14 +183,15 @@ fn as_many_elements_are_asked_for() {
 }
 
 #[test]
-fn other_work_is_in_no_ranking() {
+fn a_program_with_another_checksum_is_not_ranked() {
     if !python() {
         return;
     }
     let (sixfold, run) = beside("other checksum", &[]);
     assert_eq!(run.code, Some(1), "{run:?}");
     assert!(
-        run.stderr.contains("other: boundary comes to 3, and to 0"),
+        run.stderr
+            .contains("other: the checksum of boundary is 3, but 0"),
         "{}",
         run.stderr
     );
@@ -205,7 +206,7 @@ fn other_work_is_in_no_ranking() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn nothing_that_a_program_started_outlives_the_study() {
+fn child_processes_of_a_program_end_with_the_study() {
     if !python() {
         return;
     }
@@ -213,7 +214,7 @@ fn nothing_that_a_program_started_outlives_the_study() {
     assert_eq!(run.code, Some(0), "{run:?}");
     let child = crate::run::text(&sixfold, "pid.txt");
     let stat = std::fs::read_to_string(format!("/proc/{child}/stat"));
-    // Gone, or a zombie that nobody has fetched yet.
+    // The process has ended, or is a zombie that is not reaped yet.
     assert!(
         stat.as_ref().map_or(true, |stat| stat.contains(") Z ")),
         "{stat:?}"
@@ -221,11 +222,11 @@ fn nothing_that_a_program_started_outlives_the_study() {
 }
 
 #[test]
-fn commands_that_cannot_be_are_refused_before_anything_is_measured() {
+fn invalid_commands_are_refused_before_anything_is_measured() {
     let sixfold = Sixfold::new();
     for (given, says) in [
         ("run {mesh}", "has no name"),
-        ("a b=run {mesh}", "no name for a column"),
+        ("a b=run {mesh}", "not a column name"),
         ("a=run", "no {mesh}"),
         ("half-edge=run {mesh}", "two columns are called `half-edge`"),
     ] {

@@ -1,4 +1,5 @@
-//! Text that does not depend on the clock, as whole files; `SIXFOLD_GOLDEN=write` writes them anew.
+//! Compares text that does not depend on the clock with golden files; `SIXFOLD_GOLDEN=write`
+//! rewrites them.
 
 use std::fs;
 use std::path::Path;
@@ -15,11 +16,11 @@ fn golden(name: &str, text: &str) {
     let expected = fs::read_to_string(&path).unwrap_or_default();
     assert_eq!(
         text, expected,
-        "{name} differs; SIXFOLD_GOLDEN=write takes it over"
+        "{name} differs; SIXFOLD_GOLDEN=write rewrites it"
     );
 }
 
-/// What a command prints, no line wider than a hundred columns.
+/// Returns what a command prints; asserts that no line is wider than 100 columns.
 fn printed(sixfold: &Sixfold, arguments: &[&str]) -> String {
     let run = sixfold.run(arguments);
     assert_eq!(run.code, Some(0), "{run:?}");
@@ -80,12 +81,12 @@ fn workloads() {
     );
 }
 
-/// The bytes that building takes are the same each time: nothing here has to be left out.
+/// The bytes of building are the same in each run, so the whole text is compared.
 #[test]
 fn memories() {
     let sixfold = Sixfold::new();
     golden("memory.txt", &printed(&sixfold, &["memory"]));
-    // Mixed degrees, and two vertices at one place, which a soup merges.
+    // Mixed degrees, and two vertices at the same position, which a polygon soup merges.
     let seam =
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\nf 5 6 7\n";
     sixfold.file("seam.obj", seam);
@@ -98,7 +99,7 @@ fn memories() {
     golden("memory_seam.txt", &printed(&sixfold, &some));
 }
 
-/// What the built-in mesh reads needs no clock.
+/// The counts of reads on the built-in mesh do not depend on the clock.
 #[test]
 fn counts() {
     let why = ["why", "--counts-only"];

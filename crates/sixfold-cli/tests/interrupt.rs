@@ -1,4 +1,4 @@
-//! Ctrl-C: a command ends between two steps, keeps what it has, and says so.
+//! Ctrl-C: a command stops between two steps, keeps its finished results, and prints a message.
 #![cfg(unix)]
 
 use std::thread::sleep;
@@ -67,7 +67,7 @@ fn an_interrupted_decimation_writes_nothing() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 100);
     sixfold.file("out.obj", "precious");
-    // A soup searches all its faces for each collapse: it would take minutes.
+    // A polygon soup scans all faces for each collapse, so this would take minutes.
     let arguments = [
         "decimate",
         "grid.obj",
@@ -93,16 +93,16 @@ fn no_draft_outlives_two_interrupts_of_a_study() {
     ];
     let start = Instant::now();
     let mut child = sixfold.begun(&arguments, 2);
-    // Two that come as one are one: until it ends, another follows.
+    // Two signals may be delivered as one, so signals are sent until the program ends.
     let status = loop {
         if let Some(status) = child.try_wait().expect("our child") {
             break status;
         }
         send("INT", &child);
-        assert!(start.elapsed() < Duration::from_secs(120), "it goes on");
+        assert!(start.elapsed() < Duration::from_secs(120), "still runs");
         sleep(Duration::from_millis(1));
     };
-    // The first may have been enough.
+    // The first signal may have been enough.
     assert!(matches!(status.code(), Some(4 | 130)), "{status}");
     let names = sixfold.names();
     assert!(

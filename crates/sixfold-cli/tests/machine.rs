@@ -1,4 +1,4 @@
-//! What machines read: the schema of `reports/SCHEMA.md`, and checksums that agree.
+//! JSON and CSV: the schema of `reports/SCHEMA.md`, and checksums that agree.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -90,7 +90,7 @@ pub(crate) fn parsed(text: &str) -> Value {
 }
 
 #[test]
-fn a_study_writes_its_schema_and_everybody_agrees() {
+fn a_study_follows_its_schema_and_all_backends_agree() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 12);
     let arguments = [
@@ -141,7 +141,7 @@ fn a_study_writes_its_schema_and_everybody_agrees() {
         let close = |sum: &f64| (sum - sums[0]).abs() <= 1e-4 * sums[0].abs();
         assert!(sums.iter().all(close), "{operation}: {sums:?}");
     }
-    // The grid has 4 · 11 edges along its boundary, 264 corners twice, and 242 faces.
+    // The grid has 4 · 11 boundary edges, 242 faces and 3 · 242 corners, which are visited twice.
     assert_eq!(
         checksums["boundary"],
         vec![44.0; checksums["boundary"].len()]
@@ -177,7 +177,7 @@ fn an_inspection_writes_facts_and_verdicts() {
 }
 
 #[test]
-fn what_is_asked_for_is_what_is_measured() {
+fn the_selected_rows_are_measured() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 5);
     let run = sixfold.run(&[
@@ -200,7 +200,7 @@ fn what_is_asked_for_is_what_is_measured() {
     let rows: Vec<_> = rows
         .map(|row| (&row["operation"], &row["backend"]))
         .collect();
-    // In the order of the table and of the roster, however they were asked for.
+    // In the order of the table and of the roster, not of the arguments.
     let expected = [
         ("build", "face-vertex"),
         ("build", "half-edge"),
@@ -218,9 +218,9 @@ fn what_is_asked_for_is_what_is_measured() {
 }
 
 #[test]
-fn merged_vertices_are_told_and_are_no_failure() {
+fn merged_vertices_are_reported_and_are_not_a_failure() {
     let sixfold = Sixfold::new();
-    // Two triangles that touch along an edge in space, but name no common vertex.
+    // Two triangles that touch along an edge in space, but share no vertex.
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 5 4 6\n";
     sixfold.file("seam.obj", text);
     let run = sixfold.run(&["study", "seam.obj", "--budget", "100ms", "--json", "-"]);

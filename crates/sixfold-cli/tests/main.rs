@@ -1,4 +1,4 @@
-//! The command line as users meet it: one binary, run for real.
+//! Tests of the command line that run the real binary.
 
 mod bad_input;
 mod changes;

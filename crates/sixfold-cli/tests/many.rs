@@ -1,4 +1,4 @@
-//! Studies of many meshes: what fails is listed, what is finished is kept, shards are put together.
+//! Studies of many meshes: failures are listed, finished studies are kept, shards are merged.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use crate::run::{Run, Sixfold, TETRAHEDRON, done, text};
 
 const QUICKLY: [&str; 4] = ["--budget", "60ms", "--operations", "boundary,edge_length"];
 
-/// Three meshes, one of them in a folder of its own, and one that is broken.
+/// Writes three meshes, one of them in a subfolder, and a broken one.
 fn scans() -> Sixfold {
     let sixfold = Sixfold::new();
     fs::create_dir_all(sixfold.folder().join("scans/deep")).expect("a folder");
@@ -35,7 +35,7 @@ fn results(sixfold: &Sixfold, folder: &str) -> Value {
     serde_json::from_str(&text(sixfold, &format!("{folder}/results.json"))).expect("JSON")
 }
 
-/// The meshes in a list of names, of studies or of failures.
+/// Returns the mesh names in a list of names, studies or failures.
 fn names(list: &Value) -> Vec<String> {
     let name = |entry: &Value| {
         let places = [entry, &entry["mesh"], &entry["mesh"]["name"]];
@@ -54,7 +54,7 @@ fn pieces(sixfold: &Sixfold, folder: &str) -> Vec<PathBuf> {
 }
 
 #[test]
-fn a_folder_is_studied_mesh_by_mesh_and_what_fails_is_listed() {
+fn all_meshes_of_a_folder_are_studied_and_failures_are_listed() {
     let sixfold = scans();
     let run = study(&sixfold, &["--report", "out", "--json", "-"]);
     assert_eq!(run.code, Some(0), "{run:?}");
@@ -74,7 +74,7 @@ fn a_folder_is_studied_mesh_by_mesh_and_what_fails_is_listed() {
     assert!(reason.contains("line 2"), "{reason}");
     assert_eq!(report["missing"], Value::Array(Vec::new()));
     assert!(run.stderr.contains("broken.obj"), "{}", run.stderr);
-    // Every row that all three have is pooled over all three; the grid has a boundary.
+    // Every row is pooled over all three meshes.
     let pooled = report["pooled"].as_array().expect("rows");
     assert_eq!(pooled.len(), 12);
     for row in pooled {
@@ -83,7 +83,7 @@ fn a_folder_is_studied_mesh_by_mesh_and_what_fails_is_listed() {
             ["ci_low", "ratio_to_best", "ci_high"].map(|name| row[name].as_f64());
         assert!(mean > Some(0.5) && low <= mean && mean <= high, "{row}");
     }
-    // One line for each sample, the control's too.
+    // One line per sample, including those of the control.
     let studies = report["studies"].as_array().expect("studies");
     let raw = studies
         .iter()
@@ -117,7 +117,7 @@ fn a_folder_is_studied_mesh_by_mesh_and_what_fails_is_listed() {
 }
 
 #[test]
-fn what_is_finished_is_not_done_again() {
+fn finished_studies_are_not_repeated() {
     let sixfold = scans();
     assert_eq!(study(&sixfold, &["--report", "out"]).code, Some(0));
     let before = text(&sixfold, "out/results.json");
@@ -125,13 +125,13 @@ fn what_is_finished_is_not_done_again() {
         &sixfold,
         &["study", "scans", "--report", "out"],
         2,
-        "go on with --resume",
+        "continue with --resume",
     );
     let again = study(&sixfold, &["--report", "out", "--resume"]);
     assert_eq!(again.code, Some(0), "{again:?}");
     assert_eq!(text(&sixfold, "out/results.json"), before);
 
-    // One is gone, one was cut off, and one is of a mesh that has changed since.
+    // One file is deleted, one is truncated, and one is of a mesh that has changed since.
     let paths = pieces(&sixfold, "out");
     let name = |path: &Path| {
         path.file_name()
@@ -146,13 +146,13 @@ fn what_is_finished_is_not_done_again() {
     let rest = study(&sixfold, &["--report", "out", "--resume"]);
     assert_eq!(rest.code, Some(0), "{rest:?}");
     assert!(
-        rest.stderr.contains("no study that this program wrote"),
+        rest.stderr.contains("not a study of this program"),
         "{}",
         rest.stderr
     );
     assert!(
         rest.stderr
-            .contains("another file than when it was studied"),
+            .contains("the file has changed since it was studied"),
         "{}",
         rest.stderr
     );
@@ -171,7 +171,7 @@ fn what_is_finished_is_not_done_again() {
 }
 
 #[test]
-fn shards_are_merged_into_what_one_run_would_be() {
+fn merged_shards_equal_a_single_run() {
     let sixfold = scans();
     for shard in ["1/2", "2/2"] {
         let folder = format!("shard-{}", &shard[..1]);
@@ -186,7 +186,7 @@ fn shards_are_merged_into_what_one_run_would_be() {
     }
     let alone = done(&sixfold, &["merge", "shard-1", "--json", "half.json"]);
     assert!(
-        alone.stdout.contains("2 meshes are still to be done"),
+        alone.stdout.contains("2 meshes are not studied yet"),
         "{}",
         alone.stdout
     );
@@ -224,7 +224,7 @@ fn shards_are_merged_into_what_one_run_would_be() {
 }
 
 #[test]
-fn what_does_not_belong_together_is_not_merged() {
+fn shards_that_do_not_belong_together_are_not_merged() {
     let sixfold = scans();
     assert_eq!(study(&sixfold, &["--report", "one"]).code, Some(0));
     let mut other: Value = results(&sixfold, "one");
@@ -238,9 +238,9 @@ fn what_does_not_belong_together_is_not_merged() {
     sixfold.file("foreign.json", "{}");
     sixfold.file("later.json", "{\"schema\": 9}");
     for (shard, says) in [
-        ("slow.json", "--budget: 60 s"),
-        ("elsewhere.json", "other meshes: elsewhere.obj"),
-        ("half.json", "ends too soon"),
+        ("slow.json", "--budget is 60 s"),
+        ("elsewhere.json", "meshes differ: elsewhere.obj"),
+        ("half.json", "ends too early"),
         ("foreign.json", "no `schema`"),
         ("later.json", "schema 9"),
         ("none", "cannot be read"),
@@ -254,7 +254,7 @@ fn what_does_not_belong_together_is_not_merged() {
 }
 
 #[test]
-fn places_that_cannot_be_are_refused_before_anything_is_measured() {
+fn invalid_places_are_refused_before_anything_is_measured() {
     let sixfold = scans();
     fs::create_dir(sixfold.folder().join("empty")).expect("a folder");
     for (arguments, says) in [
@@ -287,7 +287,7 @@ fn places_that_cannot_be_are_refused_before_anything_is_measured() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_keeps_what_was_there() {
+fn a_full_disk_does_not_suppress_the_text() {
     let sixfold = scans();
     let run = study(&sixfold, &["--json", "/dev/full"]);
     assert_eq!(run.code, Some(2), "{run:?}");
@@ -301,7 +301,7 @@ fn a_full_disk_keeps_what_was_there() {
 
 #[cfg(unix)]
 #[test]
-fn an_interrupted_study_goes_on_where_it_left_off() {
+fn an_interrupted_study_can_be_resumed() {
     use std::time::{Duration, Instant};
     let sixfold = scans();
     let arguments = [
@@ -315,7 +315,7 @@ fn an_interrupted_study_goes_on_where_it_left_off() {
         "out",
     ];
     let child = sixfold.begun(&arguments, 1);
-    // Once the first is kept, the second is in the midst of its two seconds.
+    // Once the first study is saved, the second is within its two seconds.
     let start = Instant::now();
     let kept = || {
         let studies = fs::read_dir(sixfold.folder().join("out/studies"));
@@ -330,7 +330,7 @@ fn an_interrupted_study_goes_on_where_it_left_off() {
     let output = child.wait_with_output().expect("it ends");
     assert_eq!(output.status.code(), Some(4), "{output:?}");
     let shown = String::from_utf8_lossy(&output.stdout);
-    assert!(shown.contains("still to be done"), "{shown}");
+    assert!(shown.contains("not studied yet"), "{shown}");
     let kept = results(&sixfold, "out");
     let finished = names(&kept["studies"]).len();
     assert!((1..3).contains(&finished), "{finished}");
@@ -344,10 +344,10 @@ fn an_interrupted_study_goes_on_where_it_left_off() {
     assert_eq!(whole["studies"][0], kept["studies"][0]);
 }
 
-/// The script of the documents, run as Slurm runs it: once for each job of the array.
+/// Runs the documented script as Slurm does: once per job of the array.
 #[cfg(unix)]
 #[test]
-fn the_script_for_a_cluster_does_what_it_says() {
+fn the_script_for_a_cluster_studies_all_meshes() {
     let sixfold = scans();
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let script = here.join("../../reports/cluster/study.sbatch");

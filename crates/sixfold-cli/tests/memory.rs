@@ -1,4 +1,4 @@
-//! `sixfold memory`: three ways to one number, for people, for machines and for shells.
+//! Tests of `sixfold memory`: text, JSON and exit codes.
 
 use serde_json::Value;
 
@@ -35,7 +35,7 @@ const OPERATION: [(&str, &str); 6] = [
 ];
 
 #[test]
-fn machines_read_the_three_ways_and_their_tables() {
+fn json_has_the_three_counts_and_the_tables() {
     let sixfold = Sixfold::new();
     sixfold.file(
         "quad.obj",
@@ -69,9 +69,9 @@ fn machines_read_the_three_ways_and_their_tables() {
     assert_eq!(backends["half-edge"]["layout_words_per_vertex"], 10.25);
 }
 
-/// The most bytes that building a structure may allocate for each byte of the result. Beside the
-/// result there is scratch: 4 bytes a corner and 8 a vertex for a corner table and for half-edges, 12 a
-/// corner and 8 a vertex for winged edges.
+/// Maximum of the bytes that building a structure allocates per byte of the result. Besides the
+/// result there is scratch memory: 4 bytes per corner and 8 per vertex for a corner table and for
+/// half-edges, 12 per corner and 8 per vertex for winged edges.
 const BUILD_LIMITS: [(&str, f64); 6] = [
     ("polygon-soup", 1.02),
     ("indexed-face-set", 1.0),
@@ -81,13 +81,13 @@ const BUILD_LIMITS: [(&str, f64); 6] = [
     ("corner-table", 1.5),
 ];
 
-/// The same for a subdivision, by the end of the name of the operation.
+/// The same maximum for a subdivision, by the suffix of the operation's name.
 const SUBDIVISION_LIMITS: [(&str, f64); 3] =
     [("_gather", 3.0), ("_scatter", 3.0), ("_native", 1.2)];
 
-/// Holds the figures at the level reached when they were last reduced.
+/// Asserts that the figures do not exceed the level of their last reduction.
 #[test]
-fn operations_on_the_built_in_mesh_allocate_little_beside_their_result() {
+fn operations_on_the_built_in_mesh_allocate_little_besides_their_result() {
     let run = done(&Sixfold::new(), &["memory", "--json", "-"]);
     let audit = parsed(&run.stdout);
     let mut counted = 0;
@@ -116,7 +116,7 @@ fn operations_on_the_built_in_mesh_allocate_little_beside_their_result() {
     assert!(counted > 40, "{counted} operations were run");
 }
 
-/// On a small mesh nothing is left out because of scans.
+/// On a small mesh no operation is left out because of scans.
 #[test]
 fn operations_that_scan_are_run_on_small_meshes_only() {
     let sixfold = Sixfold::new();
@@ -129,7 +129,7 @@ fn operations_that_scan_are_run_on_small_meshes_only() {
 }
 
 #[test]
-fn cut_into_triangles_a_corner_table_holds_it() {
+fn a_corner_table_holds_a_triangulated_quad() {
     let sixfold = Sixfold::new();
     sixfold.file(
         "quad.obj",
@@ -147,7 +147,7 @@ fn cut_into_triangles_a_corner_table_holds_it() {
 }
 
 #[test]
-fn a_refusal_by_all_is_an_answer_for_machines_too() {
+fn json_is_written_if_all_backends_refuse() {
     let sixfold = Sixfold::new();
     let book = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
     sixfold.file("book.obj", book);
@@ -168,7 +168,7 @@ fn a_refusal_by_all_is_an_answer_for_machines_too() {
 }
 
 #[test]
-fn what_cannot_be_weighed_is_refused() {
+fn invalid_input_is_refused() {
     let sixfold = Sixfold::new();
     sixfold.file("points.obj", "v 0 0 0\nv 1 0 0\n");
     sixfold.file("ok.obj", TETRAHEDRON);

@@ -1,8 +1,8 @@
-//! A mesh as its file tells it, counted without Sixfold.
+//! Reads and counts the mesh in an OBJ file without using Sixfold.
 
 use std::collections::BTreeMap;
 
-/// A mesh as the text of its file.
+/// The mesh in the text of an OBJ file.
 pub(crate) struct Obj {
     pub(crate) positions: Vec<[f32; 3]>,
     pub(crate) faces: Vec<Vec<usize>>,
@@ -37,18 +37,18 @@ impl Obj {
         [self.positions.len(), self.faces.len()]
     }
 
-    /// How many edges have one face.
+    /// Counts the edges with one face.
     pub(crate) fn boundary_edges(&self) -> usize {
         self.edges().values().filter(|&&faces| faces == 1).count()
     }
 
-    /// V − E + F.
+    /// Returns V − E + F.
     pub(crate) fn euler_characteristic(&self) -> isize {
         let [vertices, faces] = self.counts().map(usize::cast_signed);
         vertices - self.edges().len().cast_signed() + faces
     }
 
-    /// The lengths of all edges.
+    /// Returns the lengths of all edges.
     pub(crate) fn lengths(&self) -> Vec<f32> {
         let at = |v: usize| self.positions[v - 1];
         let apart = |(a, b): (usize, usize)| {
@@ -58,8 +58,8 @@ impl Obj {
         self.edges().into_keys().map(apart).collect()
     }
 
-    /// The faces as the places of their corners, each from its least corner on, sorted: the same for
-    /// any numbering of the vertices.
+    /// Returns the faces as the positions of their corners, each starting at its smallest corner,
+    /// sorted. The result does not depend on the numbering of the vertices.
     pub(crate) fn places(&self) -> Vec<Vec<[u32; 3]>> {
         let faces = self.faces.iter().map(|face| {
             let bits = |&v: &usize| self.positions[v - 1].map(f32::to_bits);
@@ -73,7 +73,7 @@ impl Obj {
         faces
     }
 
-    /// The ends of all edges, the lower first, and how many faces each has.
+    /// Returns the ends of all edges, the lower first, with the number of faces of each.
     fn edges(&self) -> BTreeMap<(usize, usize), usize> {
         let mut uses = BTreeMap::new();
         for face in &self.faces {

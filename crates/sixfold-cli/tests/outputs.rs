@@ -1,4 +1,4 @@
-//! Standard output carries text or data, never both; files are whole or not there.
+//! Standard output has text or data, never both; files are complete or absent.
 
 use std::fs;
 use std::io::Read;
@@ -7,7 +7,7 @@ use std::process::Stdio;
 use crate::run::{Sixfold, TETRAHEDRON};
 
 #[test]
-fn data_on_standard_output_is_data_alone() {
+fn data_on_standard_output_has_no_text_beside_it() {
     let sixfold = Sixfold::new();
     sixfold.file("mesh.obj", &format!("{TETRAHEDRON}vt 0 0\nf 1 1 2\n"));
     let study = [
@@ -30,7 +30,7 @@ fn data_on_standard_output_is_data_alone() {
     );
     assert!(
         run.stderr.contains("left out"),
-        "notes have their own place: {run:?}"
+        "notes are on standard error: {run:?}"
     );
     let run = sixfold.run(&[&study[..], &["--json", "x.json"]].concat());
     assert!(
@@ -39,7 +39,7 @@ fn data_on_standard_output_is_data_alone() {
     );
     assert!(
         !run.stdout.contains('\u{1b}'),
-        "no colours where nobody sees them"
+        "no colours if standard output is not a terminal"
     );
     let run = sixfold.run(&["generate", "cube", "-o", "-"]);
     assert_eq!(run.code, Some(0));
@@ -85,7 +85,7 @@ fn a_failed_run_leaves_the_old_file() {
 }
 
 #[test]
-fn a_reader_that_leaves_early_is_no_panic() {
+fn a_closed_pipe_does_not_cause_a_panic() {
     let sixfold = Sixfold::new();
     for arguments in [
         &["generate", "grid", "m=200", "n=200", "-o", "-"][..],

@@ -1,4 +1,4 @@
-//! `pick` and `workloads`: the answer, its data, its exit codes, and every wrong question.
+//! Tests of `sixfold pick` and `workloads`: text, JSON, exit codes and refusals.
 
 use serde_json::Value;
 
@@ -9,7 +9,7 @@ const MINE: &str = "summary = 'Mine.'\naccess = 'random'\noperations = '20 per f
     [mix]\nvertex_faces = 2\ncorner_positions = 1\n";
 
 #[test]
-fn an_answer_ranks_and_says_why() {
+fn the_answer_has_a_ranking_with_reasons() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 30);
     sixfold.file("mine.toml", MINE);
@@ -28,9 +28,9 @@ fn an_answer_ranks_and_says_why() {
         "Workload: mine. Mine.",
         "2 vertex_faces, 1 corner_positions; random; 33,640 operations",
         "pays after",
-        "relation-tables: flat tables of just what is asked, made of ",
+        "relation-tables: flat tables of only the relations in the mix, made from ",
         "For mine, ",
-        "To use it, depend on `",
+        "To use `sixfold_",
     ] {
         assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
     }
@@ -58,7 +58,7 @@ fn an_answer_ranks_and_says_why() {
 }
 
 #[test]
-fn json_on_standard_output_stands_alone() {
+fn json_on_standard_output_has_no_text_beside_it() {
     let sixfold = Sixfold::new();
     sixfold.grid("a.obj", 12);
     sixfold.grid("b.obj", 14);
@@ -89,7 +89,7 @@ fn json_on_standard_output_stands_alone() {
 }
 
 #[test]
-fn no_answer_is_an_answer_with_a_code_of_its_own() {
+fn no_qualifying_backend_has_its_own_exit_code() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 12);
     let run = sixfold.run(&[
@@ -115,7 +115,7 @@ fn no_answer_is_an_answer_with_a_code_of_its_own() {
 }
 
 #[test]
-fn wrong_questions_are_refused() {
+fn invalid_arguments_are_refused() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 12);
     sixfold.file(
@@ -177,7 +177,7 @@ fn wrong_questions_are_refused() {
 }
 
 #[test]
-fn what_is_shown_can_be_run() {
+fn a_workload_that_is_shown_can_be_run() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 20);
     let shown = done(&sixfold, &["workloads", "--show", "region-growing"]);

@@ -1,4 +1,4 @@
-//! Nothing of the user's is lost: not the mesh, not a finished study, not the mode of a file.
+//! Files of the user are kept: the mesh, a finished study, the mode of a file.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::run::{Sixfold, TETRAHEDRON};
 
 #[test]
-fn no_output_takes_the_place_of_the_mesh_or_of_another() {
+fn no_output_overwrites_the_mesh_or_another_output() {
     let sixfold = Sixfold::new();
     sixfold.file("ok.obj", TETRAHEDRON);
     let same = fs::canonicalize(sixfold.folder()).expect("a folder");
@@ -18,12 +18,12 @@ fn no_output_takes_the_place_of_the_mesh_or_of_another() {
         (&["study", "./ok.obj", "--json", &same], "overwrite"),
         (&["inspect", "ok.obj", "--json", &same], "overwrite"),
         (&["memory", "ok.obj", "--json", &same], "overwrite"),
-        // A week: it is refused before it is measured.
+        // The budget is a week: the command is refused before it measures.
         (
             &[
                 "study", "ok.obj", "--budget", "10000m", "--json", "new", "--csv", "./new",
             ],
-            "two places",
+            "two different files",
         ),
     ] {
         let run = sixfold.run(arguments);
@@ -38,7 +38,7 @@ fn no_output_takes_the_place_of_the_mesh_or_of_another() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn text_that_gets_lost_is_an_error() {
+fn text_that_cannot_be_written_is_an_error() {
     let sixfold = Sixfold::new();
     sixfold.file("ok.obj", TETRAHEDRON);
     for arguments in [
@@ -61,7 +61,7 @@ fn text_that_gets_lost_is_an_error() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
         assert!(stderr.contains("standard output: cannot be written"));
     }
-    // The files are written all the same.
+    // The files are written nevertheless.
     assert_eq!(
         sixfold.names(),
         ["cube.obj", "ok.obj", "small.obj", "x.json"]
@@ -70,7 +70,7 @@ fn text_that_gets_lost_is_an_error() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_does_not_take_the_study_along() {
+fn a_full_disk_does_not_lose_the_study() {
     let sixfold = Sixfold::new();
     sixfold.file("ok.obj", TETRAHEDRON);
     let arguments = [
@@ -114,7 +114,7 @@ fn a_file_that_is_replaced_keeps_its_mode() {
 
 #[cfg(unix)]
 #[test]
-fn names_of_files_do_not_steer_the_terminal() {
+fn file_names_cannot_control_the_terminal() {
     let sixfold = Sixfold::new();
     let name = "a\u{1b}[31mb\nc.obj";
     sixfold.file(name, &format!("{TETRAHEDRON}f 1 1 2\n"));
@@ -135,7 +135,7 @@ fn names_of_files_do_not_steer_the_terminal() {
 }
 
 #[test]
-fn a_refusal_by_all_is_an_answer_for_machines_too() {
+fn json_is_written_if_all_backends_refuse() {
     let sixfold = Sixfold::new();
     let book = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
     sixfold.file("book.obj", book);
@@ -155,7 +155,7 @@ fn a_refusal_by_all_is_an_answer_for_machines_too() {
     let report: Value = serde_json::from_str(&run.stdout).expect("JSON");
     assert_eq!(report["mesh"]["non_manifold_edges"], 1);
     let backends = report["backends"].as_object().expect("a map");
-    assert_eq!(backends.len(), 1, "who was not asked has not answered");
+    assert_eq!(backends.len(), 1, "only the selected backend is listed");
     assert_eq!(backends["half-edge"]["holds"], false);
     let reason = backends["half-edge"]["reason"].as_str().expect("a reason");
     assert!(reason.contains("f0, f1, f2"), "{reason}");
@@ -165,13 +165,13 @@ fn a_refusal_by_all_is_an_answer_for_machines_too() {
 }
 
 #[test]
-fn a_cut_that_changes_more_than_faces_says_so() {
+fn a_triangulation_that_changes_more_than_faces_is_reported() {
     let sixfold = Sixfold::new();
-    // The first diagonal of the quad is an edge of two triangles already.
+    // The first diagonal of the quad is already an edge of two triangles.
     let shared =
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 1\nv 2 2 -1\nf 1 2 3 4\nf 1 3 5\nf 3 1 6\n";
     sixfold.file("shared.obj", shared);
-    // A dart: from its inner corner and the one opposite it can be cut, from the others it folds.
+    // A dart: a fan from the reflex corner or its opposite corner is valid; other fans fold over.
     sixfold.file(
         "fold.obj",
         "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nf 2 3 4 1\n",
@@ -181,7 +181,7 @@ fn a_cut_that_changes_more_than_faces_says_so() {
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
     );
     for (name, expected) in [
-        ("shared.obj", "non-manifold edges 0 before, 1 now"),
+        ("shared.obj", "non-manifold edges: 0 before, 1 now"),
         ("fold.obj", "1 fan folds over"),
     ] {
         let study = ["study", name, "--triangulate", "--budget", "50ms"];
@@ -199,20 +199,20 @@ fn a_cut_that_changes_more_than_faces_says_so() {
 }
 
 #[test]
-fn wrong_words_get_the_right_advice() {
+fn wrong_arguments_get_a_useful_hint() {
     let sixfold = Sixfold::new();
     sixfold.file("ok.obj", TETRAHEDRON);
     for (arguments, says) in [
         (&["ok.obj"][..], "did you mean `sixfold study ok.obj`?"),
         (
             &["study", "ok.obj", "--seed", "-1"],
-            "a seed is a whole number from 0",
+            "the seed must be a whole number from 0",
         ),
         (
             &["study", "ok.obj", "--seed", "x"],
-            "a seed is a whole number from 0",
+            "the seed must be a whole number from 0",
         ),
-        (&["study", "ok.obj", "--budget", "-1s"], "more than nothing"),
+        (&["study", "ok.obj", "--budget", "-1s"], "above 0"),
         (&["inspect", "-"], "standard input is not read"),
     ] {
         let run = sixfold.run(arguments);

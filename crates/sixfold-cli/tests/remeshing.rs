@@ -1,4 +1,4 @@
-//! `sixfold decimate`, `remesh` and `edits`: surfaces that stay what they are, and refusals.
+//! Tests of `sixfold decimate`, `remesh` and `edits`: the topology is kept; refusals.
 
 use serde_json::Value;
 
@@ -18,18 +18,18 @@ const QUAD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
 const BOOK: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
 
-/// What the command with these arguments writes.
+/// Runs the command with these arguments and returns the mesh that it writes.
 fn made(sixfold: &Sixfold, arguments: &[&str]) -> Obj {
     done(sixfold, &[arguments, &["-o", "out.obj"]].concat());
     Obj::of(&text(sixfold, "out.obj"))
 }
 
-/// A shape of `sixfold generate` as `name`.
+/// Writes a shape of `sixfold generate` to the file `name`.
 fn generate(sixfold: &Sixfold, name: &str, shape: &[&str]) {
     done(sixfold, &[&["generate"], shape, &["-o", name]].concat());
 }
 
-/// The area of a mesh of triangles that lies in the plane z = 0, what lies on its back counted off.
+/// Returns the signed area of a triangle mesh in the plane z = 0: flipped faces count as negative.
 fn flat_area(obj: &Obj) -> f64 {
     let areas = obj.faces.iter().map(|face| {
         let [a, b, c] = [0, 1, 2].map(|i| obj.positions[face[i] - 1].map(f64::from));
@@ -39,7 +39,7 @@ fn flat_area(obj: &Obj) -> f64 {
 }
 
 #[test]
-fn a_closed_surface_gets_the_faces_asked_for_and_stays_closed() {
+fn a_closed_surface_gets_the_target_number_of_faces_and_stays_closed() {
     let sixfold = Sixfold::new();
     generate(&sixfold, "ball.obj", &["geodesic", "frequency=8"]);
     generate(&sixfold, "ring.obj", &["triangle-torus", "m=20", "n=10"]);
@@ -68,7 +68,7 @@ fn a_closed_surface_gets_the_faces_asked_for_and_stays_closed() {
 }
 
 #[test]
-fn a_boundary_keeps_its_shape_or_every_vertex() {
+fn a_boundary_keeps_its_shape_or_all_its_vertices() {
     let sixfold = Sixfold::new();
     generate(&sixfold, "grid.obj", &["triangle-grid", "m=10", "n=10"]);
     let decimate = ["decimate", "grid.obj", "--faces", "60", "--boundary"];
@@ -91,7 +91,7 @@ fn a_boundary_keeps_its_shape_or_every_vertex() {
 }
 
 #[test]
-fn edges_become_as_long_as_asked() {
+fn edges_get_the_target_length() {
     let sixfold = Sixfold::new();
     generate(&sixfold, "ball.obj", &["geodesic", "frequency=4"]);
     for (length, edge_length) in [(0.15, "0.15"), (0.6, "0.6")] {
@@ -161,7 +161,7 @@ fn every_backend_makes_the_same_mesh() {
 }
 
 #[test]
-fn what_cannot_be_reached_is_said_and_the_rest_is_written() {
+fn a_target_that_is_not_reached_gets_a_note() {
     let sixfold = Sixfold::new();
     sixfold.file("t.obj", TETRAHEDRON);
     sixfold.file("square.obj", SQUARE);
@@ -200,11 +200,7 @@ fn what_cannot_be_reached_is_said_and_the_rest_is_written() {
             60,
             "--max-faces 60",
         ),
-        (
-            &["decimate", "tagged.obj", "--faces", "4"],
-            4,
-            "not carried over",
-        ),
+        (&["decimate", "tagged.obj", "--faces", "4"], 4, "not kept"),
     ] {
         let run = done(&sixfold, &[arguments, &["-o", "out.obj"]].concat());
         let notes = run.stderr.lines();
@@ -219,7 +215,7 @@ fn what_cannot_be_reached_is_said_and_the_rest_is_written() {
 }
 
 #[test]
-fn a_structure_that_scans_says_why_it_takes_long() {
+fn a_note_explains_why_scans_are_slow() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 51);
     let run = |backend| {
@@ -235,13 +231,13 @@ fn a_structure_that_scans_says_why_it_takes_long() {
         done(&sixfold, &[&arguments[..], &[backend]].concat())
     };
     let scanning = run("polygon-soup");
-    assert!(scanning.stderr.contains("takes long"), "{scanning:?}");
+    assert!(scanning.stderr.contains("which is slow"), "{scanning:?}");
     assert!(scanning.stderr.contains("half-edge"), "{scanning:?}");
     assert_eq!(run("half-edge").stderr, "");
 }
 
 #[test]
-fn what_cannot_be_edited_is_refused_before_anything_is_written() {
+fn invalid_input_is_refused_before_anything_is_written() {
     let sixfold = Sixfold::new();
     sixfold.file("t.obj", TETRAHEDRON);
     sixfold.file("quad.obj", QUAD);
@@ -267,7 +263,7 @@ fn what_cannot_be_edited_is_refused_before_anything_is_written() {
             (
                 &["book.obj"],
                 3,
-                "`sixfold inspect` says which hold the mesh",
+                "`sixfold inspect` shows which can hold the mesh",
             ),
             (&["t.obj", "--backend", "abacus"], 2, "corner-table"),
             (&["missing.obj"], 2, "missing.obj"),
@@ -315,11 +311,11 @@ fn what_cannot_be_edited_is_refused_before_anything_is_written() {
         (&["remesh", "--edge-length", "nan"], 2, "above 0"),
         (&["remesh", "--edge-length", "inf"], 2, "above 0"),
         (&["remesh", "--edge-length", "1e-30"], 3, "e60 triangles"),
-        (&["remesh", "--edge-length", "1e-300"], 3, "take more than"),
+        (&["remesh", "--edge-length", "1e-300"], 3, "need more than"),
         (
             &["remesh", "--edge-length", "0.1", "--max-faces", "50"],
             3,
-            "50 are allowed",
+            "only 50 are allowed",
         ),
         (
             &["remesh", "--edge-length", "1", "--iterations", "-1"],
@@ -347,7 +343,7 @@ fn a_full_disk_is_an_error() {
 }
 
 #[test]
-fn others_edit_what_is_no_manifold() {
+fn some_backends_edit_non_manifold_meshes() {
     let sixfold = Sixfold::new();
     sixfold.file("book.obj", BOOK);
     let arguments = ["remesh", "book.obj", "--edge-length", "0.3", "--backend"];
@@ -358,7 +354,7 @@ fn others_edit_what_is_no_manifold() {
 }
 
 #[test]
-fn machines_read_which_edits_there_are() {
+fn edits_writes_json() {
     let sixfold = Sixfold::new();
     let run = done(&sixfold, &["edits", "--json", "-"]);
     let rows: Value = serde_json::from_str(&run.stdout).expect("JSON");
@@ -373,6 +369,6 @@ fn machines_read_which_edits_there_are() {
         assert!(backends.iter().all(known), "{row}");
     }
     let flip = rows.iter().find(|row| row["edit"] == "flip_edge");
-    let half_edge = &flip.expect("it flips")["backends"][4];
+    let half_edge = &flip.expect("a row")["backends"][4];
     assert_ne!(half_edge["looks_at"], "scan");
 }

@@ -1,11 +1,11 @@
-//! `sixfold render`: pictures are written whole, hold what was asked for, and are the same each time.
+//! Tests of `sixfold render`: pictures are complete, follow the options, and are reproducible.
 
 use std::fs;
 
 use crate::bad_input::refused;
 use crate::run::{Sixfold, TETRAHEDRON};
 
-/// The width and height that a PNG says it has.
+/// Returns the width and height in the header of a PNG.
 fn png_size(bytes: &[u8]) -> [u32; 2] {
     assert_eq!(&bytes[..8], b"\x89PNG\r\n\x1a\n");
     let number = |at: usize| u32::from_be_bytes(bytes[at..at + 4].try_into().expect("four bytes"));
@@ -17,7 +17,7 @@ fn read(sixfold: &Sixfold, name: &str) -> Vec<u8> {
 }
 
 #[test]
-fn pictures_have_the_size_asked_for_and_are_the_same_each_time() {
+fn pictures_have_the_given_size_and_are_reproducible() {
     let sixfold = Sixfold::new();
     sixfold.file("a.obj", TETRAHEDRON);
     let run = sixfold.run(&["render", "a.obj", "-o", "a.png", "--edges"]);
@@ -28,7 +28,7 @@ fn pictures_have_the_size_asked_for_and_are_the_same_each_time() {
     sixfold.run(&["render", "a.obj", "-o", "b.PNG", "--edges"]);
     assert_eq!(first, read(&sixfold, "b.PNG"));
     sixfold.run(&["render", "a.obj", "-o", "c.png"]);
-    assert_ne!(first, read(&sixfold, "c.png"), "edges are to be seen");
+    assert_ne!(first, read(&sixfold, "c.png"), "edges are visible");
     let row = [
         "render", "a.obj", "a.obj", "a.obj", "-o", "row.svg", "--size", "300x90",
     ];
@@ -69,14 +69,14 @@ fn creases_come_from_tags_and_from_files() {
     let tagged = svg(&["tagged.obj"]);
     assert_ne!(plain, tagged);
     assert_eq!(tagged, svg(&["plain.obj", "--creases", "sharp.txt"]));
-    // A crease file goes with the mesh in its place.
+    // A crease file belongs to the mesh at the same position in the list.
     let of_first = svg(&["plain.obj", "plain.obj", "--creases", "sharp.txt"]);
     assert_eq!(of_first, svg(&["tagged.obj", "plain.obj"]));
     assert_ne!(of_first, svg(&["plain.obj", "tagged.obj"]));
 }
 
 #[test]
-fn what_cannot_be_drawn_has_one_error_and_no_picture() {
+fn invalid_input_gives_one_error_and_no_picture() {
     let sixfold = Sixfold::new();
     sixfold.file("mesh.obj", TETRAHEDRON);
     sixfold.file("points.obj", "v 0 0 0\nv 1 0 0\n");
@@ -142,7 +142,7 @@ fn what_cannot_be_drawn_has_one_error_and_no_picture() {
     ] {
         refused(&sixfold, &[&["render"], arguments].concat(), 2, says);
     }
-    // A picture does not overwrite what it is drawn from.
+    // A picture does not overwrite its input.
     sixfold.file("mesh.png", TETRAHEDRON);
     refused(
         &sixfold,

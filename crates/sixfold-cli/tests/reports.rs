@@ -1,4 +1,4 @@
-//! Reports: all that was measured on one page, and the command that makes each figure again.
+//! Reports: all results on one page, and the command that reproduces each figure.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::bad_input::refused;
 use crate::run::{Run, Sixfold, TETRAHEDRON, done, text};
 
-/// A study of half-edge and the corner table on one mesh, with whatever `more` asks for.
+/// Studies half-edge and corner table on one mesh, with the additional arguments `more`.
 fn study(sixfold: &Sixfold, more: &[&str]) -> Run {
     let mut arguments = vec!["study", "grid.obj", "--budget", "300ms"];
     arguments.extend(["--backends", "half-edge,corner-table"]);
@@ -26,14 +26,14 @@ fn json(sixfold: &Sixfold, name: &str) -> Value {
     serde_json::from_str(&text(sixfold, name)).expect("JSON")
 }
 
-/// The figures of a page, by their names.
+/// Returns the names of the figures of a page.
 fn figures(page: &str) -> Vec<&str> {
     let parts = page.split("data-figure=\"").skip(1);
     parts.filter_map(|part| part.split('"').next()).collect()
 }
 
 #[test]
-fn the_report_of_one_mesh_has_its_orders_its_growth_and_its_roofline() {
+fn the_report_of_one_mesh_has_orders_growth_and_a_roofline() {
     let sixfold = grid();
     let run = study(&sixfold, &["--report", "out"]);
     assert_eq!(run.code, Some(0), "{run:?}");
@@ -64,9 +64,9 @@ fn the_report_of_one_mesh_has_its_orders_its_growth_and_its_roofline() {
         let svg = text(&sixfold, &format!("out/figures/{id}.svg"));
         assert!(svg.starts_with("<svg") && svg.contains("<title>"), "{id}");
         let [opened, closed] = ["<g", "</g>"].map(|tag| svg.matches(tag).count());
-        assert_eq!(opened, closed, "{id} is no XML");
+        assert_eq!(opened, closed, "{id} is not XML");
     }
-    // The page, the data and each figure say what makes them again.
+    // The page, the data and each figure have the command that reproduces them.
     let command = "sixfold study grid.obj --budget 300ms --backends 'half-edge,corner-table'";
     let markdown = text(&sixfold, "out/report.md");
     assert!(
@@ -82,7 +82,7 @@ fn the_report_of_one_mesh_has_its_orders_its_growth_and_its_roofline() {
         );
     }
 
-    // What is finished is not measured again, and what is missing is.
+    // Finished labs are not measured again; missing labs are.
     fs::remove_file(sixfold.folder().join("out/labs/growth.json")).expect("it is there");
     let again = study(&sixfold, &["--report", "out", "--resume"]);
     assert_eq!(again.code, Some(0), "{again:?}");
@@ -99,7 +99,7 @@ fn the_report_of_one_mesh_has_its_orders_its_growth_and_its_roofline() {
 }
 
 #[test]
-fn a_lab_that_cannot_be_measured_is_told_of_and_left_out() {
+fn a_lab_that_cannot_be_measured_is_reported_and_left_out() {
     let sixfold = grid();
     let arguments = [
         "--report",
@@ -122,7 +122,7 @@ fn a_lab_that_cannot_be_measured_is_told_of_and_left_out() {
         "{}",
         run.stderr
     );
-    let none = "without why: none of these operations is a relation";
+    let none = "without why: none of the selected operations is a relation";
     assert!(run.stderr.contains(none), "{}", run.stderr);
     let labs = &json(&sixfold, "out/results.json")["labs"];
     assert_eq!(
@@ -132,7 +132,7 @@ fn a_lab_that_cannot_be_measured_is_told_of_and_left_out() {
 }
 
 #[test]
-fn results_that_were_written_one_by_one_come_onto_one_page() {
+fn results_of_several_commands_are_drawn_on_one_page() {
     let sixfold = grid();
     let quickly = ["--budget", "300ms", "--backends", "half-edge,corner-table"];
     let run = |command: &[&str], file: &str| {
@@ -192,11 +192,11 @@ fn results_that_were_written_one_by_one_come_onto_one_page() {
     ] {
         assert!(drawn.contains(&id), "{id}: {drawn:?}");
     }
-    // Each under the command that measured it, not the one that drew it.
+    // Each figure has the command that measured it, not the one that drew it.
     assert!(page.contains("sixfold pick grid.obj --workload smoothing"));
     assert!(page.contains("sixfold why grid.obj --relations face_faces"));
 
-    // A report of one mesh is a study to compare with.
+    // `compare` accepts the report of one mesh as a study.
     let quick = ["--budget", "60ms", "--operations", "boundary"];
     let report = ["--report", "again", "--labs", "none"];
     done(
@@ -212,7 +212,7 @@ fn results_that_were_written_one_by_one_come_onto_one_page() {
 }
 
 #[test]
-fn what_no_page_can_be_made_of_is_refused() {
+fn invalid_results_are_refused() {
     let sixfold = grid();
     sixfold.file("other.json", "{\"schema\": 1}");
     sixfold.file("cut.json", "{\"schema\": 1, \"sizes\": [");
@@ -233,16 +233,16 @@ fn what_no_page_can_be_made_of_is_refused() {
             &["report", "other.json", "--to", "out"][..],
             "result of another command",
         ),
-        (&["report", "cut.json", "--to", "out"], "ends too soon"),
+        (&["report", "cut.json", "--to", "out"], "ends too early"),
         (
             &["report", "changes.json", "--to", "out"],
             "another command",
         ),
         (
             &["study", "grid.obj", "--report", "foreign"],
-            "is there already",
+            "exists already",
         ),
-        (&["report", "mesh.obj", "--to", "out"], "is no JSON"),
+        (&["report", "mesh.obj", "--to", "out"], "is not JSON"),
         (&["report", "none.json", "--to", "out"], "cannot be read"),
         (
             &["report", "a.json", "a.json", "--to", "out"],

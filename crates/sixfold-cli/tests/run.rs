@@ -1,4 +1,4 @@
-//! Running the binary, and meshes to run it on.
+//! Runs the binary, and writes meshes for it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use tempfile::TempDir;
 pub(crate) const TETRAHEDRON: &str =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
-/// What a run came to.
+/// The result of a run.
 #[derive(Debug)]
 pub(crate) struct Run {
     pub(crate) code: Option<i32>,
@@ -31,7 +31,7 @@ impl Run {
     }
 }
 
-/// The binary, with a scratch folder as the current one.
+/// The binary, with a scratch folder as the current folder.
 pub(crate) struct Sixfold {
     folder: TempDir,
 }
@@ -53,7 +53,7 @@ impl Sixfold {
         path
     }
 
-    /// A grid of triangles as `name`, with `side` vertices a side.
+    /// Writes a grid of triangles to the file `name`, with `side` vertices per side.
     pub(crate) fn grid(&self, name: &str, side: usize) -> PathBuf {
         let mut text = String::new();
         for i in 0..side * side {
@@ -70,7 +70,7 @@ impl Sixfold {
         self.file(name, &text)
     }
 
-    /// The binary with these arguments, ready to run.
+    /// Returns the command of the binary with these arguments.
     pub(crate) fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_sixfold"));
         command.args(arguments).current_dir(self.folder.path());
@@ -82,7 +82,7 @@ impl Sixfold {
         Run::of(self.command(arguments).output().expect("the binary runs"))
     }
 
-    /// Starts the binary, and waits until it has opened `drafts` files to write.
+    /// Starts the binary, and waits until it has opened `drafts` files for writing.
     pub(crate) fn begun(&self, arguments: &[&str], drafts: usize) -> Child {
         let before = self.names().len();
         let mut command = self.command(arguments);
@@ -95,7 +95,7 @@ impl Sixfold {
         child
     }
 
-    /// Runs the binary, and sends it a signal so long after it has opened its one file to write.
+    /// Runs the binary, and sends it a signal at the time `after` after it has opened its file.
     pub(crate) fn interrupted(&self, arguments: &[&str], signal: &str, after: Duration) -> Run {
         let child = self.begun(arguments, 1);
         sleep(after);
@@ -106,7 +106,7 @@ impl Sixfold {
         run
     }
 
-    /// The names in the folder, sorted.
+    /// Returns the file names in the folder, sorted.
     pub(crate) fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(self.folder.path()).expect("the folder");
         let name = |entry: fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
@@ -116,7 +116,7 @@ impl Sixfold {
     }
 }
 
-/// Sends a signal, by its name, to a program that we have started.
+/// Sends the signal with this name to a program that the test has started.
 pub(crate) fn send(signal: &str, child: &Child) {
     let sent = Command::new("kill")
         .args(["-s", signal, &child.id().to_string()])
@@ -124,12 +124,12 @@ pub(crate) fn send(signal: &str, child: &Child) {
     assert!(sent.expect("kill runs").success());
 }
 
-/// What is in a file of the folder.
+/// Returns the text of a file in the folder.
 pub(crate) fn text(sixfold: &Sixfold, name: &str) -> String {
     fs::read_to_string(sixfold.folder().join(name)).expect("the file")
 }
 
-/// Runs the binary, which must come to a good end.
+/// Runs the binary and asserts success.
 pub(crate) fn done(sixfold: &Sixfold, arguments: &[&str]) -> Run {
     let run = sixfold.run(arguments);
     assert_eq!(run.code, Some(0), "{arguments:?}: {run:?}");

@@ -1,4 +1,5 @@
-//! `sixfold subdivide`, `smooth`, `dual` and `triangulate`: results that can be counted, and refusals.
+//! Tests of `sixfold subdivide`, `smooth`, `dual` and `triangulate`: counts of the results,
+//! refusals.
 
 use crate::bad_input::refused;
 use crate::obj::Obj;
@@ -11,7 +12,7 @@ const TRIANGLES: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"
 /// Three faces at one edge.
 const BOOK: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
 
-/// What `sixfold subdivide` with these arguments writes.
+/// Runs `sixfold subdivide` with these arguments and returns the mesh that it writes.
 fn subdivided(sixfold: &Sixfold, arguments: &[&str]) -> Obj {
     done(
         sixfold,
@@ -47,7 +48,7 @@ fn results_have_the_size_of_the_closed_forms() {
         &["subdivide", "--levels", "2", "t.obj", "-o", "out.obj"],
     );
     assert!(
-        run.stdout.contains("to make: 50 vertices, 48 faces"),
+        run.stdout.contains("result: 50 vertices, 48 faces"),
         "{run:?}"
     );
     assert_eq!(run.stderr, "", "progress is for terminals");
@@ -91,7 +92,7 @@ fn creases_of_files_and_tags_stay_sharp() {
 fn limits_lie_on_the_surface() {
     let sixfold = Sixfold::new();
     sixfold.file("square.obj", SQUARE);
-    // The boundary of a square is a curve that later levels come closer to.
+    // The boundary curve of a square: later levels are closer to it.
     let arguments = [
         "--levels",
         "2",
@@ -136,14 +137,14 @@ fn a_part_of_a_mesh_is_refined_without_gaps() {
     let sixfold = Sixfold::new();
     sixfold.file("t.obj", TETRAHEDRON);
     sixfold.file("first.txt", "0 # the first\n");
-    // One face in four, its three neighbours halved.
+    // One face is cut into four, and its three neighbours are halved.
     let part = ["--scheme", "midpoint", "--select", "faces:first.txt"];
     let one = subdivided(&sixfold, &[&part[..], &["t.obj"]].concat());
     assert_eq!(one.counts(), [4 + 3, 4 + 3 * 2]);
     let deep = subdivided(&sixfold, &[&part[..], &["--levels", "3", "t.obj"]].concat());
     for obj in [one, deep] {
         assert_eq!(obj.boundary_edges(), 0, "a T-junction is a gap");
-        // A closed surface like a sphere.
+        // A closed surface of genus 0.
         assert_eq!(obj.faces.len(), 2 * obj.positions.len() - 4);
     }
     sixfold.file(
@@ -165,7 +166,7 @@ fn a_part_of_a_mesh_is_refined_without_gaps() {
         ]
     };
     for (what, says) in [
-        ("faces:wrong.txt", "wrong.txt: face f4 is not there"),
+        ("faces:wrong.txt", "wrong.txt: face f4 does not exist"),
         ("faces:words.txt", "words.txt:2"),
         ("faces:missing.txt", "missing.txt"),
         ("box:1,0,0,0,1,1", "comes first"),
@@ -207,7 +208,7 @@ fn threads_and_standard_output_change_nothing() {
 }
 
 #[test]
-fn what_cannot_be_subdivided_is_refused_before_anything_is_written() {
+fn invalid_input_is_refused_before_anything_is_written() {
     let sixfold = Sixfold::new();
     sixfold.file("t.obj", TETRAHEDRON);
     sixfold.file("square.obj", SQUARE);
@@ -216,11 +217,11 @@ fn what_cannot_be_subdivided_is_refused_before_anything_is_written() {
         &format!("{TETRAHEDRON}t crease 2/1/0 0 1 2\n"),
     );
     for (file, line, says) in [
-        ("nobody", "edge 0 9 1", "vertex 9 is not there"),
+        ("nobody", "edge 0 9 1", "vertex 9 does not exist"),
         ("negative", "edge 0 1 -1", "from 0 to inf"),
         ("nan", "corner 0 nan", "from 0 to inf"),
         ("short", "edge 0 1", "edge a b sharpness"),
-        ("word", "crease 0 1 2", "is no entry"),
+        ("word", "crease 0 1 2", "is not an entry"),
     ] {
         sixfold.file(file, &format!("# creases\n{line}\n"));
         let run = refused(
@@ -244,7 +245,7 @@ fn what_cannot_be_subdivided_is_refused_before_anything_is_written() {
             2,
             "would overwrite the crease file",
         ),
-        (&["t.obj", "--limit", "x.obj"], 2, "two places"),
+        (&["t.obj", "--limit", "x.obj"], 2, "two different files"),
         (&["t.obj", "--levels", "40"], 3, "take fewer levels"),
         (&["t.obj", "--levels", "-1"], 2, "from 0 to 1000"),
         (&["t.obj", "--levels", "4000000000"], 2, "from 0 to 1000"),
@@ -305,7 +306,7 @@ fn what_cannot_be_subdivided_is_refused_before_anything_is_written() {
 }
 
 #[test]
-fn a_mesh_is_refused_by_name_where_the_structure_or_the_scheme_cannot_have_it() {
+fn a_mesh_that_the_structure_or_the_scheme_does_not_support_is_refused() {
     let sixfold = Sixfold::new();
     sixfold.file("book.obj", BOOK);
     sixfold.file("square.obj", SQUARE);
@@ -351,14 +352,14 @@ fn a_mesh_is_refused_by_name_where_the_structure_or_the_scheme_cannot_have_it() 
         ),
         (&["huge.obj"], 2, "scale the mesh down"),
     ] {
-        // What is to be made may have been said before.
+        // The expected size may have been printed before the refusal.
         let run = sixfold.run(&[&["subdivide", "-o", "x.obj"], arguments].concat());
         assert_eq!(run.code, Some(code), "{arguments:?}: {run:?}");
         assert_eq!(run.stderr.lines().count(), 1, "{run:?}");
         assert!(run.stderr.contains(says), "{arguments:?}: {run:?}");
         assert_eq!(sixfold.names(), ["book.obj", "huge.obj", "square.obj"]);
     }
-    // Others hold it, and an edge of three faces stays as a crease does.
+    // Other structures hold it; an edge with three faces is treated as a crease.
     let obj = subdivided(&sixfold, &["--backend", "face-vertex", "book.obj"]);
     assert_eq!(obj.counts(), [5 + 7 + 3, 9]);
     assert!(obj.positions.contains(&[0.5, 0.0, 0.0]));
@@ -371,13 +372,13 @@ fn boundary_none_leaves_out_the_faces_at_the_boundary() {
     let loops = ["--scheme", "loop", "grid.obj", "--boundary"];
     let kept = subdivided(&sixfold, &[&loops[..], &["edge-only"]].concat());
     let fewer = subdivided(&sixfold, &[&loops[..], &["none"]].concat());
-    // Of the 32 triangles 8 have no corner on the boundary: the two of each inner cell.
+    // Of the 32 triangles, 8 have no corner on the boundary: the two of each inner cell.
     assert_eq!(kept.faces.len(), 32 * 4);
     assert_eq!(fewer.faces.len(), 8 * 4);
 }
 
 #[test]
-fn other_shapes_and_faces_are_counted_and_refused() {
+fn smooth_dual_and_triangulate_write_meshes_or_refuse() {
     let sixfold = Sixfold::new();
     sixfold.file("t.obj", TETRAHEDRON);
     sixfold.file("square.obj", SQUARE);
@@ -404,7 +405,7 @@ fn other_shapes_and_faces_are_counted_and_refused() {
     }
     let run = done(&sixfold, &["triangulate", "tagged.obj", "-o", "-"]);
     assert_eq!(Obj::of(&run.stdout).counts(), [4, 2]);
-    assert!(run.stderr.contains("not carried over"), "{run:?}");
+    assert!(run.stderr.contains("not kept"), "{run:?}");
     for (arguments, code, says) in [
         (&["smooth", "book.obj"][..], 3, "another --backend"),
         (

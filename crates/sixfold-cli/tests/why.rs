@@ -1,10 +1,10 @@
-//! `sixfold why`: counts that can be worked out by hand, times beside them, and what is refused.
+//! Tests of `sixfold why`: counts that can be computed by hand, times, and refusals.
 
 use serde_json::Value;
 
 use crate::run::{Sixfold, TETRAHEDRON, done, text};
 
-/// Two triangles along an edge, so that there is a boundary.
+/// Two triangles that share an edge, so that there is a boundary.
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
 
 fn row<'a>(why: &'a Value, backend: &str, relation: &str) -> &'a Value {
@@ -14,7 +14,7 @@ fn row<'a>(why: &'a Value, backend: &str, relation: &str) -> &'a Value {
 }
 
 #[test]
-fn counts_are_those_worked_out_by_hand() {
+fn counts_equal_those_computed_by_hand() {
     let sixfold = Sixfold::new();
     sixfold.file("square.obj", SQUARE);
     let arguments = ["why", "square.obj", "--counts-only", "--json", "-"];
@@ -25,7 +25,7 @@ fn counts_are_those_worked_out_by_hand() {
     assert_eq!(why["environment"], Value::Null);
     assert_eq!(why["model"]["line_bytes"], 64);
 
-    // Three corners of four bytes, all in one line.
+    // Three corners of 4 bytes, all in one cache line.
     let corners = row(&why, "indexed-face-set", "face_vertices");
     for (field, value) in [
         ("reads", 3.0),
@@ -35,7 +35,7 @@ fn counts_are_those_worked_out_by_hand() {
     ] {
         assert_eq!(corners[field], value, "{field}");
     }
-    // Five edges of two halves, 24 bytes each; one of them lies in two lines.
+    // Five edges of two halves, 24 bytes each; one of them lies in two cache lines.
     let ends = row(&why, "half-edge", "edge_vertices");
     for (field, value) in [
         ("reads", 2.0),
@@ -47,7 +47,7 @@ fn counts_are_those_worked_out_by_hand() {
     }
     assert_eq!(ends["tables"][0]["table"], "halves");
     assert_eq!(ends["timed"], Value::Null);
-    // An edge of a soup is its ends.
+    // The handle of an edge of a polygon soup contains its ends.
     assert_eq!(row(&why, "polygon-soup", "edge_vertices")["reads"], 0.0);
 }
 
@@ -88,13 +88,13 @@ fn times_come_with_what_bounds_them() {
         assert_eq!(timed["bound"], expected, "{row}");
         assert_eq!(timed["agreement"], "same");
     }
-    // Relations that are named are told in sentences.
+    // Relations that are named are described in sentences.
     assert!(run.stdout.contains("- half-edge: "), "{}", run.stdout);
     assert!(run.stdout.contains("GB/s"), "{}", run.stdout);
 }
 
 #[test]
-fn what_cannot_be_is_refused_with_advice() {
+fn invalid_input_is_refused_with_a_hint() {
     let sixfold = Sixfold::new();
     sixfold.file("ok.obj", TETRAHEDRON);
     let book = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
@@ -136,7 +136,7 @@ fn what_cannot_be_is_refused_with_advice() {
         assert!(run.stderr.contains(says), "{says}: {run:?}");
         assert_eq!(run.stdout, "");
     }
-    // Who cannot hold it is named, and the others are counted.
+    // Structures that cannot hold the mesh are named; the others are counted.
     let run = done(&sixfold, &["why", "book.obj", "--counts-only"]);
     assert!(run.stdout.contains("half-edge         refuses"), "{run:?}");
     let rows = |name: &str| {

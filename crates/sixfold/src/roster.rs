@@ -1,23 +1,24 @@
-//! The one list of all representations.
+//! The list of all structures.
 
-use mesh_core::{
+use sixfold_core::{
     BuildError, Capabilities, Edit, MeshEdit, PolygonMesh, QueryCost, Refine, Representation,
 };
 
-/// Work that is the same for every representation, chosen at run time.
+/// A generic function for any structure that is selected at run time.
 ///
-/// One call picks the type; everything inside is static dispatch.
+/// One call selects the type; everything inside uses static dispatch.
 pub trait Visitor {
-    /// What the work yields.
+    /// Result of a visit.
     type Output;
 
-    /// Does the work on `M`.
+    /// Visits the structure `M`.
     fn visit<M: Representation + 'static>(&mut self) -> Self::Output;
 }
 
-/// Calls a macro body once for each representation: `for_each_representation!(M => { … })`.
+/// Repeats a macro body for each structure: `for_each_representation!(M => { … })`.
 ///
-/// The body is compiled anew with `M` as each type in turn. A seventh structure is one line here.
+/// The body is compiled once for each structure, with `M` as an alias of its type. A seventh
+/// structure is added with one line here.
 #[macro_export]
 macro_rules! for_each_representation {
     ($mesh:ident => $body:block) => {
@@ -38,16 +39,17 @@ macro_rules! for_each_representation {
     };
 }
 
-/// Work that is the same for every structure that refines its own tables, chosen at run time.
+/// A generic function for any structure that refines its own tables and is selected at run time.
 pub trait RefineVisitor {
-    /// What the work yields.
+    /// Result of a visit.
     type Output;
 
-    /// Does the work on `M`.
+    /// Visits the structure `M`.
     fn visit<M: Refine + 'static>(&mut self) -> Self::Output;
 }
 
-/// As [`for_each_representation!`](crate::for_each_representation), for those that refine their own tables.
+/// Repeats a macro body for each structure that refines its own tables, like
+/// [`for_each_representation!`](crate::for_each_representation).
 #[macro_export]
 macro_rules! for_each_refinable {
     ($mesh:ident => $body:block) => {
@@ -60,17 +62,18 @@ macro_rules! for_each_refinable {
     };
 }
 
-/// Work that is the same for every structure that can be edited, chosen at run time.
+/// A generic function for any structure that can be edited and is selected at run time.
 pub trait EditVisitor {
-    /// What the work yields.
+    /// Result of a visit.
     type Output;
 
-    /// Does the work on `M`.
+    /// Visits the structure `M`.
     fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output;
 }
 
-/// As [`for_each_representation!`](crate::for_each_representation), for those that can be edited: all six,
-/// as [`Editable`](mesh_core::Editable) meshes.
+/// Repeats a macro body for each structure that can be edited, like
+/// [`for_each_representation!`](crate::for_each_representation). These are all six structures, as
+/// [`Editable`](sixfold_core::Editable) meshes.
 #[macro_export]
 macro_rules! for_each_editable {
     ($mesh:ident => $body:block) => {
@@ -85,21 +88,22 @@ macro_rules! for_each_editable {
     };
 }
 
-/// What the roster knows of one representation without building it.
+/// Properties of one structure that do not depend on a mesh.
 #[derive(Clone, Copy, Debug)]
 pub struct BackendInfo {
-    /// What users call it.
+    /// Name for users.
     pub name: &'static str,
-    /// What it can hold.
+    /// The meshes that it can hold.
     pub capabilities: Capabilities,
-    /// How much of the mesh each relation looks at.
+    /// How much of the mesh each relation reads.
     pub costs: [QueryCost; 9],
-    /// How much of it each edit looks at, in the order of [`Edit::ALL`]; `None` where there is none.
+    /// How much of the mesh each edit reads, in the order of [`Edit::ALL`]; `None` if the edit is
+    /// not available.
     pub edits: [Option<QueryCost>; Edit::ALL.len()],
 }
 
 impl BackendInfo {
-    /// The row of `M`, of whose edits nothing is known.
+    /// Returns the properties of `M`, without edits.
     pub const fn of<M: Representation>() -> Self {
         Self {
             name: M::NAME,
@@ -109,7 +113,7 @@ impl BackendInfo {
         }
     }
 
-    /// The row of `M`, which can be edited.
+    /// Returns the properties of `M`, including its edits.
     pub const fn of_editable<M: Representation + MeshEdit>() -> Self {
         Self {
             edits: M::EDITS,
@@ -117,31 +121,31 @@ impl BackendInfo {
         }
     }
 
-    /// Whether the structure holds `polygons`, without building it.
+    /// Checks whether the structure can hold `polygons`, without building it.
     ///
     /// # Errors
     ///
-    /// The refusal that building would give.
+    /// Returns the error that building the structure would return.
     pub fn verdict(&self, polygons: &PolygonMesh) -> Result<(), BuildError> {
         self.capabilities.check(polygons)
     }
 }
 
-/// What there is to know of every representation, in the order in which tables show them.
+/// Returns the properties of all structures, in the order in which tables show them.
 pub fn roster() -> Vec<BackendInfo> {
     let mut rows = Vec::new();
     for_each_editable!(M => { rows.push(BackendInfo::of_editable::<M>()); });
     rows
 }
 
-/// Does the work of `visitor` on every representation, in the order of [`roster`].
+/// Calls `visitor` for every structure, in the order of [`roster`].
 pub fn visit_all<V: Visitor>(visitor: &mut V) -> Vec<V::Output> {
     let mut outputs = Vec::new();
     for_each_representation!(M => { outputs.push(visitor.visit::<M>()); });
     outputs
 }
 
-/// Does the work of `visitor` on the representation called `name`; `None` if there is none.
+/// Calls `visitor` for the structure called `name`; `None` if the name is unknown.
 pub fn visit<V: Visitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     for_each_representation!(M => {
         if name == M::NAME {
@@ -151,7 +155,7 @@ pub fn visit<V: Visitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     None
 }
 
-/// Does the work of `visitor` on the representation called `name`; `None` if there is none, or it
+/// Calls `visitor` for the structure called `name`; `None` if the name is unknown or the structure
 /// does not refine its own tables.
 pub fn visit_refinable<V: RefineVisitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     for_each_refinable!(M => {
@@ -162,7 +166,7 @@ pub fn visit_refinable<V: RefineVisitor>(name: &str, visitor: &mut V) -> Option<
     None
 }
 
-/// Does the work of `visitor` on the representation called `name`; `None` if there is none, or it
+/// Calls `visitor` for the structure called `name`; `None` if the name is unknown or the structure
 /// cannot be edited.
 pub fn visit_editable<V: EditVisitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     for_each_editable!(M => {

@@ -1,33 +1,34 @@
-//! Which scheme runs on which structure, as data.
+//! A table of which subdivision scheme runs on which structure.
 
-use mesh_core::Refine;
 use serde::Serialize;
-use subdivision::{Method, Scheme};
+use sixfold_core::Refine;
+use sixfold_subdivision::{Method, Scheme};
 
 use crate::roster::{RefineVisitor, roster, visit_refinable};
 
-/// What one structure can do with one scheme.
+/// How one structure supports one scheme.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Support {
-    /// The structure, by name.
+    /// Name of the structure.
     pub backend: &'static str,
     /// The scheme.
     pub scheme: Scheme,
-    /// The ways to run it; [`Method::Native`] where the structure can split its own tables so.
+    /// Available methods; [`Method::Native`] is one of them if the structure can split its own
+    /// tables as the scheme requires.
     pub methods: Vec<Method>,
-    /// Whether the structure holds what a step makes. Where it does not, the first step can be taken,
-    /// to polygons, and a second would have to hold them.
+    /// Whether the structure can hold the result of a step. If not, one step can be made, with
+    /// polygons as the result. A second step would have to hold these polygons.
     pub holds_result: bool,
 }
 
 impl Support {
-    /// The method that is used where none is asked for: the last of those there are.
+    /// Returns the default method: the last available one.
     pub fn best(&self) -> Option<Method> {
         self.methods.last().copied()
     }
 }
 
-/// What every structure can do with `scheme`, in the order of the [`roster`].
+/// Returns how every structure supports `scheme`, in the order of the [`roster`].
 pub fn support(scheme: Scheme) -> Vec<Support> {
     let kind = scheme.kind();
     let rows = roster().into_iter().map(|backend| {
@@ -49,7 +50,7 @@ pub fn support(scheme: Scheme) -> Vec<Support> {
     rows.collect()
 }
 
-/// Whether a structure can split its own tables as a scheme asks.
+/// A visitor that returns whether a structure can split its own tables as the scheme requires.
 struct Splits(Scheme);
 
 impl RefineVisitor for Splits {

@@ -1,25 +1,26 @@
-//! Sixfold's own column beside the established libraries: arguments and output as theirs.
+//! Runs Sixfold for a comparison with other libraries, with the same arguments and output as their
+//! programs.
 //!
 //! `peer --mesh FILE.obj [--op NAME …] [--reps N] [--budget SECONDS] [--backend NAME]` prints one
-//! JSON object a line. Every operation is warmed up and then measured `N` times, alone; the code is
-//! that of a study. A short one is repeated until 200 µs have passed between two readings of the clock,
-//! and what changes the mesh works on a copy that is put back while the clock stands still. Freed pages
-//! stay with the process. Processor time is that of the only thread.
+//! JSON object per line. Every operation is warmed up and then measured `N` times, alone, by the
+//! code of a study. A short operation is repeated until 200 µs have passed between two readings of
+//! the clock. An operation that changes the mesh works on a copy that is restored while the clock
+//! is stopped. Freed pages stay with the process. Processor time is that of the only thread.
 //!
-//! Subdivision is called `catmull_clark_2`, `loop_1`, `sqrt3_1` and so on, the scheme and the steps;
-//! `--way` is gather, scatter, native_fresh or native. With `--threads` beyond 1 all times of it are
-//! wall times.
+//! The name of a subdivision is the scheme and the number of steps: `catmull_clark_2`, `loop_1`,
+//! `sqrt3_1`. `--way` is gather, scatter, native_fresh or native. With `--threads` above 1 all
+//! times of a subdivision are wall times.
 
 use std::path::Path;
 use std::process::ExitCode;
 
 use serde_json::json;
-use sixfold::mesh_io::read_obj;
+use sixfold::io::read_obj;
 use sixfold::subdivision::{Boundary, Scheme};
 use sixfold::{Creases, PolygonMesh};
-use study::{MachineClock, Operation, Policy, Refining, Solo, Time, Way, pages, timed};
+use sixfold_study::{MachineClock, Operation, Policy, Refining, Solo, Time, Way, pages, timed};
 
-/// A sample is repeated until so much time has passed.
+/// A sample is repeated until this much time has passed.
 const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
 
 struct Arguments {
@@ -54,15 +55,15 @@ fn arguments() -> Result<Arguments, String> {
     };
     let mut words = std::env::args().skip(1).peekable();
     while let Some(word) = words.next() {
-        let mut value = || words.next().ok_or(format!("{word} wants a value"));
-        let number = |text: String| text.parse().map_err(|_| format!("{text} is no number"));
+        let mut value = || words.next().ok_or(format!("{word} needs a value"));
+        let number = |text: String| text.parse().map_err(|_| format!("{text} is not a number"));
         match word.as_str() {
             "--mesh" => found.mesh = value()?,
             "--backend" => found.backend = value()?,
             "--way" => {
                 let name = value()?;
                 let way = Way::ALL.into_iter().find(|way| way.name() == name);
-                found.way = way.ok_or(format!("{name} is no way to subdivide"))?;
+                found.way = way.ok_or(format!("{name} is not a way to subdivide"))?;
             }
             "--threads" => found.threads = number(value()?)? as usize,
             "--reps" => found.reps = number(value()?)? as usize,
@@ -101,7 +102,8 @@ fn run(arguments: &Arguments) -> Result<(), String> {
         );
     }
     for operation in Operation::ALL {
-        // Subdivisions are run below, and they and edits here only where they are named.
+        // Operations that make or edit a mesh are run only if they are named; subdivisions by
+        // levels are run below.
         let unasked = operation.makes_a_mesh() && arguments.operations.is_empty();
         if unasked || !wanted(operation.name()) {
             continue;
@@ -122,7 +124,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     Ok(())
 }
 
-/// The scheme and the steps of `catmull_clark_2`.
+/// Returns the scheme and the number of steps of `catmull_clark_2`.
 fn subdivision(name: &str) -> Option<(Scheme, u32)> {
     let (scheme, levels) = name.rsplit_once('_')?;
     let scheme = Scheme::named(&scheme.replace('_', "-"))?;
@@ -130,7 +132,7 @@ fn subdivision(name: &str) -> Option<(Scheme, u32)> {
     (1..=16).contains(&levels).then_some((scheme, levels))
 }
 
-/// A subdivision, on threads of its own.
+/// Measures a subdivision on its own thread pool.
 fn refined(
     arguments: &Arguments,
     polygons: &PolygonMesh,
@@ -139,16 +141,16 @@ fn refined(
     levels: u32,
 ) -> Result<Row, String> {
     let mut job = Refining::new(scheme, arguments.way, levels);
-    // What the other libraries do.
+    // The boundary rule of the other libraries.
     job.subdivision.boundary = Boundary::EdgeOnly;
     let refiner = job.on(&arguments.backend, polygons, &Creases::default());
-    let refiner = refiner.ok_or(format!("{name} does not run this way here"))?;
+    let refiner = refiner.ok_or(format!("{name} cannot run this way on this backend"))?;
     let mut refiner = refiner.map_err(|e| e.to_string())?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads);
     let pool = pool.build().map_err(|e| e.to_string())?;
     pool.install(|| {
         refiner.run().map_err(|e| e.to_string())?;
-        // On a thread of the pool: alone there, its clock is that of all the work.
+        // With one thread, the clock of the pool's thread measures all the work.
         let clock = MachineClock::start();
         let mut runs = 1;
         Ok(Row::of(arguments, name, || {
@@ -166,7 +168,7 @@ fn refined(
     })
 }
 
-/// What the runs of one operation came to.
+/// The times and the result of one operation.
 struct Row {
     operation: String,
     wall: Vec<f64>,
@@ -176,7 +178,8 @@ struct Row {
 }
 
 impl Row {
-    /// Runs it once to warm up, and then as often as it is asked for and the budget allows.
+    /// Runs the operation once to warm up, then as often as the arguments say and the budget
+    /// allows.
     fn of(
         arguments: &Arguments,
         operation: &str,

@@ -1,12 +1,13 @@
-//! The same study again and again: how often each winner is named, and whether intervals hold what
-//! they promise.
+//! Repeats one study: how often each backend is best, and how often the intervals contain the
+//! median.
 //!
 //! ```sh
-//! cargo run --release -p study --example repeatability_report -- reports/repeatability 20 45
+//! cargo run --release -p sixfold-study --example repeatability_report -- \
+//!     reports/repeatability 20 45
 //! ```
 //!
-//! Arguments: the folder to write to, how many studies, and the budget of each in seconds. Studies a
-//! torus of 100,352 triangles, shuffled, with all structures and all nine relations.
+//! Arguments: the output folder, the number of studies, and the budget of each in seconds. The mesh
+//! is a shuffled torus of 100,352 triangles, with all structures and all nine relations.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -16,9 +17,11 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use sixfold::{Relation, shapes};
-use study::{Environment, Operation, Report, ResultRow, Settings, Specimen, Standing, study};
+use sixfold_study::{
+    Environment, Operation, Report, ResultRow, Settings, Specimen, Standing, study,
+};
 
-/// Above this the order of two backends has to be the same, again and again.
+/// Ratio of two backends above which their order should be the same in all studies.
 const GAP: f64 = 1.1;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -58,7 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The report: winners, orders of pairs, coverage, noise.
+/// Returns the report: best backends, orders of pairs, coverage, noise.
 fn told(reports: &[Report], environment: &Environment, seconds: u64, each: f64) -> String {
     let runs = reports.len();
     let Environment {
@@ -69,8 +72,8 @@ fn told(reports: &[Report], environment: &Environment, seconds: u64, each: f64) 
         ..
     } = environment;
     let mut text = format!(
-        "# The same study again and again\n\n```sh\n\
-         cargo run --release -p study --example repeatability_report -- reports/repeatability {runs} {seconds}\n\
+        "# Repeated studies\n\n```sh\n\
+         cargo run --release -p sixfold-study --example repeatability_report -- reports/repeatability {runs} {seconds}\n\
          ```\n\n{}, {} cores, load {:.1} at the start; {rustc}; processor time of the thread.\n\n",
         cpu_model.as_deref().unwrap_or("unknown processor"),
         cores.unwrap_or(0),
@@ -79,7 +82,7 @@ fn told(reports: &[Report], environment: &Environment, seconds: u64, each: f64) 
     let _ = writeln!(
         text,
         "{runs} studies, one after the other, of a shuffled torus of 100,352 triangles: all structures, all nine\n\
-         relations, a budget of {seconds} s and another seed each; {each:.0} s from beginning to end, on average.\n"
+         relations, a budget of {seconds} s and a different seed each; each took {each:.0} s on average.\n"
     );
     text += &winners(reports);
     text += &orders(reports);
@@ -88,10 +91,10 @@ fn told(reports: &[Report], environment: &Environment, seconds: u64, each: f64) 
     text
 }
 
-/// How often who was named.
+/// Returns how often each backend was best or tied.
 fn winners(reports: &[Report]) -> String {
     let mut text = String::from(
-        "## Who was named\n\n| operation | named best, or tied with the best, in so many studies |\n|---|---|\n",
+        "## Best backends\n\n| operation | number of studies in which a backend is best or tied with the best |\n|---|---|\n",
     );
     for operation in Relation::ALL.map(Operation::Relation) {
         let mut named: BTreeMap<String, [usize; 2]> = BTreeMap::new();
@@ -117,7 +120,7 @@ fn winners(reports: &[Report]) -> String {
     text + "\n"
 }
 
-/// The times of one backend in one operation, study by study.
+/// Returns the times of one backend in one operation, one per study.
 fn series(reports: &[Report], operation: Operation, backend: &str) -> Vec<f64> {
     let of = |report: &Report| {
         let row = report.rows(operation).find(|row| row.backend == backend)?;
@@ -126,7 +129,7 @@ fn series(reports: &[Report], operation: Operation, backend: &str) -> Vec<f64> {
     reports.iter().filter_map(of).collect()
 }
 
-/// Whether pairs that differ by more than a tenth are in one order in all studies.
+/// Returns whether pairs that differ by more than 10 % have the same order in all studies.
 fn orders(reports: &[Report]) -> String {
     let (mut pairs, mut apart, mut steady) = (0, 0, 0);
     let mut unsteady = String::new();
@@ -169,26 +172,26 @@ fn orders(reports: &[Report]) -> String {
         }
     }
     let mut text = format!(
-        "## Whether the order is the same\n\nOf {pairs} pairs of backends, {apart} differ by more than {:.0} % in the median of all studies; {steady} of\n\
-         these are in the same order in 19 of 20 studies or more.\n\n",
+        "## Order of pairs\n\nOf {pairs} pairs of backends, {apart} differ by more than {:.0} % in the median of all studies. {steady} of\n\
+         these have the same order in 19 of 20 studies or more.\n\n",
         100.0 * (GAP - 1.0)
     );
     if !unsteady.is_empty() {
         text +=
-            "The others:\n\n| operation | pair | apart | in one order in |\n|---|---|---|---|\n";
+            "The others:\n\n| operation | pair | difference | same order in |\n|---|---|---|---|\n";
         text += &unsteady;
         text.push('\n');
     }
     text
 }
 
-/// How often the interval of one study holds the median of all.
+/// Returns how often the interval of one study contains the median of all studies.
 fn coverage(reports: &[Report]) -> String {
     let mut text = String::from(
-        "## What the intervals hold\n\nThe share of 95 % intervals that hold the median over all studies, and how wide they are (from one end to\n\
-         the other, by the median; the median of all). Nanoseconds drift with the machine from study to study, which\n\
-         no interval within one study can know; ratios drift less.\n\n\
-         | interval of | hold it | of | width |\n|---|---|---|---|\n",
+        "## Coverage of the intervals\n\nThe share of 95 % intervals that contain the median over all studies, and their width (upper minus lower end,\n\
+         divided by the median of the study; the median over all intervals). Nanoseconds drift with the machine from\n\
+         study to study, which an interval within one study cannot include; ratios drift less.\n\n\
+         | interval of | contain it | intervals | width |\n|---|---|---|---|\n",
     );
     let of_time = |row: &ResultRow| Some([row.ci_low_ns?, row.median_ns?, row.ci_high_ns?]);
     let of_ratio =
@@ -200,7 +203,7 @@ fn coverage(reports: &[Report]) -> String {
             let (mut held, mut all, mut widths) = (0, 0, Vec::new());
             for operation in Relation::ALL.map(Operation::Relation) {
                 let mut rows: BTreeMap<&str, Vec<[f64; 3]>> = BTreeMap::new();
-                // Where another is best, the ratio is another.
+                // Ratios are comparable only between studies with the same best backend.
                 let best = |report: &Report| {
                     let best = report
                         .rows(operation)
@@ -250,7 +253,7 @@ fn coverage(reports: &[Report]) -> String {
         let _ = writeln!(
             text,
             "\nThe two columns of the backend that is entered twice differ by {:.1} % (the median over the studies of the\n\
-             median over the relations), at most {:.1} %.",
+             median over the relations), at most by {:.1} %.",
             100.0 * (median(&noises) - 1.0),
             100.0 * (worst - 1.0)
         );
@@ -258,7 +261,8 @@ fn coverage(reports: &[Report]) -> String {
     text
 }
 
-/// How far a figure is from study to study, which no interval within a study can know.
+/// Returns how far a figure varies between studies, which an interval within one study cannot
+/// include.
 fn drift(reports: &[Report]) -> String {
     let ratios = |operation: Operation, backend: &str| -> Vec<f64> {
         let rows = reports.iter().filter_map(|report| {
@@ -268,8 +272,8 @@ fn drift(reports: &[Report]) -> String {
         rows.collect()
     };
     let mut text = String::from(
-        "\n## From study to study\n\nHow far the figures of one backend in one operation are spread over the studies: standard deviation by mean.\n\n\
-         | figure | median of all | nine of ten are below | the widest |\n|---|---|---|---|\n",
+        "\n## Variation between studies\n\nThe standard deviation over the studies of a figure of one backend in one operation, divided by the mean.\n\n\
+         | figure | median of all | 90 % are below | largest |\n|---|---|---|---|\n",
     );
     type Of<'a> = &'a dyn Fn(Operation, &str) -> Vec<f64>;
     let times = |operation: Operation, backend: &str| series(reports, operation, backend);
@@ -298,7 +302,7 @@ fn drift(reports: &[Report]) -> String {
     text
 }
 
-/// The standard deviation by the mean.
+/// Returns the standard deviation divided by the mean.
 fn spread(values: &[f64]) -> f64 {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;

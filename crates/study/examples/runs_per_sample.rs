@@ -1,18 +1,19 @@
-//! Whether the time of an operation that changes the mesh depends on how many runs make a sample.
+//! Checks whether the time of an operation that changes the mesh depends on the number of runs in a
+//! sample.
 //!
 //! ```sh
-//! cargo run --release -p study --example runs_per_sample -- 21
+//! cargo run --release -p sixfold-study --example runs_per_sample -- 21
 //! ```
 //!
-//! Argument: how many rounds. In each, every operation that changes the mesh, and the mix of a workload
-//! with edits, is run in samples of 1 and of 50 runs. Printed are the medians of the ratios; exit code 1 if
-//! one is beyond 5 %.
+//! Argument: the number of rounds. In each round, every operation that changes the mesh, and the
+//! mix of a workload with edits, is run in samples of 1 and of 50 runs. The program prints the
+//! medians of the ratios; the exit code is 1 if one differs from 1 by more than 5 %.
 
 use std::process::ExitCode;
 
 use sixfold::{Facts, PolygonMesh, shapes};
-use study::{Backend, Clock, MachineClock, Operation, Policy, Series, pages};
-use workload::{Access, Draw, Job, Route, Script, built_in, set_up};
+use sixfold_study::{Backend, Clock, MachineClock, Operation, Policy, Series, pages};
+use sixfold_workload::{Access, Draw, Job, Route, Script, built_in, set_up};
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
 const OPERATIONS: [&str; 8] = [
@@ -45,14 +46,15 @@ fn main() -> ExitCode {
             }
         }
     }
-    println!("farthest from 1: {worst:.3}");
+    println!("largest ratio or reciprocal: {worst:.3}");
     match worst <= 1.05 {
         true => ExitCode::SUCCESS,
         false => ExitCode::FAILURE,
     }
 }
 
-/// For each operation that the structure does: the time by samples of 1 run, by that by samples of 50.
+/// Returns, for each operation that the structure can do, the time in samples of 1 run divided by
+/// the time in samples of 50 runs.
 fn operations(
     structure: &str,
     polygons: &PolygonMesh,
@@ -84,16 +86,16 @@ fn operations(
     lines
 }
 
-/// The same for the edits of a workload, on which `sixfold pick` works.
+/// Returns the same ratio for the edits of a workload, as `sixfold pick` runs them.
 fn mix(structure: &str, polygons: &PolygonMesh, rounds: usize, clock: &dyn Clock) -> (String, f64) {
     let name = "remeshing";
-    let workload = built_in(name).expect("it is built in");
+    let workload = built_in(name).expect("a built-in workload");
     let script = Script::of(&workload, &polygons.counts(Facts::of(polygons).edges));
     let route = Route::of(Access::Patches, polygons, 1);
     let draw = Draw::of(polygons, 1);
     let set_up = set_up(structure, polygons, &draw, &script, &route);
     let Some(Ok(mut mixer)) = set_up else {
-        panic!("{structure} can be edited");
+        panic!("{structure} cannot be edited");
     };
     let mut time = |runs| {
         mixer.run(0, 1, 1, clock);

@@ -1,4 +1,4 @@
-//! Whether all backends did the same work.
+//! Checks by checksum that all backends did the same work.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -6,18 +6,20 @@ use sixfold::{Point, PolygonMesh};
 
 use crate::measure::Entry;
 use crate::report::Agreement;
-use workload::Clock;
-use workload::Operation;
-use workload::field_sum;
-use workload::{Job, Outcome, Series, Subject};
+use sixfold_workload::Clock;
+use sixfold_workload::Operation;
+use sixfold_workload::field_sum;
+use sixfold_workload::{Job, Outcome, Series, Subject};
 
-/// How far sums of `f32` may differ by the order of adding, relative to their size.
+/// Largest relative difference of two `f32` sums that add the same terms in different orders.
 const TOLERANCE: f64 = 1e-4;
 
-/// Compares the checksum of every entry with that of a backend of ours which keeps the mesh as it is.
+/// Compares the checksum of every entry with that of a reference: a backend of Sixfold that merges
+/// no vertices.
 ///
-/// Where one of the two has a sample, the other runs the same, untimed: the smaller of two samples,
-/// and never the whole of what is sampled for its cost. Nothing more is run after `stop`.
+/// If the jobs of the two differ, the smaller one also runs on the other backend, untimed. A full
+/// run counts as larger than any sample, so a sampled operation is never run in full. Nothing more
+/// is run after `stop` is set.
 pub(crate) fn judge(
     entries: &[Entry],
     subjects: &mut [Box<dyn Subject + '_>],
@@ -40,7 +42,7 @@ pub(crate) fn judge(
                 && other.outcome.is_some()
                 && judges(subjects, other.subject)
         });
-        // Whoever went through all of it comes first, for a sample costs it little.
+        // Full runs come first: a sample costs these backends little.
         let mut others: Vec<&Entry> = others.collect();
         others.sort_by_key(|other| other.job.sample.is_some());
         let Some(other) = others.first() else {
@@ -61,7 +63,7 @@ pub(crate) fn judge(
         };
         let operation = entry.job.operation;
         if agree(operation, outcome.checksum, reference.checksum, polygons) {
-            // As many corners in all, maybe, but handed out by fewer vertices.
+            // Merged vertices can give the same checksum from fewer elements.
             match outcome.elements == reference.elements {
                 true => Agreement::Same,
                 false if subjects[entry.subject].is_external() => Agreement::Mismatch,
@@ -79,7 +81,7 @@ pub(crate) fn judge(
     entries.iter().map(verdict).collect()
 }
 
-/// How much of the mesh `job` goes through.
+/// Returns the sample size of `job`; `usize::MAX` for a full run.
 fn size(job: &Job) -> usize {
     job.sample.map_or(usize::MAX, |sample| sample.size)
 }
@@ -88,7 +90,7 @@ fn rerun(subject: &mut Box<dyn Subject + '_>, job: &Job, clock: &dyn Clock) -> O
     subject.run(job, &Series::once(clock).checked()).outcome
 }
 
-/// Whether two checksums tell of the same work.
+/// Returns whether two checksums are of the same work.
 pub(crate) fn agree(operation: Operation, a: f64, b: f64, polygons: &PolygonMesh) -> bool {
     if operation.counts() {
         return a == b;
@@ -98,11 +100,11 @@ pub(crate) fn agree(operation: Operation, a: f64, b: f64, polygons: &PolygonMesh
     if far <= TOLERANCE * size {
         return true;
     }
-    // Sums that cancel leave the noise of their terms, in whichever order they were added.
+    // If the terms of a sum cancel, their rounding errors remain.
     far <= noise(operation, polygons) + TOLERANCE * size
 }
 
-/// How far the checksum may be off where terms cancel; O(corners).
+/// Returns the largest error of the checksum if terms cancel; O(corners).
 fn noise(operation: Operation, polygons: &PolygonMesh) -> f64 {
     match operation {
         Operation::VertexNormal => 12.0 * cancelled_normals(polygons) as f64,
@@ -117,7 +119,7 @@ fn noise(operation: Operation, polygons: &PolygonMesh) -> f64 {
     }
 }
 
-/// Vertices whose face normals cancel, so that the direction of their sum is noise.
+/// Counts the vertices whose face normals cancel, so that the direction of their sum is noise.
 fn cancelled_normals(polygons: &PolygonMesh) -> usize {
     let mut sums = vec![(Point::ZERO, 0.0_f32); polygons.vertex_count()];
     for (_, face) in polygons.faces().iter() {
@@ -143,8 +145,8 @@ mod tests {
     use sixfold::QueryCost;
 
     use super::*;
-    use workload::MachineClock;
-    use workload::{Run, Sample};
+    use sixfold_workload::MachineClock;
+    use sixfold_workload::{Run, Sample};
 
     fn pillow() -> PolygonMesh {
         let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y];
@@ -152,18 +154,18 @@ mod tests {
     }
 
     #[test]
-    fn counts_agree_to_the_last_digit_and_sums_nearly() {
+    fn counts_agree_exactly_and_sums_approximately() {
         let mesh = pillow();
         assert!(!agree(Operation::Boundary, 1e9, 1e9 + 1.0, &mesh));
         assert!(agree(Operation::EdgeLength, 1e9, 1e9 + 1e4, &mesh));
         assert!(!agree(Operation::EdgeLength, 1e9, 1.001e9, &mesh));
     }
 
-    /// A backend that always finds the same, for the judge to compare.
+    /// A backend with a fixed result.
     struct Fixed {
         checksum: f64,
         merged: usize,
-        /// It would not end.
+        /// A full run would not end.
         no_whole: bool,
     }
 
@@ -181,7 +183,7 @@ mod tests {
             1
         }
         fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
-            // A sample finds half as much as the whole.
+            // A sample has half the checksum of a full run.
             assert!(!self.no_whole || job.sample.is_some(), "run in full");
             let part = if job.sample.is_some() { 0.5 } else { 1.0 };
             let outcome = Outcome {
@@ -218,20 +220,20 @@ mod tests {
     }
 
     #[test]
-    fn whoever_found_something_else_is_told_apart() {
+    fn each_kind_of_difference_has_its_agreement() {
         use Agreement::{Merged, Mismatch, Same, Unchecked};
         assert_eq!(judged(&[(8.0, 0, false), (8.0, 0, false)]), [Same, Same]);
         assert_eq!(judged(&[(8.0, 0, false), (9.0, 0, false)]), [Mismatch; 2]);
-        // A sample is held against the same sample, not against the whole.
+        // A sample is compared with the same sample, not with a full run.
         assert_eq!(judged(&[(8.0, 0, true), (8.0, 0, false)]), [Same, Same]);
         assert_eq!(judged(&[(9.0, 0, true), (8.0, 0, false)]), [Mismatch; 2]);
-        // Merging explains a difference, and nothing is judged by a mesh that was merged.
+        // Merging explains a difference, and a merged mesh is never the reference.
         assert_eq!(
             judged(&[(7.0, 2, false), (8.0, 0, false)]),
             [Merged, Unchecked]
         );
         assert_eq!(judged(&[(8.0, 0, false)]), [Unchecked]);
-        // As much found in all, but of fewer elements.
+        // The same checksum from fewer elements.
         assert_eq!(
             judged(&[(8.0, 2, false), (8.0, 0, false), (8.0, 0, false)]),
             [Merged, Same, Same]
@@ -239,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn normals_that_cancel_may_point_anywhere() {
+    fn cancelled_normals_allow_a_larger_difference() {
         assert_eq!(cancelled_normals(&pillow()), 4);
         assert!(agree(Operation::VertexNormal, 0.0, 3.0, &pillow()));
         assert!(!agree(Operation::VertexNormal, 0.0, 60.0, &pillow()));

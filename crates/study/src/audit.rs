@@ -1,16 +1,16 @@
-//! Memory, audited: what the layout says, what the tables hold and what the allocator counted.
+//! The memory audit: layout formula, table sizes and allocator count of each backend.
 //!
-//! Three ways to one number. The formula of a layout knows nothing but the sizes of the mesh; the sum
-//! over the tables knows their capacities; the allocator knows neither, and counts. Where two of them
-//! differ there is a fault in Sixfold: a formula that is wrong, spare room that nobody gave back, or
-//! memory that no table owns up to.
+//! The three numbers are independent and must be equal. The formula of a layout uses only the
+//! element counts of the mesh. The sum over the tables uses their capacities. The allocator counts
+//! the bytes it hands out. If two of them differ, Sixfold has a fault: a wrong formula, spare
+//! capacity that was not released, or memory that no table reports.
 
 use std::io;
 
 use serde::Serialize;
 use serde_with::{KeyValueMap, serde_as};
 use sixfold::{BuildError, Counts, PolygonMesh};
-use workload::{
+use sixfold_workload::{
     AllocationCounter, Backend, Heap, MOST_SCANNED_FACES, NotCounted, Operation, Weighed,
 };
 
@@ -18,21 +18,21 @@ use crate::inspect::{Specimen, per_vertex, unbuilt};
 use crate::report::{BackendReport, MeshReport, SCHEMA, write_json};
 use crate::study::StudyError;
 
-/// Bytes of a word, as the lectures count: an index, or a coordinate.
+/// Bytes of a word (an index or a coordinate), the unit of the lectures.
 const WORD: f64 = 4.0;
 
-/// How often a backend is weighed at most until two weighings in a row are the same.
+/// Largest number of weighings of a backend; two equal ones in a row end it earlier.
 const MOST_WEIGHINGS: usize = 8;
 
 /// The memory of each backend, counted in three ways.
 #[serde_as]
 #[derive(Clone, Debug, Serialize)]
 pub struct Audit {
-    /// The version of the shape.
+    /// Version of the JSON schema.
     pub schema: u32,
-    /// What the mesh is.
+    /// Name and facts of the mesh.
     pub mesh: MeshReport,
-    /// By name, in the order in which they were asked for.
+    /// The backends by name, in the order requested.
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<Audited>,
 }
@@ -40,22 +40,23 @@ pub struct Audit {
 /// The memory of one backend.
 #[derive(Clone, Debug, Serialize)]
 pub struct Audited {
-    /// Whether it holds the mesh; the bytes by its layout, and those of its tables.
+    /// Whether the backend holds the mesh; its layout bytes and table bytes.
     #[serde(flatten)]
     pub backend: BackendReport,
-    /// Words that the layout takes for each vertex of this mesh; `None` if it does not hold the mesh.
+    /// Layout words per vertex of this mesh; `None` if the backend does not hold the mesh.
     pub layout_words_per_vertex: Option<f64>,
-    /// The same for a closed mesh of triangles without end, with 2 faces and 3 edges a vertex.
+    /// Layout words per vertex of a very large closed triangle mesh: 2 faces and 3 edges per
+    /// vertex.
     pub closed_triangles_words_per_vertex: f64,
     /// Bytes that the allocator counted; `None` if the mesh is refused.
     pub counted_bytes: Option<usize>,
-    /// The same for each vertex of the mesh.
+    /// Counted bytes per vertex of the mesh.
     pub counted_bytes_per_vertex: Option<f64>,
-    /// The most bytes at any moment of building; the polygons it is built from are not among them.
+    /// Most bytes in use at any moment of building, without the input polygons.
     pub peak_bytes: Option<usize>,
-    /// The peak by the bytes that are left in the end.
+    /// Peak bytes divided by counted bytes.
     pub peak_to_counted: Option<f64>,
-    /// Whether the three ways come to the same; `None` if the mesh is refused.
+    /// Whether the three numbers are equal; `None` if the mesh is refused.
     pub agrees: Option<bool>,
     /// The bytes that operations allocate; empty if the mesh is refused or they were not counted.
     pub operations: Vec<OperationBytes>,
@@ -78,10 +79,10 @@ pub struct OperationBytes {
     pub scans: bool,
 }
 
-/// Builds each of `backends` from the mesh, one at a time, while `heap` counts.
+/// Builds each of `backends` from the mesh, one at a time, and counts its bytes with `heap`.
 ///
-/// A backend is weighed until two weighings in a row are the same, for other threads may allocate
-/// meanwhile. `weighing` hears which backend is next.
+/// Each backend is weighed until two weighings in a row are equal, because other threads may
+/// allocate at the same time. `weighing` is called with each backend before it is weighed.
 pub fn audit(
     specimen: &Specimen,
     backends: &[Backend],
@@ -102,10 +103,11 @@ pub fn audit(
 }
 
 /// Runs each operation that allocates on each backend of `audit` that holds the mesh, and adds the
-/// bytes that `counter` counts to the audit. `audit` is that of `backends` on `specimen`.
+/// bytes that `counter` counts to the audit. `audit` must be the result for `backends` and
+/// `specimen`.
 ///
-/// A run is repeated until two runs agree on the smallest number of bytes, because other threads may
-/// allocate meanwhile.
+/// A run is repeated until two runs agree on the smallest number of bytes, because other threads
+/// may allocate at the same time.
 pub fn count_allocations(
     audit: &mut Audit,
     specimen: &Specimen,
@@ -141,7 +143,7 @@ pub fn count_allocations(
 }
 
 impl OperationBytes {
-    fn new(operation: Operation, counted: Result<workload::Allocated, NotCounted>) -> Self {
+    fn new(operation: Operation, counted: Result<sixfold_workload::Allocated, NotCounted>) -> Self {
         let scans = counted == Err(NotCounted::Scans);
         let counted = counted.map_err(|not_counted| match not_counted {
             NotCounted::Refused(reason) => reason,
@@ -181,12 +183,12 @@ fn weigh(
 }
 
 impl Audit {
-    /// Where the three ways differ, in words: the backend, and by how much.
+    /// Describes each difference between the three numbers: the backend and the bytes.
     pub fn faults(&self) -> Vec<String> {
         self.backends.iter().flat_map(Audited::faults).collect()
     }
 
-    /// That none of the backends holds the mesh, if so.
+    /// Returns an error if no backend holds the mesh.
     pub fn none_holds(&self) -> Option<StudyError> {
         let refusal = |Audited { backend, .. }: &Audited| {
             let reason = backend.reason.clone()?;
@@ -200,7 +202,7 @@ impl Audit {
     ///
     /// # Errors
     ///
-    /// What `writer` reports.
+    /// Errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
@@ -240,7 +242,7 @@ impl Audited {
         }
     }
 
-    /// Where the three ways differ, in words.
+    /// Describes each difference between the three numbers.
     fn faults(&self) -> Vec<String> {
         let BackendReport {
             name,
@@ -256,19 +258,19 @@ impl Audited {
         let beside = |what: &str, is: usize, other: &str, than: usize| {
             let more = if is > than { "more" } else { "fewer" };
             let by = is.abs_diff(than);
-            (by > 0).then(|| format!("{name}: {what}, {by} bytes {more} than {other}, {than}"))
+            (by > 0).then(|| format!("{name}: {what}, {by} bytes {more} than {other} ({than})"))
         };
         let of_tables = format!("its tables hold {tables} bytes");
         let of_heap = format!("the allocator counted {counted} bytes");
         let faults = [
-            beside(&of_tables, tables, "its layout has by the formula", layout),
-            beside(&of_heap, counted, "its tables hold", tables),
+            beside(&of_tables, tables, "its layout formula", layout),
+            beside(&of_heap, counted, "its tables", tables),
         ];
         faults.into_iter().flatten().collect()
     }
 }
 
-/// Words for each vertex of a closed mesh of triangles, so large that its genus does not count.
+/// Returns the words per vertex of a closed triangle mesh so large that its genus does not matter.
 fn closed_triangles_words(backend: &Backend) -> f64 {
     const VERTICES: usize = 1 << 20;
     let counts = Counts {
@@ -285,47 +287,47 @@ fn closed_triangles_words(backend: &Backend) -> f64 {
 mod tests {
     use std::cell::Cell;
 
-    use sixfold::{HalfEdgeMesh, IndexedFaceSet, Representation, shapes};
+    use sixfold::{HalfEdgeMesh, IndexedFaceSet, Measured, shapes};
 
     use super::*;
 
-    /// An allocator that counts what it is told to, weighing by weighing: `[live, peak]` of each.
-    struct Told {
+    /// A scripted allocator: `[live, peak]` of each weighing.
+    struct Scripted {
         weighings: Vec<[usize; 2]>,
-        asked: Cell<usize>,
+        calls: Cell<usize>,
     }
 
-    impl Told {
+    impl Scripted {
         fn new(weighings: impl IntoIterator<Item = [usize; 2]>) -> Self {
             Self {
                 weighings: weighings.into_iter().collect(),
-                asked: Cell::new(0),
+                calls: Cell::new(0),
             }
         }
 
         fn now(&self) -> [usize; 2] {
             let last = self.weighings.len() - 1;
-            self.weighings[(self.asked.get() / 2).min(last)]
+            self.weighings[(self.calls.get() / 2).min(last)]
         }
     }
 
-    impl Heap for Told {
-        /// A weighing asks twice: before and after.
+    impl Heap for Scripted {
+        /// A weighing calls this twice: before and after building.
         fn live(&self) -> usize {
             let [live, _] = self.now();
-            let asked = self.asked.replace(self.asked.get() + 1);
-            1000 + (asked % 2) * live
+            let calls = self.calls.replace(self.calls.get() + 1);
+            1000 + (calls % 2) * live
         }
 
         fn restart_peak(&self) {}
 
         fn peak(&self) -> usize {
-            self.weighings[((self.asked.get() - 1) / 2).min(self.weighings.len() - 1)][1]
+            self.weighings[((self.calls.get() - 1) / 2).min(self.weighings.len() - 1)][1]
         }
     }
 
-    /// What comes of one backend on a torus of 12 vertices, 36 edges and 24 triangles.
-    fn audited(backend: Backend, heap: &Told) -> Audit {
+    /// Returns the audit of one backend on a torus of 12 vertices, 36 edges and 24 triangles.
+    fn audited(backend: Backend, heap: &Scripted) -> Audit {
         let torus = shapes::triangle_torus(4, 3).expect("a small torus");
         audit(
             &Specimen::new("torus", torus),
@@ -335,14 +337,14 @@ mod tests {
         )
     }
 
-    /// Of half-edges: 36 · 24 + 12 · 16 + 24 · 4.
+    /// Bytes of the half-edge structure: 36 · 24 + 12 · 16 + 24 · 4.
     const BYTES: usize = 1152;
 
     #[test]
-    fn what_agrees_is_no_fault() {
+    fn equal_numbers_give_no_fault() {
         let audit = audited(
             Backend::of::<HalfEdgeMesh>(),
-            &Told::new([[BYTES, 2 * BYTES]]),
+            &Scripted::new([[BYTES, 2 * BYTES]]),
         );
         assert_eq!(audit.faults(), Vec::<String>::new());
         let one = &audit.backends[0];
@@ -354,35 +356,36 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_is_named_with_its_bytes() {
+    fn a_difference_is_reported_with_its_bytes() {
         let honest = Backend::of::<HalfEdgeMesh>();
-        let spare = audited(honest, &Told::new([[BYTES + 40, BYTES]]));
+        let spare = audited(honest, &Scripted::new([[BYTES + 40, BYTES]]));
         let expected =
-            "half-edge: the allocator counted 1192 bytes, 40 bytes more than its tables hold, 1152";
+            "half-edge: the allocator counted 1192 bytes, 40 bytes more than its tables (1152)";
         assert_eq!(spare.faults(), [expected]);
         assert_eq!(spare.backends[0].agrees, Some(false));
 
         let mut wrong = honest;
         wrong.layout_bytes = |counts| HalfEdgeMesh::layout_bytes(counts) + 8;
-        let formula = audited(wrong, &Told::new([[BYTES, BYTES]]));
-        let expected = "half-edge: its tables hold 1152 bytes, 8 bytes fewer than its layout has by the formula, 1160";
+        let formula = audited(wrong, &Scripted::new([[BYTES, BYTES]]));
+        let expected =
+            "half-edge: its tables hold 1152 bytes, 8 bytes fewer than its layout formula (1160)";
         assert_eq!(formula.faults(), [expected]);
 
-        let both = audited(wrong, &Told::new([[0, 0]]));
+        let both = audited(wrong, &Scripted::new([[0, 0]]));
         assert_eq!(both.faults().len(), 2);
         assert_eq!(both.backends[0].peak_to_counted, None);
     }
 
     #[test]
-    fn another_thread_does_not_make_a_fault() {
+    fn allocations_of_another_thread_give_no_fault() {
         let right = [BYTES, 2 * BYTES];
         let disturbed = [[BYTES + 7, 2 * BYTES], [BYTES, 3 * BYTES], right, right];
-        let audit = audited(Backend::of::<HalfEdgeMesh>(), &Told::new(disturbed));
+        let audit = audited(Backend::of::<HalfEdgeMesh>(), &Scripted::new(disturbed));
         assert_eq!(audit.faults(), Vec::<String>::new());
         assert_eq!(audit.backends[0].peak_bytes, Some(2 * BYTES));
-        // Nothing that stays the same twice: the last is taken, and the audit ends.
+        // If no two weighings agree, the audit ends with the last one.
         let restless = (0..100).map(|i| [BYTES + i, BYTES]);
-        let audit = audited(Backend::of::<HalfEdgeMesh>(), &Told::new(restless));
+        let audit = audited(Backend::of::<HalfEdgeMesh>(), &Scripted::new(restless));
         assert_eq!(audit.faults().len(), 1);
     }
 
@@ -394,12 +397,12 @@ mod tests {
             Backend::of::<sixfold::CornerTable>(),
         ];
         let bytes = 8 * 12 + 24 * 4;
-        let heap = Told::new([[bytes, bytes]]);
-        let mut heard = Vec::new();
+        let heap = Scripted::new([[bytes, bytes]]);
+        let mut weighed = Vec::new();
         let audit = audit(&quads, &[face_set, table], &heap, &mut |backend| {
-            heard.push(backend.name());
+            weighed.push(backend.name());
         });
-        assert_eq!(heard, ["indexed-face-set", "corner-table"]);
+        assert_eq!(weighed, ["indexed-face-set", "corner-table"]);
         assert_eq!((audit.none_holds(), audit.faults().len()), (None, 0));
         let refused = &audit.backends[1];
         assert!(refused.backend.reason.is_some() && !refused.backend.holds);

@@ -1,13 +1,14 @@
 //! Studies of many meshes: one by one, and pooled.
 //!
-//! Meshes differ far more than rounds do, so what is said of all of them rests on meshes: geometric
-//! means of the ratios to the best of each mesh, and intervals by drawing the meshes anew.
+//! Meshes differ far more than rounds do. Pooled figures therefore rest on meshes: the geometric
+//! mean of the ratios to the fastest backend on each mesh, with an interval by resampling the
+//! meshes (bootstrap).
 
 use std::io;
 
 use serde::{Deserialize, Serialize};
-use workload::Operation;
-use workload::pages::Policy;
+use sixfold_workload::Operation;
+use sixfold_workload::pages::Policy;
 
 use crate::heap::CacheState;
 use crate::labs::Labs;
@@ -18,49 +19,49 @@ use crate::statistics::geometric_mean;
 /// Studies of several meshes, with the same settings.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Collection {
-    /// The version of the shape.
+    /// Version of the JSON schema.
     pub schema: u32,
-    /// All meshes that it is of, in order.
+    /// Names of all meshes; their order is that of `studies`, `failures` and `missing`.
     pub meshes: Vec<String>,
-    /// What is the same for all of them.
+    /// The settings that all studies share.
     pub settings: Asked,
-    /// Those that are finished, in that order.
+    /// The finished studies.
     pub studies: Vec<Report>,
-    /// Those that could not be studied, and why, in that order.
+    /// The meshes that could not be studied, with the reasons.
     pub failures: Vec<Failed>,
-    /// Those that are still to be done, in that order: of another shard, or it was interrupted.
+    /// The meshes still to be studied: they belong to another shard, or the run was interrupted.
     pub missing: Vec<String>,
-    /// Operation by operation, and within each backend by backend.
+    /// Figures over all meshes, sorted by operation, then by backend.
     pub pooled: Vec<Pooled>,
-    /// What the pooled figures show, in words.
+    /// Sentences on the pooled figures.
     pub words: Vec<String>,
-    /// What else was measured.
+    /// Results of the other labs.
     #[serde(default)]
     pub labs: Labs,
 }
 
-/// What has to be the same for studies to be put together.
+/// Settings that must be equal for studies to be merged.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct Asked {
     /// The backends; empty for all.
     pub backends: Vec<String>,
-    /// Programs of others, by the names of their columns.
+    /// External programs, by the names of their columns.
     pub externals: Vec<String>,
     /// The operations; empty for all.
     pub operations: Vec<Operation>,
-    /// How long each study might take, in seconds.
+    /// Time budget of each study, in seconds.
     pub budget_s: f64,
-    /// What decided samples and orders.
+    /// Seed of the random samples and orders.
     pub seed: u64,
-    /// What happened to freed pages; older versions measured on the system's heap.
+    /// Heap policy for freed pages; older versions measured on the system's heap.
     #[serde(default = "system_heap")]
     pub heap: Policy,
-    /// What the caches held when a sample began.
+    /// State of the caches when a sample began.
     #[serde(default)]
     pub caches: CacheState,
-    /// Polygons were cut into triangles first.
+    /// Whether polygons were cut into triangles first.
     pub triangulate: bool,
-    /// Files with degenerate faces were refused.
+    /// Whether files with degenerate faces were refused.
     pub strict: bool,
 }
 
@@ -71,52 +72,52 @@ fn system_heap() -> Policy {
 /// A mesh that could not be studied.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Failed {
-    /// Its name.
+    /// Name of the mesh.
     pub mesh: String,
-    /// Why not.
+    /// Why it could not be studied.
     pub reason: String,
 }
 
-/// One operation on one backend, over all meshes that it was measured on.
+/// One operation on one backend, over all meshes it was measured on.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Pooled {
     /// The backend.
     pub backend: String,
     /// The operation.
     pub operation: Operation,
-    /// On how many meshes it was measured.
+    /// Number of meshes it was measured on.
     pub meshes: usize,
-    /// On how many it is the fastest alone.
+    /// Number of meshes on which this backend alone is the fastest.
     pub best: usize,
-    /// On how many it ties for that.
+    /// Number of meshes on which this backend is tied with the fastest.
     pub tied: usize,
-    /// The geometric mean of its ratio to the best of each mesh.
+    /// Geometric mean of the ratios to the fastest backend on each mesh.
     pub ratio_to_best: f64,
-    /// The lower end of its 95 % interval, by drawing the meshes anew; `None` below three.
+    /// Lower end of the 95 % bootstrap interval of that mean; `None` below three meshes.
     pub ci_low: Option<f64>,
-    /// Its upper end.
+    /// Upper end of that interval.
     pub ci_high: Option<f64>,
-    /// The geometric mean of its time for each element, in nanoseconds.
+    /// Geometric mean of the time per element, in nanoseconds.
     pub ns_per_element: Option<f64>,
 }
 
-/// Results of more than one study were to stand on one page.
+/// A second study was added to a page, which can show only one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "is a second study, and a page is of one: `sixfold study` takes several meshes, with --report DIR"
+    "is a second study, but a page shows one study: to study several meshes, use `sixfold study` with --report DIR"
 )]
 pub struct SecondStudy;
 
-/// Why collections cannot be put together.
+/// The reason why two collections cannot be merged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum MergeError {
-    /// Other meshes.
-    #[error("it is of other meshes: {which}")]
+    /// The lists of meshes differ.
+    #[error("the lists of meshes differ: {which}")]
     OtherMeshes { which: String },
-    /// Other settings.
-    #[error("it was made with another {what}: {theirs}, and not {ours}")]
+    /// The settings differ.
+    #[error("the settings differ: {what} is {theirs}, expected {ours}")]
     OtherSettings {
         what: &'static str,
         ours: String,
@@ -125,7 +126,7 @@ pub enum MergeError {
 }
 
 impl Collection {
-    /// Of these meshes, none of which is done.
+    /// Creates a collection of `meshes`; all of them are still to be studied.
     pub fn new(meshes: Vec<String>, settings: Asked) -> Self {
         Self {
             schema: SCHEMA,
@@ -140,17 +141,18 @@ impl Collection {
         }
     }
 
-    /// Of nothing yet.
+    /// Creates a collection without meshes.
     pub fn empty() -> Self {
         Self::new(Vec::new(), Asked::default())
     }
 
-    /// Takes in results that were written by themselves. Studies of several meshes are put together by
-    /// [`merge`](Self::merge), which knows whether they were made alike.
+    /// Adds results of one file: a study, a collection or a lab. To combine the studies of several
+    /// meshes use [`merge`](Self::merge), which checks that their settings agree.
     ///
     /// # Errors
     ///
-    /// A second study.
+    /// [`SecondStudy`] if this collection already has meshes and `results` is a study or a
+    /// collection.
     pub fn take(&mut self, results: Results) -> Result<(), SecondStudy> {
         let study = match results {
             Results::Study(study) => {
@@ -172,7 +174,7 @@ impl Collection {
         Ok(())
     }
 
-    /// Takes in the study of one of the meshes, in the place of an older one.
+    /// Adds the study of one of the meshes; replaces an older one.
     pub fn finish(&mut self, study: Report) {
         let mesh = study.mesh.name.clone();
         self.forget(&mesh);
@@ -180,7 +182,7 @@ impl Collection {
         self.settle();
     }
 
-    /// Takes in that one of the meshes could not be studied.
+    /// Records that `mesh` could not be studied.
     pub fn fail(&mut self, mesh: &str, reason: String) {
         self.forget(mesh);
         self.failures.push(Failed {
@@ -195,24 +197,28 @@ impl Collection {
         self.failures.retain(|failed| failed.mesh != mesh);
     }
 
-    /// Takes in what `other` has that this one misses.
+    /// Adds the studies and failures of `other` for meshes that this collection does not have yet.
     ///
     /// # Errors
     ///
-    /// Other meshes, or other settings: then figures would stand side by side that cannot be compared.
+    /// The meshes or the settings differ, so the figures cannot be compared.
     pub fn merge(&mut self, other: Self) -> Result<(), MergeError> {
         if other.meshes != self.meshes {
             let strange = |mesh: &&String| !self.meshes.contains(mesh);
             let which = match other.meshes.iter().find(strange) {
                 Some(mesh) => mesh.clone(),
-                None => format!("{} of {}", other.meshes.len(), self.meshes.len()),
+                None => format!(
+                    "{} meshes instead of {}, or another order",
+                    other.meshes.len(),
+                    self.meshes.len()
+                ),
             };
             return Err(MergeError::OtherMeshes { which });
         }
         self.settings.check(&other.settings)?;
         self.check_memory(&other)?;
         for study in other.studies {
-            // One that was finished elsewhere is worth more than one that failed here.
+            // A study finished in `other` replaces a failure here.
             let mesh = study.mesh.name.clone();
             let known = self.studies.iter().any(|study| study.mesh.name == mesh);
             if self.meshes.contains(&mesh) && !known {
@@ -230,8 +236,8 @@ impl Collection {
         Ok(())
     }
 
-    /// Refuses studies with other heaps or caches than ours: where memory was short, what was in force is
-    /// not what was asked for.
+    /// Returns an error if the studies of `other` ran with another heap policy or cache state.
+    /// These can differ from the settings: if memory was short, the system's heap was used instead.
     fn check_memory(&self, other: &Self) -> Result<(), MergeError> {
         let in_force = |study: &Report| study.environment.memory_words();
         let Some(ours) = self.studies.first().map(in_force) else {
@@ -251,7 +257,7 @@ impl Collection {
         }
     }
 
-    /// Puts everything into the order of the meshes, and pools it.
+    /// Sorts everything by the order of the meshes, and pools the studies.
     fn settle(&mut self) {
         let place = |mesh: &str| self.meshes.iter().position(|other| other == mesh);
         self.studies.sort_by_key(|study| place(&study.mesh.name));
@@ -266,21 +272,21 @@ impl Collection {
         self.words = words(&self.pooled);
     }
 
-    /// Writes it as JSON.
+    /// Writes the collection as JSON.
     ///
     /// # Errors
     ///
-    /// What `writer` reports.
+    /// Errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
 
-    /// Writes one line for each sample, under a line with the names of the fields: `mesh`, `backend`,
-    /// `operation`, `control`, `round`, `cpu_ns`, `wall_ns`.
+    /// Writes one CSV line per sample, after a header line: `mesh`, `backend`, `operation`,
+    /// `control`, `round`, `cpu_ns`, `wall_ns`.
     ///
     /// # Errors
     ///
-    /// What `writer` reports.
+    /// Errors of `writer`.
     pub fn write_csv(&self, writer: impl io::Write) -> io::Result<()> {
         let mut lines = csv::Writer::from_writer(writer);
         let names = [
@@ -306,11 +312,11 @@ impl Collection {
         lines.flush()
     }
 
-    /// Reads what [`write_json`](Self::write_json) wrote.
+    /// Reads the JSON that [`write_json`](Self::write_json) wrote.
     ///
     /// # Errors
     ///
-    /// Text that ends too soon or is no JSON, results of another program, schema or command.
+    /// The text is truncated or not JSON, or holds results of another program, schema or command.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
         let collection: Self = parsed(text)?;
@@ -353,7 +359,7 @@ impl Asked {
     }
 }
 
-/// Every operation and backend that was measured on some mesh.
+/// Pools each pair of an operation and a backend that was measured on at least one mesh.
 fn pooled(studies: &[Report]) -> Vec<Pooled> {
     let mut backends: Vec<&str> = Vec::new();
     for study in studies {
@@ -401,7 +407,7 @@ fn pooled(studies: &[Report]) -> Vec<Pooled> {
     pooled
 }
 
-/// Who is ahead in how many operations over all meshes.
+/// Describes the leading backend of each operation.
 fn words(pooled: &[Pooled]) -> Vec<String> {
     let mut words = Vec::new();
     for rows in pooled.chunk_by(|a, b| a.operation == b.operation) {
@@ -427,19 +433,19 @@ fn words(pooled: &[Pooled]) -> Vec<String> {
             .filter(|row| row.meshes < most && row.ratio_to_best < *ratio_to_best);
         let better = better.map(|row| {
             let (name, ratio) = (&row.backend, row.ratio_to_best);
-            format!("{name} {ratio:.2} × on the {} it has", row.meshes)
+            format!("{name}: {ratio:.2} × on {}", row.meshes)
         });
         let better: Vec<String> = better.collect();
         let elsewhere = match better.is_empty() {
             true => String::new(),
-            false => format!(" ({})", better.join(", ")),
+            false => format!("; on fewer meshes, {}", better.join(", ")),
         };
         let ties = match tied {
             0 => String::new(),
-            _ => format!(" and ties on {tied}"),
+            _ => format!(", tied on {tied}"),
         };
         words.push(format!(
-            "{operation}: of those measured on all {meshes} meshes {backend} is ahead, the fastest on {best}{ties}; {ratio_to_best:.2} × the best on average{elsewhere}."
+            "{operation}: {backend} leads the backends measured on all {meshes} meshes: fastest on {best}{ties}, on average {ratio_to_best:.2} × the time of the fastest{elsewhere}."
         ));
     }
     words
@@ -469,7 +475,7 @@ mod tests {
         }
     }
 
-    /// A study in which half-edge is so many times as slow as the fastest, corner-table.
+    /// A study in which half-edge takes `ratio` times as long as the fastest, corner-table.
     fn report(mesh: &str, ratio: f64) -> Report {
         let specimen = Specimen::new(mesh, shapes::icosahedron());
         let settings = Settings {
@@ -479,7 +485,7 @@ mod tests {
         };
         let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ());
         let mut report = report.expect("a study");
-        // Whatever other tests of this program have put in force meanwhile.
+        // Other tests of this program may have changed the policy.
         report.environment.heap.as_mut().expect("measured").policy = Policy::Kept;
         report
             .results
@@ -525,31 +531,31 @@ mod tests {
         assert_eq!(corner_table.map(|row| (row.best, row.meshes)), Some((3, 3)));
         assert_eq!(all.words.len(), 1);
         assert!(
-            all.words[0].contains("corner-table is ahead"),
+            all.words[0].contains("corner-table leads"),
             "{:?}",
             all.words
         );
-        // Who is missing on one of them is not ahead, and is named.
+        // A backend that misses one mesh does not lead, but is named.
         let mut other = report("b", 1.0);
         other.results.retain(|row| row.backend == "half-edge");
         other.results[0].ratio_to_best = Some(5.0);
         all.finish(other);
         let said = &all.words[0];
         assert!(
-            said.contains("on all 3 meshes half-edge is ahead"),
+            said.contains("half-edge leads the backends measured on all 3 meshes"),
             "{said}"
         );
         assert!(
-            said.contains("(corner-table 1.00 × on the 2 it has)"),
+            said.contains("; on fewer meshes, corner-table: 1.00 × on 2"),
             "{said}"
         );
-        // Done once more: the newer one counts.
+        // A second study of one mesh replaces the first.
         all.finish(report("b", 1.0));
         assert_eq!(all.studies.len(), 3);
     }
 
     #[test]
-    fn shards_merge_into_what_one_run_would_be() {
+    fn merged_shards_equal_one_whole_run() {
         let meshes = names(&["a", "b", "c"]);
         let mut whole = Collection::new(meshes.clone(), asked());
         let studies = [report("a", 2.0), report("b", 3.0)];
@@ -571,17 +577,17 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_compared_is_not_merged() {
+    fn different_meshes_or_settings_are_not_merged() {
         let mut one = Collection::new(names(&["a", "b"]), asked());
         let other = Collection::new(names(&["a", "z"]), asked());
         let error = one.merge(other).expect_err("another mesh").to_string();
-        assert!(error.contains("other meshes: z"), "{error}");
+        assert!(error.contains("meshes differ: z"), "{error}");
         let slower = Asked {
             budget_s: 60.0,
             ..asked()
         };
         let other = Collection::new(names(&["a", "b"]), slower);
         let error = one.merge(other).expect_err("another budget").to_string();
-        assert!(error.contains("--budget: 60 s, and not 0.02 s"), "{error}");
+        assert!(error.contains("is 60 s, expected 0.02 s"), "{error}");
     }
 }

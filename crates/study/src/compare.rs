@@ -1,13 +1,13 @@
-//! Two studies of one mesh side by side: what changed between machines, compilers or commits.
+//! Comparison of two studies of one mesh: what changed between machines, compilers or commits.
 //!
-//! Samples of two studies have no rounds in common, so ratios are of medians, with intervals by drawing
-//! the samples of both anew. What no sample within one study can show is how far a machine drifts from
-//! one study to the next: [`DRIFT`] stands for it, unless whoever compares knows better.
+//! Samples of two studies share no rounds, so ratios are of medians, with intervals by resampling
+//! both (bootstrap). The samples of one study cannot show how far a machine drifts from one study
+//! to the next; [`DRIFT`] is the default limit for that.
 
 use std::io;
 
 use serde::Serialize;
-use workload::Operation;
+use sixfold_workload::Operation;
 
 use crate::control::noise;
 use crate::environment::Environment;
@@ -15,18 +15,17 @@ use crate::report::{RawSamples, Report, ResultRow, SCHEMA, Standing, write_json}
 use crate::standing::BEYOND_DOUBT;
 use crate::statistics::{Median, quotient};
 
-/// Figures of two studies may differ by this on a machine where nothing changed: about twice what is
-/// typical of a virtual machine with neighbours (reports/repeatability). A machine of one's own drifts
-/// less.
+/// Largest ratio of two studies on an unchanged machine: about twice the typical drift of a virtual
+/// machine that shares its host (reports/repeatability). A dedicated machine drifts less.
 pub const DRIFT: f64 = 1.2;
 
-/// How two studies are compared.
+/// Options of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Comparing {
-    /// Rows are judged by what is left of a change when the median change of all rows is taken out: for
-    /// two machines, of which one is faster altogether.
+    /// Whether ratios are divided by the median ratio of all rows before rows are judged: for two
+    /// machines of different speed.
     pub relative: bool,
-    /// Ratios up to this are noise, whatever the samples say.
+    /// Ignore ratios up to this, even if the samples show a difference.
     pub drift: f64,
 }
 
@@ -39,43 +38,43 @@ impl Default for Comparing {
     }
 }
 
-/// What changed between two studies.
+/// The differences between two studies.
 #[derive(Clone, Debug, Serialize)]
 pub struct Changes {
-    /// The version of the shape.
+    /// Version of the JSON schema.
     pub schema: u32,
-    /// The meshes, if they are not the same by their facts: then the rows compare two works.
+    /// Names of the two meshes if their facts differ; the rows then compare different work.
     pub meshes: Option<[String; 2]>,
-    /// In what the machines, programs and settings differ.
+    /// Differences of machines, programs and settings.
     pub environment: Vec<Setting>,
-    /// The median over all rows of the time in the second by that in the first.
+    /// Median over all rows of the second time divided by the first.
     pub overall: Option<f64>,
-    /// Rows are judged after that factor is taken out.
+    /// Whether rows are judged after division by `overall`.
     pub relative: bool,
-    /// Ratios up to this are noise, whatever the samples say.
+    /// Ratios up to this are ignored.
     pub drift: f64,
-    /// What both have measured, in the order of the first.
+    /// The rows that both studies measured, in the order of the first.
     pub rows: Vec<Change>,
-    /// Backends that hold more or fewer bytes: name, before, after.
+    /// Backends whose bytes changed: name, before, after.
     pub bytes: Vec<(String, usize, usize)>,
-    /// Operations with another winner, where both studies have one alone.
+    /// Operations whose single fastest backend changed.
     pub winners: Vec<NewWinner>,
-    /// What only the first has, as `operation on backend`.
+    /// Rows of the first study only, as `operation on backend`.
     pub only_before: Vec<String>,
-    /// What only the second has.
+    /// Rows of the second study only.
     pub only_after: Vec<String>,
-    /// The same in sentences.
+    /// The differences as sentences.
     pub words: Vec<String>,
 }
 
-/// Something in which two environments differ.
+/// A difference between two environments.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Setting {
-    /// What.
+    /// Name of the setting.
     pub what: &'static str,
-    /// In the first.
+    /// Its value in the first study.
     pub before: String,
-    /// In the second.
+    /// Its value in the second study.
     pub after: String,
 }
 
@@ -86,25 +85,25 @@ pub struct Change {
     pub backend: String,
     /// The operation.
     pub operation: Operation,
-    /// The median in the first, in nanoseconds.
+    /// Median of the first study, in nanoseconds.
     pub before_ns: f64,
-    /// The median in the second.
+    /// Median of the second study, in nanoseconds.
     pub after_ns: f64,
-    /// The second by the first.
+    /// The second median divided by the first.
     pub ratio: f64,
-    /// The lower end of its 95 % interval; `None` below three samples in either.
+    /// Lower end of the 95 % interval of the ratio; `None` below three samples in either study.
     pub ci_low: Option<f64>,
-    /// Its upper end.
+    /// Upper end of that interval.
     pub ci_high: Option<f64>,
     /// Ratios up to this are noise.
     pub noise: f64,
-    /// What that comes to.
+    /// The conclusion.
     pub verdict: Verdict,
-    /// It found something else: another work, whatever its time is.
+    /// Whether the checksums differ: the two studies did different work.
     pub other_checksum: bool,
 }
 
-/// What a change comes to.
+/// The conclusion about one row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -112,27 +111,27 @@ pub enum Verdict {
     Faster,
     /// The second is slower beyond the noise.
     Slower,
-    /// No difference that the noise does not explain.
+    /// The difference is within the noise.
     Same,
 }
 
-/// An operation that somebody else wins now.
+/// An operation whose fastest backend changed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct NewWinner {
     /// The operation.
     pub operation: Operation,
-    /// Who won in the first.
+    /// The fastest backend of the first study.
     pub before: String,
-    /// Who wins in the second.
+    /// The fastest backend of the second study.
     pub after: String,
 }
 
-/// Two studies whose times cannot be compared.
+/// The reason why the times of two studies cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum CompareError {
-    /// Another heap policy, or another state of the caches.
+    /// The heap policies or the cache states differ.
     #[error(
         "the first was measured with {option} {before}, the second with {option} {after}: these times cannot be compared; measure one of them again"
     )]
@@ -147,7 +146,7 @@ pub enum CompareError {
 ///
 /// # Errors
 ///
-/// Studies on heaps of another policy, or with caches in another state.
+/// The heap policies or the cache states of the studies differ.
 pub fn compare(before: &Report, after: &Report, how: Comparing) -> Result<Changes, CompareError> {
     let words = [before, after].map(|report| report.environment.memory_words());
     for (i, option) in ["--heap", "--caches"].into_iter().enumerate() {
@@ -165,7 +164,7 @@ pub fn compare(before: &Report, after: &Report, how: Comparing) -> Result<Change
     let (mut only_before, mut only_after) = (Vec::new(), Vec::new());
     for row in &before.results {
         match (twin(row, after), row.median_ns) {
-            (_, None) => {} // an estimate is no measurement
+            (_, None) => {} // an estimate, not a measurement
             (Some(other), Some(_)) => rows.extend(change(before, row, after, other, drift)),
             (None, Some(_)) => only_before.push(named(row)),
         }
@@ -200,7 +199,7 @@ fn named(row: &ResultRow) -> String {
     format!("{} on {}", row.operation, row.backend)
 }
 
-/// The same operation on the same backend, if it was measured.
+/// Returns the row of `report` with the same operation and backend, if it was measured.
 fn twin<'r>(row: &ResultRow, report: &'r Report) -> Option<&'r ResultRow> {
     let mut rows = report.rows(row.operation);
     rows.find(|other| other.backend == row.backend && other.median_ns.is_some())
@@ -237,12 +236,13 @@ fn change(
     })
 }
 
-/// Whether two checksums may be of one work: sums of `f32` in another order are within 10⁻⁴.
+/// Returns whether two checksums may be of the same work: `f32` sums in different orders differ by
+/// at most 10⁻⁴ of their size.
 fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-4 * a.abs().max(b.abs())
 }
 
-/// The samples of a row, without those of the control.
+/// Returns the samples of a row, without those of the control.
 fn samples(report: &Report, row: &ResultRow) -> Vec<f64> {
     let mut raw = report.raw.iter();
     let of_it = raw
@@ -266,7 +266,7 @@ fn verdict(row: &Change, taken_out: f64) -> Verdict {
     }
 }
 
-/// What of the environments matters for times.
+/// Returns the differences between two environments that can affect times.
 fn differences(before: &Environment, after: &Environment) -> Vec<Setting> {
     fn shown<T: ToString>(value: Option<&T>) -> String {
         value.map_or_else(|| "not known".into(), ToString::to_string)
@@ -336,13 +336,13 @@ fn winners(before: &Report, after: &Report) -> Vec<NewWinner> {
 }
 
 impl Changes {
-    /// Those that are faster or slower, or found something else.
+    /// Iterates over the rows that are faster or slower, or have another checksum.
     pub fn changed(&self) -> impl Iterator<Item = &Change> {
         let changed = |row: &&Change| row.verdict != Verdict::Same || row.other_checksum;
         self.rows.iter().filter(changed)
     }
 
-    /// How many came to this.
+    /// Counts the rows with this verdict.
     pub fn count(&self, verdict: Verdict) -> usize {
         self.rows
             .iter()
@@ -350,11 +350,11 @@ impl Changes {
             .count()
     }
 
-    /// Writes it as JSON.
+    /// Writes the changes as JSON.
     ///
     /// # Errors
     ///
-    /// What `writer` reports.
+    /// Errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
@@ -363,13 +363,13 @@ impl Changes {
         let mut words = Vec::new();
         if let Some([before, after]) = &self.meshes {
             words.push(format!(
-                "The meshes differ ({before}, {after}): the times are of two works, and only ratios between backends can be compared."
+                "The meshes differ ({before}, {after}): the times are of different work, so compare only the ratios between backends."
             ));
         }
         let (slower, faster) = (self.count(Verdict::Slower), self.count(Verdict::Faster));
         let same = self.count(Verdict::Same);
         words.push(format!(
-            "Of {} figures {faster} are faster, {slower} slower, {same} the same within the noise.",
+            "Of {} figures, {faster} are faster, {slower} slower, and {same} the same within the noise.",
             self.rows.len()
         ));
         if let Some(overall) = self.overall {
@@ -378,20 +378,20 @@ impl Changes {
             let machines = self.environment.iter().any(|s| s.what == "processor");
             if factor > self.drift {
                 let hint = match (self.relative, machines) {
-                    (true, _) => "; rows are judged by what is left without that",
-                    (false, true) => "; the machines differ: --relative takes that out of each row",
+                    (true, _) => "; each row is judged after division by this factor",
+                    (false, true) => "; the machines differ: --relative divides each row by it",
                     (false, false) => {
-                        "; if the machine was busy or hot, --relative takes that out of each row"
+                        "; if the machine was busy or hot, --relative divides each row by it"
                     }
                 };
                 words.push(format!(
-                    "As a whole the second is {factor:.2} × {way} (the median of all rows){hint}."
+                    "Overall, the second study is {factor:.2} × {way} (median of all rows){hint}."
                 ));
             }
         }
         for winner in &self.winners {
             words.push(format!(
-                "{} is won by {} now, and was by {}.",
+                "{}: the fastest is now {}; it was {}.",
                 winner.operation, winner.after, winner.before
             ));
         }
@@ -400,7 +400,7 @@ impl Changes {
             .collect();
         if !others.is_empty() {
             words.push(format!(
-                "Another checksum, so another work: {}.",
+                "The checksum changed, so the work is different: {}.",
                 others.join(", ")
             ));
         }

@@ -1,4 +1,4 @@
-//! One backend entered twice: the noise of this very run.
+//! The control: one backend measured as two columns, which shows the noise of this run.
 
 use sixfold::QueryCost;
 
@@ -6,10 +6,10 @@ use crate::measure::Entry;
 use crate::report::{Control, ControlRow};
 use crate::standing::{NO_DIFFERENCE, ratio};
 use crate::statistics::Median;
-use workload::Operation;
-use workload::Subject;
+use sixfold_workload::Operation;
+use sixfold_workload::Subject;
 
-/// Which of the subjects is entered twice: the first that never looks at all faces, for what scans is
+/// Returns the subject to measure twice: the first that never scans all faces, because scans are
 /// slow and steady.
 pub(crate) fn entered_twice(subjects: &[Box<dyn Subject + '_>]) -> usize {
     let scans = |subject: &dyn Subject| subject.costs().contains(&QueryCost::Scan);
@@ -17,8 +17,7 @@ pub(crate) fn entered_twice(subjects: &[Box<dyn Subject + '_>]) -> usize {
     found.unwrap_or(0)
 }
 
-/// What the second column of `backend` says: `entries` are those of all subjects, of which the last
-/// is the same as `first`.
+/// Compares the two columns of `backend`: subjects `first` and `second` in `entries`.
 pub(crate) fn control(
     entries: &[Entry],
     first: usize,
@@ -58,8 +57,8 @@ pub(crate) fn control(
     })
 }
 
-/// Ratios up to this say nothing: the difference that the control shows in this operation, or what
-/// nobody would choose by.
+/// Returns the ratio up to which a difference is noise: the difference of the control in this
+/// operation, at least [`NO_DIFFERENCE`].
 pub(crate) fn noise(control: Option<&Control>, operation: Operation) -> f64 {
     let rows = control.map_or(&[][..], |control| &control.operations);
     let row = rows.iter().find(|row| row.operation == operation);

@@ -1,18 +1,19 @@
-//! A clock for tests: that of a machine whose speed drifts.
+//! A clock for tests: a simulated machine whose speed drifts.
 
 use std::sync::{Arc, Mutex};
 
-use workload::{Clock, Time};
+use sixfold_workload::{Clock, Time};
 
-/// A machine that slows down by half, jumps, and stutters; time passes only while it works.
+/// A machine with slow drift (±50 %), jumps (1.8×) and stutters (1.6×); time advances only in
+/// [`work`](Self::work).
 #[derive(Clone, Default)]
 pub(crate) struct Machine {
-    /// The time, and how often it has worked.
+    /// The time in nanoseconds, and the number of calls of `work`.
     state: Arc<Mutex<(f64, u64)>>,
 }
 
 impl Machine {
-    /// Works for as long as `ns` would be on a machine at rest.
+    /// Advances the time by work that takes `ns` nanoseconds on an undisturbed machine.
     pub(crate) fn work(&self, ns: f64) {
         let (time, steps) = &mut *self.state.lock().expect("no panics");
         *steps += 1;
@@ -26,7 +27,7 @@ impl Machine {
         *time += ns * drift * stutter * jump;
     }
 
-    /// What time it is.
+    /// Returns the time in nanoseconds.
     pub(crate) fn ns(&self) -> f64 {
         self.state.lock().expect("no panics").0
     }

@@ -1,78 +1,77 @@
-//! The machine and the program that a report is of.
+//! Description of the machine and the program that made a report.
 
 use std::fs;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
+use sixfold_workload::MachineClock;
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
-use workload::MachineClock;
 
 use crate::heap::{CacheState, CachesReport, Memory};
 use crate::numbers::bytes;
-use workload::pages::{HeapReport, Policy};
-use workload::{Cache, caches};
+use sixfold_workload::pages::{HeapReport, Policy};
+use sixfold_workload::{Cache, caches};
 
-/// What else a figure depends on.
+/// Machine, program and settings that figures depend on.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Environment {
-    /// What was typed, where a program tells: it makes the figures again.
+    /// The command that reproduces the figures, if the calling program recorded it.
     #[serde(default)]
     pub command: Option<String>,
-    /// The version of Sixfold.
+    /// Version of Sixfold.
     pub sixfold: String,
-    /// The commit that the program was built from, `-dirty` where files differed from it; `None` where
+    /// Commit that the program was built from, with `-dirty` if files differed from it; `None` if
     /// it was not built from a repository.
     pub commit: Option<String>,
-    /// The compiler.
+    /// Version of the compiler.
     pub rustc: String,
-    /// The build profile: `release`.
+    /// Build profile: `release`.
     pub profile: String,
-    /// The optimisation level: `3`.
+    /// Optimisation level: `3`.
     pub opt_level: String,
     /// Further flags of the compiler.
     pub rustflags: String,
-    /// What the program was built for.
+    /// Target triple of the build.
     pub target: String,
-    /// The operating system.
+    /// Operating system.
     pub os: String,
-    /// The release of its kernel, where the platform tells.
+    /// Release of the kernel; `None` if unknown.
     pub kernel: Option<String>,
-    /// The architecture.
+    /// Architecture of the processor.
     pub arch: String,
-    /// The processor, where the platform tells.
+    /// Model of the processor; `None` if unknown.
     pub cpu_model: Option<String>,
-    /// How many threads it can run at once.
+    /// Number of threads that can run at once.
     pub cores: Option<usize>,
-    /// The caches of its first core; empty where the platform does not tell.
+    /// Caches of the first core; empty if unknown.
     pub caches: Vec<Cache>,
-    /// Bytes of memory, where the platform tells.
+    /// Bytes of memory; `None` if unknown.
     pub memory_bytes: Option<u64>,
-    /// What decides the frequency of the processor, where the platform tells: `performance`.
+    /// Frequency governor of the processor, such as `performance`; `None` if unknown.
     pub governor: Option<String>,
-    /// Whether the processor may run faster than its nominal frequency for a while, where the platform
-    /// tells.
+    /// Whether the processor may temporarily exceed its nominal frequency; `None` if unknown.
     pub boost: Option<bool>,
-    /// Runnable threads over the last minute when the study began, where the platform tells.
+    /// Runnable threads, averaged over the minute before the study; `None` if unknown.
     pub load_average: Option<f64>,
-    /// The clock that the figures are of: `thread-cpu` or `wall`.
+    /// Clock of the figures: `thread-cpu` or `wall`.
     pub clock: String,
-    /// The heap that operations allocate from; `None` in results of older versions, which measured on
-    /// the system's.
+    /// Heap that operations allocate from; `None` in results of older versions, which used the
+    /// system's heap.
     #[serde(default)]
     pub heap: Option<HeapReport>,
-    /// What was done to the caches before each sample; `None` in results of older versions: nothing.
+    /// Preparation of the caches before each sample; `None` in results of older versions: nothing.
     #[serde(default)]
     pub cache_state: Option<CachesReport>,
-    /// Seconds since 1970 when the study began.
+    /// Start of the study, in seconds since 1970.
     pub unix_time: u64,
-    /// What decided samples and orders.
+    /// Seed of the random samples and orders.
     pub seed: u64,
-    /// How long the study was to take, in seconds.
+    /// Time budget of the study, in seconds.
     pub budget_s: f64,
 }
 
 impl Environment {
-    /// This machine, now.
+    /// Describes this machine and program now.
     pub fn here(seed: u64, budget_s: f64) -> Self {
         let what = RefreshKind::nothing()
             .with_cpu(CpuRefreshKind::nothing())
@@ -111,7 +110,7 @@ impl Environment {
         }
     }
 
-    /// The same, with the heap and the caches of the measurements.
+    /// Sets the heap and the cache state of the measurements.
     pub(crate) fn with_memory(self, memory: &Memory) -> Self {
         Self {
             heap: Some(memory.heap.clone()),
@@ -120,7 +119,7 @@ impl Environment {
         }
     }
 
-    /// The heap and the caches in words, for a line that says how it was measured.
+    /// Returns phrases on heap and caches, for a line about the measurement.
     pub fn memory_phrases(&self) -> Vec<String> {
         let mut phrases = Vec::new();
         if let Some(heap) = &self.heap {
@@ -143,8 +142,8 @@ impl Environment {
         phrases
     }
 
-    /// The heap policy and the cache state in force, as two words: figures of different ones are not to
-    /// be mixed.
+    /// Returns the names of heap policy and cache state. Figures with different ones must not be
+    /// mixed.
     pub fn memory_words(&self) -> [&'static str; 2] {
         let heap = self
             .heap
@@ -158,14 +157,14 @@ impl Environment {
     }
 }
 
-/// Whether the processor may go beyond its nominal frequency, as the drivers of Linux tell it.
+/// Reads from the Linux drivers whether the processor may exceed its nominal frequency.
 fn boost() -> Option<bool> {
     let of_acpi = line("/sys/devices/system/cpu/cpufreq/boost").map(|text| text == "1");
     let of_intel = || line("/sys/devices/system/cpu/intel_pstate/no_turbo").map(|text| text == "0");
     of_acpi.or_else(of_intel)
 }
 
-/// What stands in a file of one line that Linux keeps.
+/// Reads a one-line file of the Linux kernel, without surrounding space.
 fn line(path: &str) -> Option<String> {
     let text = fs::read_to_string(path).ok()?;
     Some(text.trim().to_owned())

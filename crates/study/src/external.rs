@@ -1,16 +1,18 @@
-//! Other programs as columns of a study: whoever speaks the line protocol takes part.
+//! External programs as columns of a study: any program that follows the line protocol can take
+//! part.
 //!
 //! ```text
 //! sixfold                                     the program, started with the path of the mesh
 //!    │                                           │
-//!    │ ◀── {"protocol":1,"holds":true, …} ────── │   what it made of the mesh
+//!    │ ◀── {"protocol":1,"holds":true, …} ────── │   whether it holds the mesh
 //!    │ ─── {"run":"vertex_normal","times":3} ──▶ │
-//!    │ ◀── {"wall_ns":…,"checksum":…, …} ─────── │   what all three runs took; what one found
+//!    │ ◀── {"wall_ns":…,"checksum":…, …} ─────── │   time of all three runs; result of one
 //!    │ ─── end of input ───────────────────────▶ │   it ends
 //! ```
 //!
-//! The program reads one JSON object a line and answers each with one line; it times its own runs, so
-//! that the pipe is in no figure. `benches/external/README.md` has the protocol in full.
+//! The program reads one JSON object per line and answers each with one line. It times its own
+//! runs, so no figure includes the pipe. `benches/external/README.md` describes the protocol in
+//! full.
 
 mod program;
 mod subject;
@@ -23,21 +25,21 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
-use sixfold::mesh_io::write_obj;
+use sixfold::io::write_obj;
 use sixfold::{Counts, PolygonMesh};
 use tempfile::TempDir;
 
 use crate::report::BackendReport;
 use crate::tame::tame;
 use program::{Greeting, Program};
+use sixfold_workload::Subject;
+use sixfold_workload::pages::{HeapReport, Policy};
 use subject::ExternalSubject;
-use workload::Subject;
-use workload::pages::{HeapReport, Policy};
 
-/// Where the path of the mesh goes.
+/// Placeholder for the path of the mesh.
 const MESH: &str = "{mesh}";
 
-/// How long an answer may take unless said otherwise.
+/// Default time limit for an answer.
 pub const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A program that takes part in a study as one more column.
@@ -49,44 +51,44 @@ pub struct External {
     pub command: Vec<String>,
 }
 
-/// What a study knows of a program beside its figures.
+/// Facts about an external program beside its figures.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct ExternalReport {
-    /// The program and its arguments, with `{mesh}` for the mesh.
+    /// The program and its arguments, with `{mesh}` for the path of the mesh.
     pub command: Vec<String>,
-    /// What it says that it measures: a library and its version.
+    /// Library and version that the program reports.
     pub library: Option<String>,
-    /// Pages are kept for our backends, and its allocator does what it likes: what it allocates may cost
-    /// page faults that ours are spared.
+    /// Whether freed pages are kept for Sixfold's backends but not for this program. Its
+    /// allocations may then cause page faults that those of the backends do not.
     #[serde(default)]
     pub own_heap: bool,
 }
 
-/// Why that is no program for a study.
+/// The reason why a text does not describe an external program.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum ExternalError {
-    /// No equals sign.
+    /// The equals sign is missing.
     #[error("`{given}` has no name: write NAME='COMMAND {{mesh}}'")]
     NoName { given: String },
-    /// A name that tables and files cannot show.
+    /// Tables and files cannot show the name.
     #[error(
-        "`{name}` is no name for a column: take up to 32 letters, digits, dots, hyphens and underscores"
+        "`{name}` is not a column name: use up to 32 letters, digits, dots, hyphens and underscores"
     )]
     BadName { name: String },
-    /// Quotes that do not close.
-    #[error("the command of {name} has a quote that does not close: {command}")]
+    /// A quote is not closed.
+    #[error("the command of {name} has an unclosed quote: {command}")]
     OpenQuote { name: String, command: String },
-    /// Nothing to start, or the mesh has no place in it.
-    #[error("the command of {name} has no {{mesh}}, where the path of the mesh goes: {command}")]
+    /// The command is empty, or no argument contains `{mesh}`.
+    #[error("the command of {name} has no {{mesh}}, the place for the path of the mesh: {command}")]
     NoMesh { name: String, command: String },
 }
 
 impl FromStr for External {
     type Err = ExternalError;
 
-    /// `NAME=COMMAND`: the command as a shell would cut it into words, which no shell sees.
+    /// Parses `NAME=COMMAND`. The command is split into words as by a shell, but runs without one.
     fn from_str(given: &str) -> Result<Self, ExternalError> {
         let no_name = || ExternalError::NoName {
             given: given.into(),
@@ -111,7 +113,7 @@ impl FromStr for External {
 }
 
 impl External {
-    /// The words to start, for a mesh at `path`.
+    /// Returns the program and its arguments for a mesh at `path`.
     fn words(&self, path: &Path) -> Vec<String> {
         let path = path.to_string_lossy();
         let word = |word: &String| word.replace(MESH, &path);
@@ -119,13 +121,13 @@ impl External {
     }
 }
 
-/// The mesh of a study as a file that programs can read; it goes away with this.
+/// The mesh of a study as a file for external programs; deleted on drop.
 pub(crate) struct MeshFile {
     folder: TempDir,
 }
 
 impl MeshFile {
-    /// Writes `polygons`, coordinates to the last bit.
+    /// Writes `polygons` with exact coordinates.
     pub(crate) fn of(polygons: &PolygonMesh) -> io::Result<Self> {
         let folder = tempfile::tempdir()?;
         let file = Self { folder };
@@ -138,7 +140,7 @@ impl MeshFile {
     }
 }
 
-/// Starts `external` on the mesh, and hears what it makes of it.
+/// Starts `external` on the mesh and reads whether it holds the mesh.
 pub(crate) fn put_on_the_bench<'a>(
     external: &External,
     mesh: &MeshFile,
@@ -161,7 +163,7 @@ pub(crate) fn put_on_the_bench<'a>(
             greeting
                 .reason
                 .map(|reason| tame(&reason))
-                .unwrap_or_else(|| "it does not say why".into()),
+                .unwrap_or_else(|| "it gives no reason".into()),
         ),
     };
     let bytes = greeting.bytes.filter(|_| refusal.is_none());
@@ -194,16 +196,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_command_is_cut_into_words_and_has_a_place_for_the_mesh() {
+    fn a_command_is_split_into_words_and_contains_the_mesh() {
         let external: External = "lox=run 'a b' --mesh={mesh}".parse().expect("a command");
         assert_eq!(external.name, "lox");
         let words = external.words(Path::new("/tmp/a c.obj"));
         assert_eq!(words, ["run", "a b", "--mesh=/tmp/a c.obj"]);
         for (given, says) in [
             ("run {mesh}", "has no name"),
-            ("a b=run {mesh}", "no name for a column"),
-            ("=run {mesh}", "no name for a column"),
-            ("a=run 'x {mesh}", "does not close"),
+            ("a b=run {mesh}", "not a column name"),
+            ("=run {mesh}", "not a column name"),
+            ("a=run 'x {mesh}", "unclosed quote"),
             ("a=run", "has no {mesh}"),
             ("a={mesh}", "has no {mesh}"),
             ("a=", "has no {mesh}"),

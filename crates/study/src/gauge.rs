@@ -1,48 +1,50 @@
-//! Whether other work slows the machine down at this moment.
+//! Detects whether other programs slow the machine down at this moment.
 //!
-//! On a shared machine another program may run on the same core at any time, and a sample taken meanwhile
-//! takes up to twice as long, in phases of milliseconds to seconds. A small fixed piece of work, timed before
-//! and after each sample, takes longer then, too. A sample beside which it did is *disturbed*: it is taken
-//! again, within limits, and does not count if enough others do. What the fixed work takes does not depend
-//! on the sample, so that this prefers no backend and no result.
+//! On a shared machine another program may run on the same core at any time. A sample then takes up
+//! to twice as long, in phases of milliseconds to seconds. A small fixed piece of work, timed
+//! before and after each sample, then takes longer, too. Such a sample is *disturbed*: it is taken
+//! again, within limits, and does not count if enough others are undisturbed. The time of the fixed
+//! work does not depend on the sample, so this prefers no backend and no result.
 
 use std::hint::black_box;
 
-use workload::{Clock, Time, timed};
+use sixfold_workload::{Clock, Time, timed};
 
-/// A sample is taken again at most this often.
+/// Largest number of times a sample is taken again.
 const MOST_RETAKEN: u32 = 3;
-/// Words of the table that the fixed work reads: half of a usual first-level cache.
+/// Words of the table that the fixed work reads: half of a typical first-level cache.
 const WORDS: usize = 2048;
-/// Passes over the table in one look: some 10 µs.
+/// Passes over the table in one timing of the fixed work ("look"): about 10 µs.
 const PASSES: usize = 12;
-/// The machine is disturbed if the fixed work takes more than this multiple of its undisturbed time. A lower
-/// limit would mostly find phases of another processor frequency: they last longer than a round and so
-/// affect all backends alike, and samples that are taken again cost rounds.
+/// The machine is disturbed if the fixed work takes more than this multiple of its undisturbed
+/// time. A lower limit would mostly find phases of another processor frequency. These last longer
+/// than a round and affect all backends equally, and each retaken sample leaves time for fewer
+/// rounds.
 const DISTURBED: f64 = 1.3;
 /// The undisturbed time is this quantile of the times of all looks.
 const UNDISTURBED: f64 = 0.05;
-/// How long to wait for an undisturbed moment before a sample, at most, in nanoseconds.
+/// Longest wait for an undisturbed moment before a sample, in nanoseconds.
 const LONGEST_WAIT_NS: f64 = 10_000_000.0;
-/// What waiting and disturbed samples may take of a budget.
+/// Part of the budget for waiting and for disturbed samples.
 const PATIENCE: f64 = 0.3;
-/// What samples that are taken again for their page faults may take of a budget.
+/// Part of the budget for samples that are taken again because of page faults.
 const FOR_FAULTS: f64 = 0.1;
-/// Undisturbed samples stand for all if they are at least this part of them.
+/// Only undisturbed samples count if they are at least this part of all samples.
 const ENOUGH: f64 = 0.25;
 
-/// The fixed work, what it has taken so far, and how long may still be spent on waiting.
+/// The fixed work, its past times, and the time left for waiting and for samples taken again.
 pub(crate) struct Gauge {
     words: Vec<u64>,
-    /// The times of looks: one before and one after each sample; ascending.
+    /// Times of the looks, one before and one after each sample; ascending.
     looks_ns: Vec<f64>,
+    /// Time left for waiting and for disturbed samples.
     patience_ns: f64,
-    /// How long may still be spent on taking samples again for their page faults.
+    /// Time left for samples that are taken again because of page faults.
     for_faults_ns: f64,
 }
 
 impl Gauge {
-    /// For measurements that take `budget_ns`.
+    /// Creates a gauge for measurements with a budget of `budget_ns`.
     pub(crate) fn new(budget_ns: f64) -> Self {
         let word = |i: u64| i.wrapping_mul(0x9e37_79b9_7f4a_7c15) % WORDS as u64;
         Self {
@@ -53,8 +55,9 @@ impl Gauge {
         }
     }
 
-    /// Takes a sample by `sample`, and takes it again if `verdict` asks for it or if the machine was
-    /// disturbed before or after it: three times at most, and within what each of the two may take of the budget.
+    /// Takes a sample by calling `sample`. Takes it again if `verdict` is [`Verdict::Again`], or if
+    /// the machine was disturbed before or after it: at most three times, and only while the time
+    /// for that reason lasts.
     pub(crate) fn take<T>(
         &mut self,
         clock: &dyn Clock,
@@ -88,7 +91,7 @@ impl Gauge {
         }
     }
 
-    /// Whether time is left for waiting and for taking disturbed samples again.
+    /// Returns whether time is left for waiting and for disturbed samples.
     fn is_patient(&self) -> bool {
         self.patience_ns > 0.0
     }
@@ -102,20 +105,21 @@ impl Gauge {
             let disturbed = self.slowdown_at(ns) > DISTURBED;
             if !disturbed || waited > LONGEST_WAIT_NS || !self.is_patient() {
                 self.patience_ns -= waited;
-                // Of a wait one look is kept: hundreds of disturbed ones would become the undisturbed time.
+                // Keep only one look of a wait: hundreds of disturbed looks would count as
+                // undisturbed.
                 return self.note(ns);
             }
         }
     }
 
-    /// Returns the time of the fixed work now, divided by its undisturbed time; 1 if the clock does not
-    /// advance meanwhile.
+    /// Returns the time of the fixed work now, divided by its undisturbed time; 1 if the clock does
+    /// not advance meanwhile.
     fn slowdown(&mut self, clock: &dyn Clock) -> f64 {
         let ns = self.look(clock);
         self.note(ns)
     }
 
-    /// The time of the fixed work now.
+    /// Times the fixed work once; in nanoseconds.
     fn look(&self, clock: &dyn Clock) -> f64 {
         // The first pass brings the table into the cache.
         black_box(self.pass());
@@ -127,14 +131,14 @@ impl Gauge {
         time.ns()
     }
 
-    /// Keeps a look, and returns its slowdown.
+    /// Records the time of a look and returns its slowdown.
     fn note(&mut self, ns: f64) -> f64 {
         let place = self.looks_ns.partition_point(|&look| look < ns);
         self.looks_ns.insert(place, ns);
         self.slowdown_at(ns)
     }
 
-    /// A look divided by the undisturbed time; 1 if it took no time, or is the first.
+    /// Returns `ns` divided by the undisturbed time; 1 if either is zero or there are no looks yet.
     fn slowdown_at(&self, ns: f64) -> f64 {
         let undisturbed = (self.looks_ns.len() as f64 * UNDISTURBED) as usize;
         match self.looks_ns.get(undisturbed) {
@@ -143,8 +147,8 @@ impl Gauge {
         }
     }
 
-    /// Four sums that do not wait for each other: work that fills the core, and so takes longer if another
-    /// thread shares it.
+    /// Adds up four independent sums. This uses the whole core, so it takes longer if another
+    /// thread shares the core.
     fn pass(&self) -> u64 {
         let words = black_box(&self.words);
         let mut sums = [0_u64; 4];
@@ -157,19 +161,20 @@ impl Gauge {
     }
 }
 
-/// What [`Gauge::take`] does with a sample.
+/// The decision of [`Gauge::take`] about a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
-    /// Keeps it, unless the machine was disturbed.
+    /// Keep it, unless the machine was disturbed.
     Good,
-    /// Takes it again: pages faulted.
+    /// Take it again because of page faults.
     Again,
-    /// Keeps it in any case: it was refused, or the study was told to stop.
+    /// Keep it in any case: the run was refused, or the study is to stop.
     Final,
 }
 
 impl Verdict {
-    /// The verdict on a sample of `time`, where pages are `kept` and so should not fault.
+    /// Returns the verdict on a sample of `time`. If pages are `kept`, a sample should have no
+    /// faults.
     pub(crate) fn on_faults(time: Time, kept: bool) -> Self {
         match kept && time.faults.is_some_and(|faults| faults > 0) {
             true => Self::Again,
@@ -178,14 +183,14 @@ impl Verdict {
     }
 }
 
-/// A sample, and how it was taken.
+/// A sample, and the conditions under which it was taken.
 pub(crate) struct Taken<T> {
     pub(crate) value: T,
-    /// The larger slowdown of before and after.
+    /// The larger of the slowdowns before and after the sample.
     pub(crate) slowdown: f64,
-    /// How often it was taken again.
+    /// Number of times it was taken again.
     pub(crate) retaken: u32,
-    /// The machine was disturbed, and patience is left for another sample.
+    /// Whether the machine was disturbed and time is left for another sample.
     pub(crate) disturbed: bool,
 }
 
@@ -206,7 +211,7 @@ mod tests {
 
     use super::*;
 
-    /// A clock on which each look takes what the list says, then the last of it.
+    /// A clock on which the looks take the listed times in order, then always the last one.
     struct Scripted(Mutex<(f64, Vec<f64>, bool)>);
 
     impl Clock for Scripted {
@@ -239,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn a_disturbed_moment_is_seen_and_waited_for_as_long_as_there_is_patience() {
+    fn disturbed_moments_are_detected_and_waited_for_while_time_is_left() {
         let looks = |script: &[f64]| Scripted(Mutex::new((0.0, script.to_vec(), false)));
         let mut gauge = Gauge::new(1e9);
         let clock = looks(&[100.0, 101.0, 160.0, 99.0, 106.0, 132.0]);
@@ -249,7 +254,7 @@ mod tests {
 
         assert_eq!(Gauge::new(1.0).slowdown(&looks(&[0.0])), 1.0);
 
-        // Without patience a disturbed moment is taken as it is.
+        // If no time is left, a disturbed moment is not waited for.
         gauge.patience_ns = 0.0;
         let slow = Ticking::default();
         assert!(gauge.wait(&slow) > 1.9);

@@ -1,10 +1,11 @@
-//! Growth: how the cost of every operation on every structure goes with the size of the mesh.
+//! The growth lab: how the cost of every operation on every structure grows with the mesh.
 //!
-//! One shape is made in sizes that grow by one factor; at each, all structures are measured in
-//! interleaved rounds as in a study. A straight line through the logarithms gives the exponent of
-//! the total time: 1 is a price for each element that does not depend on the size, 2 is a scan of all
-//! faces for each. The price does depend on the caches, so the sizes that fit into the last of them
-//! and those beyond have lines of their own.
+//! One shape is made in several sizes, each larger than the previous one by the same factor. At
+//! each size all structures are measured in interleaved rounds, as in a study. A straight line
+//! through the logarithms gives the exponent of the total time. Exponent 1 means a constant time
+//! per element, exponent 2 a scan of all faces per element. The time per element also depends on
+//! the caches, so separate lines are fitted to the sizes that fit into the last cache and to those
+//! that do not.
 
 mod fits;
 mod settings;
@@ -37,35 +38,35 @@ use crate::study::{StudyError, is_skewed, put_on_the_bench, refusals, results, s
 use fits::{cache_ends, fits};
 use settings::Plan;
 use shares::Shares;
-use workload::{Backend, Draw, MachineClock, Subject};
-use workload::{Cache, caches, last_level};
+use sixfold_workload::{Backend, Draw, MachineClock, Subject};
+use sixfold_workload::{Cache, caches, last_level};
 
-/// What a sweep over sizes finds.
+/// The results of a sweep over sizes.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct GrowthReport {
-    /// The version of the shape of the data.
+    /// Version of the JSON schema.
     pub schema: u32,
-    /// The shape that grows.
+    /// Name of the shape.
     pub shape: String,
-    /// The order of its elements.
+    /// Order of its elements in memory.
     pub order: Order,
-    /// The backends that were measured, in the order of tables.
+    /// The measured backends, in the order of tables.
     pub backends: Vec<String>,
-    /// Those that cannot hold the shape.
+    /// The backends that cannot hold the shape.
     pub unheld: Vec<Unheld>,
-    /// Size by size, the smallest first; finished ones only.
+    /// The finished sizes, smallest first.
     pub sizes: Vec<SizeReport>,
-    /// About how many faces those have that there was no time for: a longer budget has them.
+    /// Approximate face counts of the sizes left out for lack of time.
     pub left_out: Vec<usize>,
-    /// Operation by operation, and within each backend by backend.
+    /// The fitted lines, sorted by operation, then by backend.
     pub fits: Vec<Fit>,
-    /// The caches of this machine; empty where the platform does not tell.
+    /// The caches of this machine; empty if unknown.
     pub caches: Vec<Cache>,
-    /// Where each of them ends, cache by cache and within each backend by backend.
+    /// The sizes at which layouts outgrow caches, sorted by cache, then by backend.
     pub cache_ends: Vec<CacheEnd>,
-    /// What the tables show, in words.
+    /// Sentences on the tables.
     pub words: Vec<String>,
-    /// Told to stop before the last size.
+    /// Whether the sweep was interrupted before the last size.
     pub interrupted: bool,
     /// The machine and the program.
     pub environment: Environment,
@@ -74,44 +75,44 @@ pub struct GrowthReport {
 /// A backend that cannot hold the shape.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Unheld {
-    /// Its name.
+    /// Name of the backend.
     pub backend: String,
-    /// Why not.
+    /// Why it cannot hold the shape.
     pub reason: String,
 }
 
-/// One size, measured as a study is.
+/// The results at one size, as in a study.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct SizeReport {
-    /// How many vertices.
+    /// Number of vertices.
     pub vertices: usize,
-    /// How many edges.
+    /// Number of edges.
     pub edges: usize,
-    /// How many faces.
+    /// Number of faces.
     pub faces: usize,
-    /// What each backend weighs.
+    /// Bytes of each backend.
     pub weights: Vec<Weight>,
     /// The rows of a study.
     pub results: Vec<ResultRow>,
-    /// What cannot be done at this size.
+    /// Operations that a backend cannot do at this size.
     pub refusals: Vec<Refusal>,
-    /// One backend entered twice.
+    /// The backend that was entered twice.
     pub control: Option<Control>,
 }
 
-/// What a backend weighs at one size.
+/// The bytes of a backend at one size.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Weight {
     /// The backend.
     pub backend: String,
-    /// Bytes really held.
+    /// Bytes held, including spare capacity.
     pub bytes: usize,
-    /// The level of the nearest cache that has room for them; `None` if none has, or none is known.
+    /// Lowest cache level with room for these bytes; `None` if no known cache is large enough.
     pub fits_in: Option<u8>,
 }
 
 impl GrowthReport {
-    /// Results that no difference between the backends explains.
+    /// Counts the results that contradict those of other backends.
     pub fn mismatches(&self) -> usize {
         let rows = self.sizes.iter().flat_map(|size| &size.results);
         rows.filter(|row| row.agreement == Agreement::Mismatch)
@@ -122,20 +123,21 @@ impl GrowthReport {
     ///
     /// # Errors
     ///
-    /// What `writer` reports.
+    /// Errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
 }
 
-/// Sweeps over the sizes, within the budget as far as one run of everything at each size allows. Sizes
-/// whose meshes and structures could not even be built in what is left of it are left out.
+/// Measures all sizes within the budget of `settings`. Exceeds the budget only if one run of
+/// everything at each size takes longer. Sizes whose meshes and structures cannot be built in the
+/// remaining time are left out.
 ///
-/// `stop` ends it early; the sizes that are finished by then are in the report.
+/// Setting `stop` ends the sweep early; the report contains the finished sizes.
 ///
 /// # Errors
 ///
-/// Settings that make no sense, or a shape that no backend asked for can hold.
+/// The settings are invalid, or no requested backend can hold the shape.
 pub fn growth(
     settings: &GrowthSettings,
     stop: &AtomicBool,
@@ -158,7 +160,7 @@ pub fn growth(
     let time = Shares::of(&plan.sizes, budget);
     let mut sizes: Vec<SizeReport> = Vec::new();
     let mut left_out = Vec::new();
-    // Seconds for each face, at the size before.
+    // Seconds per face to build everything at the previous size.
     let mut building = 0.0;
     for (step, &faces) in plan.sizes.iter().enumerate() {
         if building * faces as f64 > time.left().as_secs_f64() {
@@ -218,19 +220,19 @@ pub fn growth(
     })
 }
 
-/// What all sizes have in common.
+/// The state of a sweep that all sizes share.
 struct Sweep<'s> {
     settings: &'s GrowthSettings,
     plan: &'s Plan,
     caches: &'s [Cache],
     stop: &'s AtomicBool,
     unheld: Vec<Unheld>,
-    /// Of the largest size that is finished.
+    /// Counts of the largest finished size.
     counts: Option<Counts>,
 }
 
 impl Sweep<'_> {
-    /// Measures one size; `None` if it was told to stop before the end.
+    /// Measures one size; `None` if interrupted before the end.
     fn size(
         &mut self,
         mesh: &PolygonMesh,

@@ -1,35 +1,37 @@
-//! The heap that a study measures on: its policy, and memory that must not run out.
+//! The heap of the measurements: its policy, and protection against running out of memory.
 
 use serde::{Deserialize, Serialize};
+use sixfold_workload::pages::{self, HeapReport, Policy};
+use sixfold_workload::{Scrubber, Start};
 use sysinfo::{MemoryRefreshKind, System};
-use workload::pages::{self, HeapReport, Policy};
-use workload::{Scrubber, Start};
 
 use crate::numbers::bytes;
 
-/// What is left free at least, as a part of all memory.
+/// Part of all memory that must stay free.
 const LEAST_FREE: f64 = 0.05;
-/// Keeping pages may double what a study holds: freed blocks of one size do not always fit another.
+/// Largest factor by which keeping pages increases the memory of a study: freed blocks of one size
+/// do not always fit another.
 const KEPT: u64 = 2;
-/// What is touched beyond the pages in use, as a part of them: blocks may lie elsewhere the next time.
+/// One part in this many of the resident memory is touched in advance: later blocks may lie
+/// elsewhere.
 const RESERVE: u64 = 4;
 
 /// Whether the caches hold the mesh when a sample begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CacheState {
-    /// As the runs just before have left them.
+    /// The caches are as the previous runs left them.
     #[default]
     Warm,
-    /// They hold other data, and a sample is one run.
+    /// The caches hold other data, and a sample is one run.
     Cold,
 }
 
 impl CacheState {
-    /// Both.
+    /// Both states.
     pub const ALL: [Self; 2] = [Self::Warm, Self::Cold];
 
-    /// What users call it: `warm`.
+    /// Returns the name in options: `warm` or `cold`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Warm => "warm",
@@ -38,27 +40,27 @@ impl CacheState {
     }
 }
 
-/// What is done to the caches before each sample.
+/// Preparation of the caches before each sample.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct CachesReport {
-    /// Whether they hold the mesh.
+    /// Whether the caches hold the mesh.
     pub state: CacheState,
     /// Bytes written before each sample; 0 if warm.
     pub written_bytes: usize,
-    /// The last cache level whose content that replaces, where the platform tells.
+    /// Last cache level whose content this replaces; `None` if warm or unknown.
     pub defeats_level: Option<u8>,
 }
 
 /// The memory of the measurements, from the first sample to the last.
 pub(crate) struct Memory {
-    /// What is in force.
+    /// The policy in force.
     pub(crate) heap: HeapReport,
     scrubber: Option<Scrubber>,
 }
 
 impl Memory {
-    /// Puts `policy` into force, unless keeping pages could use up the free memory: `needed` is about
-    /// how many bytes the measurements hold at once.
+    /// Sets the heap policy. Uses the system's policy instead if keeping pages could use up the
+    /// free memory; `needed` is the approximate number of bytes that the measurements hold at once.
     pub(crate) fn start(policy: Policy, state: CacheState, needed: u64) -> Self {
         let heap = match too_little(needed, free_memory()).filter(|_| policy == Policy::Kept) {
             None => pages::put_in_force(policy),
@@ -73,7 +75,7 @@ impl Memory {
         }
     }
 
-    /// What a timed stretch finds.
+    /// Returns the state of the caches in which timed runs start.
     pub(crate) fn start_of_runs(&self) -> Start<'_> {
         match &self.scrubber {
             Some(scrubber) => Start::Cold(scrubber),
@@ -81,23 +83,23 @@ impl Memory {
         }
     }
 
-    /// Whether samples are of cold caches.
+    /// Returns whether samples start with cold caches.
     pub(crate) fn is_cold(&self) -> bool {
         self.scrubber.is_some()
     }
 
-    /// Whether freed pages stay, so that no sample should have a page fault.
+    /// Returns whether freed pages are kept, so that samples should have no page faults.
     pub(crate) fn keeps_pages(&self) -> bool {
         self.heap.policy == Policy::Kept
     }
 
-    /// Touches the pages of freed blocks, and a quarter of what is resident, if they are kept and there is room:
-    /// what is allocated from then on finds its pages there.
+    /// Touches the pages of freed blocks, plus a quarter of the resident memory, if pages are kept
+    /// and there is room. Later allocations then cause no page faults.
     pub(crate) fn reserve(&self) {
         self.reserve_for(pages::resident_bytes().unwrap_or(0) / RESERVE);
     }
 
-    /// Touches a block of `bytes`, or less if there is little room, and the pages of freed blocks.
+    /// Touches the pages of freed blocks, plus a block of `bytes`, or less if there is little room.
     pub(crate) fn reserve_for(&self, bytes: u64) {
         if let Some(free) = free_memory().filter(|_| self.keeps_pages()) {
             let most = free.saturating_sub(least_free()) / RESERVE;
@@ -105,20 +107,20 @@ impl Memory {
         }
     }
 
-    /// Whether `bytes` more leave enough memory free, as far as the platform tells.
+    /// Returns whether enough memory stays free after allocating `bytes`; true if unknown.
     pub(crate) fn has_room_for(&self, bytes: u64) -> bool {
         free_memory().is_none_or(|free| free > least_free().saturating_add(bytes))
     }
 
-    /// Returns the pages of freed blocks, if they are kept: until [`Memory::reserve`] what is allocated
-    /// finds fresh ones.
+    /// Returns kept pages of freed blocks to the kernel. Until [`Memory::reserve`], allocations get
+    /// fresh pages.
     pub(crate) fn give_back(&self) {
         if self.keeps_pages() {
             pages::give_back();
         }
     }
 
-    /// Stops keeping pages where memory runs out; whatever is measured from then on is on the system's heap.
+    /// Stops keeping pages if memory runs out; later measurements use the system's heap.
     pub(crate) fn watch(&mut self) {
         if !self.keeps_pages() {
             return;
@@ -126,13 +128,13 @@ impl Memory {
         if let Some(free) = free_memory().filter(|&free| free < least_free()) {
             self.heap = pages::put_in_force(Policy::System);
             self.heap.reason = Some(format!(
-                "only {} of memory were free while pages were kept, so the later samples are on the system's heap",
+                "only {} of memory were free while pages were kept, so later samples use the system's heap",
                 shown(free)
             ));
         }
     }
 
-    /// What is done to the caches.
+    /// Describes the preparation of the caches.
     pub(crate) fn caches(&self) -> CachesReport {
         let scrubber = self.scrubber.as_ref();
         CachesReport {
@@ -146,13 +148,13 @@ impl Memory {
     }
 }
 
-/// Why pages cannot be kept, if they cannot: what is needed may not fit into what is free.
+/// Returns a reason if pages cannot be kept because the needed memory may exceed the free memory.
 fn too_little(needed: u64, free: Option<u64>) -> Option<String> {
     let kept = needed.saturating_mul(KEPT);
     let free = free.filter(|&free| kept > free)?;
     let [kept, free] = [kept, free].map(shown);
     Some(format!(
-        "keeping freed pages could take {kept}, and {free} are free"
+        "keeping freed pages could take {kept}, but only {free} are free"
     ))
 }
 
@@ -160,7 +162,7 @@ fn shown(amount: u64) -> String {
     bytes(usize::try_from(amount).unwrap_or(usize::MAX))
 }
 
-/// Bytes that must stay free.
+/// Returns the number of bytes that must stay free.
 fn least_free() -> u64 {
     let mut system = System::new();
     system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
@@ -171,14 +173,14 @@ fn least_free() -> u64 {
     (all as f64 * LEAST_FREE) as u64
 }
 
-/// Bytes of memory that this program can still have, where the system tells: the least of what is
-/// free, what its control group allows and what its address space has room for.
+/// Returns the bytes of memory that this program can still allocate; `None` if unknown. This is the
+/// minimum of the free memory, the limit of its control group and the limit of its address space.
 pub fn free_memory() -> Option<u64> {
     let mut system = System::new();
     system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
-    // 0 where the system does not tell.
+    // 0 means unknown.
     let free = Some(system.available_memory()).filter(|&free| free > 0);
-    // Files that the group has read count as used there, and yet are given up when memory is needed.
+    // Use `rss`: cached files count as used memory of the group, but are dropped when needed.
     let group = system.cgroup_limits();
     let group = group.map(|limits| limits.total_memory.saturating_sub(limits.rss));
     let rooms = [free, group, pages::address_space_left()];
@@ -190,7 +192,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pages_are_not_kept_where_memory_could_run_out() {
+    fn pages_are_not_kept_if_memory_could_run_out() {
         let reason = too_little(3 << 30, Some(5 << 30)).expect("6 GiB do not fit into 5");
         assert!(
             reason.contains("could take 6.44 GB") && reason.contains("5.37 GB are free"),

@@ -1,25 +1,25 @@
-//! What a mesh is, and which backends can hold it.
+//! Facts of a mesh, and the backends that can hold it.
 
 use sixfold::{BuildError, Counts, Facts, PolygonMesh};
 
 use crate::report::{BackendReport, Inspection, MeshReport, SCHEMA};
-use workload::Backend;
+use sixfold_workload::Backend;
 
-/// A mesh to be looked into.
+/// A mesh to inspect or to measure, with its facts.
 #[derive(Clone, Debug)]
 pub struct Specimen {
-    /// Where it comes from, in words.
+    /// Origin of the mesh, such as its file name.
     pub name: String,
-    /// What its file is, degenerate faces included; these have no edges.
+    /// Facts of the file, including degenerate faces, which have no edges.
     pub facts: Facts,
-    /// The mesh to build structures from: the faces of the file that are not degenerate.
+    /// Mesh to build structures from, without the degenerate faces of the file.
     pub polygons: PolygonMesh,
-    /// How `polygons` differs from the file, in words.
+    /// Differences between `polygons` and the file, as phrases.
     pub changes: Vec<String>,
 }
 
 impl Specimen {
-    /// A mesh as it is, with its facts; O(corners) expected.
+    /// Creates a specimen of an unchanged mesh, with its facts; O(corners) expected.
     pub fn new(name: impl Into<String>, polygons: PolygonMesh) -> Self {
         Self {
             name: name.into(),
@@ -38,7 +38,8 @@ impl Specimen {
     }
 }
 
-/// Asks each backend whether it can hold the mesh, and builds none; O(corners) expected for each.
+/// Checks for each backend whether it can hold the mesh, without building it; O(corners) expected
+/// per backend.
 pub fn inspect(specimen: &Specimen) -> Inspection {
     let counts = specimen.polygons.counts(specimen.facts.edges);
     let backends = Backend::roster().into_iter().map(|backend| {
@@ -52,7 +53,7 @@ pub fn inspect(specimen: &Specimen) -> Inspection {
     }
 }
 
-/// What there is to say of a backend before it is built, or that refused to be.
+/// Returns the report of a backend that is not built yet, or that refused the mesh.
 pub(crate) fn unbuilt(
     backend: &Backend,
     counts: &Counts,
@@ -76,7 +77,7 @@ pub(crate) fn unbuilt(
     }
 }
 
-/// `bytes` for each vertex, if there are any.
+/// Returns `bytes` divided by the number of vertices; `None` if there are no vertices.
 pub(crate) fn per_vertex(bytes: usize, counts: &Counts) -> Option<f64> {
     (counts.vertices > 0).then(|| bytes as f64 / counts.vertices as f64)
 }

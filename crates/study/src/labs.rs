@@ -1,4 +1,4 @@
-//! What stands beside a study in a report, and has a command of its own.
+//! Results of the labs that a report shows beside studies.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,14 +17,14 @@ pub struct Labs {
     pub orders: Vec<OrdersReport>,
     /// A shape in several sizes.
     pub growth: Vec<GrowthReport>,
-    /// What queries read, beside what reading costs.
+    /// Bytes that queries read, and their times relative to the speed of memory.
     pub why: Vec<Why>,
-    /// Workloads.
+    /// Rankings for workloads.
     pub picks: Vec<Answer>,
 }
 
 impl Labs {
-    /// Results that no difference between the backends explains.
+    /// Counts the results that contradict those of other backends.
     pub fn mismatches(&self) -> usize {
         let orders = self.orders.iter().map(OrdersReport::mismatches);
         let growth = self.growth.iter().map(GrowthReport::mismatches);
@@ -33,7 +33,7 @@ impl Labs {
         orders.chain(growth).chain(why).chain(picks).sum()
     }
 
-    /// Whether some of them were told to stop before their end.
+    /// Returns whether any of them was interrupted.
     pub fn interrupted(&self) -> bool {
         let orders = self.orders.iter().map(|orders| orders.interrupted);
         let growth = self.growth.iter().map(|growth| growth.interrupted);
@@ -42,7 +42,7 @@ impl Labs {
         orders.chain(growth).chain(why).chain(picks).any(|cut| cut)
     }
 
-    /// The machines and programs that they are of.
+    /// Iterates over the environments of all results.
     pub fn environments(&self) -> impl Iterator<Item = &Environment> {
         let orders = self.orders.iter().map(|orders| &orders.environment);
         let growth = self.growth.iter().map(|growth| &growth.environment);
@@ -51,7 +51,7 @@ impl Labs {
         orders.chain(growth).chain(why).chain(picks)
     }
 
-    /// Puts `others` behind these.
+    /// Appends `others`.
     pub(crate) fn append(&mut self, mut others: Self) {
         self.orders.append(&mut others.orders);
         self.growth.append(&mut others.growth);
@@ -59,7 +59,7 @@ impl Labs {
         self.picks.append(&mut others.picks);
     }
 
-    /// Takes in `results`, unless they are of a study.
+    /// Adds `results`; ignores studies and collections.
     pub fn take(&mut self, results: Results) {
         match results {
             Results::Orders(orders) => self.orders.push(*orders),

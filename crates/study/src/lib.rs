@@ -1,15 +1,16 @@
 //! Workloads, interleaved measurement and reports: which structure fits this mesh and this work?
 //!
-//! [`study`] builds every backend asked for, runs the [`Operation`]s on them in interleaved rounds
-//! until the budget is spent, proves by checksum that all did the same work, and gives a [`Report`].
-//! [`orders`] does so for one mesh in several orders, and [`growth`] for one shape in many sizes.
-//! [`inspect`] says what a mesh is and which backends can hold it, and measures nothing. [`pick`]
-//! answers for a workload. [`compare`] holds two studies against each other, and a [`Collection`] pools
-//! those of many meshes. [`audit`] counts the bytes of each in three ways, which must agree. [`why`]
-//! counts what the relations read, and holds their times against the speed of memory.
+//! [`study()`] builds every requested backend, runs the [`Operation`]s on them in interleaved
+//! rounds until the budget is spent, compares checksums to prove that all did the same work, and
+//! returns a [`Report`]. [`orders`] does this for one mesh in several orders, [`growth`] for one
+//! shape in many sizes. [`inspect`] describes a mesh and the backends that can hold it, and
+//! measures nothing. [`pick`] ranks the backends for a workload. [`compare`] compares two studies.
+//! A [`Collection`] pools the studies of many meshes. [`audit`] counts the bytes of each backend in
+//! three ways, which must agree. [`why`] counts the bytes that relations read, and compares their
+//! times with the speed of memory.
 //!
-//! What a reader of the figures should know is in `reports/SCHEMA.md`. This crate knows no
-//! command line and prints nothing: progress goes to a closure, and a flag stops it.
+//! `reports/SCHEMA.md` explains the figures. This crate has no command line and prints nothing: it
+//! reports progress to a closure and stops when a flag is set.
 
 mod agreement;
 mod audit;
@@ -72,17 +73,19 @@ pub use report::{
     Agreement, BackendReport, Control, ControlRow, FIRST_TIME_SHOWN, Inspection, MeshReport,
     RawSamples, Refusal, Report, ResultRow, SCHEMA, Standing,
 };
+pub use sixfold_workload::pages::{self, HeapReport, Policy, UnknownPolicy};
+pub use sixfold_workload::{
+    Access, Action, Amount, NoPlace, Workload, WorkloadError, built_in, built_ins,
+};
+pub use sixfold_workload::{
+    Allocated, AllocationCounter, Backend, Cache, Clock, Editing, Editor, Edits, Heap, Kind,
+    MOST_SCANNED_FACES, MachineClock, MemorySpeed, NotCounted, Operation, Reads, Refiner, Refining,
+    Rung, Scrubber, Series, SingleEdit, Start, TableReads, Time, UnknownOperation, Way, Weighed,
+    caches, timed, unknown,
+};
 pub use slope::Slope;
 pub use solo::{Solo, SoloRun};
 pub use study::{Settings, StudyError, study};
 pub use tame::tame;
 pub use timer::Timer;
 pub use why::{Bound, Model, Timed, Timing, Why, WhyRow, WhySettings, why};
-pub use workload::pages::{self, HeapReport, Policy, UnknownPolicy};
-pub use workload::{Access, Action, Amount, NoPlace, Workload, WorkloadError, built_in, built_ins};
-pub use workload::{
-    Allocated, AllocationCounter, Backend, Cache, Clock, Editing, Editor, Edits, Heap, Kind,
-    MOST_SCANNED_FACES, MachineClock, MemorySpeed, NotCounted, Operation, Reads, Refiner, Refining,
-    Rung, Scrubber, Series, SingleEdit, Start, TableReads, Time, UnknownOperation, Way, Weighed,
-    caches, timed, unknown,
-};

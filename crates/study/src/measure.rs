@@ -1,12 +1,12 @@
-//! The measuring loop: rounds until the budget is gone, after the warm-up that plans them.
+//! The measuring loop: a warm-up that plans the samples, then rounds until the budget is spent.
 //!
-//! In every round each operation runs on every structure, one right after the other, in an order
-//! drawn anew: whatever drifts (frequency, heat, neighbours on the machine) hits all alike, and the
-//! ratios formed within a round are nearly free of it. A sample repeats a short operation until the
-//! clock can resolve it, after about as much work that is not timed, so that caches hold what this
-//! structure would have there. Between rounds, as far as time allows, all structures are built again
-//! elsewhere in memory, so that the places of their tables differ. What allocates is measured a second
-//! time at the end, on fresh pages.
+//! In every round each operation runs on every structure, one right after the other, in random
+//! order. Slow changes (frequency, heat, other programs) therefore affect all structures alike, and
+//! ratios formed within a round are nearly free of them. A sample repeats a short operation until
+//! the clock can resolve it, after about as much untimed work, so that the caches hold the data of
+//! this structure. Between rounds, if time allows, all structures are built again elsewhere in
+//! memory, so that the addresses of their tables vary. Operations that allocate are measured again
+//! at the end, on fresh pages.
 
 use std::hint::black_box;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,60 +19,61 @@ use rand_chacha::ChaCha8Rng;
 use crate::gauge::{Gauge, Verdict, undisturbed};
 use crate::heap::Memory;
 use crate::statistics::Median;
-use workload::Operation;
-use workload::pages;
-use workload::{Clock, Time};
-use workload::{Job, LONG_ENOUGH_NS, Outcome, Run, Series, Start, Subject};
+use sixfold_workload::Operation;
+use sixfold_workload::pages;
+use sixfold_workload::{Clock, Time};
+use sixfold_workload::{Job, LONG_ENOUGH_NS, Outcome, Run, Series, Start, Subject};
 
-/// No interval gets much better by more rounds than these.
+/// Largest number of rounds; more would hardly narrow the intervals.
 const MOST_ROUNDS: u32 = 200;
-/// What samples on fresh pages may take of the budget.
+/// Part of the budget for samples on fresh pages.
 const FIRST_TIMES: f64 = 0.1;
-/// No figure gets much better by more samples on fresh pages than these.
+/// Largest number of samples on fresh pages; more would hardly improve the figures.
 const MOST_FIRST_TIMES: u32 = 9;
-/// What building the structures again and again may take of the time.
+/// Part of the elapsed time for building the structures again.
 const REBUILDING: f64 = 0.04;
-/// A structure is built behind a gap of up to this many bytes.
+/// Largest gap in bytes that is allocated before a structure is built again.
 const LARGEST_GAP: usize = 64 << 10;
-/// More runs than these make no sample better.
+/// Largest number of runs in one sample.
 pub(crate) const MOST_RUNS: f64 = 1e7;
 /// Runs longer than this fill the caches by themselves.
 pub(crate) const LONG_RUN_NS: f64 = 10_000_000.0;
 
-/// One operation on one structure: how it is measured, and what came out.
+/// One operation on one structure: the plan of its measurement, and the results.
 #[derive(Clone, Debug)]
 pub(crate) struct Entry {
-    /// Which of the subjects.
+    /// Index of the subject.
     pub(crate) subject: usize,
-    /// What is run.
+    /// The operation, and its sample of elements.
     pub(crate) job: Job,
-    /// How often it is run before the clock starts.
+    /// Number of runs before the clock starts.
     pub(crate) untimed: u32,
-    /// How often in a row, for one sample.
+    /// Number of timed runs in one sample.
     pub(crate) runs: u32,
-    /// It takes part in every n-th round; in none if 0.
+    /// It takes part in every n-th round; never if 0.
     pub(crate) every: u32,
-    /// What one sample is thought to take, in nanoseconds of wall time.
+    /// Expected wall time of one sample, in nanoseconds.
     pub(crate) cost_ns: f64,
-    /// The warm-up run; `None` until it is over.
+    /// Time of the warm-up run; `None` until it is over.
     pub(crate) warm_up: Option<Time>,
-    /// What the operation found.
+    /// The results of the operation.
     pub(crate) outcome: Option<Outcome>,
-    /// Why it is not measured: it would take so long.
+    /// Estimated time if a run would take too long; it is then not measured.
     pub(crate) estimate: Option<Time>,
-    /// It is only estimated because nobody asked for it by name: there would be time for it.
+    /// Whether it is only estimated because it was not requested by name; there would be time for
+    /// it.
     pub(crate) by_name_only: bool,
     /// Why it cannot be done on this structure or mesh.
     pub(crate) refusal: Option<String>,
-    /// By round: the time of one run.
+    /// Round and time of one run, for each sample.
     pub(crate) samples: Vec<(u32, Time)>,
-    /// By sample: the larger slowdown of the [`Gauge`] before and after it.
+    /// For each sample the larger slowdown of the [`Gauge`] before and after it.
     pub(crate) slowdowns: Vec<f64>,
-    /// Its last sample was disturbed: it takes part in the next round, too.
+    /// Whether its last sample was disturbed; it then takes part in the next round, too.
     pub(crate) owed: bool,
-    /// How many samples were taken again because pages faulted in them, or the machine was disturbed.
+    /// Number of samples taken again because of page faults or disturbance.
     pub(crate) retaken: u32,
-    /// The times of one run each, on fresh pages and tables, and of one as in a sample right after.
+    /// Pairs of times: of one run on fresh pages and tables, and of a normal run right after it.
     pub(crate) first_times: Vec<[Time; 2]>,
 }
 
@@ -102,25 +103,26 @@ impl Entry {
         }
     }
 
-    /// The time of the first run: the median, times the median of how much longer the first run takes.
+    /// Returns the time of a first run: the median time multiplied by the median ratio of first
+    /// runs to the runs right after them.
     pub(crate) fn first_ns(&self) -> Option<f64> {
         let median = Median::of(self.times().iter().map(|(_, time)| time.ns()))?;
         let ratio = |[first, later]: &[Time; 2]| first.ns() / later.ns().max(1.0);
         Some(median.value * Median::of(self.first_times.iter().map(ratio))?.value)
     }
 
-    /// What measuring one first time is expected to take: three runs with what is set up for them.
+    /// Returns the expected time to measure one first run, in nanoseconds: that of three runs.
     fn first_time_cost_ns(&self) -> f64 {
         3.0 * self.cost_ns / f64::from(self.runs + self.untimed)
     }
 
-    /// Whether what it allocates is new to the process the first time.
+    /// Returns whether first runs can be measured: it allocates, and was measured without sampling.
     fn has_a_first_time(&self) -> bool {
         let measured = !self.samples.is_empty() && self.job.sample.is_none();
         measured && self.job.operation.allocates()
     }
 
-    /// The samples that count, or the warm-up run where there was time for nothing else.
+    /// Returns the samples that count, or the warm-up run if there was no time for samples.
     pub(crate) fn times(&self) -> Vec<(u32, Time)> {
         match (&self.samples[..], self.warm_up) {
             ([], Some(time)) if self.estimate.is_none() => vec![(0, time)],
@@ -128,10 +130,10 @@ impl Entry {
         }
     }
 
-    /// How long the shortest stretch between two readings of the clock took: a sample, or a part of it
-    /// where the clock stops between runs.
+    /// Returns the shortest interval between two readings of the clock, in nanoseconds: a sample,
+    /// or a part of it if the clock stops between runs.
     pub(crate) fn shortest_sample_ns(&self) -> Option<f64> {
-        // A sample of the elements is scaled up to stand for all: how long it took is not kept.
+        // Times of sampled elements are scaled to all elements; the original time is not kept.
         let whole = self.samples.iter().filter(|_| self.job.sample.is_none());
         let shortest = whole.map(|(_, time)| time.ns()).min_by(f64::total_cmp)?;
         let sample = shortest * f64::from(self.runs);
@@ -142,9 +144,10 @@ impl Entry {
     }
 }
 
-/// How often `operation`, of which a run takes `ns`, is run before the clock starts: at least once, and for
-/// up to `most_ns`, so that caches and branch predictors are as in a program that does nothing else, and
-/// tables have their size; not at all where a run does all that by itself, and no tables grow.
+/// Returns the number of untimed runs of `operation` before a sample, if one run takes `ns`. There
+/// is at least one, and they take up to `most_ns`. They fill caches, branch predictors and tables
+/// as in a program that does nothing else. Runs longer than 10 ms do this by themselves; they get
+/// one untimed run if tables grow, else none.
 pub(crate) fn untimed_runs(operation: Operation, ns: f64, most_ns: f64) -> u32 {
     match ns > LONG_RUN_NS {
         true => u32::from(operation.grows_tables()),
@@ -152,42 +155,43 @@ pub(crate) fn untimed_runs(operation: Operation, ns: f64, most_ns: f64) -> u32 {
     }
 }
 
-/// Where a study stands: shown on a terminal.
+/// Progress of a study, for display.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress<'a> {
     /// The part that is done, from 0 to 1.
     pub done: f64,
-    /// What is going on.
+    /// Name of the current stage.
     pub stage: &'a str,
-    /// What is measured now.
+    /// Operation that is measured now.
     pub operation: Operation,
-    /// On which backend.
+    /// Backend that is measured now.
     pub backend: &'a str,
 }
 
-/// The bench: subjects, clock and budget.
+/// The measurement of several subjects, with its clock and budget.
 pub(crate) struct Bench<'b, 's> {
     pub(crate) subjects: &'b mut [Box<dyn Subject + 's>],
-    /// Which of the subjects is another a second time, for the control.
+    /// Index of the subject that repeats another one, for the control.
     pub(crate) control: Option<usize>,
-    /// By kind: how many elements the mesh has.
+    /// Numbers of vertices, edges and faces of the mesh.
     pub(crate) population: [usize; 3],
-    /// Some valence or degree is so large that walking around it is as bad as a scan.
+    /// Whether some valence or degree is so large that walking around it is as slow as a scan.
     pub(crate) skewed: bool,
     pub(crate) clock: &'b dyn Clock,
     /// The heap and the caches.
     pub(crate) memory: &'b mut Memory,
     pub(crate) budget: Duration,
-    /// The operations were asked for by name.
+    /// Whether the operations were requested by name.
     pub(crate) named: bool,
     pub(crate) random: ChaCha8Rng,
-    /// Set by whoever wants the study to end now.
+    /// Ends the study when set.
     pub(crate) stop: &'b AtomicBool,
     pub(crate) progress: &'b mut dyn FnMut(Progress<'_>),
 }
 
 impl Bench<'_, '_> {
-    /// Measures `operations` on all subjects; ends early, with what is finished, when told to stop.
+    /// Measures `operations` on all subjects. Returns early, with the finished part, if `stop` is
+    /// set.
     pub(crate) fn measure(&mut self, operations: &[Operation]) -> Vec<Entry> {
         let start = self.clock.now().wall_ns;
         let deadline = start + self.budget.as_nanos() as f64;
@@ -195,7 +199,7 @@ impl Bench<'_, '_> {
         for &operation in operations {
             entries.extend((0..self.subjects.len()).map(|s| Entry::new(s, operation)));
         }
-        // What is built in the warm-up may be all that there is time for.
+        // Reserve for the warm-up: its runs may be the only ones that fit the budget.
         let largest = self.subjects.iter().map(|subject| subject.bytes()).max();
         self.memory.reserve_for(2 * largest.unwrap_or(0) as u64);
         self.warm_up(&mut entries, deadline);
@@ -207,19 +211,19 @@ impl Bench<'_, '_> {
             false => 0.0,
         };
         self.rounds(&mut entries, start, deadline - for_first_times);
-        // Last, for the pages that it gives back are those that samples would find.
+        // Last, because it returns pages to the kernel that samples would otherwise reuse.
         if for_first_times > 0.0 {
             self.first_times(&mut entries, deadline);
         }
         entries
     }
 
-    /// Whether the study was told to stop.
+    /// Returns whether `stop` is set.
     pub(crate) fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Runs `job` with caches as the settings ask for: `untimed` runs, then `runs` timed ones.
+    /// Runs `job` in the cache state of the settings: `untimed` runs, then `runs` timed ones.
     pub(crate) fn run(
         &mut self,
         subject: usize,
@@ -237,11 +241,12 @@ impl Bench<'_, '_> {
         self.subjects[subject].run(job, &series)
     }
 
-    /// Rounds until the next would not end in time; the first leaves out what would not.
+    /// Runs rounds until the next one would not end in time. The first round always starts, but
+    /// leaves out entries that would not end in time.
     fn rounds(&mut self, entries: &mut [Entry], start: f64, deadline: f64) {
         let mut groups = groups(entries);
         let mut gauge = Gauge::new(self.budget.as_nanos() as f64);
-        // Until one is timed: a structure is built and touched at about one byte in a nanosecond.
+        // First guess: building and touching a structure takes about 1 ns per byte.
         let mut rebuild_ns: f64 = self.subjects.iter().map(|s| s.bytes() as f64).sum();
         let mut rebuilding_ns = 0.0;
         for round in 0..MOST_ROUNDS {
@@ -263,7 +268,7 @@ impl Bench<'_, '_> {
             groups.shuffle(&mut self.random);
             for group in &mut groups {
                 group.shuffle(&mut self.random);
-                // All of an operation together: ratios are formed within rounds.
+                // All entries of an operation together: ratios are formed within rounds.
                 let owed = group.iter().any(|&entry| entries[entry].owed);
                 for &entry in &*group {
                     let entry = &mut entries[entry];
@@ -287,15 +292,16 @@ impl Bench<'_, '_> {
         }
     }
 
-    /// Whether another copy of the largest structure, with its outputs, fits into the free memory.
+    /// Returns whether another copy of the largest structure, with its outputs, fits into free
+    /// memory.
     fn has_room_to_rebuild(&self) -> bool {
         let largest = self.subjects.iter().map(|subject| subject.bytes()).max();
         self.memory.has_room_for(2 * largest.unwrap_or(0) as u64)
     }
 
-    /// Builds all structures again, each elsewhere in memory, where pages are kept on pages that the kernel
-    /// chooses anew. Tables stay where they are between two such moments, and with them whatever their places
-    /// cost or save.
+    /// Builds all structures again, each elsewhere in memory. If pages are kept, it first returns
+    /// them, so that the kernel chooses new ones. The addresses of the tables affect times and do
+    /// not change between two rebuilds.
     fn rebuild(&mut self) {
         let mut order: Vec<usize> = (0..self.subjects.len()).collect();
         order.shuffle(&mut self.random);
@@ -311,7 +317,7 @@ impl Bench<'_, '_> {
         self.memory.reserve();
     }
 
-    /// Takes a sample. An external program may refuse at any time.
+    /// Takes a sample and records it, or the refusal: an external program may refuse at any time.
     fn sample(&mut self, gauge: &mut Gauge, entry: &mut Entry, round: u32) {
         let (stop, kept) = (self.stop, self.memory.keeps_pages());
         let runs = [entry.untimed, entry.runs];
@@ -337,9 +343,9 @@ impl Bench<'_, '_> {
         }
     }
 
-    /// Measures what allocates on fresh pages, one run a sample, in rounds, while there is time. Right after
-    /// each comes a run as in any sample: the ratio of the two does not depend on how fast the machine is
-    /// at that time.
+    /// Measures operations that allocate on fresh pages, one run per sample, in rounds, while there
+    /// is time. A normal run follows each of them: the ratio of the two does not depend on the
+    /// current speed of the machine.
     fn first_times(&mut self, entries: &mut [Entry], deadline: f64) {
         let control = self.control;
         let mut entries: Vec<&mut Entry> = entries
@@ -385,13 +391,13 @@ fn takes_part(entry: &Entry, round: u32) -> bool {
     can_take_part(entry) && round.is_multiple_of(entry.every)
 }
 
-/// Whether it is run in rounds at all.
+/// Returns whether `entry` runs in rounds at all.
 fn can_take_part(entry: &Entry) -> bool {
     let can = entry.warm_up.is_some() && entry.refusal.is_none();
     can && entry.every > 0 && entry.estimate.is_none()
 }
 
-/// The numbers of the entries, those of one operation together.
+/// Returns the indices of the entries, grouped by operation.
 fn groups(entries: &[Entry]) -> Vec<Vec<usize>> {
     let numbers: Vec<usize> = (0..entries.len()).collect();
     let same = |&a: &usize, &b: &usize| entries[a].job.operation == entries[b].job.operation;

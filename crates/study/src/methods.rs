@@ -1,16 +1,16 @@
-//! In words: what the method of a subdivision does for each structure.
+//! Sentences on subdivision methods: which method is faster on which structure.
 
 use sixfold::subdivision::Method;
 
 use crate::report::{BackendReport, ResultRow};
-use workload::Operation;
+use sixfold_workload::Operation;
 
-/// Methods closer than this are not told apart.
+/// Smaller ratios of two methods are not reported.
 const ALIKE: f64 = 1.1;
-/// How far a figure may be off that has no interval: an estimate, or one with few samples.
+/// Assumed error factor of a figure without an interval: an estimate, or one with few samples.
 const UNSURE: f64 = 1.5;
 
-/// A time, and the interval that it is surely in.
+/// A time in nanoseconds, with its interval.
 #[derive(Clone, Copy)]
 struct Took {
     low: f64,
@@ -28,15 +28,16 @@ impl Took {
         })
     }
 
-    /// How many times `other` this took, if it is longer beyond doubt.
+    /// Returns the ratio of this time to `other`, if this is clearly longer.
     fn beyond(self, other: Self) -> Option<f64> {
         let ratio = self.ns / other.ns;
         (self.low > other.high && ratio > ALIKE).then_some(ratio)
     }
 }
 
-/// One sentence for each scheme: whom a pass over the faces rescues from searching and whom it slows,
-/// and what it saves a structure to split its own tables. `times` says a ratio.
+/// Returns one sentence per scheme: the structures on which scatter is faster than gather, those on
+/// which it is slower, and those on which native steps are faster than both. `times` formats a
+/// ratio.
 pub(crate) fn methods(
     backends: &[BackendReport],
     results: &[ResultRow],

@@ -1,6 +1,6 @@
-//! Numbers as people read them.
+//! Formats numbers, sizes and times for display.
 
-/// `1,234,567`.
+/// Formats a number with thousands separators: `1,234,567`.
 pub fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::with_capacity(digits.len() * 4 / 3);
@@ -13,7 +13,7 @@ pub fn grouped(number: usize) -> String {
     text
 }
 
-/// Three digits that count: `0.412`, `4.12`, `41.2`, `412`, `4,120`.
+/// Formats a number with three significant digits: `0.412`, `4.12`, `41.2`, `412`, `4,120`.
 pub fn figure(number: f64) -> String {
     match number {
         n if !n.is_finite() => "–".into(),
@@ -24,13 +24,13 @@ pub fn figure(number: f64) -> String {
     }
 }
 
-/// `3 edges`, `1 edge`: `plural` is the word for any other number.
+/// Formats a count with its noun: `1 edge`, `3 edges`.
 pub fn counted(number: usize, singular: &str, plural: &str) -> String {
     let word = if number == 1 { singular } else { plural };
     format!("{} {word}", grouped(number))
 }
 
-/// A number of bytes with the unit that suits it, a thousand of each to the next.
+/// Formats a number of bytes with a suitable decimal unit (1 kB = 1,000 bytes).
 pub fn bytes(number: usize) -> String {
     match number as f64 {
         n if n < 1e3 => counted(number, "byte", "bytes"),
@@ -40,7 +40,7 @@ pub fn bytes(number: usize) -> String {
     }
 }
 
-/// A time with the unit that suits it.
+/// Formats a time with a suitable unit.
 pub fn duration(ns: f64) -> String {
     match ns {
         ns if ns < 1e3 => format!("{} ns", figure(ns)),
@@ -50,7 +50,7 @@ pub fn duration(ns: f64) -> String {
     }
 }
 
-/// `1.4 ×`, `2,100 ×`: a ratio as one says it.
+/// Formats a ratio: `1.4 ×`, `2,100 ×`.
 pub fn times(ratio: f64) -> String {
     match ratio {
         r if r < 1.095 => format!("{r:.2} ×"),
@@ -64,13 +64,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn thousands_are_parted() {
+    fn thousands_are_separated() {
         let numbers = [0, 12, 123, 1234, 123_456, 1_234_567].map(grouped);
         assert_eq!(numbers, ["0", "12", "123", "1,234", "123,456", "1,234,567"]);
     }
 
     #[test]
-    fn three_digits_count() {
+    fn three_digits_are_significant() {
         let figures = [
             0.0, 0.05, 0.9994, 0.9996, 9.994, 9.996, 99.94, 99.96, 41234.5,
         ]

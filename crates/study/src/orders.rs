@@ -1,9 +1,9 @@
 //! The order lab: one mesh in several orders, on every structure, measured in one interleaved run.
 //!
-//! An order changes where elements lie in memory, and nothing else, so all that differs between two
-//! columns is how well the caches foresee what comes next. That can outweigh the choice of a
-//! structure, and a study of one file never shows it: its order is whatever wrote the file.
-//! Samples are of the same elements in every order, so that checksums can be compared.
+//! An order changes only the places of elements in memory, so two columns differ only in how well
+//! caches and prefetchers work. This can matter more than the choice of a structure. A study of one
+//! file does not show it, because the file has a single order. All orders use samples of the same
+//! elements, so that checksums can be compared.
 
 mod effects;
 mod meshes;
@@ -34,10 +34,10 @@ use crate::report::{
 use crate::study::{Settings, StudyError, is_skewed, put_on_the_bench, refusals, results, scans};
 use effects::Timed;
 use meshes::Meshes;
-use workload::{Backend, MachineClock, Operation, Subject};
+use sixfold_workload::{Backend, MachineClock, Operation, Subject};
 
-/// What is measured where no operations are named: around vertices, faces and edges, a sum over
-/// faces, and a walk through the whole mesh.
+/// Operations that are measured by default: queries around vertices, faces and edges, a sum over
+/// faces, and a traversal of the whole mesh.
 pub const FEW_OPERATIONS: [&str; 6] = [
     "vertex_vertices",
     "vertex_faces",
@@ -47,10 +47,10 @@ pub const FEW_OPERATIONS: [&str; 6] = [
     "ff_bfs",
 ];
 
-/// Less is no measurement.
+/// Smallest budget.
 const SHORTEST: Duration = Duration::from_millis(100);
 
-/// Why there are no orders to compare.
+/// The reason why orders cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -58,35 +58,35 @@ pub enum OrdersError {
     /// There is nothing to study.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// There is no time to measure.
-    #[error("a budget of {} ms is too short to compare orders: take {} ms or more", .budget.as_millis(), .least.as_millis())]
+    /// The budget is too short.
+    #[error("a budget of {} ms is too short to compare orders: use {} ms or more", .budget.as_millis(), .least.as_millis())]
     BudgetTooSmall { budget: Duration, least: Duration },
 }
 
-/// What a comparison of orders finds.
+/// The results of a comparison of orders.
 #[serde_as]
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct OrdersReport {
-    /// The version of the shape.
+    /// Version of the JSON schema.
     pub schema: u32,
-    /// What the mesh is, as given.
+    /// Name and facts of the mesh in its given order.
     pub mesh: MeshReport,
-    /// The orders, as tables show them.
+    /// The orders, in the order of tables.
     pub orders: Vec<Order>,
-    /// Those asked for, in the order of the roster, built from the mesh as given.
+    /// The requested backends, in the order of the roster, built from the mesh in its given order.
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
-    /// Operation by operation, then structure by structure, then order by order.
+    /// The rows, sorted by operation, then structure, then order.
     pub results: Vec<OrderRow>,
-    /// What was asked for and cannot be done.
+    /// Requested operations that cannot be done.
     pub refusals: Vec<Refusal>,
-    /// How much the order matters, and how much the structure, for each operation.
+    /// The effects of order and structure, for each operation.
     pub comparisons: Vec<Comparison>,
-    /// One structure in the order given, entered twice.
+    /// One structure in the given order, entered twice.
     pub control: Option<Control>,
-    /// What the tables show, in words.
+    /// Sentences on the tables.
     pub words: Vec<String>,
-    /// Told to stop before the end.
+    /// Whether the run was interrupted before the end.
     pub interrupted: bool,
     /// The machine and the program.
     pub environment: Environment,
@@ -97,19 +97,19 @@ pub struct OrdersReport {
 pub struct OrderRow {
     /// The order.
     pub order: Order,
-    /// Its time; `standing` and the ratio to the best are among the orders of this structure.
+    /// Its times; `standing` and the ratio to the best compare the orders of this structure.
     #[serde(flatten)]
     pub row: ResultRow,
 }
 
 impl OrdersReport {
-    /// The rows of `operation`.
+    /// Iterates over the rows of `operation`.
     pub fn rows(&self, operation: Operation) -> impl Iterator<Item = &OrderRow> {
         let of_it = move |row: &&OrderRow| row.row.operation == operation;
         self.results.iter().filter(of_it)
     }
 
-    /// Results that no difference between the structures explains.
+    /// Counts the results that contradict those of other structures.
     pub fn mismatches(&self) -> usize {
         let wrong = |row: &&OrderRow| row.row.agreement == Agreement::Mismatch;
         self.results.iter().filter(wrong).count()
@@ -119,13 +119,13 @@ impl OrdersReport {
     ///
     /// # Errors
     ///
-    /// What `writer` reports.
+    /// Errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
 }
 
-/// The operations asked for, or those few, in the order in which tables show them.
+/// Returns the requested operations, or [`FEW_OPERATIONS`] by default, in the order of tables.
 pub(crate) fn chosen_operations(settings: &Settings) -> Vec<Operation> {
     let asked = |operation: &Operation| match settings.operations.is_empty() {
         true => FEW_OPERATIONS.contains(&operation.name()),
@@ -134,15 +134,15 @@ pub(crate) fn chosen_operations(settings: &Settings) -> Vec<Operation> {
     Operation::ALL.into_iter().filter(asked).collect()
 }
 
-/// Measures the mesh in every order on every backend asked for; `settings` as for a study, but that
-/// no operations mean the few that show most.
+/// Measures the mesh in every order on every requested backend. `settings` are as for a study, but
+/// if the operations are empty, [`FEW_OPERATIONS`] are measured.
 ///
-/// `stop` ends it early, between two samples; what is finished by then is in the report.
+/// Setting `stop` ends the run between two samples; the report contains the finished part.
 ///
 /// # Errors
 ///
-/// An unknown backend, a mesh without faces or that no backend asked for can hold, or a budget that
-/// leaves no time to measure.
+/// A backend is unknown, the mesh has no faces, no requested backend can hold it, or the budget is
+/// too short.
 pub fn orders(
     specimen: &Specimen,
     settings: &Settings,
@@ -191,7 +191,7 @@ pub fn orders(
         let refusals = backends.into_iter().map(reason).collect();
         return Err(StudyError::NoneHolds { refusals }.into());
     }
-    // Whichever never scans; of its orders the one given comes first.
+    // The first subject that never scans; its given order comes first.
     let first = entered_twice(&subjects);
     let second = subjects.len();
     let again = meshes.iter().next().and_then(|(_, mesh, draw)| {
@@ -258,20 +258,21 @@ pub fn orders(
     })
 }
 
-/// What a subject was built as.
+/// The backend and the order of a subject.
 struct Held {
     backend: Backend,
     order: Order,
 }
 
-/// Whether what it finds depends on the order of the input: it begins at the first face, or edits
-/// one element after the other.
+/// Returns whether the result depends on the order of the input: the operation starts at the first
+/// face, or edits the elements one after another.
 fn follows_the_order(operation: Operation) -> bool {
     matches!(operation, Operation::FfBfs | Operation::Editing(_))
 }
 
-/// What `judge` says of every entry. All orders are held against each other, but for what follows
-/// the order: there, the structures within each.
+/// Returns the agreement of every entry according to `judge`. All orders are compared with each
+/// other, except for operations whose results depend on the order: these are compared within each
+/// order.
 fn agreements(
     entries: &[Entry],
     held: &[Held],
@@ -296,7 +297,7 @@ fn agreements(
     agreements
 }
 
-/// A row for each entry with a figure, compared among the orders of its structure.
+/// Returns a row for each entry with a time, compared among the orders of its structure.
 fn rows(
     entries: &[Entry],
     agreements: &[Agreement],
@@ -326,7 +327,7 @@ fn rows(
     rows
 }
 
-/// Every order of a structure is refused alike.
+/// Removes duplicates: all orders of a structure give the same refusal.
 fn once_each(refusals: Vec<Refusal>) -> Vec<Refusal> {
     let mut kept: Vec<Refusal> = Vec::new();
     for refusal in refusals {
@@ -337,11 +338,11 @@ fn once_each(refusals: Vec<Refusal>) -> Vec<Refusal> {
     kept
 }
 
-/// About how many bytes a comparison of orders holds at its worst moment.
+/// Estimates the peak memory of a comparison of orders, in bytes.
 ///
 /// # Errors
 ///
-/// An unknown backend.
+/// A backend is unknown.
 pub fn orders_bytes(specimen: &Specimen, settings: &Settings) -> Result<u64, StudyError> {
     let counts = specimen.polygons.counts(specimen.facts.edges);
     let chosen = settings.chosen_backends()?;
@@ -352,19 +353,19 @@ pub fn orders_bytes(specimen: &Specimen, settings: &Settings) -> Result<u64, Stu
     let (all, most) = weights.fold((0, 0), |(all, most): (u64, u64), one| {
         (all + one, most.max(one))
     });
-    // The control, and what building one takes besides.
+    // Plus the control, and temporary memory for building one structure.
     Ok(copies * (all + draw_bytes(&counts)) + 3 * most)
 }
 
-/// Bytes of a structure with the outputs of operations beside it.
+/// Estimates the bytes of a structure and of the outputs of operations on it.
 pub(crate) fn on_the_bench_bytes(backend: &Backend, counts: &Counts) -> u64 {
-    /// A position for each vertex and face.
+    /// Bytes of one position, for each vertex and face.
     const OUTPUTS: u64 = 12;
     let outputs = OUTPUTS * (counts.vertices + counts.faces) as u64;
     (backend.layout_bytes)(counts) as u64 + outputs
 }
 
-/// Bytes of a mesh as polygons, and of the draw from it.
+/// Estimates the bytes of a [`PolygonMesh`] and of a draw of its elements.
 pub(crate) fn draw_bytes(counts: &Counts) -> u64 {
     let polygons = 12 * counts.vertices + 4 * counts.corners;
     let draw = 4 * (counts.vertices + counts.faces) + 12 * counts.edges;

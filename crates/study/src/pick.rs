@@ -1,9 +1,9 @@
-//! The answer: which backend for this mesh and this workload, how sure, and why.
+//! Picks the fastest backend for a mesh and a workload, with intervals and reasons.
 //!
-//! Every backend that qualifies runs the very mix of the workload, in its order of elements, in
-//! interleaved rounds as a study does; what costs what is measured after that, part by part, to say
-//! why. Where the mix leaves connectivity alone, tables of just the relations that it asks take part
-//! as one more candidate.
+//! Every backend that qualifies runs the mix of the workload, in its access order, in interleaved
+//! rounds as in a study. After the rounds each part of the mix is timed by itself, to explain the
+//! result. If the mix does not change connectivity, tables of only the relations that it queries
+//! take part as one more backend.
 
 mod answer;
 mod break_even;
@@ -18,8 +18,8 @@ mod tests;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use workload::pages::Policy;
-use workload::{
+use sixfold_workload::pages::Policy;
+use sixfold_workload::{
     Backend, Draw, MachineClock, MixRefusal, NoPlace, Operation, Route, Script, Workload,
 };
 
@@ -34,27 +34,27 @@ use crate::timer::Timer;
 use contest::Contest;
 use entrant::Entrant;
 
-/// What is asked.
+/// The input of [`pick`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Question {
-    /// What the program does.
+    /// The workload of the program.
     pub workload: Workload,
-    /// Names of backends that may be the answer; empty for all.
+    /// Names of the backends to compare; empty for all.
     pub backends: Vec<String>,
-    /// What the structure has to be able to do.
+    /// Capabilities that the structure must have.
     pub needs: Vec<Need>,
-    /// How many bytes it may hold.
+    /// The maximum size of the structure, in bytes.
     pub max_memory: Option<u64>,
-    /// How long measuring may take, for all meshes together.
+    /// Time limit of the measurement, for all meshes together.
     pub budget: Duration,
-    /// Decides what is random: routes, and the order in which backends are measured.
+    /// Seed of the routes and of the random order in which backends are measured.
     pub seed: u64,
     /// What happens to pages that operations free.
     pub heap: Policy,
 }
 
 impl Question {
-    /// The backends that may be the answer.
+    /// Returns the backends to compare.
     fn chosen_backends(&self) -> Result<Vec<Backend>, StudyError> {
         let settings = Settings {
             backends: self.backends.clone(),
@@ -64,41 +64,42 @@ impl Question {
     }
 }
 
-/// Why there is no answer.
+/// The reason why [`pick`] fails.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum PickError {
-    /// The question cannot be put to a mesh without faces, or names what there is not.
+    /// The mesh has no faces, or a name is unknown.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// The workload cannot be run on a mesh.
+    /// The workload cannot be run on this mesh.
     #[error("{mesh}: {reason}")]
     Impossible { mesh: String, reason: NoPlace },
-    /// Not even three rounds fit. What is needed is for all meshes, and rounded up.
+    /// The budget is too short for three rounds. `needed_ms` is rounded up and is for all meshes
+    /// together.
     #[error(
-        "{mesh}: a budget of {} ms is too small to measure anything: three rounds have no room in it; give --budget {needed_ms}ms or more", .budget.as_millis()
+        "{mesh}: a budget of {} ms is too small to measure anything: it has no room for three rounds; give --budget {needed_ms}ms or more", .budget.as_millis()
     )]
     BudgetTooSmall {
         mesh: String,
         budget: Duration,
         needed_ms: u64,
     },
-    /// There is no mesh to ask about.
+    /// The list of meshes is empty.
     #[error("there is no mesh to pick a backend for")]
     NoMesh,
 }
 
-/// Ranks the backends for `question` on `specimens`, by running its workload on each.
+/// Ranks the backends for `question` on `specimens` by running its workload on each.
 ///
-/// Where none qualifies the ranking is empty, and `excluded` says why. `stop` ends it early, between
-/// two samples; what is finished is in the answer. `progress` hears how much is done, and what is
-/// going on.
+/// If no backend qualifies, the ranking is empty and `excluded` has the reasons. Setting `stop`
+/// ends the measurement between two samples; the answer contains what is finished. `progress` is
+/// called with the finished part, from 0 to 1, and the current step.
 ///
 /// # Errors
 ///
-/// [`PickError`]: names that there are not, meshes without faces, workloads that cannot be run on
-/// them, and budgets that measure nothing.
+/// [`PickError`]: unknown names, a mesh without faces, a workload that cannot be run on a mesh, or
+/// a budget that is too small.
 pub fn pick(
     specimens: &[Specimen],
     question: &Question,
@@ -141,16 +142,16 @@ pub fn pick(
     ))
 }
 
-/// About how many bytes the contest on one mesh holds at once.
+/// Estimates how many bytes the measurement on one mesh holds at once.
 fn needed(specimen: &Specimen, question: &Question) -> u64 {
     let counts = specimen.polygons.counts(specimen.facts.edges);
-    // A name that is unknown is refused later.
+    // Unknown names are refused later.
     let backends = question.chosen_backends().unwrap_or_default();
-    // As much again for the tables of relations, and for what edits and subdivision hold.
+    // Twice: for the relation tables, and for what edits and subdivision allocate.
     2 * needed_bytes(&backends, &Operation::ALL, &counts)
 }
 
-/// What a contest on one mesh is measured by.
+/// Budget, clock, memory and callbacks of the measurement on one mesh.
 pub(crate) struct Measuring<'m> {
     budget: Duration,
     clock: &'m MachineClock,
@@ -159,7 +160,7 @@ pub(crate) struct Measuring<'m> {
     progress: &'m mut dyn FnMut(f64, &str),
 }
 
-/// An error about the share of one mesh, in terms of what was asked for all of them.
+/// Converts an error about the budget of one mesh to the budget of all meshes.
 fn for_all(error: PickError, question: &Question, meshes: usize) -> PickError {
     match error {
         PickError::BudgetTooSmall {
@@ -173,7 +174,7 @@ fn for_all(error: PickError, question: &Question, meshes: usize) -> PickError {
     }
 }
 
-/// The backends that may take part, and why the others may not.
+/// Returns the backends that qualify, and the others with their reasons.
 fn qualified(
     specimen: &Specimen,
     question: &Question,
@@ -232,7 +233,7 @@ fn on_one(
         mesh: specimen.name.clone(),
         reason,
     };
-    let set_up = |name: &str| workload::set_up(name, polygons, &draw, &script, &route);
+    let set_up = |name: &str| sixfold_workload::set_up(name, polygons, &draw, &script, &route);
 
     let mut entrants = Vec::new();
     for (i, backend) in backends.iter().enumerate() {
@@ -268,7 +269,7 @@ fn on_one(
         ));
     } else {
         progress(0.05, "tabulating");
-        let tabulate = |name: &str| workload::tabulate(name, polygons, &script, &route);
+        let tabulate = |name: &str| sixfold_workload::tabulate(name, polygons, &script, &route);
         let tables = entrant::tables(&entrants, clock, tabulate);
         match tables {
             Some(tables)

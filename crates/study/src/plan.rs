@@ -1,11 +1,11 @@
-//! The warm-up: everything once, and from that a plan of samples that fit the budget.
+//! The warm-up runs everything once, and plans samples that fit the budget.
 
 use crate::measure::{Bench, Entry, MOST_RUNS, untimed_runs};
-use workload::Time;
-use workload::{Job, Run, Sample};
-use workload::{Kind, Operation};
+use sixfold_workload::Time;
+use sixfold_workload::{Job, Run, Sample};
+use sixfold_workload::{Kind, Operation};
 
-/// How many rounds the plan aims at.
+/// The number of rounds that the plan aims at.
 const ROUNDS: u32 = 20;
 /// The shortest sample. In shorter ones the resolution of the clock shows.
 pub(crate) const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
@@ -16,24 +16,25 @@ const SOMETIMES_SHARES: f64 = 6.0;
 const SOMETIMES: u32 = 3;
 /// An entry whose sample costs more than that takes part in every sixth round.
 const SELDOM: u32 = 6;
-/// The longest run that takes part in rounds, as a part of the time left, if it was asked for by name.
+/// The longest run in rounds, as a part of the time left, for an operation that was named.
 const LONGEST_IN_ROUNDS: f64 = 0.1;
-/// The part of the time left for backends that scan, if others do not. They are hundreds of times slower,
-/// which wide intervals show as well.
+/// The part of the time left that is for backends that scan, if others do not. They are hundreds of
+/// times slower, which wide intervals show as well.
 const SCANS: f64 = 0.25;
-/// A sample stands on at least so many elements, whatever the budget says.
+/// The smallest number of elements in a sample, whatever the budget is.
 pub(crate) const FEWEST_ELEMENTS: usize = 16;
-/// What an operation that cannot be sampled may take of the time left, to be run just once.
+/// The longest single run outside the rounds, as a part of the time left, for an operation that
+/// cannot be sampled.
 const ONCE: f64 = 0.5;
-/// What one run that makes a mesh, and that nobody asked for by name, may take of the time left.
+/// The same for an operation that makes or edits a mesh and was not named in the settings.
 const SMALL_SHARE: f64 = 0.02;
-/// So many faces, cut out of the mesh, tell for the first time what subdividing or editing it takes.
+/// Faces in the first patch of the mesh on which subdividing or editing is timed.
 const FIRST_PATCH: usize = 1024;
 
 impl Bench<'_, '_> {
     /// Runs everything once and plans samples that fit the budget: first what does not scan, then,
-    /// in what is left, what does, or might on a skewed mesh. What was put off at first is run once
-    /// at the end if there is time.
+    /// in the time left, what scans, or may do so on a skewed mesh. At the end, if there is time,
+    /// the operations that were only estimated are run once.
     pub(crate) fn warm_up(&mut self, entries: &mut [Entry], deadline: f64) {
         let scans: Vec<[bool; 3]> = entries.iter().map(|entry| self.scans(entry)).collect();
         let count = entries.len() as f64;
@@ -70,8 +71,8 @@ impl Bench<'_, '_> {
         self.catch_up(entries, deadline);
     }
 
-    /// Runs once, the shortest first, what was only estimated and yet fits into the time left. What
-    /// makes a mesh, and nobody asked for, has to be content with little.
+    /// Runs once, the shortest first, what was only estimated and fits into the time left. The
+    /// limit is lower for an operation that makes a mesh and was not named in the settings.
     fn catch_up(&mut self, entries: &mut [Entry], deadline: f64) {
         let budget = self.budget.as_nanos() as f64;
         let mut put_off: Vec<(f64, &mut Entry)> = entries
@@ -87,7 +88,7 @@ impl Bench<'_, '_> {
             let part = match (entry.job.operation.makes_a_mesh(), self.named) {
                 (false, _) => ONCE,
                 (true, false) => SMALL_SHARE,
-                (true, true) => 1.0, // whoever names it wants to see it
+                (true, true) => 1.0, // it was named in the settings
             };
             if wall_ns > part * left {
                 entry.by_name_only = part == SMALL_SHARE && wall_ns <= ONCE * budget;
@@ -101,7 +102,7 @@ impl Bench<'_, '_> {
         }
     }
 
-    /// By kind: whether a query may cost far more than what it yields.
+    /// Returns, by kind of element, whether a query may cost far more than what it yields.
     fn scans(&self, entry: &Entry) -> [bool; 3] {
         if self.subjects[entry.subject].is_external() {
             return [false; 3];
@@ -115,6 +116,7 @@ impl Bench<'_, '_> {
         })
     }
 
+    /// Plans runs on all elements, with as many runs in a sample as its time allows.
     fn plan_whole(&mut self, entry: &mut Entry, share: f64) {
         let (run, mut outside) = self.run_and_look(entry, [0, 1], true);
         let mut ns = run.time.ns().max(1.0);
@@ -123,19 +125,19 @@ impl Bench<'_, '_> {
             return;
         }
         if ns < SHORTEST_SAMPLE_NS {
-            // The first run paid for cold caches and page faults; a second series says more.
+            // The first run includes cold caches and page faults; a second series is more accurate.
             let runs = (SHORTEST_SAMPLE_NS / 4.0 / ns).clamp(1.0, MOST_RUNS);
             let (run, besides) = self.run_and_look(entry, [1, runs as u32], false);
             (ns, outside) = (run.time.ns().max(0.1), besides);
         }
-        // A quarter for the sample, a quarter for the untimed runs before it, the rest for waiting and for
-        // what happens between runs.
+        // A quarter of the share is for the sample, a quarter for the untimed runs before it, the
+        // rest for waiting and for what happens between runs.
         let target = (share / 4.0).clamp(SHORTEST_SAMPLE_NS, LONGEST_SAMPLE_NS);
         entry.runs = match self.memory.is_cold() {
             true => 1,
             false => (target / ns).ceil().clamp(1.0, MOST_RUNS) as u32,
         };
-        // The branches of an operation that makes or changes a mesh are many, and take longer to learn.
+        // An operation that makes or changes a mesh has many branches: it needs a longer warm-up.
         let before = match entry.job.operation.makes_a_mesh() {
             true => LONGEST_SAMPLE_NS,
             false => target,
@@ -145,7 +147,7 @@ impl Bench<'_, '_> {
         self.plan_rounds(entry, cost, share);
     }
 
-    /// The run, and the wall time that went by outside its timing.
+    /// Returns the run, and the wall time that passed outside its timing, in nanoseconds.
     fn run_and_look(&mut self, entry: &Entry, runs: [u32; 2], check: bool) -> (Run, f64) {
         let start = self.clock.now().wall_ns;
         let run = self.run(entry.subject, &entry.job, runs, check);
@@ -155,9 +157,11 @@ impl Bench<'_, '_> {
         (run, outside.max(0.0))
     }
 
+    /// Plans in which rounds an entry takes part.
     fn plan_rounds(&self, entry: &mut Entry, cost_ns: f64, share: f64) {
         entry.cost_ns = cost_ns;
-        // What makes a mesh is long: where nobody asked for them the others keep their rounds.
+        // Operations that make a mesh are long. If they were not named, they take part in fewer
+        // rounds.
         let unasked = entry.job.operation.makes_a_mesh() && !self.named;
         let most = if unasked { 1.0 } else { 4.0 };
         entry.every = match cost_ns / share {
@@ -167,10 +171,11 @@ impl Bench<'_, '_> {
         };
     }
 
-    /// Asks for few elements, then more, until the cost of the whole is known; then decides.
+    /// Times few elements, then more, until the cost of the whole is known; then plans whether to
+    /// run it in full, on a sample, or not at all.
     fn plan_scan(&mut self, entry: &mut Entry, scanned: [bool; 3], share: f64, left: f64) {
         let operation = entry.job.operation;
-        // What cannot be sampled itself is estimated by the relation that it walks.
+        // An operation that cannot be sampled is estimated by the relation that it queries.
         let probed = match operation.relations(Kind::Face) {
             &[relation] if !operation.can_be_sampled() => Operation::Relation(relation),
             _ => operation,
@@ -179,7 +184,7 @@ impl Bench<'_, '_> {
         let Probe { whole, cost, size } = self.probe(entry.subject, probed, scanned, share);
         let fits = match operation.can_be_sampled() {
             true => whole.ns() <= share || all <= FEWEST_ELEMENTS,
-            // What takes no longer than one sample is run whatever is left.
+            // A run no longer than one sample is always allowed.
             false => whole.ns() <= (LONGEST_IN_ROUNDS * left).max(LONGEST_SAMPLE_NS),
         };
         if self.stopped() {
@@ -192,7 +197,7 @@ impl Bench<'_, '_> {
             entry.estimate = Some(whole);
             return;
         }
-        // The cost of the kinds that are not sampled is in there too: the size errs on the small side.
+        // `cost` includes the kinds that are not sampled, so this size is rather too small.
         let each = cost / size.min(all).max(1) as f64;
         let size = ((share / each) as usize).clamp(FEWEST_ELEMENTS, all.max(FEWEST_ELEMENTS));
         entry.job.sample = Some(Sample { scanned, size });
@@ -204,13 +209,13 @@ impl Bench<'_, '_> {
         self.plan_rounds(entry, cost, share);
     }
 
-    /// How many elements of the kinds that are scanned for there are, of the most frequent kind.
+    /// Returns the largest number of elements among the kinds that are scanned.
     fn most_asked(&self, scanned: [bool; 3]) -> usize {
         let asked = (0..3).filter(|&k| scanned[k]);
         asked.map(|k| self.population[k]).max().unwrap_or(0)
     }
 
-    /// Asks for few elements, then more, until that takes as long as a sample may.
+    /// Times a few elements, then more, until that takes as long as a sample may.
     fn probe(
         &mut self,
         subject: usize,
@@ -234,10 +239,10 @@ impl Bench<'_, '_> {
         }
     }
 
-    /// Estimates it first: by a patch, and by what it searches for. It is run in rounds, once, or not
-    /// at all.
+    /// Plans an operation that makes or edits a mesh. Its time is estimated first, from patches and
+    /// from its searches. It is then run in rounds, once, or not at all.
     fn plan_maker(&mut self, entry: &mut Entry, scanned: [bool; 3], share: f64, left: f64) {
-        // A single face tells what is refused.
+        // A single face shows whether the operation is refused.
         let run = self.run(entry.subject, &of_a_patch(entry, 1), [0, 1], false);
         entry.refusal = run.refusal;
         if self.stopped() || entry.refusal.is_some() {
@@ -246,7 +251,7 @@ impl Bench<'_, '_> {
         let searches = scanned.contains(&true);
         let mut estimate = self.time_by_patches(entry, share);
         if searches {
-            // A patch tells nothing of searching the whole.
+            // A patch does not show the cost of searching the whole mesh.
             let search = self.search_time(entry, scanned, share);
             let patch = estimate.filter(|patch| patch.ns() > search.ns());
             estimate = Some(patch.unwrap_or(search));
@@ -266,13 +271,14 @@ impl Bench<'_, '_> {
         }
     }
 
-    /// Runs the operation of `entry` on a patch of `size` faces, with tables as in a later run.
+    /// Runs the operation of `entry` on a patch of `size` faces, with tables of the same size as in
+    /// a later run.
     fn run_grown(&mut self, entry: &Entry, size: usize) -> Run {
         let untimed = u32::from(entry.job.operation.grows_tables());
         self.run(entry.subject, &of_a_patch(entry, size), [untimed, 1], false)
     }
 
-    /// What the searches of an operation that makes a mesh take together, by samples.
+    /// Returns the time of all searches of an operation that makes a mesh, estimated from samples.
     fn search_time(&mut self, entry: &Entry, scanned: [bool; 3], share: f64) -> Time {
         let mut total = Time::none_like(self.clock.now());
         for kind in Kind::ALL.into_iter().filter(|kind| scanned[kind.index()]) {
@@ -286,8 +292,9 @@ impl Bench<'_, '_> {
         total
     }
 
-    /// What it takes on larger and larger patches, as the time of the whole; `None` where the next
-    /// would be the whole. Patches lie in the cache, so that this errs on the small side.
+    /// Runs the operation on larger and larger patches, and returns its time scaled to the whole
+    /// mesh; `None` if the next patch would be the whole mesh. Patches fit the cache, so the
+    /// estimate is rather too low.
     fn time_by_patches(&mut self, entry: &mut Entry, share: f64) -> Option<Time> {
         let all = self.population[Kind::Face.index()];
         let mut size = FIRST_PATCH;
@@ -308,17 +315,17 @@ impl Bench<'_, '_> {
     }
 }
 
-/// What asking for some elements has told.
+/// The result of timing some elements.
 struct Probe {
-    /// The time of the whole.
+    /// The time on all elements, scaled from the sample.
     whole: Time,
-    /// The wall time of asking, in nanoseconds.
+    /// The wall time of the probe, in nanoseconds.
     cost: f64,
-    /// How many were asked for.
+    /// The number of elements.
     size: usize,
 }
 
-/// The operation of `entry` on a patch of `size` faces.
+/// Returns the operation of `entry` on a patch of `size` faces.
 fn of_a_patch(entry: &Entry, size: usize) -> Job {
     let scanned = [false; 3];
     Job {
@@ -327,7 +334,7 @@ fn of_a_patch(entry: &Entry, size: usize) -> Job {
     }
 }
 
-/// Takes over what the run came to, as the warm-up; nothing of one that was refused.
+/// Stores the result of the run as the warm-up; no time if it was refused.
 fn keep(entry: &mut Entry, run: Run) {
     entry.warm_up = run.refusal.is_none().then_some(run.time);
     entry.outcome = run.outcome;

@@ -1,4 +1,4 @@
-//! Results read back: what a program wrote that may have been another version, or no Sixfold at all.
+//! Reads results from JSON that may be of another version or another program.
 
 use std::io;
 
@@ -13,15 +13,15 @@ use crate::pick::Answer;
 use crate::report::{Report, SCHEMA};
 use crate::why::Why;
 
-/// Why that is no result to go on with.
+/// The reason why a file cannot be used as results.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum ReadError {
-    /// The file cannot be read.
+    /// The file cannot be read from the disk.
     #[error("cannot be read: {cause}")]
     Io { cause: io::Error },
-    /// It ends too soon, or was never JSON.
+    /// The text ends too early, or is not JSON.
     #[error("{what}, line {line}, column {column}: {cause}")]
     NoJson {
         what: &'static str,
@@ -29,47 +29,47 @@ pub enum ReadError {
         column: usize,
         cause: String,
     },
-    /// JSON of somebody else.
-    #[error("is JSON, but nothing that sixfold wrote: it has no `schema`")]
+    /// The text is JSON of another program.
+    #[error("is JSON, but not written by sixfold: it has no `schema`")]
     Foreign,
-    /// Of another version.
-    #[error("has schema {found}, and this program reads {SCHEMA}: use the sixfold that wrote it")]
+    /// The schema is of another version.
+    #[error("has schema {found}, expected {SCHEMA}: use the version of sixfold that wrote it")]
     OtherSchema { found: u64 },
-    /// Of another command.
-    #[error("is {found}, and not {wanted}")]
+    /// The results are of another command.
+    #[error("is {found}, expected {wanted}")]
     OtherKind {
         found: &'static str,
         wanted: &'static str,
     },
-    /// A field that is missing, or is not what it should be.
-    #[error("is not as sixfold writes it: {cause}")]
+    /// A field is missing or invalid.
+    #[error("is not in the format that sixfold writes: {cause}")]
     Malformed { cause: String },
 }
 
-/// What one of the commands that measure wrote.
+/// The results of one of the measuring commands.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Results {
-    /// `sixfold study` of one mesh.
+    /// The result of `sixfold study` for one mesh.
     Study(Box<Report>),
-    /// `sixfold study --report`, or `sixfold merge`.
+    /// The result of `sixfold study --report` or `sixfold merge`.
     Collection(Box<Collection>),
-    /// `sixfold orders`.
+    /// The result of `sixfold orders`.
     Orders(Box<OrdersReport>),
-    /// `sixfold growth`.
+    /// The result of `sixfold growth`.
     Growth(Box<GrowthReport>),
-    /// `sixfold why`.
+    /// The result of `sixfold why`.
     Why(Box<Why>),
-    /// `sixfold pick`.
+    /// The result of `sixfold pick`.
     Pick(Box<Answer>),
 }
 
 impl Results {
-    /// Writes what [`read_json`](Self::read_json) reads.
+    /// Writes the results as JSON, for [`read_json`](Self::read_json).
     ///
     /// # Errors
     ///
-    /// What `writer` reports.
+    /// The errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         match self {
             Self::Study(study) => study.write_json(writer),
@@ -81,11 +81,11 @@ impl Results {
         }
     }
 
-    /// Reads what any of them wrote.
+    /// Reads the results of any of these commands.
     ///
     /// # Errors
     ///
-    /// Text that ends too soon or is no JSON, results of another program, schema or command.
+    /// Truncated text, text that is not JSON, and results of another program, schema or command.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
         Ok(match kind(text)? {
@@ -106,11 +106,11 @@ impl Results {
 }
 
 impl Report {
-    /// Reads what [`write_json`](Self::write_json) wrote, or a [`Collection`] of one mesh.
+    /// Reads a report that [`write_json`](Self::write_json) wrote, or a [`Collection`] of one mesh.
     ///
     /// # Errors
     ///
-    /// Text that ends too soon or is no JSON, results of another program, schema or command.
+    /// Truncated text, text that is not JSON, and results of another program, schema or command.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
         let kind = kind(text)?;
@@ -124,7 +124,7 @@ impl Report {
                 report.check()?;
                 Ok(report)
             }
-            // What a report is of may be one mesh.
+            // A collection may contain one mesh only.
             Kind::Collection => {
                 let studies = Collection::read_json(text)?.studies;
                 let [study] = <[Self; 1]>::try_from(studies).map_err(|_| other())?;
@@ -134,7 +134,7 @@ impl Report {
         }
     }
 
-    /// Refuses figures that no study can come to, whoever wrote them.
+    /// Refuses values that no study can produce.
     pub(crate) fn check(&self) -> Result<(), ReadError> {
         let wrong = |what: String| Err(ReadError::Malformed { cause: what });
         let time = |ns: &f64| *ns >= 0.0 && ns.is_finite();
@@ -148,24 +148,24 @@ impl Report {
                 return wrong(format!("{of} are columns of different lengths"));
             }
             if !raw.wall_ns.iter().chain(cpu).all(time) {
-                return wrong(format!("{of} are no times"));
+                return wrong(format!("{of} are not finite times of 0 or more"));
             }
         }
         for row in &self.results {
             if !row.median_ns.iter().all(time) || row.ratio_to_best.is_some_and(|r| r <= 0.0) {
                 let (operation, backend) = (row.operation, &row.backend);
-                return wrong(format!("the time of {operation} on {backend} is none"));
+                return wrong(format!("invalid time or ratio of {operation} on {backend}"));
             }
         }
         let rows = self.control.iter().flat_map(|control| &control.operations);
         match rows.into_iter().find(|row| row.ratio <= 0.0) {
-            Some(row) => wrong(format!("the control of {} is no ratio", row.operation)),
+            Some(row) => wrong(format!("the control of {} is not positive", row.operation)),
             None => Ok(()),
         }
     }
 }
 
-/// Refuses what this version of Sixfold cannot have written.
+/// Refuses text that this version of Sixfold cannot have written.
 pub(crate) fn check_schema(text: &str) -> Result<(), ReadError> {
     #[derive(Deserialize)]
     struct Head {
@@ -180,7 +180,7 @@ pub(crate) fn check_schema(text: &str) -> Result<(), ReadError> {
     }
 }
 
-/// Which command wrote a file.
+/// The command that wrote a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Study,
@@ -196,7 +196,7 @@ impl Kind {
     const fn words(self) -> &'static str {
         match self {
             Self::Study => "the result of `sixfold study`",
-            Self::Collection => "of several meshes",
+            Self::Collection => "a collection of several meshes",
             Self::Orders => "the result of `sixfold orders`",
             Self::Growth => "the result of `sixfold growth`",
             Self::Why => "the result of `sixfold why`",
@@ -206,7 +206,7 @@ impl Kind {
     }
 }
 
-/// Each has a field that no other has.
+/// Returns the kind of the results, by a field that only this kind has.
 fn kind(text: &str) -> Result<Kind, ReadError> {
     #[derive(Deserialize)]
     struct Fields {
@@ -221,7 +221,7 @@ fn kind(text: &str) -> Result<Kind, ReadError> {
 
     let fields: Fields = parsed(text)?;
     let found = [
-        // A comparison has rows as well.
+        // A comparison has `rows`, too.
         (fields.drift.is_some(), Kind::Other),
         (fields.ranking.is_some(), Kind::Pick),
         (fields.sizes.is_some(), Kind::Growth),
@@ -236,16 +236,16 @@ fn kind(text: &str) -> Result<Kind, ReadError> {
 
 pub(crate) fn parsed<T: DeserializeOwned>(text: &str) -> Result<T, ReadError> {
     serde_json::from_str(text).map_err(|error| {
-        // What is cut off within a number or a word is no JSON, strictly.
+        // Text that is cut off within a number or a word is a syntax error to the parser.
         let lines = text.lines().count();
         let last = text.lines().last().map_or(0, str::len);
         let at_the_end = error.line() >= lines && error.column() >= last;
         let what = match error.classify() {
             Category::Syntax if at_the_end && text.trim_start().starts_with('{') => {
-                "ends too soon, as if it had been cut off"
+                "ends too early, as if it was cut off"
             }
-            Category::Eof => "ends too soon, as if it had been cut off",
-            Category::Syntax => "is no JSON",
+            Category::Eof => "ends too early, as if it was cut off",
+            Category::Syntax => "is not JSON",
             Category::Data | Category::Io => {
                 return ReadError::Malformed {
                     cause: error.to_string(),
@@ -270,7 +270,7 @@ mod tests {
 
     use super::*;
     use crate::{Settings, Specimen, study};
-    use workload::Operation;
+    use sixfold_workload::Operation;
 
     fn written() -> String {
         let specimen = Specimen::new("ball", shapes::icosahedron());
@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read_back_to_the_last_digit() {
+    fn written_results_are_read_back_exactly() {
         let text = written();
         let report = Report::read_json(&text).expect("as written");
         let mut again = Vec::new();
@@ -297,19 +297,19 @@ mod tests {
     }
 
     #[test]
-    fn what_is_none_of_ours_is_refused() {
+    fn text_of_other_programs_is_refused() {
         let text = written();
         let half = &text[..text.len() / 2];
         for (given, says) in [
-            ("", "ends too soon"),
-            (half, "ends too soon"),
-            ("{\"schema\": 1.", "ends too soon"),
-            ("{\"schema\": -", "ends too soon"),
-            ("{\"schema\": tr", "ends too soon"),
-            ("no JSON", "is no JSON, line 1, column 2"),
+            ("", "ends too early"),
+            (half, "ends too early"),
+            ("{\"schema\": 1.", "ends too early"),
+            ("{\"schema\": -", "ends too early"),
+            ("{\"schema\": tr", "ends too early"),
+            ("no JSON", "is not JSON, line 1, column 2"),
             ("{}", "no `schema`"),
-            ("{\"schema\": \"three\"}", "is not as sixfold writes it"),
-            ("[1]", "is not as sixfold writes it"),
+            ("{\"schema\": \"three\"}", "is not in the format"),
+            ("[1]", "is not in the format"),
             ("{\"schema\": 99}", "schema 99"),
             ("{\"schema\": 1, \"ranking\": []}", "`sixfold pick`"),
             ("{\"schema\": 1, \"sizes\": []}", "`sixfold growth`"),

@@ -1,4 +1,4 @@
-//! The report: everything a study found, in the shape that `reports/SCHEMA.md` documents.
+//! The report with all results of a study, in the format that `reports/SCHEMA.md` documents.
 
 use std::io;
 
@@ -12,79 +12,80 @@ use crate::environment::Environment;
 use crate::external::ExternalReport;
 use crate::gauge::undisturbed;
 use crate::timer::Timer;
-use workload::Operation;
+use sixfold_workload::Operation;
 
-/// The version of the shape; it changes when a reader of the old one would go wrong.
+/// The version of the format. It changes if a reader of the old version would misread the new one.
 pub const SCHEMA: u32 = 1;
 
-/// What an inspection finds: the mesh, and what each backend says to it.
+/// The result of an inspection: facts of the mesh, and whether each backend can hold it.
 #[serde_as]
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Inspection {
-    /// The version of the shape.
+    /// The version of the format.
     pub schema: u32,
-    /// What the mesh is.
+    /// Name and topology of the mesh.
     pub mesh: MeshReport,
-    /// By name, in the order of the roster.
+    /// The backends by name, in the order of the roster.
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
 }
 
-/// What a study finds.
+/// The result of a study.
 #[serde_as]
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Report {
-    /// The version of the shape.
+    /// The version of the format.
     pub schema: u32,
-    /// What the mesh is.
+    /// Name and topology of the mesh.
     pub mesh: MeshReport,
-    /// By name, in the order of the roster.
+    /// The backends by name, in the order of the roster.
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
-    /// Operation by operation, and within each in the order of the roster.
+    /// The results, sorted by operation, then in the order of the roster.
     pub results: Vec<ResultRow>,
-    /// What was asked for and cannot be done, in the same order.
+    /// The operations that a backend cannot do, in the same order.
     pub refusals: Vec<Refusal>,
-    /// What differs where nothing does; `None` where nothing was measured twice.
+    /// The noise, as the difference of a backend from itself; `None` if nothing was measured twice.
     pub control: Option<Control>,
-    /// What the table shows, in words.
+    /// The main results, as sentences.
     pub words: Vec<String>,
-    /// What may be wrong with it, and what helps, in words.
+    /// Possible faults of the measurement with remedies, as sentences.
     pub warnings: Vec<String>,
-    /// Every sample that was taken.
+    /// All samples.
     pub raw: Vec<RawSamples>,
-    /// Told to stop before the end: some rows are missing, or rest on fewer samples.
+    /// Whether the study was stopped early, so that rows are missing or have fewer samples.
     pub interrupted: bool,
-    /// What the clock and the engine cost; `None` where nothing was run.
+    /// The costs of reading the clock; `None` if nothing was run.
     pub timer: Option<Timer>,
-    /// The machine and the program.
+    /// The machine and the program version.
     pub environment: Environment,
 }
 
-/// The samples of one operation on one backend, as three columns of one length.
+/// The samples of one operation on one backend, as columns of equal length.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct RawSamples {
     /// The backend.
     pub backend: String,
     /// The operation.
     pub operation: Operation,
-    /// It is the second entry of the backend, which the control is made of.
+    /// Whether it is the second entry of the backend, for the control.
     pub control: bool,
-    /// The round that each sample was taken in: samples of one round can be compared.
+    /// The round of each sample: samples of the same round can be compared.
     pub rounds: Vec<u32>,
-    /// Processor time of one run, in nanoseconds; `None` where the platform does not tell.
+    /// Processor time of one run, in nanoseconds; `None` if the platform does not report it.
     pub cpu_ns: Option<Vec<f64>>,
     /// Wall time of one run, in nanoseconds.
     pub wall_ns: Vec<f64>,
-    /// Page faults in each sample; `None` where they were not counted.
+    /// Page faults in each sample; `None` if they were not counted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub faults: Option<Vec<u64>>,
-    /// For each sample the time of a small fixed piece of work before or after it, whichever is longer,
-    /// divided by the undisturbed time of that work. A sample above 1.3 does not count if at least a
-    /// quarter of the samples are below.
+    /// For each sample, the time of a small fixed piece of work before or after it, whichever is
+    /// longer, divided by the undisturbed time of that work. A sample above 1.3 does not count if
+    /// at least a quarter of the samples are at or below.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub slowdowns: Vec<f64>,
-    /// Time of one run on fresh pages and tables, in nanoseconds: samples of their own, of no round.
+    /// Times of one run on fresh pages and tables, in nanoseconds: separate samples, not part of a
+    /// round.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub first_ns: Vec<f64>,
 }
@@ -99,123 +100,126 @@ impl RawSamples {
     }
 }
 
-/// A mesh, as its file has it.
+/// A mesh as read from its file.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct MeshReport {
-    /// Where it comes from.
+    /// Its name: a file or a description.
     pub name: String,
     /// Its topology.
     #[serde(flatten)]
     pub facts: Facts,
-    /// What was changed before the study: `triangulated`, faces left out.
+    /// Changes before the study: `triangulated`, faces left out.
     pub changes: Vec<String>,
 }
 
-/// What a backend says to the mesh.
+/// A backend, whether it can hold the mesh, and its memory.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct BackendReport {
-    /// What users call it: the key of the map.
+    /// Its name for users: the key of the map.
     #[serde(rename = "$key$")]
     pub name: String,
     /// Whether it can hold the mesh.
     pub holds: bool,
-    /// Why not.
+    /// The reason if it cannot.
     pub reason: Option<String>,
-    /// Bytes really held; `None` if it was not built.
+    /// Actual size in bytes; `None` if it was not built.
     pub bytes: Option<usize>,
-    /// The same for each vertex of the mesh.
+    /// The same per vertex of the mesh.
     pub bytes_per_vertex: Option<f64>,
-    /// Bytes that the layout takes in theory; `None` if it does not hold the mesh.
+    /// Theoretical size of the layout in bytes; `None` if it cannot hold the mesh.
     pub layout_bytes: Option<usize>,
-    /// The same for each vertex of the mesh.
+    /// The same per vertex of the mesh.
     pub layout_bytes_per_vertex: Option<f64>,
-    /// Bytes really held, table by table.
+    /// Actual size in bytes, by table.
     pub tables: Vec<TableBytes>,
-    /// Vertices of the mesh that are no vertices of their own here: they share coordinates.
+    /// Number of vertices that are merged with another vertex, because their coordinates are equal.
     pub merged_vertices: Option<usize>,
-    /// What it can hold at all; `None` for a program of somebody else.
+    /// Its capabilities; `None` for an external program.
     pub capabilities: Option<Capabilities>,
-    /// The program, where it is one of somebody else.
+    /// The external program; `None` for a structure.
     pub external: Option<ExternalReport>,
 }
 
-/// One operation on one backend. Times are of one whole run, in nanoseconds.
+/// The result of one operation on one backend. Times are of one whole run, in nanoseconds.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ResultRow {
     /// The backend.
     pub backend: String,
     /// The operation.
     pub operation: Operation,
-    /// The median of the samples; `None` where nothing was measured.
+    /// The median of the samples; `None` if nothing was measured.
     pub median_ns: Option<f64>,
     /// The smallest sample.
     pub min_ns: Option<f64>,
-    /// The lower end of the 95 % interval of the median; `None` below three samples.
+    /// The lower end of the 95 % interval of the median; `None` with fewer than three samples.
     pub ci_low_ns: Option<f64>,
     /// Its upper end.
     pub ci_high_ns: Option<f64>,
-    /// How many elements a whole run visits.
+    /// The number of elements that a whole run visits.
     pub elements: Option<u64>,
-    /// What one of them is: `vertex`, `edge`, `face`, `new face`, or `visit`.
+    /// The kind of these elements: `vertex`, `edge`, `face`, `new face`, or `visit`.
     pub per: String,
-    /// `median_ns` for each of them.
+    /// `median_ns` per element.
     pub ns_per_element: Option<f64>,
     /// The median on the wall clock.
     pub wall_median_ns: Option<f64>,
     /// The smallest sample on the wall clock.
     pub wall_min_ns: Option<f64>,
-    /// A sample of the elements stands for all: times and elements are scaled.
+    /// Whether only a sample of the elements was run: times and elements are scaled to the whole.
     pub sampled: bool,
-    /// How many elements of each kind that is scanned for.
+    /// The number of sampled elements of each kind that is scanned.
     pub sample_size: Option<usize>,
-    /// Not measured: the estimate of a whole run.
+    /// The estimated time of a whole run that was not measured.
     pub estimated_ns: Option<f64>,
-    /// A number that depends on all results, on the sample where there is one; `None` where nothing
-    /// was measured or the arithmetic overflows.
+    /// A number that depends on all results, or on those of the sample; `None` if nothing was
+    /// measured or the arithmetic overflows.
     pub checksum: Option<f64>,
-    /// Whether other backends found the same.
+    /// Whether other backends have the same results.
     pub agreement: Agreement,
-    /// How it stands beside the other backends; `None` where nothing was measured.
+    /// Its comparison with the other backends; `None` if nothing was measured.
     pub standing: Option<Standing>,
-    /// The median, over rounds, of its time by that of the fastest; 1 for the fastest itself.
+    /// The median, over rounds, of its time divided by the time of the fastest; 1 for the fastest
+    /// itself.
     pub ratio_to_best: Option<f64>,
     /// The lower end of the 95 % interval of that ratio.
     pub ratio_ci_low: Option<f64>,
     /// Its upper end.
     pub ratio_ci_high: Option<f64>,
-    /// How many samples there are.
+    /// The number of samples.
     pub samples: usize,
-    /// How many runs in a row make one.
+    /// The number of consecutive runs in one sample.
     pub runs_per_sample: u32,
-    /// There was time for no more than the warm-up: that one run, with its cold caches, is the sample.
+    /// Whether there was only time for the warm-up: its one run, with cold caches, is the sample.
     pub warm_up_only: bool,
-    /// It was left to an estimate because nobody asked for it by name: the budget has room for a run.
+    /// Whether it is only estimated because it was not named in the settings: the budget has room
+    /// for a run.
     pub by_name_only: bool,
-    /// The most page faults in any sample; `None` where they were not counted.
+    /// The largest number of page faults in a sample; `None` if they were not counted.
     #[serde(default)]
     pub faults: Option<u64>,
-    /// How many samples were taken again because pages faulted in them, or other work disturbed the
-    /// machine.
+    /// The number of samples that were taken again because of page faults, or because other work
+    /// disturbed the machine.
     #[serde(default)]
     pub retaken: u32,
-    /// How many samples do not count, because other work disturbed the machine beside them.
+    /// The number of samples that do not count, because other work disturbed the machine.
     #[serde(default)]
     pub disturbed: usize,
-    /// The time of a first run, as in a program that does this once, on fresh pages and with tables of exact
-    /// size: `median_ns` multiplied by the median ratio of first runs to runs right after them. `None` for
-    /// what does not allocate, and if there was no time for it.
+    /// The time of a first run, as in a program that runs the operation once, on fresh pages and
+    /// with tables of exact size: `median_ns` multiplied by the median ratio of first runs to the
+    /// runs directly after them. `None` if the operation does not allocate, or if there was no
+    /// time.
     #[serde(default)]
     pub first_ns: Option<f64>,
-    /// How many samples that stands on.
+    /// The number of samples of first runs.
     #[serde(default)]
     pub first_samples: usize,
-    /// The most page faults in any of them.
+    /// The largest number of page faults in any of them.
     #[serde(default)]
     pub first_faults: Option<u64>,
 }
 
 impl ResultRow {
-    /// A row of `operation` on `backend` with nothing measured: to be filled.
+    /// Returns a row of `operation` on `backend` without measurements.
     pub fn new(backend: &str, operation: Operation) -> Self {
         Self {
             backend: backend.into(),
@@ -251,56 +255,56 @@ impl ResultRow {
         }
     }
 
-    /// By how much the first time takes longer than the median, where both are known.
+    /// Returns the first time divided by the median, if both are known.
     pub fn first_ratio(&self) -> Option<f64> {
         let (first, median) = self.first_ns.zip(self.median_ns)?;
         (median > 0.0).then(|| first / median)
     }
 }
 
-/// A first time that differs by more than this from the kept one is shown.
+/// Ratio of the first time to the median above which the first time is shown.
 pub const FIRST_TIME_SHOWN: f64 = 1.1;
 
-/// One backend, entered twice (an A/A control): by how much its two columns differ, the machine and
-/// the clock alone are to blame.
+/// One backend that was entered twice (an A/A control): the difference of its two columns is caused
+/// by the machine and the clock alone.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Control {
     /// The backend.
     pub backend: String,
-    /// Operation by operation, where both columns have samples.
+    /// The operations for which both columns have samples.
     pub operations: Vec<ControlRow>,
     /// The median difference, as a ratio of 1 or more.
     pub typical: f64,
-    /// The greatest.
+    /// The largest difference, as a ratio of 1 or more.
     pub worst: f64,
 }
 
-/// The two columns of a control should not differ by more than this.
+/// The largest acceptable ratio between the two columns of a control.
 const UNSTEADY: f64 = 1.05;
 
-/// What the second column of a control says of one operation.
+/// The difference between the columns of a control in one operation.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ControlRow {
     /// The operation.
     pub operation: Operation,
-    /// The median, over rounds, of the time of the second by that of the first.
+    /// The median, over rounds, of the time of the second column divided by that of the first.
     pub ratio: f64,
-    /// The lower end of the 95 % interval of that ratio; `None` below three rounds.
+    /// The lower end of the 95 % interval of that ratio; `None` with fewer than three rounds.
     pub ci_low: Option<f64>,
     /// Its upper end.
     pub ci_high: Option<f64>,
 }
 
 impl ControlRow {
-    /// Whether the two differ by more than 5 %, and not by chance: smaller differences between backends
-    /// are no result then.
+    /// Returns whether the two differ by more than 5 %, and not by chance. Then smaller differences
+    /// between backends are not significant.
     pub fn is_unsteady(&self) -> bool {
         let interval = self.ci_low.zip(self.ci_high);
         let beyond_chance = interval.is_some_and(|(low, high)| low > 1.0 || high < 1.0);
         self.difference() > UNSTEADY && beyond_chance
     }
 
-    /// How far the two are apart, whichever is slower: 1 or more.
+    /// Returns the ratio of the slower to the faster column, 1 or more.
     pub fn difference(&self) -> f64 {
         self.ratio.max(self.ratio.recip())
     }
@@ -313,11 +317,11 @@ pub struct Refusal {
     pub backend: String,
     /// The operation.
     pub operation: Operation,
-    /// Why not.
+    /// The reason.
     pub reason: String,
 }
 
-/// The fields of a row, for a file without any.
+/// The fields of a row, for a file without rows.
 const COLUMNS: [&str; 30] = [
     "backend",
     "operation",
@@ -351,43 +355,43 @@ const COLUMNS: [&str; 30] = [
     "first_faults",
 ];
 
-/// What the checksums of one operation say.
+/// The result of comparing the checksums of one operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Agreement {
-    /// All did the same work.
+    /// All backends did the same work.
     Same,
-    /// It differs, as it may where vertices that share coordinates are one.
+    /// It differs, which is possible because vertices with equal coordinates are merged.
     Merged,
-    /// It differs, and nothing explains that: a fault in Sixfold.
+    /// It differs without such a reason: a fault in Sixfold.
     Mismatch,
-    /// There is nothing to compare with.
+    /// There is no other result to compare with.
     Unchecked,
 }
 
-/// How a result stands beside those of other backends.
+/// The comparison of a result with those of other backends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Standing {
     /// Faster than all others.
     Best,
-    /// Nobody is faster beyond doubt, and another is as fast.
+    /// No backend is measurably faster, and at least one other is equally fast.
     Tied,
-    /// Another is faster.
+    /// Another backend is faster.
     Slower,
     /// No other backend was measured.
     Alone,
 }
 
 impl Report {
-    /// The rows of `operation`.
+    /// Returns the rows of `operation`.
     pub fn rows(&self, operation: Operation) -> impl Iterator<Item = &ResultRow> {
         self.results
             .iter()
             .filter(move |row| row.operation == operation)
     }
 
-    /// Results of ours that no difference between the backends explains.
+    /// Returns the results of our backends that differ without a known reason.
     pub fn mismatches(&self) -> impl Iterator<Item = &ResultRow> {
         let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
         self.results
@@ -396,7 +400,7 @@ impl Report {
             .filter(|row| !self.is_external(&row.backend))
     }
 
-    /// Results of programs of others that did another work than ours.
+    /// Returns the results of external programs that differ from those of our backends.
     pub fn other_work(&self) -> impl Iterator<Item = &ResultRow> {
         let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
         self.results
@@ -414,7 +418,7 @@ impl Report {
     ///
     /// # Errors
     ///
-    /// What `writer` reports.
+    /// The errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
@@ -423,7 +427,7 @@ impl Report {
     ///
     /// # Errors
     ///
-    /// What `writer` reports.
+    /// The errors of `writer`.
     pub fn write_csv(&self, writer: impl io::Write) -> io::Result<()> {
         let mut lines = csv::Writer::from_writer(writer);
         if self.results.is_empty() {
@@ -441,14 +445,14 @@ impl Inspection {
     ///
     /// # Errors
     ///
-    /// What `writer` reports.
+    /// The errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
 }
 
-/// What went wrong with a place, as it was before it was an error of CSV: a pipe that nobody reads is known
-/// by its kind.
+/// Returns the I/O error inside an error of CSV, so that a closed pipe can be recognised by its
+/// kind.
 pub(crate) fn unwrapped(error: csv::Error) -> io::Error {
     match error.into_kind() {
         csv::ErrorKind::Io(cause) => cause,
@@ -462,8 +466,8 @@ pub(crate) fn write_json(value: &impl Serialize, mut writer: impl io::Write) -> 
     writeln!(writer)
 }
 
-/// JSON with a line for each field, and arrays without lines of their own: columns of samples would
-/// be thousands of them.
+/// A JSON formatter with one line per field, and arrays on one line: columns of samples have
+/// thousands of values.
 #[derive(Default)]
 struct Rows<'a>(PrettyFormatter<'a>);
 

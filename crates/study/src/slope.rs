@@ -1,22 +1,24 @@
-//! How a time grows with the size of the mesh: the straight line through their logarithms.
+//! The growth of a time with the size of the mesh: a straight line through their logarithms.
 
 use serde::{Deserialize, Serialize};
 
-/// A power: the time goes with the size to this exponent.
+/// A power law: the time is proportional to the size to this exponent.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Slope {
     /// The exponent.
     pub exponent: f64,
-    /// How far it may be off, by how far the points lie off the line; `None` below three.
+    /// The standard error of the exponent, from the distances of the points to the line; `None`
+    /// with fewer than three points.
     pub standard_error: Option<f64>,
-    /// How many sizes it stands on.
+    /// The number of points that it is fitted to.
     pub sizes: usize,
 }
 
 impl Slope {
-    /// By least squares on logarithms, all points alike; `None` where they are not of two sizes.
+    /// Fits the line by least squares on logarithms, with equal weights; `None` if there are not at
+    /// least two sizes.
     ///
-    /// Points are (size, time); those that have no logarithm are left out.
+    /// Points are (size, time); points without a logarithm are left out.
     pub(crate) fn of(points: impl IntoIterator<Item = (f64, f64)>) -> Option<Self> {
         let there = points.into_iter().filter(|&(size, time)| {
             let fit = |x: f64| x > 0.0 && x.is_finite();
@@ -64,8 +66,8 @@ mod tests {
     }
 
     #[test]
-    fn a_bend_shows_in_the_parts_and_in_the_error_of_the_whole() {
-        // Linear up to 1e5, then with the power 1.5, without a step.
+    fn a_bend_changes_the_slopes_of_the_parts_and_the_error_of_the_whole() {
+        // Linear up to 1e5, then with the power 1.5, and continuous.
         let time = |n: f64| {
             if n <= 1e5 {
                 n
@@ -88,10 +90,10 @@ mod tests {
         assert!(1.1 < all.0 && all.0 < 1.4 && all.1 > 0.02, "{all:?}");
     }
 
-    /// The slope and its error of a textbook line: x 1 to 5, y 2, 4, 5, 4, 5 (slope 0.6, residuals
-    /// squared 2.4, spread 10: error √(2.4 / 3 / 10)).
+    /// The slope and its error for a textbook line: x 1 to 5, y 2, 4, 5, 4, 5 (slope 0.6, sum of
+    /// squared residuals 2.4, spread 10: error √(2.4 / 3 / 10)).
     #[test]
-    fn the_error_is_that_of_the_textbook() {
+    fn the_standard_error_agrees_with_the_textbook() {
         let points = [(1.0, 2.0), (2.0, 4.0), (3.0, 5.0), (4.0, 4.0), (5.0, 5.0)];
         let slope = Slope::of(points.map(|(x, y): (f64, f64)| (x.exp(), y.exp()))).expect("a line");
         assert!((slope.exponent - 0.6).abs() < 1e-12);
@@ -99,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn too_few_points_say_less() {
+    fn too_few_points_give_no_slope_or_no_error() {
         assert_eq!(Slope::of([]), None);
         assert_eq!(Slope::of([(5.0, 1.0)]), None);
         assert_eq!(Slope::of([(5.0, 1.0), (5.0, 2.0)]), None);

@@ -1,4 +1,4 @@
-//! One backend by itself, run by run: for programs that compare it with others of their kind.
+//! Runs one backend alone, for programs that compare it with other libraries.
 
 use sixfold::{Facts, PolygonMesh};
 
@@ -6,40 +6,40 @@ use crate::gauge::{Gauge, Verdict};
 use crate::measure::{MOST_RUNS, untimed_runs};
 use crate::plan::SHORTEST_SAMPLE_NS;
 use crate::study::{StudyError, put_on_the_bench};
-use workload::Backend;
-use workload::Draw;
-use workload::Operation;
-use workload::pages::{self, Policy};
-use workload::{Clock, Time};
-use workload::{Job, Series, Subject};
+use sixfold_workload::Backend;
+use sixfold_workload::Draw;
+use sixfold_workload::Operation;
+use sixfold_workload::pages::{self, Policy};
+use sixfold_workload::{Clock, Time};
+use sixfold_workload::{Job, Series, Subject};
 
-/// One backend, built and ready: the same code that a study runs, without its rounds.
+/// One backend, ready to run: the same code as in a study, without its rounds.
 ///
-/// Freed pages stay with the process, as in a study, where the allocator can be told so.
+/// Freed pages stay with the process as in a study, if the allocator supports that.
 pub struct Solo<'a> {
     subject: Box<dyn Subject + 'a>,
-    /// The operation of the last run, and how many untimed and timed runs make a sample of it.
+    /// The operation of the last run, and the numbers of untimed and timed runs in a sample of it.
     last: Option<(Operation, [u32; 2])>,
     gauge: Gauge,
-    /// Whether freed pages stay: samples should have no page faults then.
+    /// Whether freed pages stay with the process: then samples should have no page faults.
     kept: bool,
 }
 
-/// How long an operation is run before each sample, with the clock stopped.
+/// How long an operation is run untimed before each sample.
 const UNTIMED_NS: f64 = 2_000_000.0;
 
-/// The budget that the patience of the gauge is a part of, in nanoseconds.
+/// The budget of which the gauge may spend a part on waiting, in nanoseconds.
 const BUDGET_NS: f64 = 10e9;
 
-/// What one run came to.
+/// The result of one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoloRun {
-    /// How long it took.
+    /// The time of the run.
     pub time: Time,
-    /// A number that depends on all results, and not on the order of neighbours; not a number where
-    /// the backend does not do the operation on this mesh.
+    /// A number that depends on all results, but not on the order of neighbours; NaN if the backend
+    /// cannot do the operation on this mesh.
     pub checksum: f64,
-    /// How many elements it visited.
+    /// The number of elements visited.
     pub elements: u64,
 }
 
@@ -48,7 +48,7 @@ impl<'a> Solo<'a> {
     ///
     /// # Errors
     ///
-    /// A name that no backend has, and a mesh that this one cannot hold.
+    /// An unknown name, or a mesh that this backend cannot hold.
     pub fn new(backend: &str, polygons: &'a PolygonMesh) -> Result<Self, StudyError> {
         let kept = pages::put_in_force(Policy::Kept).policy == Policy::Kept;
         let name = backend.to_owned();
@@ -71,14 +71,14 @@ impl<'a> Solo<'a> {
         })
     }
 
-    /// The bytes that it holds.
+    /// Returns its size in bytes.
     pub fn bytes(&self) -> usize {
         self.subject.bytes()
     }
 
-    /// Runs `operation` on the whole mesh: repeatedly until 200 µs have passed if it is short, after
-    /// untimed runs as in a study, and again if other work disturbs the machine. The time is that
-    /// of one run.
+    /// Runs `operation` on the whole mesh. A short one is repeated until 200 µs have passed.
+    /// Untimed runs precede it as in a study, and it is run again if other work disturbs the
+    /// machine. The returned time is that of one run.
     pub fn run(&mut self, operation: Operation, clock: &dyn Clock) -> SoloRun {
         let runs = match self.last {
             Some((last, runs)) if last == operation => runs,
@@ -92,7 +92,7 @@ impl<'a> Solo<'a> {
         gauge.take(clock, sample, verdict).value
     }
 
-    /// How many runs take long enough together, and how many go before them.
+    /// Returns how many untimed and timed runs make a sample that is long enough.
     fn runs_of(&mut self, operation: Operation, clock: &dyn Clock) -> [u32; 2] {
         let mut runs = 1;
         loop {
@@ -106,7 +106,7 @@ impl<'a> Solo<'a> {
         }
     }
 
-    /// Runs `operation` `runs` times, after an untimed run. The time is that of one run.
+    /// Runs `operation` `runs` times, after an untimed run. The returned time is that of one run.
     pub fn run_times(&mut self, operation: Operation, runs: u32, clock: &dyn Clock) -> SoloRun {
         run_times(self.subject.as_mut(), operation, [1, runs], clock)
     }

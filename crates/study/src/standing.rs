@@ -1,30 +1,30 @@
-//! Who is fastest, and who as fast as far as anybody can tell.
+//! Ranks backends: which is fastest, and which are tied with it.
 
 use crate::report::Standing;
 use crate::statistics::Median;
-use workload::Time;
+use sixfold_workload::Time;
 
-/// Medians this close are a tie, whatever their intervals say.
+/// Ratios up to this are a tie, regardless of their intervals.
 pub(crate) const NO_DIFFERENCE: f64 = 1.02;
 
-/// Too few samples for an interval still tell apart what differs by this much.
+/// With too few samples for an interval, ratios of this or more are not a tie.
 pub(crate) const BEYOND_DOUBT: f64 = 2.0;
 
-/// How the samples of one backend stand beside those of the fastest.
+/// The comparison of one backend with the fastest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Place {
-    /// The median time by that of the fastest, formed within rounds.
+    /// The median, over rounds, of its time divided by that of the fastest.
     pub(crate) ratio: Median,
-    /// What that makes it.
+    /// The standing that follows from the ratio.
     pub(crate) standing: Standing,
 }
 
-/// Ranks the backends of one operation by their samples, each with its round; `None` for those
-/// without any.
+/// Ranks the backends of one operation by their samples, each with its round; `None` for backends
+/// without samples.
 ///
-/// The fastest is the one with the smallest median. Another ties with it if the interval of its
-/// ratio reaches down to 1, or if the ratio is no more than `noise`; where samples are too few for an
-/// interval, if the ratio is below 2.
+/// The fastest has the smallest median. Another ties with it if the interval of its ratio includes
+/// 1 or less, or if the ratio is at most `noise`. If there are too few samples for an interval, it
+/// ties if the ratio is below 2.
 pub(crate) fn places(backends: &[Vec<(u32, Time)>], noise: f64) -> Vec<Option<Place>> {
     let medians = backends
         .iter()
@@ -72,7 +72,8 @@ pub(crate) fn places(backends: &[Vec<(u32, Time)>], noise: f64) -> Vec<Option<Pl
     places
 }
 
-/// The ratio within the rounds that both have; of the medians where they share none.
+/// Returns the median ratio over the rounds that both have; the ratio of the medians if they have
+/// no round in common.
 pub(crate) fn ratio(samples: &[(u32, Time)], best: &[(u32, Time)]) -> Option<Median> {
     let of_round = |round: u32| best.iter().find(|(r, _)| *r == round);
     let pairs = samples
@@ -108,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clear_winner_is_named() {
+    fn a_clear_difference_has_a_best_backend() {
         let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
         let fast = samples(&drift);
         let slow = samples(&drift.map(|t| t * 1.1));
@@ -129,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_within_the_noise_is_a_tie() {
+    fn ratios_up_to_the_noise_are_ties() {
         let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
         let both = [samples(&drift), samples(&drift.map(|t| t * 1.1))];
         let tied = |noise| places(&both, noise)[1].map(|place| place.standing);
@@ -138,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn too_few_samples_name_no_narrow_winner() {
+    fn too_few_samples_are_ties_below_a_ratio_of_two() {
         let ties = standings(&[samples(&[1.0, 1.0]), samples(&[1.5, 1.5])]);
         assert_eq!(ties, [Some(Standing::Tied); 2]);
         let clear = standings(&[samples(&[1.0, 1.0]), samples(&[9.0, 9.0])]);

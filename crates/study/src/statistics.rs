@@ -1,30 +1,31 @@
-//! Medians and how far they can be trusted.
+//! Medians and means with confidence intervals.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// How often samples are drawn anew for an interval.
+/// Number of resamples for an interval.
 const RESAMPLES: usize = 1000;
 
-/// The middle of some samples, with an interval that holds the true median 19 times in 20.
+/// The median of samples, with an interval that contains the true median in 95 % of cases.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Median {
     /// The median.
     pub(crate) value: f64,
     /// The smallest sample.
     pub(crate) least: f64,
-    /// The 95 % confidence interval of the median; `None` below three samples.
+    /// The 95 % confidence interval of the median; `None` with fewer than three samples.
     pub(crate) interval: Option<[f64; 2]>,
 }
 
 impl Median {
-    /// The median of `samples`; `None` if there are none.
+    /// Returns the median of `samples`; `None` if there are none.
     ///
-    /// The interval is the percentile bootstrap of the median (Efron 1979), expanded for few samples
-    /// (Hesterberg 2015): they are drawn anew, with replacement, [`RESAMPLES`] times from a fixed seed,
-    /// and the middle of the medians is it. It assumes nothing about how the samples are spread. From
-    /// fewer than six samples no method can promise 95 %: then it runs from the smallest to the largest,
-    /// and holds the true median with 93.75 % for five, 87.5 % for four, 75 % for three.
+    /// The interval is the percentile bootstrap of the median (Efron 1979), expanded for few
+    /// samples (Hesterberg 2015): the samples are drawn with replacement, [`RESAMPLES`] times from
+    /// a fixed seed, and the interval is the middle part of the medians. It needs no assumption
+    /// about the distribution of the samples. With fewer than six samples no method can reach 95 %:
+    /// then the interval is from the smallest to the largest sample, and contains the true median
+    /// with a probability of 93.75 % for five, 87.5 % for four, and 75 % for three.
     pub(crate) fn of(samples: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut sorted: Vec<f64> = samples.into_iter().collect();
         sorted.sort_unstable_by(f64::total_cmp);
@@ -43,14 +44,14 @@ impl Median {
     }
 }
 
-/// The median of sorted samples, at least one.
+/// Returns the median of sorted samples; at least one sample is required.
 fn middle(sorted: &[f64]) -> f64 {
     let count = sorted.len();
     f64::midpoint(sorted[(count - 1) / 2], sorted[count / 2])
 }
 
-/// The geometric mean, and its 95 % interval by drawing the values anew; `None` without values, no
-/// interval below three.
+/// Returns the geometric mean and its 95 % interval by resampling; `None` without values, no
+/// interval for fewer than three.
 pub(crate) fn geometric_mean(values: &[f64]) -> Option<(f64, Option<[f64; 2]>)> {
     let logs: Vec<f64> = values.iter().map(|value| value.ln()).collect();
     let count = logs.len();
@@ -68,14 +69,15 @@ pub(crate) fn geometric_mean(values: &[f64]) -> Option<(f64, Option<[f64; 2]>)> 
     Some((mean.exp(), interval.map(|ends| ends.map(f64::exp))))
 }
 
-/// One of `count`, all alike.
+/// Draws an index below `count`, with equal probabilities.
 fn drawn(random: &mut ChaCha8Rng, count: usize) -> usize {
-    // The high half of a product is a fair pick, but for 1 in 2³² / count.
+    // The high half of the product is uniform, except for a bias of at most `count` / 2³².
     ((u64::from(random.next_u32()) * count as u64) >> 32) as usize
 }
 
-/// The median of `samples` by that of `others`, which have nothing in common with them, and the 95 %
-/// interval of that, by drawing both anew; `None` without samples, no interval below three of either.
+/// Returns the median of `samples` divided by the median of `others`, which are independent, and
+/// the 95 % interval by resampling both; `None` without samples, no interval with fewer than three
+/// of either.
 pub(crate) fn quotient(samples: &[f64], others: &[f64]) -> Option<(f64, Option<[f64; 2]>)> {
     let sorted = [samples, others].map(|samples| {
         let mut sorted = samples.to_vec();
@@ -97,13 +99,13 @@ pub(crate) fn quotient(samples: &[f64], others: &[f64]) -> Option<(f64, Option<[
     Some((a / b, interval))
 }
 
-/// The middle of the medians of resampled `sorted`; O(resamples · samples).
+/// Returns the middle part of the medians of resampled `sorted`; O(resamples · samples).
 fn bootstrapped(sorted: &[f64]) -> [f64; 2] {
     let mut resampling = Resampling::of(sorted, 0);
     middle_of(sorted.len(), || resampling.median())
 }
 
-/// Some figure of resamples of `count` samples, without the ends of its spread.
+/// Returns the interval of a figure over resamples of `count` samples, without the tails.
 fn middle_of(count: usize, mut figure: impl FnMut() -> f64) -> [f64; 2] {
     let mut figures: Vec<f64> = (0..RESAMPLES).map(|_| figure()).collect();
     figures.sort_unstable_by(f64::total_cmp);
@@ -111,16 +113,16 @@ fn middle_of(count: usize, mut figure: impl FnMut() -> f64) -> [f64; 2] {
     [figures[skipped], figures[RESAMPLES - 1 - skipped]]
 }
 
-/// Draws sorted samples anew, with replacement, from a fixed seed.
+/// Draws sorted samples with replacement, from a fixed seed.
 struct Resampling<'s> {
     sorted: &'s [f64],
     random: ChaCha8Rng,
-    /// How often each of the samples was drawn: that spares sorting every resample.
+    /// How often each of the samples was drawn: with these counts a resample need not be sorted.
     drawn: Vec<u32>,
 }
 
 impl<'s> Resampling<'s> {
-    /// `stream` tells apart what is drawn side by side.
+    /// `stream` makes parallel sequences independent.
     fn of(sorted: &'s [f64], stream: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(sorted.len() as u64);
         random.set_stream(stream);
@@ -131,7 +133,7 @@ impl<'s> Resampling<'s> {
         }
     }
 
-    /// The median of the next resample.
+    /// Returns the median of the next resample.
     fn median(&mut self) -> f64 {
         let count = self.sorted.len();
         self.drawn.fill(0);
@@ -145,13 +147,15 @@ impl<'s> Resampling<'s> {
     }
 }
 
-/// What part of the medians is left out at each end: 2.5 % of very many samples, less of few, for the
-/// spread within a sample is smaller than that of what it is from. Φ(−√(n / (n − 1)) · t), where t is
-/// the 97.5 % quantile of Student's distribution with n − 1 degrees of freedom.
+/// Returns the part of the medians that is left out at each end: 2.5 % for many samples. It is less
+/// for few samples, because the spread within a sample is smaller than that of its population. It
+/// is Φ(−√(n / (n − 1)) · t), where t is the 97.5 % quantile of Student's distribution with n − 1
+/// degrees of freedom.
 fn left_out(count: usize) -> f64 {
     let n = count as f64;
     let freedom = n - 1.0;
-    // Cornish and Fisher's expansion about the normal quantile; off by less than 1 % from five on.
+    // Cornish and Fisher's expansion about the normal quantile; its error is below 1 % for 5
+    // degrees of freedom or more.
     let z = 1.959_964_f64;
     let t = z
         + (z.powi(3) + z) / (4.0 * freedom)
@@ -172,7 +176,7 @@ fn left_out(count: usize) -> f64 {
     sum * (-x * x / 2.0).exp() / std::f64::consts::TAU.sqrt()
 }
 
-/// Which sample has `rank` in a resample in which each was drawn so many times.
+/// Returns which sample has `rank` in a resample in which each was drawn `drawn` times.
 fn ranked(drawn: &[u32], rank: usize) -> usize {
     let mut below = 0;
     let at = drawn.iter().position(|&times| {
@@ -186,10 +190,11 @@ fn ranked(drawn: &[u32], rank: usize) -> usize {
 mod tests {
     use super::*;
 
-    /// For an odd number of samples the bootstrap of the median is known in closed form: it is at most
-    /// the k-th smallest with the chance that more than half of n draws fall on the first k.
+    /// For an odd number of samples the bootstrap of the median is known in closed form: the median
+    /// is at most the k-th smallest with the probability that more than half of n draws are among
+    /// the first k.
     #[test]
-    fn the_interval_is_that_of_the_binomial_distribution() {
+    fn the_interval_agrees_with_the_binomial_distribution() {
         for n in [7_usize, 15, 25, 51] {
             let at_most = |k: usize| {
                 let p = k as f64 / n as f64;
@@ -206,7 +211,7 @@ mod tests {
             };
             let samples = (1..=n).map(|i| i as f64);
             let [low, high] = Median::of(samples).and_then(|m| m.interval).expect("many");
-            // Where a rank lies close to the quantile, chance decides between it and its neighbour.
+            // If a rank is close to the quantile, chance decides between it and its neighbour.
             let out = left_out(n);
             let (below, above) = (at_most(low as usize - 1), at_most(low as usize));
             assert!(
@@ -222,9 +227,9 @@ mod tests {
         }
     }
 
-    /// From the tables of Student's and of the normal distribution.
+    /// Values from tables of Student's and of the normal distribution.
     #[test]
-    fn few_samples_leave_out_less() {
+    fn few_samples_have_smaller_tails() {
         for (n, percent) in [
             (6, 0.243),
             (10, 0.855),
@@ -247,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn the_interval_of_a_quotient_holds_it_about_19_times_in_20() {
+    fn the_interval_of_a_quotient_contains_it_about_19_times_in_20() {
         let mut random = ChaCha8Rng::seed_from_u64(2);
         let mut covered = 0;
         for _ in 0..1000 {
@@ -273,7 +278,7 @@ mod tests {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let mut covered = 0;
         for _ in 0..2000 {
-            // Uniform in [0, 1), squared: skewed, with its median at a quarter.
+            // Uniform in [0, 1), squared: skewed, with the median at 1/4.
             let mut draw = || (random.next_u32() as f64 / 2_f64.powi(32)).powi(2);
             let samples: Vec<f64> = (0..25).map(|_| draw()).collect();
             let [low, high] = Median::of(samples)

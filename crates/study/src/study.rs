@@ -1,4 +1,4 @@
-//! A whole study: build, measure, compare, report.
+//! A whole study: builds the structures, measures, compares, and makes the report.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -23,39 +23,40 @@ use crate::statistics::Median;
 use crate::timer::Timer;
 use crate::warnings::warnings;
 use crate::words::words;
-use workload::Backend;
-use workload::Draw;
-use workload::Operation;
-use workload::Subject;
-use workload::pages::Policy;
-use workload::unknown;
-use workload::{MachineClock, Time};
+use sixfold_workload::Backend;
+use sixfold_workload::Draw;
+use sixfold_workload::Operation;
+use sixfold_workload::Subject;
+use sixfold_workload::pages::Policy;
+use sixfold_workload::unknown;
+use sixfold_workload::{MachineClock, Time};
 
-/// Beyond this a valence or a degree makes a mesh skewed: its square is a millisecond's work.
+/// The largest valence or degree of a mesh that is not skewed. Walking around such an element once
+/// for each neighbour takes about a millisecond.
 const MOST_NEIGHBOURS: usize = 1000;
 
-/// What to study, and for how long.
+/// The settings of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Names of backends; empty for all.
+    /// The names of the backends; empty for all.
     pub backends: Vec<String>,
-    /// Representations that take part besides those of the roster.
+    /// Additional representations beside those of the roster.
     pub extra: Vec<Backend>,
-    /// Programs of others that take part in a study.
+    /// External programs that take part in the study.
     pub externals: Vec<External>,
-    /// How long one of them may take for an answer.
+    /// Time limit for one answer of an external program.
     pub patience: Duration,
-    /// Operations; empty for all. A subdivision that takes a good part of the budget is run where it
-    /// is named here, and only estimated where it is not.
+    /// The operations; empty for all. A subdivision that takes a large part of the budget is run
+    /// only if it is named here; otherwise its time is estimated.
     pub operations: Vec<Operation>,
-    /// How long measuring may take. One run of everything, or of a small sample where the whole may
-    /// be long, is made in any case.
+    /// Time limit for measuring. Each operation is run at least once, or on a small sample if the
+    /// whole may be long, even if that takes longer.
     pub budget: Duration,
-    /// Decides the order in which elements are drawn for samples, and the order of measurement; how
-    /// large samples are follows the clock.
+    /// Seed of the order in which elements are drawn for samples, and of the order of measurement.
+    /// The size of samples depends on the clock.
     pub seed: u64,
-    /// What happens to pages that operations free. Kept pages take more memory, so that the system's
-    /// policy is in force where there is too little.
+    /// What happens to pages that operations free. Keeping pages takes more memory; if there is too
+    /// little, the system's policy is used.
     pub heap: Policy,
     /// Whether the caches hold the mesh when a sample begins.
     pub caches: CacheState,
@@ -77,27 +78,27 @@ impl Default for Settings {
     }
 }
 
-/// Why there is nothing to study.
+/// The reason why a study is not possible.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum StudyError {
-    /// A name that no backend has.
+    /// No backend has this name.
     #[error("{}", unknown("backend", .name, &all_names()))]
     UnknownBackend { name: String },
-    /// Two representations of one name.
+    /// Two representations have the same name.
     #[error("two backends are called `{name}`: give each a name of its own")]
     RepeatedBackend { name: String },
-    /// The mesh has vertices at most.
+    /// The mesh has no faces.
     #[error("the mesh has no faces, so there is nothing to study: `inspect` shows its facts")]
     NoFaces,
-    /// Two columns of one name.
+    /// Two columns have the same name.
     #[error("two columns are called `{name}`: give each program a name of its own")]
     RepeatedExternal { name: String },
-    /// The mesh cannot be handed to other programs.
+    /// The file of the mesh for external programs cannot be written.
     #[error("the mesh cannot be written for other programs to read: {cause}")]
     NoMeshFile { cause: String },
-    /// None of the backends asked for can hold the mesh.
+    /// None of the chosen backends can hold the mesh.
     #[error("none of the backends asked for can hold the mesh ({}): {}", .refusals.len(), reasons(.refusals))]
     NoneHolds { refusals: Vec<(String, String)> },
 }
@@ -115,12 +116,12 @@ fn reasons(refusals: &[(String, String)]) -> String {
 }
 
 impl Settings {
-    /// The backends asked for, in the order of the roster, then the extra ones.
+    /// Returns the chosen backends in the order of the roster, then the extra ones.
     ///
     /// # Errors
     ///
-    /// [`StudyError::UnknownBackend`] for the first name that no backend has, and
-    /// [`StudyError::RepeatedBackend`] for an extra one with the name of another.
+    /// [`StudyError::UnknownBackend`] for the first unknown name, and
+    /// [`StudyError::RepeatedBackend`] for an extra backend with the name of another.
     pub fn chosen_backends(&self) -> Result<Vec<Backend>, StudyError> {
         let mut all = Backend::roster();
         for &extra in &self.extra {
@@ -140,7 +141,7 @@ impl Settings {
         Ok(all.into_iter().filter(asked).collect())
     }
 
-    /// Refuses two columns of one name.
+    /// Refuses two columns with the same name.
     fn check_externals(&self) -> Result<(), StudyError> {
         let ours = Backend::roster()
             .into_iter()
@@ -155,7 +156,7 @@ impl Settings {
         Ok(())
     }
 
-    /// The operations asked for, each once, in the order in which tables show them.
+    /// Returns the chosen operations, each once, in the order in which tables show them.
     fn chosen_operations(&self) -> Vec<Operation> {
         let asked = |operation: &Operation| {
             self.operations.is_empty() || self.operations.contains(operation)
@@ -166,12 +167,12 @@ impl Settings {
 
 /// Measures the operations on the backends that can hold the mesh.
 ///
-/// `stop` ends it early, between two samples; what is finished by then is in the report.
-/// `progress` hears what is going on.
+/// Setting `stop` ends the study between two samples; the report contains what is finished.
+/// `progress` is called with the current step.
 ///
 /// # Errors
 ///
-/// An unknown backend, a mesh without faces, or one that no backend asked for can hold.
+/// An unknown backend, a mesh without faces, or a mesh that none of the chosen backends can hold.
 pub fn study(
     specimen: &Specimen,
     settings: &Settings,
@@ -227,7 +228,7 @@ pub fn study(
         });
     }
 
-    // Once more, from the same polygons: it was held before.
+    // Builds one backend a second time, for the control. It holds these polygons, as before.
     let first = entered_twice(&subjects);
     let held = |backend: &&Backend| backend.name() == subjects[first].name();
     let again = chosen.iter().find(held);
@@ -287,9 +288,9 @@ pub fn study(
     })
 }
 
-/// About how many bytes measuring holds at once: the structures with their outputs, one more for the
-/// control, and what the operation holds that takes most: a refined mesh has four times the faces, and is
-/// there as polygons and as a structure.
+/// Estimates how many bytes the measurement holds at once: the structures with their outputs, one
+/// more for the control, and the allocations of the largest operation. A refined mesh has four
+/// times the faces, and exists both as polygons and as a structure.
 pub(crate) fn needed_bytes(backends: &[Backend], operations: &[Operation], counts: &Counts) -> u64 {
     let bytes = backends
         .iter()
@@ -299,14 +300,14 @@ pub(crate) fn needed_bytes(backends: &[Backend], operations: &[Operation], count
     all + most * if makes { 10 } else { 3 }
 }
 
-/// Whether some vertex or face has so many neighbours that to walk around it once for each of them
-/// may outlast any budget.
+/// Returns whether some vertex or face has so many neighbours that walking around it once for each
+/// of them may exceed any budget.
 pub(crate) fn is_skewed(facts: &Facts) -> bool {
     let most = |spread: &Option<Spread>| spread.as_ref().map_or(0, |s| s.max);
     most(&facts.valence).max(most(&facts.face_degree)) > MOST_NEIGHBOURS
 }
 
-/// Whether some operation scans on this backend.
+/// Returns whether some operation scans on this backend.
 pub(crate) fn scans(backend: &Backend, operations: &[Operation]) -> bool {
     let costs = &backend.info.costs;
     costs.contains(&QueryCost::Scan)
@@ -315,7 +316,7 @@ pub(crate) fn scans(backend: &Backend, operations: &[Operation]) -> bool {
             .any(|operation| operation.scans(costs).contains(&true))
 }
 
-/// Builds a backend, and says what it weighs or why it refuses.
+/// Builds a backend, and reports its memory or why it refuses the mesh.
 pub(crate) fn put_on_the_bench<'a>(
     backend: &Backend,
     polygons: &'a PolygonMesh,
@@ -338,7 +339,7 @@ pub(crate) fn put_on_the_bench<'a>(
     }
 }
 
-/// One row for each entry that was measured or estimated.
+/// Returns one row for each entry that was measured or estimated.
 pub(crate) fn results(
     entries: &[Entry],
     agreements: Vec<Agreement>,
@@ -352,7 +353,7 @@ pub(crate) fn results(
         let times: Vec<Vec<(u32, Time)>> = group.iter().map(Entry::times).collect();
         let noise = noise(control, group[0].job.operation);
         let verdicts: Vec<Agreement> = agreements.by_ref().take(group.len()).collect();
-        // Who does other work, or may do so, is in no ranking.
+        // A backend with a mismatch may have done other work: it is not ranked.
         let mut ranked = times.clone();
         for (verdict, times) in verdicts.iter().zip(&mut ranked) {
             if *verdict == Agreement::Mismatch {
@@ -360,7 +361,7 @@ pub(crate) fn results(
             }
         }
         let places = places(&ranked, noise);
-        // What a whole run visits is known where somebody made one.
+        // The number of elements of a whole run is known if some backend made one.
         let counted = group
             .iter()
             .filter(|e| e.job.sample.is_none() && subjects[e.subject].merged_vertices() == 0)
@@ -369,7 +370,7 @@ pub(crate) fn results(
             group.iter().zip(&times).zip(places).zip(verdicts)
         {
             if times.is_empty() && entry.estimate.is_none() {
-                continue; // refused, or the study was told to stop before
+                continue; // refused, or the study was stopped before
             }
             let median = Median::of(times.iter().map(|(_, time)| time.ns()));
             let wall = Median::of(times.iter().map(|(_, time)| time.wall_ns));
@@ -426,12 +427,13 @@ pub(crate) fn results(
     rows
 }
 
-/// The most page faults in any of the samples; `None` where they were not counted.
+/// Returns the largest number of page faults in a sample; `None` if they were not counted.
 fn most_faults<'t>(samples: impl IntoIterator<Item = &'t Time>) -> Option<u64> {
     samples.into_iter().filter_map(|time| time.faults).max()
 }
 
-/// The samples of all entries; those of the subject `control` are a backend's second.
+/// Returns the samples of all entries; those of the subject `control` are from the second entry of
+/// a backend.
 fn raw(
     entries: &[Entry],
     subjects: &[Box<dyn Subject + '_>],
@@ -454,7 +456,7 @@ fn raw(
     columns.collect()
 }
 
-/// What cannot be done, in the order of the entries.
+/// Returns the operations that backends refuse, in the order of the entries.
 pub(crate) fn refusals(entries: &[Entry], subjects: &[Box<dyn Subject + '_>]) -> Vec<Refusal> {
     let refusal = |entry: &Entry| {
         let reason = entry.refusal.clone()?;

@@ -1,7 +1,7 @@
-//! Text of somebody else: names of files, words of other programs.
+//! Makes text from outside safe to print: names of files, output of other programs.
 
-/// `text` on one line, without the characters that steer a terminal or turn the direction of writing:
-/// escapes stand for them, `\u{1b}`.
+/// Returns `text` on one line. Characters that control a terminal or change the direction of
+/// writing are replaced by escapes such as `\u{1b}`.
 pub fn tame(text: &str) -> String {
     let steers = |c: char| {
         c.is_control()
@@ -22,7 +22,7 @@ mod tests {
     use super::tame;
 
     #[test]
-    fn what_steers_a_terminal_is_escaped() {
+    fn terminal_control_characters_are_escaped() {
         assert_eq!(tame("a\u{1b}[2Jb\nc\u{202e}"), "a\\u{1b}[2Jb\\nc\\u{202e}");
         assert_eq!(tame("Hügel – 山.obj"), "Hügel – 山.obj");
     }

@@ -1,36 +1,37 @@
-//! What the clock and the engine themselves cost: nothing is measured that is not much longer.
+//! The costs of reading the clock, to check that every measured time is much longer.
 
 use std::hint::black_box;
 
 use serde::{Deserialize, Serialize};
-use workload::Clock;
+use sixfold_workload::Clock;
 
 use crate::measure::Entry;
 
-/// How often the clock is read.
+/// The number of readings.
 const TRIALS: usize = 1001;
 
-/// The clock and the engine, timed by themselves at the start of a study.
+/// The resolution and the overhead of the clock, measured at the start of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Timer {
-    /// The smallest step that the clock was seen to make, in nanoseconds.
+    /// The smallest observed step of the clock, in nanoseconds.
     pub resolution_ns: f64,
-    /// What reading the clock takes in use, in nanoseconds; subtracted from every stretch between two
-    /// readings.
+    /// The time for reading the clock during measurement, in nanoseconds. It is subtracted from
+    /// every stretch between two readings.
     pub overhead_ns: f64,
-    /// By how much that may be wrong: the difference to what reading takes in a loop of its own, or how much
-    /// longer it takes there in one of twenty cases, whichever is more.
+    /// The uncertainty of `overhead_ns`, in nanoseconds: its difference from the time for reading
+    /// in an empty loop, or the excess of the 95 % quantile in that loop over the median, whichever
+    /// is larger.
     #[serde(default)]
     pub left_ns: f64,
-    /// The part of that in the shortest stretch between two readings; `None` where nothing was measured.
+    /// `left_ns` divided by `shortest_ns`; `None` if nothing was measured.
     pub largest_share: Option<f64>,
-    /// That stretch, in nanoseconds.
+    /// The shortest stretch between two readings, in nanoseconds.
     #[serde(default)]
     pub shortest_ns: Option<f64>,
 }
 
 impl Timer {
-    /// Reads `clock` again and again, with nothing between the readings.
+    /// Reads `clock` repeatedly, with nothing between the readings.
     pub(crate) fn of(clock: &dyn Clock) -> Self {
         let runs = black_box(1_u32);
         let empty = || {
@@ -44,7 +45,7 @@ impl Timer {
         times.sort_by(f64::total_cmp);
         let (usual, longest) = (times[TRIALS / 2], times[TRIALS * 95 / 100]);
         let overhead_ns = clock.overhead().ns();
-        // Either the clock takes as long as in this loop, which does nothing else, or longer than usual.
+        // The overhead may be as in this empty loop, or reading may take longer than usual.
         let left_ns = (overhead_ns - usual).abs().max(longest - usual);
         let steps = times.iter().copied().filter(|&ns| ns > 0.0);
         Self {
@@ -56,13 +57,13 @@ impl Timer {
         }
     }
 
-    /// The same, with its part in the shortest of the samples that were taken.
+    /// Adds the shortest of the samples that were taken.
     pub(crate) fn beside(self, entries: &[Entry]) -> Self {
         let shortest = entries.iter().filter_map(Entry::shortest_sample_ns);
         self.with_shortest(shortest.min_by(f64::total_cmp))
     }
 
-    /// The same, with the shortest stretch between two readings.
+    /// Adds the shortest stretch between two readings.
     pub(crate) fn with_shortest(self, shortest_ns: Option<f64>) -> Self {
         Self {
             largest_share: shortest_ns.map(|ns| self.left_ns / ns),

@@ -1,25 +1,25 @@
-//! What may be wrong with the figures, in words, each with a remedy.
+//! Warnings about possible faults of the measurement, each with a remedy.
 
 use crate::environment::Environment;
 use crate::report::{Control, ResultRow};
 use crate::statistics::Median;
 use crate::timer::Timer;
-use workload::pages::Policy;
+use sixfold_workload::pages::Policy;
 
-/// A load above this part of the cores was there before the study came.
+/// The machine is busy if its load at the start is above this part of its cores.
 const BUSY: f64 = 0.5;
-/// Wall time above processor time by this much means that others had the processor meanwhile.
+/// The processor was shared if wall time is more than this multiple of processor time.
 const INTERRUPTED: f64 = 1.05;
-/// An interval that reaches this far from its median leaves much open.
+/// An interval is wide if it extends further than this part of its median.
 const WIDE: f64 = 0.1;
-/// What the clock may have of a sample.
+/// The largest acceptable error of the clock, as a part of the shortest sample.
 const COARSE: f64 = 0.01;
-/// Two columns of one backend should not differ by more than this, typically.
+/// The largest acceptable typical ratio between two columns of one backend.
 const NOISY: f64 = 1.05;
-/// Fewer samples than these have no 95 % interval.
+/// The smallest number of samples for a 95 % interval.
 const FEW: usize = 6;
 
-/// One sentence or two for each fault, the gravest first.
+/// Returns one or two sentences for each fault, the most serious first.
 pub(crate) fn warnings(
     environment: &Environment,
     timer: &Timer,
@@ -42,7 +42,7 @@ pub(crate) fn warnings(
     all.into_iter().flatten().collect()
 }
 
-/// What is wrong with the machine itself.
+/// Returns the warnings about the machine itself.
 pub(crate) fn of_machine(environment: &Environment) -> Vec<String> {
     let all = [
         not_kept(environment),
@@ -59,26 +59,26 @@ fn nothing_measured(environment: &Environment, results: &[ResultRow]) -> Option<
     let budget = environment.budget_s;
     nothing.then(|| {
         format!(
-            "The budget of {budget} s was too small to measure anything: every figure is one run with cold caches. Give a longer --budget, or name fewer --operations."
+            "The budget of {budget} s was too small to measure anything: every figure is from one run with cold caches. Use a longer --budget or fewer --operations."
         )
     })
 }
 
-/// Pages are not kept although that was asked for, or page faults are not counted.
+/// Warns if pages are not kept although that was set, or if page faults are not counted.
 fn not_kept(environment: &Environment) -> Option<String> {
     let heap = environment.heap.as_ref()?;
     match &heap.reason {
         Some(reason) => Some(format!(
-            "Measured on the system's heap: {reason}. What allocates includes page faults, and depends on what ran before: compare with results of --heap system only."
+            "Measured on the system's heap: {reason}. Times of operations that allocate include page faults and depend on what ran before: compare them only with results of --heap system."
         )),
         None if !heap.counts_faults => Some(
-            "This platform does not count page faults: samples that include some are not recognised. Trust the control in operations that allocate.".into(),
+            "This platform does not count page faults, so samples with page faults are not recognised. For operations that allocate, check the control.".into(),
         ),
         None => None,
     }
 }
 
-/// Samples with page faults, where there should be none.
+/// Warns about samples with page faults if pages are kept.
 fn faulted(environment: &Environment, results: &[ResultRow]) -> Option<String> {
     let heap = environment.heap.as_ref()?;
     let faulted = |row: &&ResultRow| row.faults.is_some_and(|faults| faults > 0);
@@ -90,7 +90,7 @@ fn faulted(environment: &Environment, results: &[ResultRow]) -> Option<String> {
     } = worst;
     (heap.policy == Policy::Kept).then(|| {
         format!(
-            "{count} of {} figures include samples in which pages faulted, at most {faults} in a sample ({operation} on {backend}). Measure again with more free memory.",
+            "{count} of {} figures include samples with page faults, at most {faults} in a sample ({operation} on {backend}). Measure again with more free memory.",
             results.len()
         )
     })
@@ -101,14 +101,14 @@ fn busy(environment: &Environment) -> Option<String> {
     (load > BUSY * cores as f64).then(|| {
         let cores = if cores == 1 { "1 core".into() } else { format!("{cores} cores") };
         format!(
-            "The machine was busy: load {load:.1} on {cores} at the start. End what else runs and measure again; until then trust ratios, not nanoseconds."
+            "The machine was busy: load {load:.1} on {cores} at the start. Stop other programs and measure again; until then use the ratios, not the nanoseconds."
         )
     })
 }
 
 fn interrupted(environment: &Environment, results: &[ResultRow]) -> Option<String> {
     if environment.clock == "wall" {
-        return None; // there is nothing to compare it with
+        return None; // there is no processor time to compare with
     }
     let ratios = results
         .iter()
@@ -116,7 +116,7 @@ fn interrupted(environment: &Environment, results: &[ResultRow]) -> Option<Strin
     let ratio = Median::of(ratios)?.value;
     (ratio > INTERRUPTED).then(|| {
         format!(
-            "Others had the processor for {:.0} % of the time: caches were disturbed even where time was not counted. End what else runs, or pin the study to a core of its own.",
+            "Other programs used the processor for {:.0} % of the time and disturbed the caches. Stop them, or pin the study to its own core.",
             100.0 * (1.0 - 1.0 / ratio)
         )
     })
@@ -125,7 +125,7 @@ fn interrupted(environment: &Environment, results: &[ResultRow]) -> Option<Strin
 fn noisy(control: Option<&Control>) -> Option<String> {
     let control = control.filter(|control| control.typical > NOISY)?;
     Some(format!(
-        "One backend differs from itself by {:.0} %, typically: smaller differences between backends say nothing. Measure on a quieter machine, or with a longer --budget.",
+        "Two measurements of one backend typically differ by {:.0} %: smaller differences between backends are not significant. Measure on a quieter machine, or with a longer --budget.",
         100.0 * (control.typical - 1.0)
     ))
 }
@@ -134,7 +134,7 @@ fn coarse(timer: &Timer) -> Option<String> {
     let share = timer.resolution_ns.max(timer.left_ns) / timer.shortest_ns?;
     (share > COARSE).then(|| {
         format!(
-            "The clock is too coarse: {:.1} % of the shortest sample is the clock itself. Study a larger mesh.",
+            "The clock is too coarse: its error is up to {:.1} % of the shortest sample. Study a larger mesh.",
             100.0 * share
         )
     })
@@ -142,7 +142,7 @@ fn coarse(timer: &Timer) -> Option<String> {
 
 fn wall_alone(environment: &Environment) -> Option<String> {
     (environment.clock == "wall").then(|| {
-        "This platform does not tell the processor time of a thread: the figures are wall time, which whatever else runs makes longer. Keep the machine quiet.".to_owned()
+        "This platform does not report the processor time of a thread: the figures are wall time, which other programs make longer. Keep the machine quiet.".to_owned()
     })
 }
 
@@ -150,10 +150,10 @@ fn few(results: &[ResultRow]) -> Option<String> {
     let measured = results.iter().filter(|row| row.median_ns.is_some());
     let all = measured.clone().count();
     let few = measured.filter(|row| row.samples < FEW).count();
-    let once = results.iter().all(|row| row.warm_up_only); // said already
+    let once = results.iter().all(|row| row.warm_up_only); // `nothing_measured` warns of this
     (few > 0 && !once).then(|| {
         format!(
-            "{few} of {all} figures rest on fewer than {FEW} samples, too few for a 95 % interval. A longer --budget, or fewer --operations, makes them surer."
+            "{few} of {all} figures are from fewer than {FEW} samples, too few for a 95 % interval. Use a longer --budget or fewer --operations."
         )
     })
 }
@@ -173,7 +173,7 @@ fn wide(results: &[ResultRow]) -> Option<String> {
     let (count, all) = (wide.clone().count(), known.len());
     let (worst, row) = wide.max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!(
-        "{count} of {all} intervals reach further than {:.0} % from their median, at most {:.0} % ({} on {}). A longer --budget, or a quieter machine, narrows them.",
+        "{count} of {all} intervals extend more than {:.0} % from their median, at most {:.0} % ({} on {}). Use a longer --budget or a quieter machine.",
         100.0 * WIDE,
         100.0 * worst,
         row.operation,
@@ -187,13 +187,13 @@ fn powersave(environment: &Environment) -> Option<String> {
         .as_ref()
         .filter(|name| *name == "powersave")?;
     Some(format!(
-        "The processor's governor is {governor}: its frequency follows the load. `cpupower frequency-set --governor performance` keeps it steady."
+        "The governor of the processor is {governor}: the frequency follows the load. `cpupower frequency-set --governor performance` keeps it constant."
     ))
 }
 
 #[cfg(test)]
 mod tests {
-    use workload::Operation;
+    use sixfold_workload::Operation;
 
     use super::*;
     use crate::report::{ControlRow, Standing};
@@ -228,13 +228,13 @@ mod tests {
     };
 
     #[test]
-    fn nothing_is_said_of_a_good_run() {
+    fn a_good_run_has_no_warnings() {
         let said = warnings(&quiet(), &TIMER, &[fine()], None);
         assert_eq!(said, [""; 0]);
     }
 
     #[test]
-    fn each_fault_is_told_with_a_remedy() {
+    fn each_fault_has_a_warning_with_a_remedy() {
         let good = quiet();
         let control = Control {
             backend: "half-edge".into(),
@@ -287,7 +287,7 @@ mod tests {
             (
                 warnings(&busy, &TIMER, &[fine()], None),
                 "load 1.5 on 2 cores",
-                "End what else runs",
+                "Stop other programs",
             ),
             (
                 warnings(&wall, &TIMER, &[fine()], None),

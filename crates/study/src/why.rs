@@ -1,8 +1,8 @@
-//! Why a structure takes the time it takes: what its queries read, beside what reading costs.
+//! Explains the times of the relations on a structure by the memory that they read.
 //!
-//! Counting needs no clock and has no noise ([`Reads`]); a study of the same relations gives the times;
-//! and [`MemorySpeed`] says what moving the bytes, or waiting for them, takes on this machine.
-//! [`Bound::of`] holds the three against one another.
+//! Counts of reads need no clock and have no noise ([`Reads`]). A study of the same relations gives
+//! their times. [`MemorySpeed`] gives the time on this machine for moving the bytes, or for waiting
+//! for them. [`Bound::of`] compares the three.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,8 +11,8 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 use serde_with::{KeyValueMap, serde_as};
 use sixfold::Relation;
-use workload::{Backend, CACHE_LINES, Counted, Kind, LINE_BYTES, MOST_READS, MemorySpeed};
-use workload::{Operation, REACH, Reads, Rung, SAMPLE};
+use sixfold_workload::{Backend, CACHE_LINES, Counted, Kind, LINE_BYTES, MOST_READS, MemorySpeed};
+use sixfold_workload::{Operation, REACH, Reads, Rung, SAMPLE};
 
 use crate::environment::Environment;
 use crate::inspect::{Specimen, unbuilt};
@@ -20,68 +20,68 @@ use crate::measure::Progress;
 use crate::report::{Agreement, BackendReport, MeshReport, Report, SCHEMA, write_json};
 use crate::study::{Settings, StudyError, study};
 
-/// What to explain.
+/// The settings of [`why`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WhySettings {
-    /// Names of backends; empty for all.
+    /// The names of the backends; empty for all.
     pub backends: Vec<String>,
-    /// Representations that take part besides those of the roster.
+    /// Additional representations beside those of the roster.
     pub extra: Vec<Backend>,
-    /// Relations; empty for all nine.
+    /// The relations; empty for all nine.
     pub relations: Vec<Relation>,
-    /// How to measure; `None` to count only.
+    /// The settings of the measurement; `None` to count only.
     pub timing: Option<Timing>,
 }
 
-/// How long to measure, and on what.
+/// The settings of the measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
-    /// How long the study may take.
+    /// Time limit of the study.
     pub budget: Duration,
-    /// How fast this machine reads memory.
+    /// The speed at which this machine reads memory.
     pub memory: MemorySpeed,
 }
 
-/// What a mesh's structures read, and what that has to do with their times.
+/// The reads of the structures of a mesh, compared with their times.
 #[serde_as]
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Why {
-    /// The version of the shape.
+    /// The version of the format.
     pub schema: u32,
-    /// What the mesh is.
+    /// Name and topology of the mesh.
     pub mesh: MeshReport,
-    /// By name, in the order of the roster.
+    /// The backends by name, in the order of the roster.
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
-    /// What the counts take memory to be.
+    /// The model of memory that the counts use.
     pub model: Model,
-    /// How fast buffers of growing size are read; `None` where nothing was measured.
+    /// The speed of reading buffers of growing size; `None` if nothing was measured.
     pub memory: Option<Vec<Rung>>,
-    /// Relation by relation, and within each in the order of the roster.
+    /// The results, sorted by relation, then in the order of the roster.
     pub rows: Vec<WhyRow>,
-    /// Told to stop before the end: some rows or times are missing.
+    /// Whether it was stopped early, so that some rows or times are missing.
     pub interrupted: bool,
-    /// The machine and the program; `None` where nothing was measured.
+    /// The machine and the program version; `None` if nothing was measured.
     pub environment: Option<Environment>,
 }
 
-/// What the counts take memory to be.
+/// The model of memory that the counts use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Model {
-    /// Bytes of a cache line.
+    /// Size of a cache line, in bytes.
     pub line_bytes: usize,
-    /// Lines of the small cache, first in, first out.
+    /// Number of lines in the model of a small cache, first in, first out.
     pub cache_lines: u64,
-    /// How many lines beside one that is there count as foreseen, on either side.
+    /// A fetch within this many lines of a cached line, on either side, is not a jump.
     pub reach: usize,
-    /// Elements that stand for all.
+    /// Number of elements in a sample.
     pub sample: usize,
-    /// They do so where a query reads more rows than this on average.
+    /// A sample is used if a query reads more rows than this on average.
     pub most_reads: u64,
 }
 
 impl Model {
-    /// The only one there is.
+    /// The model of this version.
     pub const HERE: Self = Self {
         line_bytes: LINE_BYTES,
         cache_lines: CACHE_LINES,
@@ -96,56 +96,56 @@ impl Model {
 pub struct WhyRow {
     /// The backend.
     pub backend: String,
-    /// What one element is: `vertex`, `edge` or `face`.
+    /// The kind of the elements that are queried: `vertex`, `edge` or `face`.
     pub per: String,
-    /// What it reads.
+    /// The counts of its reads.
     #[serde(flatten)]
     pub reads: Reads,
-    /// What it takes; `None` where that was not measured.
+    /// Its time; `None` if it was not measured.
     pub timed: Option<Timed>,
 }
 
-/// The time of a sweep, for each element, and what explains it.
+/// The time of a sweep over all elements, per element, and what explains it.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Timed {
-    /// The median of the study, in nanoseconds.
+    /// The median of the study per element, in nanoseconds.
     pub ns_per_element: f64,
-    /// A sample of the elements stands for all.
+    /// Whether only a sample of the elements was timed.
     pub sampled: bool,
-    /// Whether the other backends found the same.
+    /// Whether other backends have the same results.
     pub agreement: Agreement,
-    /// How fast memory of the size of the sweep is read.
+    /// The speed of reading memory of the size of the sweep.
     pub speed: Rung,
-    /// Nanoseconds that moving its bytes takes at that speed.
+    /// The time per element for moving its bytes at that speed, in nanoseconds.
     pub floor_ns: f64,
-    /// Nanoseconds that its jumps take at that speed, each waiting for the one before.
+    /// The time per element for its jumps at that speed, one after the other, in nanoseconds.
     pub waits_ns: f64,
-    /// What it is bound by.
+    /// The limiting factor.
     pub bound: Bound,
 }
 
-/// What takes the time of a sweep.
+/// The limiting factor of the time of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
     /// Moving its bytes.
     Bandwidth,
-    /// Waiting for lines that could not be foreseen.
+    /// Waiting for lines that a prefetcher cannot predict.
     Latency,
-    /// The steps themselves: reading what is near, comparing, branching.
+    /// The steps themselves: reading data that is in the cache, comparing, branching.
     Work,
 }
 
 impl Bound {
-    /// What explains a sweep of `ns`, whose bytes take `floor_ns` to move and whose jumps take
-    /// `waits_ns`, one after the other.
+    /// Returns the limiting factor of a sweep of `ns`, whose bytes take `floor_ns` to move and
+    /// whose jumps take `waits_ns`, one after the other.
     ///
-    /// - `Bandwidth`, where moving the bytes takes half of the time or more: nothing could make it twice
-    ///   as fast but fewer bytes.
-    /// - `Latency`, where that is not so, and the jumps one after the other would take half of the time
-    ///   or more. A processor has several on the way at once, so they may take less: it says that they
-    ///   can be the reason, not that they are all of it.
-    /// - `Work`, where neither accounts for half of the time.
+    /// - `Bandwidth` if moving the bytes takes half of the time or more: only fewer bytes could
+    ///   make it twice as fast.
+    /// - `Latency` if not, and the jumps one after the other take half of the time or more. A
+    ///   processor overlaps several jumps, so they may take less: they can be the reason, but not
+    ///   necessarily the only one.
+    /// - `Work` if neither explains half of the time.
     pub fn of(ns: f64, floor_ns: f64, waits_ns: f64) -> Self {
         if 2.0 * floor_ns >= ns {
             Self::Bandwidth
@@ -156,7 +156,7 @@ impl Bound {
         }
     }
 
-    /// What users call it: `bandwidth`.
+    /// Returns its name for users: `bandwidth`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Bandwidth => "bandwidth",
@@ -167,7 +167,7 @@ impl Bound {
 }
 
 impl Why {
-    /// Times that no difference between the backends explains.
+    /// Returns the number of results that differ between the backends without a known reason.
     pub fn mismatches(&self) -> usize {
         let timed = self.rows.iter().filter_map(|row| row.timed);
         timed
@@ -179,7 +179,7 @@ impl Why {
     ///
     /// # Errors
     ///
-    /// What `writer` reports.
+    /// The errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
@@ -187,7 +187,8 @@ impl Why {
 
 /// Counts what relations read on the backends that can hold the mesh, and measures them.
 ///
-/// `stop` ends it early; what is finished by then is in the result. `progress` hears what is going on.
+/// Setting `stop` ends it early; the result contains what is finished. `progress` is called with
+/// the current step.
 ///
 /// # Errors
 ///
@@ -212,7 +213,7 @@ pub fn why(
         return Err(StudyError::NoFaces);
     }
     let (backends, mut rows) = count_all(specimen, &study_settings, &relations, stop, progress)?;
-    // Stable: within a relation they stay in the order of the roster.
+    // The sort is stable: rows of one relation stay in the order of the roster.
     rows.sort_by_key(|row| row.reads.relation);
     let mut environment = None;
     if let Some(Timing { budget, memory }) = &settings.timing
@@ -238,7 +239,7 @@ pub fn why(
     })
 }
 
-/// Backend by backend: what it says to the mesh, and what it reads.
+/// Counts the reads of each backend, and reports whether it can hold the mesh.
 fn count_all(
     specimen: &Specimen,
     settings: &Settings,
@@ -273,7 +274,7 @@ fn count_all(
     Ok((backends, rows))
 }
 
-/// The rows of one backend, as they are counted.
+/// The rows of one backend, collected while counting.
 struct Rows<'a> {
     backend: &'static str,
     done: f64,
@@ -303,7 +304,7 @@ impl Counted for Rows<'_> {
     }
 }
 
-/// The time of a row in the report, held against the speed of memory.
+/// Returns the time of a row in the report, compared with the speed of memory.
 fn timed(row: &WhyRow, report: &Report, memory: &MemorySpeed) -> Option<Timed> {
     let mut results = report.rows(Operation::Relation(row.reads.relation));
     let result = results.find(|result| result.backend == row.backend)?;
@@ -335,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn half_of_the_time_decides() {
+    fn half_of_the_time_determines_the_bound() {
         for (ns, floor, waits, bound) in [
             (10.0, 5.0, 0.0, Bound::Bandwidth),
             (10.0, 5.0, 50.0, Bound::Bandwidth),
@@ -348,13 +349,13 @@ mod tests {
     }
 
     #[test]
-    fn rows_come_relation_by_relation_whatever_the_order_asked_for() {
+    fn rows_are_sorted_by_relation() {
         let asked = WhySettings {
             backends: vec!["half-edge".into(), "polygon-soup".into()],
             relations: vec![Relation::FaceVertices, Relation::VertexFaces],
             ..WhySettings::default()
         };
-        let why = counted(&asked).expect("both hold it");
+        let why = counted(&asked).expect("both can hold the mesh");
         let rows: Vec<_> = why
             .rows
             .iter()
@@ -378,10 +379,12 @@ mod tests {
     }
 
     #[test]
-    fn a_time_is_held_against_memory_of_the_size_of_the_sweep() {
-        let memory =
-            MemorySpeed::measure(&workload::MachineClock::start(), &AtomicBool::new(false));
-        let memory = memory.expect("nobody stops it");
+    fn a_time_is_compared_with_memory_of_the_size_of_the_sweep() {
+        let memory = MemorySpeed::measure(
+            &sixfold_workload::MachineClock::start(),
+            &AtomicBool::new(false),
+        );
+        let memory = memory.expect("not stopped");
         let asked = WhySettings {
             backends: vec!["half-edge".into()],
             relations: vec![Relation::VertexFaces],
@@ -391,7 +394,7 @@ mod tests {
             }),
             ..WhySettings::default()
         };
-        let why = counted(&asked).expect("it is held");
+        let why = counted(&asked).expect("it can hold the mesh");
         let [row] = &why.rows[..] else {
             panic!("one row: {:?}", why.rows);
         };
@@ -405,12 +408,12 @@ mod tests {
     }
 
     #[test]
-    fn who_refuses_is_named_and_none_is_an_error() {
+    fn refusing_backends_are_listed_and_no_backend_is_an_error() {
         let quads = shapes::torus(4, 4).expect("a torus");
         let specimen = Specimen::new("quads", quads);
         let go = AtomicBool::new(false);
         let all = why(&specimen, &WhySettings::default(), &go, &mut |_| ());
-        let all = all.expect("most hold it");
+        let all = all.expect("five can hold the mesh");
         assert_eq!(all.backends.len(), 6);
         assert_eq!(all.rows.len(), 5 * 9, "a corner table holds triangles");
         let only = WhySettings {

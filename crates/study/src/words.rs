@@ -1,4 +1,4 @@
-//! What the table shows, in a few plain sentences.
+//! The main results of a study, as sentences.
 
 use sixfold::{PolygonMesh, Relation};
 
@@ -6,9 +6,9 @@ use crate::methods::methods;
 use crate::numbers::{duration, grouped, times};
 use crate::report::{Agreement, BackendReport, Control, ControlRow, ResultRow, Standing};
 use crate::statistics::Median;
-use workload::Operation;
+use sixfold_workload::Operation;
 
-/// Sentences on speed, scans, memory and merging; no winner is named where it ties.
+/// Returns sentences on speed, scans, memory and merging. Ties have no winner.
 pub(crate) fn words(
     backends: &[BackendReport],
     results: &[ResultRow],
@@ -36,11 +36,11 @@ pub(crate) fn words(
         } = row;
         let column = backends.iter().find(|column| column.name == *backend);
         let whose = match column.is_some_and(|column| column.external.is_some()) {
-            true => "its times compare nothing.",
+            true => "its times cannot be compared.",
             false => "a fault in Sixfold; please report it.",
         };
         words.push(format!(
-            "{backend} finds something else than the others for {operation}: {whose}"
+            "{backend} has other results than the other backends for {operation}: {whose}"
         ));
     }
     words
@@ -72,31 +72,31 @@ fn speed(backends: &[BackendReport], results: &[ResultRow]) -> Option<String> {
     for (i, (wins, lead, name)) in winners.into_iter().enumerate() {
         let lead = times(lead);
         parts.push(match i {
-            0 => format!("{name} is fastest in {wins} (typically {lead} faster than the next)"),
+            0 => format!("{name} is fastest in {wins} (the next typically takes {lead} its time)"),
             _ => format!("{name} in {wins} ({lead})"),
         });
     }
     match ties {
         0 => {}
-        1 => parts.push("1 is a tie at the top".into()),
-        _ => parts.push(format!("{ties} are ties at the top")),
+        1 => parts.push("1 has a tie for the fastest".into()),
+        _ => parts.push(format!("{ties} have a tie for the fastest")),
     }
     let operations = if count == 1 {
         "operation"
     } else {
         "operations"
     };
-    Some(format!("Of {count} {operations} {}.", parts.join(", ")))
+    Some(format!("Of {count} {operations}, {}.", parts.join(", ")))
 }
 
-/// By how much the same structure differs from itself.
+/// Describes by how much a structure differs from itself.
 fn noise(control: &Control) -> Option<String> {
     let difference = |row: &&ControlRow| row.difference();
     let worst =
         { control.operations.iter() }.max_by(|a, b| difference(a).total_cmp(&difference(b)))?;
     let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
     Some(format!(
-        "Noise: {} was entered twice, and its two columns differ by {}, at most {} ({}); in each operation, what differs by no more than they do is a tie.",
+        "Noise: {} was entered twice; its two columns typically differ by {}, at most by {} ({}). In each operation, backends that differ by no more than these columns are tied.",
         control.backend,
         percent(control.typical),
         percent(control.worst),
@@ -104,7 +104,8 @@ fn noise(control: &Control) -> Option<String> {
     ))
 }
 
-/// By how much `backend` is ahead of the next in this row, if it is best beyond doubt.
+/// Returns the time of the next backend in this row divided by that of `backend`, if `backend` is
+/// the single fastest.
 fn lead(row: &[ResultRow], backend: &str) -> Option<f64> {
     let best = |r: &&ResultRow| r.standing == Some(Standing::Best) && r.backend == backend;
     row.iter().find(best)?;
@@ -114,7 +115,7 @@ fn lead(row: &[ResultRow], backend: &str) -> Option<f64> {
         .min_by(f64::total_cmp)
 }
 
-/// What asking one element costs where all faces are looked at, at the worst.
+/// Describes the cost of the most expensive query that scans all faces.
 fn scans(
     backend: &str,
     results: &[ResultRow],
@@ -137,11 +138,10 @@ fn scans(
     let each = duration(worst.ns_per_element?);
     let ResultRow { operation, per, .. } = worst;
     let faces = grouped(polygons.face_count());
-    let mut text = format!(
-        "{backend} looks at all {faces} faces to answer {operation}: {each} for each {per}"
-    );
+    let mut text =
+        format!("{backend} scans all {faces} faces to answer {operation}: {each} per {per}");
     if let Some(ratio) = worst.ratio_to_best.filter(|&ratio| ratio > 2.0) {
-        text += &format!(", {} as long as the fastest", times(ratio));
+        text += &format!(", {} the time of the fastest", times(ratio));
     }
     Some(text + ".")
 }
@@ -168,7 +168,7 @@ fn merging(backend: &BackendReport, results: &[ResultRow]) -> Option<String> {
         .iter()
         .any(|r| r.backend == *name && r.agreement == Agreement::Merged);
     let then = if differs {
-        "; its results marked m are of that other mesh"
+        "; its results marked m are of the merged mesh"
     } else {
         ""
     };
@@ -177,7 +177,7 @@ fn merging(backend: &BackendReport, results: &[ResultRow]) -> Option<String> {
     ))
 }
 
-/// A row for tests, with what they ask of it.
+/// Returns a row for tests.
 #[cfg(test)]
 pub(crate) fn row(
     backend: &str,
@@ -205,7 +205,7 @@ mod tests {
     use crate::inspect::{Specimen, inspect};
 
     #[test]
-    fn winners_are_named_and_ties_are_not() {
+    fn the_fastest_is_named_unless_tied() {
         let mesh = shapes::tetrahedron();
         let backends = inspect(&Specimen::new("test", mesh.clone())).backends;
         let (a, b) = (&backends[0].name, &backends[1].name);
@@ -217,21 +217,21 @@ mod tests {
         ];
         let said = words(&backends, &results, &mesh, None, &|_, _| false);
         let expected = format!(
-            "Of 2 operations {a} is fastest in 1 (typically 1.5 × faster than the next), 1 is a tie at the top."
+            "Of 2 operations, {a} is fastest in 1 (the next typically takes 1.5 × its time), 1 has a tie for the fastest."
         );
         assert_eq!(said, [expected]);
         let said = words(&backends, &results[2..], &mesh, None, &|_, _| false);
-        assert_eq!(said, ["Of 1 operation 1 is a tie at the top."]);
+        assert_eq!(said, ["Of 1 operation, 1 has a tie for the fastest."]);
         results[2].agreement = Agreement::Mismatch;
         let said = words(&backends, &results, &mesh, None, &|_, _| false).join(" ");
         assert!(
-            said.contains(&format!("{a} finds something else")),
+            said.contains(&format!("{a} has other results than")),
             "{said}"
         );
     }
 
     #[test]
-    fn methods_are_compared_where_they_differ_beyond_doubt() {
+    fn methods_are_compared_if_they_differ_significantly() {
         use sixfold::subdivision::Method::{Gather, Native, Scatter};
         let mesh = shapes::tetrahedron();
         let backends = inspect(&Specimen::new("test", mesh.clone())).backends;

@@ -1,19 +1,19 @@
-//! Orders and growth from end to end, short of time, so that scans have to be sampled.
+//! Runs orders and growth with small budgets, so that scans have to be sampled.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use sixfold::shapes::{self, Order};
 use sixfold::{Facts, PolygonMesh};
-use study::{
+use sixfold_study::{
     Agreement, GrowthError, GrowthReport, GrowthSettings, Operation, OrdersError, OrdersReport,
     Settings, Specimen, StudyError, growth, orders,
 };
 
-/// Irregular triangles: other elements are other sums.
+/// Returns a mesh of irregular triangles, so that different elements give different sums.
 fn blobs() -> PolygonMesh {
-    let recipe = shapes::recipe("blobs").expect("a shape of that name");
-    recipe.make(&[("faces", 1500.0)]).expect("of that size")
+    let recipe = shapes::recipe("blobs").expect("a known shape");
+    recipe.make(&[("faces", 1500.0)]).expect("a valid size")
 }
 
 fn quick_orders(mesh: PolygonMesh, settings: &Settings) -> Result<OrdersReport, OrdersError> {
@@ -42,7 +42,7 @@ fn every_order_does_the_same_work_on_every_structure() {
         "ff_bfs",
         "edge_length",
     ];
-    let report = quick_orders(mesh, &brief(400, &names)).expect("everybody holds it");
+    let report = quick_orders(mesh, &brief(400, &names)).expect("all backends hold it");
     assert_eq!(report.results.len(), names.len() * 6 * 4);
     assert_eq!(report.mismatches(), 0, "{:?}", report.words);
     let mut sampled = 0;
@@ -63,9 +63,9 @@ fn every_order_does_the_same_work_on_every_structure() {
         };
         assert_eq!(row.row.elements, Some(elements as u64), "{context}");
     }
-    // Not all of it was easy: the same elements stood for all in every order.
+    // Scanning operations were sampled, with the same elements in every order.
     assert!(sampled >= 8, "{sampled} sampled");
-    // A walk from the first face depends on which that is; the structures agree on each.
+    // The result of a walk depends on which face is first; the structures agree for each order.
     let walked = |order: Order| {
         let rows = report.rows(Operation::FfBfs);
         let sums = rows
@@ -77,13 +77,13 @@ fn every_order_does_the_same_work_on_every_structure() {
     };
     let walks = Order::ALL.map(walked);
     assert!(walks.iter().all(|sums| sums.len() == 1), "{walks:?}");
-    assert_ne!(walks[0], walks[1], "another face is first");
+    assert_ne!(walks[0], walks[1], "the first faces differ");
 }
 
 #[test]
 fn orders_are_ranked_within_a_structure_and_compared_between_them() {
     let report = quick_orders(blobs(), &brief(400, &["vertex_faces", "face_vertices"]));
-    let report = report.expect("everybody holds it");
+    let report = report.expect("all backends hold it");
     assert_eq!(report.orders, Order::ALL);
     for of_one in report
         .results
@@ -107,8 +107,9 @@ fn orders_are_ranked_within_a_structure_and_compared_between_them() {
     let [vertex_faces, face_vertices] = &report.comparisons[..] else {
         panic!("two operations")
     };
-    let scanning = |c: &study::Comparison| c.orders.iter().filter(|o| o.scans).count();
-    // A soup and a face set look at all faces around a vertex; nobody does for a face.
+    let scanning = |c: &sixfold_study::Comparison| c.orders.iter().filter(|o| o.scans).count();
+    // The polygon soup and the indexed face set scan all faces around a vertex; no structure scans
+    // for the vertices of a face.
     assert_eq!((scanning(vertex_faces), scanning(face_vertices)), (2, 0));
     for comparison in &report.comparisons {
         assert_eq!(comparison.orders.len(), 6);
@@ -128,7 +129,7 @@ fn orders_are_ranked_within_a_structure_and_compared_between_them() {
 }
 
 #[test]
-fn what_cannot_be_compared_is_refused() {
+fn unsuitable_meshes_and_budgets_are_refused() {
     let refusal = |mesh, settings: &Settings| quick_orders(mesh, settings).expect_err("refused");
     let short = refusal(shapes::cube(), &brief(99, &[]));
     assert!(
@@ -144,7 +145,7 @@ fn what_cannot_be_compared_is_refused() {
         refused,
         OrdersError::Study(StudyError::NoneHolds { .. })
     ));
-    // Others take it, and who does not is named.
+    // Other backends can hold it, and the one that cannot is listed.
     let report =
         quick_orders(shapes::cube(), &brief(100, &["face_vertices"])).expect("five hold it");
     assert_eq!(report.results.len(), 5 * 4);
@@ -172,8 +173,8 @@ fn quick_growth(settings: &GrowthSettings) -> Result<GrowthReport, GrowthError> 
 }
 
 #[test]
-fn scans_grow_with_the_square_and_what_is_local_does_not() {
-    let report = quick_growth(&small()).expect("everybody holds it");
+fn scans_grow_quadratically_and_local_queries_linearly() {
+    let report = quick_growth(&small()).expect("all backends hold it");
     let faces: Vec<usize> = report.sizes.iter().map(|size| size.faces).collect();
     assert_eq!(faces.len(), 4);
     assert!(faces.is_sorted() && faces[0].abs_diff(400) < 40 && faces[3].abs_diff(12_800) < 1280);
@@ -193,7 +194,7 @@ fn scans_grow_with_the_square_and_what_is_local_does_not() {
         let (v, f) = (size.vertices as i64, size.faces as i64);
         assert_eq!(v - size.edges as i64 + f, 0, "a torus");
     }
-    // Every structure outgrows every cache of data that the machine tells of.
+    // Each structure has one row for each data cache that the platform reports.
     let data = report.caches.iter().filter(|cache| cache.holds_data());
     assert_eq!(report.cache_ends.len(), 6 * data.count());
     let said = report.words.join(" ");
@@ -204,7 +205,7 @@ fn scans_grow_with_the_square_and_what_is_local_does_not() {
 }
 
 #[test]
-fn finished_sizes_outlive_a_stop() {
+fn finished_sizes_are_kept_after_a_stop() {
     let stop = AtomicBool::new(false);
     let mut seen: Option<String> = None;
     let report = growth(&small(), &stop, &mut |at| {
@@ -214,26 +215,26 @@ fn finished_sizes_outlive_a_stop() {
         }
         seen = size;
     });
-    let report = report.expect("interrupted is no failure");
+    let report = report.expect("an interruption is not an error");
     assert!(report.interrupted);
     assert_eq!(report.sizes.len(), 1);
     assert!(
         report.fits.iter().all(|fit| fit.all.is_none()),
-        "one size is no line"
+        "one size gives no line"
     );
-    let report = growth(&small(), &AtomicBool::new(true), &mut |_| ()).expect("no failure");
+    let report = growth(&small(), &AtomicBool::new(true), &mut |_| ()).expect("a report");
     assert!(report.interrupted && report.sizes.is_empty() && report.fits.is_empty());
 }
 
 #[test]
-fn sizes_that_would_outlast_the_budget_are_left_out_aloud() {
+fn sizes_beyond_the_budget_are_left_out_and_listed() {
     let mut settings = small();
     settings.study = brief(400, &["face_vertices"]);
     settings.study.backends = vec!["corner-table".into()];
     (settings.from, settings.to) = (400, 40_000_000);
     let start = std::time::Instant::now();
     let report = quick_growth(&settings).expect("it holds triangles");
-    // To make the largest alone takes several seconds.
+    // Making the largest mesh alone takes several seconds.
     assert!(
         start.elapsed() < Duration::from_secs(8),
         "{:?}",
@@ -244,12 +245,12 @@ fn sizes_that_would_outlast_the_budget_are_left_out_aloud() {
     assert_eq!(report.left_out.len() + report.sizes.len(), 4);
     let words = report.words.join(" ");
     assert!(words.contains("40,000,000 faces are left out"), "{words}");
-    let all = quick_growth(&small()).expect("everybody holds it");
+    let all = quick_growth(&small()).expect("all backends hold it");
     assert!(all.left_out.is_empty(), "{:?}", all.left_out);
 }
 
 #[test]
-fn a_shape_of_quads_grows_without_corner_tables() {
+fn growth_of_a_quad_shape_excludes_corner_tables() {
     let mut settings = small();
     settings.shape = "torus".into();
     settings.study.operations.remove(0);
@@ -262,7 +263,7 @@ fn a_shape_of_quads_grows_without_corner_tables() {
         refused,
         Some(GrowthError::Study(StudyError::NoneHolds { .. }))
     ));
-    // So near each other, all sizes are one.
+    // These limits are so close that all sizes are the same.
     settings = small();
     (settings.from, settings.to) = (400, 401);
     assert_eq!(

@@ -1,12 +1,13 @@
-//! Where freed pages are kept, no sample has a page fault: in studies of three sizes and in a pick.
+//! Checks that no sample has a page fault if freed pages are kept: in studies of three sizes and in
+//! a pick.
 //!
-//! A program of its own with one thread: the policy has to be in force before other threads start.
+//! A separate program with one thread: the policy must be set before other threads start.
 
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use sixfold::shapes;
-use study::{
+use sixfold_study::{
     MachineClock, PickError, Policy, Question, Series, Settings, Specimen, Start, built_in, pages,
     pick, study, timed,
 };
@@ -19,7 +20,7 @@ fn main() {
         println!("nothing to test on this platform: {heap:?}");
         return;
     }
-    freed_pages_are_there_until_they_are_given_back();
+    freed_pages_are_kept_until_they_are_returned();
     for (frequency, seconds) in [(10, 2), (32, 3), (100, 8)] {
         with_time_enough(seconds, |budget| {
             no_sample_of_a_study_faults(frequency, budget)
@@ -29,8 +30,8 @@ fn main() {
     assert_eq!(pages::put_in_force(Policy::System).policy, Policy::System);
 }
 
-/// Calls `test` with a budget of `seconds`, doubled until it is enough for the samples that it needs: other
-/// programs may run on this machine.
+/// Calls `test` with a budget of `seconds`, doubled until there is time for the samples that it
+/// needs, because other programs may run on this machine.
 fn with_time_enough(seconds: u64, test: impl Fn(Duration) -> bool) {
     let mut budgets = [1, 2, 4, 8, 16]
         .map(|times| Duration::from_secs(times * seconds))
@@ -38,7 +39,7 @@ fn with_time_enough(seconds: u64, test: impl Fn(Duration) -> bool) {
     assert!(budgets.any(test), "too few samples in the longest budget");
 }
 
-/// The page faults of filling a block of `bytes`.
+/// Returns the number of page faults of filling a block of `bytes`.
 fn faults_of(bytes: usize, start: Start<'_>) -> u64 {
     let clock = MachineClock::start();
     let series = Series {
@@ -47,19 +48,19 @@ fn faults_of(bytes: usize, start: Start<'_>) -> u64 {
     };
     series.begin();
     let time = timed(&clock, || drop(std::hint::black_box(vec![1_u8; bytes])));
-    time.faults.expect("they are counted")
+    time.faults.expect("page faults are counted")
 }
 
-fn freed_pages_are_there_until_they_are_given_back() {
+fn freed_pages_are_kept_until_they_are_returned() {
     let bytes = 64 << 20;
     faults_of(bytes, Start::Warm);
     assert_eq!(faults_of(bytes, Start::Warm), 0, "the pages were kept");
     let fresh = faults_of(bytes, Start::FreshPages);
-    assert!(fresh as usize > bytes / (64 << 10), "{fresh}: given back");
+    assert!(fresh as usize > bytes / (64 << 10), "{fresh}: returned");
     assert_eq!(faults_of(bytes, Start::Warm), 0, "kept again");
 }
 
-/// Returns whether the budget was enough for more than a few samples.
+/// Returns whether the budget was enough for more than 20 samples.
 fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> bool {
     let polygons = shapes::geodesic(frequency).expect("a sphere");
     let specimen = Specimen::new("sphere", polygons);
@@ -69,12 +70,12 @@ fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> bool {
         ..Settings::default()
     };
     let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ());
-    let report = report.expect("all four hold it");
-    let heap = report.environment.heap.as_ref().expect("it is stated");
+    let report = report.expect("all four can hold the mesh");
+    let heap = report.environment.heap.as_ref().expect("a heap report");
     assert_eq!((heap.policy, &heap.reason), (Policy::Kept, &None));
     let mut samples = 0;
     for raw in &report.raw {
-        let faults = raw.faults.as_ref().expect("they are counted");
+        let faults = raw.faults.as_ref().expect("page faults are counted");
         assert!(
             faults.iter().all(|&n| n == 0),
             "{}: {} on {}: {faults:?}",
@@ -84,7 +85,7 @@ fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> bool {
         );
         samples += faults.len();
     }
-    // The other figure is all about faults: what builds a mesh on fresh pages has some.
+    // The first time must include faults: building a mesh on fresh pages has some.
     let builds = report.rows("build".parse().expect("an operation"));
     for row in builds.filter(|row| row.first_samples > 0) {
         assert!(row.first_faults > Some(0), "{row:?}");
@@ -98,7 +99,7 @@ fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> bool {
 fn no_sample_of_a_pick_faults(budget: Duration) -> bool {
     let specimen = Specimen::new("sphere", shapes::geodesic(24).expect("a sphere"));
     let question = Question {
-        workload: built_in("remeshing").expect("it is built in"),
+        workload: built_in("remeshing").expect("a built-in workload"),
         backends: STRUCTURES.map(str::to_owned).to_vec(),
         needs: Vec::new(),
         max_memory: None,
@@ -114,7 +115,7 @@ fn no_sample_of_a_pick_faults(budget: Duration) -> bool {
     );
     let answer = match answer {
         Err(PickError::BudgetTooSmall { .. }) => return false,
-        answer => answer.expect("all four hold it"),
+        answer => answer.expect("all four can hold the mesh"),
     };
     for ranked in &answer.ranking {
         assert_eq!(ranked.faults, Some(0), "{}", ranked.backend);

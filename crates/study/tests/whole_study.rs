@@ -1,18 +1,20 @@
-//! A study from end to end, short of time, so that scans have to be sampled or left.
+//! Runs whole studies with small budgets, so that scans have to be sampled or estimated.
 
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use sixfold::subdivision::Method;
 use sixfold::{Facts, Relation, shapes};
-use study::{Agreement, Operation, Report, Settings, Specimen, Standing, StudyError, study};
+use sixfold_study::{
+    Agreement, Operation, Report, Settings, Specimen, Standing, StudyError, study,
+};
 
 fn quick(specimen: &Specimen, settings: &Settings) -> Result<Report, StudyError> {
     study(specimen, settings, &AtomicBool::new(false), &mut |_| ())
 }
 
 #[test]
-fn scans_are_sampled_alike_and_what_takes_too_long_is_estimated() {
+fn scans_are_sampled_and_long_operations_are_estimated() {
     let mesh = shapes::triangle_grid(45, 40).expect("a grid");
     let facts = Facts::of(&mesh);
     let specimen = Specimen::new("grid", mesh);
@@ -21,17 +23,17 @@ fn scans_are_sampled_alike_and_what_takes_too_long_is_estimated() {
         seed: 5,
         ..Settings::default()
     };
-    let report = quick(&specimen, &settings).expect("everybody holds it");
+    let report = quick(&specimen, &settings).expect("all backends hold it");
     let asked = Operation::ALL.len() * report.backends.len();
     assert_eq!(report.results.len() + report.refusals.len(), asked);
-    // Two structures split no tables of their own, and corner tables hold no quads.
+    // Two structures cannot split their own tables, and corner tables cannot hold quads.
     assert_eq!(report.refusals.len(), 2 * 2 + 3, "{:?}", report.refusals);
     for row in &report.results {
         let context = format!("{} on {}", row.operation, row.backend);
         let estimated = row.estimated_ns.is_some();
         match row.operation {
             Operation::FfBfs if estimated => assert_eq!(row.agreement, Agreement::Unchecked),
-            // In so little time one may be run on a single structure.
+            // In this short time, an operation may be run on a single structure.
             operation if operation.makes_a_mesh() => {
                 assert!(row.agreement != Agreement::Mismatch, "{context}: {row:?}");
             }
@@ -52,7 +54,7 @@ fn scans_are_sampled_alike_and_what_takes_too_long_is_estimated() {
     let soup = |operation: Operation| {
         let mut rows = report.rows(operation);
         let row = rows.find(|row| row.backend == "polygon-soup");
-        row.expect("the soup holds it")
+        row.expect("the soup can hold the mesh")
     };
     for relation in [
         Relation::VertexVertices,
@@ -62,7 +64,7 @@ fn scans_are_sampled_alike_and_what_takes_too_long_is_estimated() {
         let row = soup(Operation::Relation(relation));
         assert!(row.sampled && row.sample_size >= Some(16), "{row:?}");
         assert_eq!(row.standing, Some(Standing::Slower), "{row:?}");
-        // One scan of 3,600 faces takes a microsecond at the very least.
+        // One scan of 3,600 faces takes at least a microsecond.
         assert!(row.ns_per_element > Some(1000.0), "{row:?}");
     }
     let search = soup(Operation::FfBfs);
@@ -70,13 +72,13 @@ fn scans_are_sampled_alike_and_what_takes_too_long_is_estimated() {
     assert!(!soup(Operation::FaceBarycenter).sampled);
     let words = report.words.join(" ");
     assert!(
-        words.contains("polygon-soup looks at all 3,600 faces"),
+        words.contains("polygon-soup scans all 3,600 faces"),
         "{words}"
     );
 }
 
 #[test]
-fn a_vertex_of_many_faces_does_not_outlast_the_budget() {
+fn a_vertex_with_many_faces_stays_within_the_time_limit() {
     let rim = (0..10_000).map(|i| {
         let (y, x) = (i as f32 * 6.283e-4).sin_cos();
         sixfold::Point::new(x, y, 0.0)
@@ -90,8 +92,8 @@ fn a_vertex_of_many_faces_does_not_outlast_the_budget() {
         ..Settings::default()
     };
     let start = std::time::Instant::now();
-    let report = quick(&specimen, &settings).expect("everybody holds it");
-    // In full, the edges around that vertex alone are 10⁸ neighbours for each backend.
+    let report = quick(&specimen, &settings).expect("all backends hold it");
+    // A full run visits 10⁸ adjacent edges at that vertex on each backend.
     assert!(start.elapsed() < Duration::from_secs(15));
     assert_eq!(report.mismatches().count(), 0, "{:?}", report.words);
     let edges = Operation::Relation(Relation::EdgeEdges);
@@ -102,16 +104,16 @@ fn a_vertex_of_many_faces_does_not_outlast_the_budget() {
     for row in report.rows(Operation::EdgeLength) {
         assert!(!row.sampled, "{row:?}");
     }
-    // A sample is no scan.
+    // A structure that is sampled does not necessarily scan.
     for walker in ["half-edge", "winged-edge", "corner-table", "face-vertex"] {
-        let scans = format!("{walker} looks at all");
+        let scans = format!("{walker} scans all");
         let said = report.words.iter().any(|words| words.contains(&scans));
         assert!(!said, "{:?}", report.words);
     }
 }
 
 #[test]
-fn a_csv_without_rows_has_the_same_first_line() {
+fn a_csv_without_rows_has_the_same_header() {
     let specimen = Specimen::new("cube", shapes::cube());
     let settings = Settings {
         budget: Duration::ZERO,
@@ -131,7 +133,7 @@ fn a_csv_without_rows_has_the_same_first_line() {
 }
 
 #[test]
-fn what_cannot_be_studied_is_refused_by_name() {
+fn unknown_backends_and_unsuitable_meshes_are_refused() {
     let specimen = Specimen::new("cube", shapes::cube());
     let settings = |backend: &str| Settings {
         backends: vec![backend.into()],
@@ -149,8 +151,9 @@ fn what_cannot_be_studied_is_refused_by_name() {
     assert!(refused.to_string().contains("v0→v1"), "{refused}");
 }
 
-/// What a study of one subdivision says of it on the soup, which searches all faces for each vertex.
-fn searched(operations: Vec<Operation>, budget: Duration) -> study::ResultRow {
+/// Returns the result of a study for one subdivision on the polygon soup, which scans all faces for
+/// each vertex.
+fn searched(operations: Vec<Operation>, budget: Duration) -> sixfold_study::ResultRow {
     let mesh = shapes::triangle_grid(40, 35).expect("a grid");
     let settings = Settings {
         backends: vec!["polygon-soup".into(), "half-edge".into()],
@@ -159,7 +162,7 @@ fn searched(operations: Vec<Operation>, budget: Duration) -> study::ResultRow {
         ..Settings::default()
     };
     let report = quick(&Specimen::new("grid", mesh), &settings).expect("both hold it");
-    let of_soup = |row: &&study::ResultRow| {
+    let of_soup = |row: &&sixfold_study::ResultRow| {
         let gather = row.operation == Operation::Loop(Method::Gather);
         gather && row.backend == "polygon-soup"
     };
@@ -168,7 +171,7 @@ fn searched(operations: Vec<Operation>, budget: Duration) -> study::ResultRow {
 }
 
 #[test]
-fn a_subdivision_that_searches_is_run_where_it_is_named() {
+fn a_scanning_subdivision_is_run_if_it_is_named() {
     let named = vec![Operation::Loop(Method::Gather)];
     let run = searched(named.clone(), Duration::from_secs(3));
     let took = run.median_ns.expect("it was run");
@@ -177,22 +180,22 @@ fn a_subdivision_that_searches_is_run_where_it_is_named() {
         !run.by_name_only && run.agreement == Agreement::Same,
         "{run:?}"
     );
-    // A tenth of a budget is too much for what nobody asked for.
+    // A tenth of the budget is too much for an operation that is not named.
     let tight = Duration::from_nanos(10 * took as u64);
     let left_out = searched(Vec::new(), tight);
     let estimate = left_out.estimated_ns.expect("only estimated");
     assert!(left_out.median_ns.is_none(), "{left_out:?}");
     assert!(
         (0.2..5.0).contains(&(estimate / took)),
-        "{estimate} for {took}"
+        "estimate {estimate}, measured {took}"
     );
-    // Longer than the budget, and not even by name.
+    // Longer than the budget: it is not run even if it is named.
     let hopeless = searched(named, tight / 1000);
     assert!(hopeless.estimated_ns.is_some() && !hopeless.by_name_only);
 }
 
 #[test]
-fn what_a_scheme_does_not_take_is_said_once_and_by_the_face() {
+fn a_scheme_refuses_a_mesh_with_the_same_reason_on_all_backends() {
     let specimen = Specimen::new("cube", shapes::cube());
     let settings = Settings {
         budget: Duration::from_millis(100),
@@ -203,7 +206,7 @@ fn what_a_scheme_does_not_take_is_said_once_and_by_the_face() {
     assert!(report.results.iter().all(|row| !loops(row.operation)));
     let refused = report.refusals.iter().filter(|r| loops(r.operation));
     let reasons: Vec<&str> = refused.map(|r| r.reason.as_str()).collect();
-    assert_eq!(reasons.len(), 3 * 5, "five of six hold quads");
+    assert_eq!(reasons.len(), 3 * 5, "five of six backends hold quads");
     assert!(
         reasons[0].starts_with("face f0 has 4 corners"),
         "{reasons:?}"
@@ -215,17 +218,17 @@ fn what_a_scheme_does_not_take_is_said_once_and_by_the_face() {
 }
 
 #[test]
-fn one_backend_is_entered_twice_and_shows_the_noise() {
+fn one_backend_is_entered_twice_to_show_the_noise() {
     let mesh = shapes::triangle_grid(20, 20).expect("a grid");
     let settings = Settings {
         operations: vec![Operation::Circulate, Operation::EdgeLength],
         budget: Duration::from_millis(300),
         ..Settings::default()
     };
-    let report = quick(&Specimen::new("grid", mesh), &settings).expect("everybody holds it");
+    let report = quick(&Specimen::new("grid", mesh), &settings).expect("all backends hold it");
     assert_eq!(report.results.len(), 2 * report.backends.len());
     let control = report.control.expect("there was time for rounds");
-    assert_eq!(control.backend, "face-vertex", "the first that never scans");
+    assert_eq!(control.backend, "face-vertex", "the first without scans");
     assert_eq!(control.operations.len(), 2);
     assert!(control.typical >= 1.0 && control.worst >= control.typical);
     let shown = |words: &String| words.starts_with("Noise: face-vertex was entered twice");

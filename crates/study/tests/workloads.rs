@@ -1,21 +1,21 @@
-//! Every operation on every backend against a plain computation from the list of faces.
+//! Compares every operation on every backend with a plain computation from the list of faces.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use conformance::edit::{Action, Model, Rules};
 use sixfold::remeshing::{Decimation, Target, decimate};
 use sixfold::subdivision::Scheme;
 use sixfold::{
     BackendInfo, EditableHalfEdgeMesh, Point, PolygonMesh, Relation, Representation, roster,
     shapes, support,
 };
-use study::{Editing, MachineClock, Operation, Solo};
+use sixfold_conformance::edit::{Action, Model, Rules};
+use sixfold_study::{Editing, MachineClock, Operation, Solo};
 
-/// What the operations should find, worked out slowly.
+/// The expected results of the operations, computed by brute force.
 struct Oracle<'a> {
     mesh: &'a PolygonMesh,
     faces: Vec<Vec<usize>>,
-    /// By edge, lower end first: its faces.
+    /// By edge, the lower end first: its faces.
     edges: BTreeMap<[usize; 2], BTreeSet<usize>>,
 }
 
@@ -37,7 +37,7 @@ impl<'a> Oracle<'a> {
         self.mesh.positions()[vertex].to_array().map(f64::from)
     }
 
-    /// By vertex: its neighbours.
+    /// Returns the adjacent vertices of each vertex.
     fn neighbours(&self) -> Vec<BTreeSet<usize>> {
         let mut sets = vec![BTreeSet::new(); self.mesh.vertex_count()];
         for &[a, b] in self.edges.keys() {
@@ -47,7 +47,7 @@ impl<'a> Oracle<'a> {
         sets
     }
 
-    /// By face: those that share an edge.
+    /// Returns the adjacent faces of each face.
     fn beside(&self) -> Vec<BTreeSet<usize>> {
         let mut sets = vec![BTreeSet::new(); self.faces.len()];
         for faces in self.edges.values() {
@@ -119,8 +119,8 @@ impl<'a> Oracle<'a> {
         depths.into_iter().flatten().sum()
     }
 
-    /// The points after one step, by the rules as they are published: where an edge has one face the
-    /// mesh ends in a cubic B-spline, and a vertex of a single face stays.
+    /// Returns the points after one step, by the published rules: on boundary edges the mesh ends
+    /// in a cubic B-spline, and a vertex with a single face keeps its position.
     fn refined(&self, scheme: Scheme) -> Vec<[f64; 3]> {
         let quads = scheme == Scheme::CatmullClark;
         let centre = |f: &usize| self.mean(self.faces[*f].iter().copied());
@@ -206,7 +206,8 @@ impl<'a> Oracle<'a> {
         }
     }
 
-    /// The edge lengths after every edge has been flipped, twice, by the model of conformance.
+    /// Returns the sum of the edge lengths after flipping every edge twice, by the model of
+    /// `sixfold-conformance`.
     fn flipped(&self) -> f64 {
         let mut model = Model::of(self.mesh);
         let rules = Rules::of::<EditableHalfEdgeMesh>();
@@ -222,7 +223,7 @@ impl<'a> Oracle<'a> {
         }
         for _ in 0..2 {
             for edge in &mut edges {
-                let faces = model.edges().remove(edge).expect("edges are followed");
+                let faces = model.edges().remove(edge).expect("an edge of the model");
                 let corners = faces.iter().filter_map(|&(f, _)| model.face(f)).flatten();
                 let apexes: Vec<usize> = corners.copied().filter(|v| !edge.contains(v)).collect();
                 if let Some(after) = model.after(&Action::FlipEdge { ends: *edge }, &rules) {
@@ -234,7 +235,7 @@ impl<'a> Oracle<'a> {
         Oracle::of(&model.to_polygons()).checksum(Operation::EdgeLength)
     }
 
-    /// The edge lengths of the decimated mesh: the operator itself has its own tests.
+    /// Returns the sum of the edge lengths of the decimated mesh; the operator has its own tests.
     fn decimated(&self, ratio: f64) -> f64 {
         let mut mesh = EditableHalfEdgeMesh::from_polygons(self.mesh).expect("a manifold");
         let to = Decimation {
@@ -287,7 +288,7 @@ fn field(vectors: impl Iterator<Item = [f64; 3]>) -> f64 {
         .sum()
 }
 
-/// A mesh with a boundary, faces of three to six corners, and two components.
+/// Returns a mesh with a boundary, faces of three to six corners, and two components.
 fn patchwork() -> PolygonMesh {
     let at = |x: f32, y: f32| Point::new(x, y, 0.3 * x * y - 0.1 * x);
     let positions = vec![
@@ -307,7 +308,8 @@ fn patchwork() -> PolygonMesh {
     PolygonMesh::new(positions, faces).expect("valid")
 }
 
-/// Whether the table of schemes and structures, and the degrees of the mesh, let it run.
+/// Returns whether the operation can run, by the table of schemes and structures and the degrees of
+/// the mesh.
 fn runs(operation: Operation, backend: &BackendInfo, mesh: &PolygonMesh) -> bool {
     let Some(refining) = operation.refining() else {
         return !operation.makes_a_mesh() || mesh.faces().uniform_degree() == Some(3);
@@ -315,13 +317,13 @@ fn runs(operation: Operation, backend: &BackendInfo, mesh: &PolygonMesh) -> bool
     let scheme = refining.subdivision.scheme;
     let mut rows = support(scheme).into_iter();
     let row = rows.find(|row| row.backend == backend.name);
-    let row = row.expect("a row for each of the roster");
+    let row = row.expect("a row for each backend of the roster");
     let takes = scheme != Scheme::Loop || mesh.faces().uniform_degree() == Some(3);
     takes && row.holds_result && row.methods.contains(&refining.way.method())
 }
 
 #[test]
-fn operations_find_what_the_face_list_says() {
+fn operations_agree_with_the_face_list() {
     let meshes = [
         ("patchwork", patchwork()),
         ("icosahedron", shapes::icosahedron()),
@@ -334,7 +336,7 @@ fn operations_find_what_the_face_list_says() {
             if backend.verdict(mesh).is_err() {
                 continue;
             }
-            let mut solo = Solo::new(backend.name, mesh).expect("it can hold it");
+            let mut solo = Solo::new(backend.name, mesh).expect("it can hold the mesh");
             for operation in Operation::ALL {
                 let run = solo.run(operation, &MachineClock::start());
                 if !runs(operation, &backend, mesh) {
@@ -344,7 +346,7 @@ fn operations_find_what_the_face_list_says() {
                 let expected = oracle.checksum(operation);
                 let near = (run.checksum - expected).abs() <= 1e-5 * expected.abs();
                 let context = format!("{operation} of {name} on {}", backend.name);
-                assert!(near, "{context}: {} for {expected}", run.checksum);
+                assert!(near, "{context}: {}, expected {expected}", run.checksum);
                 assert_eq!(
                     run.elements as usize,
                     oracle.elements(operation),

@@ -1,20 +1,20 @@
-//! For tests: whether meshes are one, but for the order of their faces and of some vertices.
+//! Test helpers: compare meshes up to the order of their faces and of some vertices.
 
 use std::collections::BTreeMap;
 
-use corner_table::CornerTable;
-use half_edge::HalfEdgeMesh;
-use indexed_face_set::IndexedFaceSet;
-use mesh_core::{Creases, Point, PolygonMesh, Refine, Representation, VertexId};
 use proptest::prelude::*;
+use sixfold_core::{Creases, Point, PolygonMesh, Refine, Representation, VertexId};
+use sixfold_corner_table::CornerTable;
+use sixfold_half_edge::HalfEdgeMesh;
+use sixfold_indexed_face_set::IndexedFaceSet;
 
 use crate::{Scheme, Step, Subdivision, SubdivisionError};
 
-/// Oriented manifolds of triangles, no two of them with the same corners.
+/// Generates oriented manifolds of triangles, in which no two triangles have the same corners.
 pub(crate) fn triangle_mesh() -> impl Strategy<Value = PolygonMesh> {
-    let fans = conformance::strategy::manifold_mesh()
+    let fans = sixfold_conformance::strategy::manifold_mesh()
         .prop_map(|mesh| mesh.fan_triangulated().expect("few corners"));
-    fans.prop_filter("a fan can run an edge through two polygons", |mesh| {
+    fans.prop_filter("two fans can share a diagonal", |mesh| {
         let mut faces: Vec<Vec<VertexId>> = Vec::new();
         for (_, face) in mesh.faces().iter() {
             let mut face = face.to_vec();
@@ -26,12 +26,12 @@ pub(crate) fn triangle_mesh() -> impl Strategy<Value = PolygonMesh> {
     })
 }
 
-/// `polygons` in a structure.
+/// Builds a structure from `polygons`.
 pub(crate) fn built<M: Representation>(polygons: &PolygonMesh) -> M {
-    M::from_polygons(polygons).expect("the structure holds it")
+    M::from_polygons(polygons).expect("the structure accepts it")
 }
 
-/// What each method that the scheme has makes of `polygons` in some structures.
+/// Runs one step of `polygons` with each method of the scheme, on several structures.
 pub(crate) fn all_ways(
     scheme: Scheme,
     polygons: &PolygonMesh,
@@ -57,7 +57,7 @@ pub(crate) fn all_ways(
     Ok(meshes)
 }
 
-/// A native step.
+/// Runs a native step.
 pub(crate) fn native<M: Refine>(
     scheme: Scheme,
     polygons: &PolygonMesh,
@@ -69,23 +69,23 @@ pub(crate) fn native<M: Refine>(
     Ok(child.to_polygons())
 }
 
-/// Holds a native step to be the same, bit by bit, on one thread and on three.
+/// Asserts that a native step gives the same bits on one thread and on three threads.
 pub(crate) fn assert_same_on_threads(scheme: Scheme, level: u32) {
     let specimens = [
-        shapes::geodesic(24).expect("thousands of triangles"),
-        shapes::triangle_grid(70, 81).expect("thousands of triangles"),
+        sixfold_shapes::geodesic(24).expect("thousands of triangles"),
+        sixfold_shapes::triangle_grid(70, 81).expect("thousands of triangles"),
     ];
     for polygons in &specimens {
         let [one, three] = [1, 3].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
             let step = || native::<HalfEdgeMesh>(scheme, polygons, level);
-            pool.expect("threads can be had")
+            pool.expect("threads can start")
                 .install(step)
                 .expect("triangles")
         });
         assert!(
             one == three,
-            "{scheme}, level {level}: one thread and three"
+            "{scheme}, level {level}: one thread and three threads differ"
         );
         let list: IndexedFaceSet = built(polygons);
         let gathered = Subdivision::new(scheme).gather(&list, &Creases::default(), level);
@@ -101,8 +101,8 @@ pub(crate) fn assert_same_on_threads(scheme: Scheme, level: u32) {
     }
 }
 
-/// Holds `other` to be `one`, but for the order of its faces and of the vertices from `known` on; to
-/// 1e-5 of the coordinates.
+/// Asserts that `other` equals `one` up to the order of its faces and of the vertices from `known`
+/// on, with positions equal to 1e-5 of the coordinates.
 pub(crate) fn assert_alike(one: &PolygonMesh, other: &PolygonMesh, known: usize) {
     assert_eq!(one.vertex_count(), other.vertex_count(), "vertices");
     assert_eq!(one.face_count(), other.face_count(), "faces");
@@ -138,7 +138,7 @@ pub(crate) fn assert_alike(one: &PolygonMesh, other: &PolygonMesh, known: usize)
     assert_eq!(faces(one, &|v| v), faces(other, &|v| names[v]), "faces");
 }
 
-/// What tells a vertex: the known vertices before and after it in its faces.
+/// Returns a key for each vertex: the known vertices before and after it in its faces.
 fn keys(mesh: &PolygonMesh, known: usize) -> Vec<Vec<[Option<usize>; 2]>> {
     let mut keys = vec![Vec::new(); mesh.vertex_count()];
     for (_, face) in mesh.faces().iter() {
@@ -153,7 +153,7 @@ fn keys(mesh: &PolygonMesh, known: usize) -> Vec<Vec<[Option<usize>; 2]>> {
     keys
 }
 
-/// Holds a step to commute with an affine map, so that the weights of every point add up to 1.
+/// Asserts that a step commutes with an affine map, so that the weights of every point sum to 1.
 pub(crate) fn assert_affine(scheme: Scheme, polygons: &PolygonMesh, level: u32) {
     let map = |p: Point| {
         Point::new(
@@ -183,7 +183,7 @@ pub(crate) fn assert_affine(scheme: Scheme, polygons: &PolygonMesh, level: u32) 
     assert_eq!(before.faces(), after.faces());
 }
 
-/// Holds a point to be `expected`, to 1e-6.
+/// Asserts that a point is `expected`, to 1e-6.
 pub(crate) fn assert_near(got: Point, expected: Point) {
-    assert!(got.distance(expected) < 1e-6, "{got}, not {expected}");
+    assert!(got.distance(expected) < 1e-6, "{got}, expected {expected}");
 }

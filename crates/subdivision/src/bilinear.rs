@@ -1,4 +1,4 @@
-//! Bilinear: the faces of Catmull–Clark, and no smoothing.
+//! Bilinear: the faces of Catmull–Clark, without smoothing.
 //!
 //! ```text
 //!    d ─── m ─── c      a face point at the mean of the corners, edge points at the midpoints;
@@ -8,11 +8,11 @@
 //!    a ─── m ─── b
 //! ```
 
-use mesh_core::{Point, Split};
+use sixfold_core::{Point, Split};
 
 use crate::mask::{Mask, midpoint};
 
-/// Every face into quads, where it is.
+/// Splits every face into quads and does not move the old vertices.
 #[derive(Clone, Copy)]
 pub(crate) struct Bilinear;
 
@@ -39,14 +39,14 @@ impl Mask for Bilinear {
 
 #[cfg(test)]
 mod tests {
-    use half_edge::HalfEdgeMesh;
-    use indexed_face_set::IndexedFaceSet;
-    use mesh_core::{Creases, PolygonMesh};
+    use sixfold_core::{Creases, PolygonMesh};
+    use sixfold_half_edge::HalfEdgeMesh;
+    use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
     use crate::{Method, Scheme, Subdivision, subdivide, subdivide_native};
 
-    /// Boundaries are no curves here: corners stay, and so do all vertices.
+    /// Boundaries do not become curves here: corners stay, and so do all vertices.
     #[test]
     fn a_square_keeps_its_corners() {
         let corners = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 1.0), Point::Y];

@@ -1,4 +1,4 @@
-//! Modified butterfly: every triangle into four, interpolating, C¹.
+//! Modified butterfly: splits every triangle into four; interpolating, C¹.
 //!
 //! Zorin, Schröder & Sweldens (1996); the stencil between regular vertices is that of Dyn, Levin &
 //! Gregory (1990) with w = 0. Old vertices stay. A vertex is regular if it has six triangles around
@@ -18,10 +18,11 @@
 //!
 //! At boundaries:
 //!
-//! - A boundary edge is a curve of its own: (−1/16, 9/16, 9/16, −1/16) along the boundary (Dyn, Gregory
-//!   & Levin 1987), so that two pieces with the same boundary still fit.
-//! - Where a corner of the regular stencil would lie beyond a boundary edge, it is the reflection of
-//!   the triangle's third vertex there (Zorin, Schröder & Sweldens 1996):
+//! - The point of a boundary edge depends on boundary vertices only: (−1/16, 9/16, 9/16, −1/16)
+//!   along the boundary (Dyn, Gregory & Levin 1987). Two pieces with the same boundary therefore
+//!   still fit.
+//! - If a corner of the regular stencil would lie beyond a boundary edge, it is replaced by the
+//!   reflection of the third vertex of the triangle there (Zorin, Schröder & Sweldens 1996):
 //!
 //! ```text
 //!        a ───── b      a boundary edge, c inside:  ghost = a + b − c
@@ -30,14 +31,14 @@
 //!            c
 //! ```
 //!
-//! - An extraordinary boundary vertex, of k ≠ 3 triangles, has the masks of Zorin & Schröder (2000),
-//!   whose leading eigenvectors are those of a half-plane ([`rim_weights`]).
-//! - An inner vertex of valence 2 has no mask in the paper: a midpoint.
+//! - An extraordinary boundary vertex, with k ≠ 3 triangles, has the masks of Zorin & Schröder
+//!   (2000). Their leading eigenvectors are those of a half-plane ([`rim_weights`]).
+//! - The paper has no mask for an inner vertex of valence 2; its edges get their midpoints.
 
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 
-use mesh_core::{Creases, MeshQuery, Point, Refine, Split, in_given_parts};
+use sixfold_core::{Creases, MeshQuery, Point, Refine, Split, in_given_parts};
 
 use crate::error::SubdivisionError;
 use crate::manifold;
@@ -47,7 +48,7 @@ use crate::scheme::Scheme;
 use crate::sheet::vertex_numbers;
 use crate::step::{Outline, Step};
 
-/// Valences whose weights are looked up; few vertices have more.
+/// Number of valences with precomputed weights, from 0; few vertices have a higher valence.
 const LOOKED_UP: usize = 16;
 
 /// The weights around extraordinary vertices.
@@ -55,7 +56,7 @@ struct Butterfly {
     rings: [Vec<f32>; LOOKED_UP],
 }
 
-/// One step, by queries for each new point.
+/// Runs one step with queries for each new point.
 pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
     manifold::check(mesh, Scheme::Butterfly)?;
     let scheme = Butterfly::new();
@@ -76,7 +77,7 @@ pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
     outline.finish(Creases::default())
 }
 
-/// One step in the structure's own tables.
+/// Runs one step in the tables of the structure.
 pub(crate) fn native<M: Refine>(
     mesh: &M,
     numbers: &M::EdgeNumbers,
@@ -102,7 +103,7 @@ pub(crate) fn native<M: Refine>(
     Ok(Creases::default())
 }
 
-/// Whether a vertex of one fan has six triangles around it, or three at a boundary.
+/// Returns whether a vertex with one fan has six triangles around it, or three at a boundary.
 fn is_regular<M: MeshQuery>(mesh: &M, v: M::Vertex) -> bool {
     let sizes = (
         mesh.vertex_vertices(v).count(),
@@ -118,7 +119,8 @@ impl Butterfly {
         }
     }
 
-    /// The point of `e`, an edge of one face, or of two that run along it in opposite directions.
+    /// Returns the point of `e`, an edge with one face, or with two that run along it in opposite
+    /// directions.
     fn edge<M: MeshQuery>(
         &self,
         mesh: &M,
@@ -143,8 +145,8 @@ impl Butterfly {
         }
     }
 
-    /// The point of the inner edge from `v` to `to`, by the neighbours of `v`; O(valence) beyond the
-    /// cost of the ring.
+    /// Returns the point of the inner edge from `v` to `to`, computed from the neighbours of `v`;
+    /// O(valence) plus the cost of the ring.
     fn extraordinary_point<M: MeshQuery>(&self, mesh: &M, v: M::Vertex, to: M::Vertex) -> Point {
         let ring = ring(mesh, v);
         let start = ring.iter().position(|&w| w == to).unwrap_or(0);
@@ -156,20 +158,21 @@ impl Butterfly {
             (false, None) => (Cow::Owned(ring_weights(ring.len())), start),
         };
         let turned = ring[start..].iter().chain(&ring[..start]);
-        // What is over for the vertex is told by differences: then constants are kept exactly.
+        // Adding differences gives `v` the remaining weight, and equal positions stay exactly
+        // equal.
         turned.zip(&*weights).fold(at, |point, (&w, &weight)| {
             point + (mesh.position(w) - at) * weight
         })
     }
 }
 
-/// The neighbours of a vertex of one fan, in order.
+/// Returns the neighbours of a vertex with one fan, in order.
 fn ring<M: MeshQuery>(mesh: &M, v: M::Vertex) -> Vec<M::Vertex> {
     let ring = mesh.one_ring(v);
     ring.expect("checked to be one fan").collect()
 }
 
-/// The point of the edge between two regular vertices.
+/// Returns the point of the edge between two regular vertices.
 fn regular_point<M: MeshQuery>(mesh: &M, e: M::Edge, faces: [M::Face; 2]) -> Point {
     let ends = mesh.edge_vertices(e).map(|v| mesh.position(v));
     let (mut sides, mut wings) = (Point::ZERO, Point::ZERO);
@@ -194,7 +197,7 @@ fn regular_point<M: MeshQuery>(mesh: &M, e: M::Edge, faces: [M::Face; 2]) -> Poi
     (ends[0] + ends[1]) * 0.5 + sides * 0.125 - wings * 0.0625
 }
 
-/// The point of a boundary edge.
+/// Returns the point of a boundary edge.
 fn boundary_point<M: MeshQuery>(mesh: &M, [a, b]: [M::Vertex; 2]) -> Point {
     // The ring runs from one boundary edge to the other.
     let beyond = |v, to| match ring(mesh, v)[..] {
@@ -206,8 +209,8 @@ fn boundary_point<M: MeshQuery>(mesh: &M, [a, b]: [M::Vertex; 2]) -> Point {
     (mesh.position(a) + mesh.position(b)) * 0.5625 - far * 0.0625
 }
 
-/// The weights of the neighbours of an inner vertex, from the one at the edge on; the vertex has what
-/// is left of 1.
+/// Returns the weights of the neighbours of an inner vertex, starting at the other end of the edge.
+/// The weight of the vertex itself is 1 minus their sum.
 fn ring_weights(valence: usize) -> Vec<f32> {
     let n = valence as f64;
     let weight = |j: usize| {
@@ -222,9 +225,9 @@ fn ring_weights(valence: usize) -> Vec<f32> {
     }
 }
 
-/// The weights of the k + 1 neighbours of a boundary vertex with k `triangles`, from one boundary edge
-/// to the other, for the edge to neighbour `i`; the vertex has what is left of 1 (Zorin & Schröder
-/// 2000). With θ = π/k:
+/// Returns the weights of the k + 1 neighbours of a boundary vertex with k `triangles`, from one
+/// boundary edge to the other, for the edge to neighbour `i` (Zorin & Schröder 2000). The weight of
+/// the vertex itself is 1 minus their sum. With θ = π/k:
 ///
 /// ```text
 ///   first, last  ±(cos iθ)/4 ∓ sin 2θ sin 2iθ / (4k (cos θ − cos 2θ))
@@ -247,10 +250,10 @@ fn rim_weights(triangles: usize, i: usize) -> Vec<f32> {
 
 #[cfg(test)]
 mod tests {
-    use face_vertex::FaceVertexMesh;
-    use indexed_face_set::IndexedFaceSet;
-    use mesh_core::{PolygonMesh, VertexId};
     use proptest::prelude::*;
+    use sixfold_core::{PolygonMesh, VertexId};
+    use sixfold_face_vertex::FaceVertexMesh;
+    use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
     use crate::alike::{
@@ -263,7 +266,7 @@ mod tests {
         step.expect("a manifold").polygons
     }
 
-    /// Every edge point between `ends` in a step of `polygons`.
+    /// Returns the ends and the point of every edge in a step of `polygons`.
     fn edge_points(polygons: &PolygonMesh) -> Vec<([Point; 2], Point)> {
         let mesh: IndexedFaceSet = built(polygons);
         let ends = mesh.edges().map(|e| mesh.edge_vertices(e));
@@ -274,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn the_weights_add_up_and_keep_a_plane() {
+    fn weights_have_the_expected_sum_and_keep_a_plane() {
         for valence in 3..=40 {
             let sum: f32 = ring_weights(valence).iter().sum();
             assert!((sum - 0.25).abs() < 1e-6, "valence {valence}: {sum}");
@@ -283,7 +286,7 @@ mod tests {
         assert_eq!(weights(3), [5.0 / 12.0, -1.0 / 12.0]);
         assert_eq!(weights(4), [0.375, 0.0]);
         assert!((ring_weights(5)[0] - 0.35).abs() < 1e-6);
-        // A half-disc: the point of each spoke lies half-way out.
+        // On a half-disc, the point of each spoke lies half-way out.
         for triangles in 2..=12 {
             let angle = |i: usize| PI * i as f64 / triangles as f64;
             for i in 1..triangles {
@@ -300,11 +303,11 @@ mod tests {
     }
 
     #[test]
-    fn solids_go_where_the_paper_says() {
-        // By hand: 5/6 v + 1/2 w around v on a tetrahedron, 3/4 v + 1/2 w on an octahedron.
+    fn solids_match_values_computed_by_hand() {
+        // 5/6 v + 1/2 w around v on a tetrahedron, 3/4 v + 1/2 w on an octahedron.
         for (solid, weight) in [
-            (shapes::tetrahedron(), 2.0 / 3.0),
-            (shapes::octahedron(), 0.625),
+            (sixfold_shapes::tetrahedron(), 2.0 / 3.0),
+            (sixfold_shapes::octahedron(), 0.625),
         ] {
             let centre = solid.positions().iter().sum::<Point>() / solid.vertex_count() as f32;
             for ([a, b], point) in edge_points(&solid) {
@@ -317,7 +320,7 @@ mod tests {
     #[test]
     fn regular_grids_keep_cubics() {
         let (m, n) = (7, 6);
-        let grid = shapes::triangle_grid(m, n).expect("a small grid");
+        let grid = sixfold_shapes::triangle_grid(m, n).expect("a small grid");
         let height = |x: f32, y: f32| {
             0.5 * x * x * x - x * x * y + 0.25 * x * y * y + y * y * y - 2.0 * x * y + x - 3.0
         };
@@ -339,14 +342,14 @@ mod tests {
                 kept += 1;
             }
         }
-        // Inner edges of a grid of (m − 2) × (n − 2).
+        // The number of edges of a grid of (m − 2) × (n − 2).
         let (m, n) = (m - 2, n - 2);
         assert_eq!(kept, 3 * m * n + m + n);
     }
 
     /// ```text
-    ///   3 ── 4 ── 5      the edges 1–2 and 0–1 along the boundary, and 1–4, whose wings at 0–1 and
-    ///   │ ╲  │ ╲  │      elsewhere are ghosts
+    ///   3 ── 4 ── 5      tests the boundary edges 1–2 and 0–1, and the edge 1–4, with ghosts
+    ///   │ ╲  │ ╲  │      beyond 3–4 and 1–2
     ///   0 ── 1 ── 2
     /// ```
     #[test]
@@ -385,7 +388,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_rule_is_named() {
+    fn non_manifold_meshes_return_errors() {
         let corners = [0.0, 1.0, 2.0, 3.0, 4.0].map(Point::splat);
         let refused = |faces: &[[u32; 3]]| {
             let polygons = PolygonMesh::new(corners, faces).expect("valid");
@@ -409,7 +412,7 @@ mod tests {
     }
 
     #[test]
-    fn threads_change_nothing() {
+    fn the_result_does_not_depend_on_threads() {
         assert_same_on_threads(Scheme::Butterfly, 0);
     }
 

@@ -1,7 +1,8 @@
-//! Catmull–Clark: every face into quads, approximating, C² but at extraordinary vertices.
+//! Catmull–Clark: splits every face into quads; approximating, C² except at extraordinary vertices.
 //!
-//! Catmull & Clark (1978). Any polygons come in; after one step all faces are quads, and a face of
-//! degree n has left a vertex of valence n. Creases after DeRose, Kass & Truong (1998).
+//! Catmull & Clark (1978). The input may have any polygons. After one step all faces are quads, and
+//! each face of degree n has become a vertex of valence n. Creases follow DeRose, Kass & Truong
+//! (1998).
 //!
 //! ```text
 //!     face point            edge point              vertex point, valence n
@@ -14,7 +15,7 @@
 //!                         (a + b + both face points)/4
 //! ```
 
-use mesh_core::{Point, Split};
+use sixfold_core::{Point, Split};
 
 use crate::mask::Mask;
 
@@ -48,15 +49,15 @@ impl Mask for CatmullClark {
 
 #[cfg(test)]
 mod tests {
-    use half_edge::HalfEdgeMesh;
-    use indexed_face_set::IndexedFaceSet;
-    use mesh_core::{Creases, PolygonMesh};
+    use sixfold_core::{Creases, PolygonMesh};
+    use sixfold_half_edge::HalfEdgeMesh;
+    use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
     use crate::alike::assert_near;
     use crate::{Boundary, Method, Scheme, Subdivision, subdivide, subdivide_native};
 
-    /// A cube from −1 to 1; corner `i` has the coordinates that its bits say.
+    /// Builds a cube from −1 to 1; the bits of `i` give the coordinates of corner `i`.
     fn cube() -> PolygonMesh {
         let corners: [Point; 8] = std::array::from_fn(|bits| {
             let axis = |bit: usize| (bits >> bit & 1) as f32 * 2.0 - 1.0;
@@ -74,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cube_goes_where_the_paper_says() {
+    fn a_cube_matches_the_paper() {
         let scheme = Subdivision::new(Scheme::CatmullClark);
         let none = Creases::default();
         let steps = [Method::Gather, Method::Scatter].map(|method| {
@@ -88,7 +89,7 @@ mod tests {
             for (corner, point) in cube().positions().iter().zip(points) {
                 assert!(near(*point, *corner * (5.0 / 9.0)), "{point}");
             }
-            // Face points at the centres, edge points at (3/4, 3/4, 0) and the like.
+            // Face points are at the centres, edge points at (3/4, 3/4, 0) and symmetric positions.
             assert!(points[8..14].iter().all(|p| p.length() == 1.0));
             for p in &points[14..] {
                 let mut sizes = p.abs().to_array();
@@ -107,7 +108,7 @@ mod tests {
     ///   0 ── 1 ── 2
     /// ```
     #[test]
-    fn a_grid_with_a_crease_goes_where_the_paper_says() {
+    fn a_grid_with_a_crease_matches_the_paper() {
         let at = |i: u32| {
             Point::new(
                 (i % 3) as f32,
@@ -138,8 +139,8 @@ mod tests {
             for step in steps.into_iter().chain(native) {
                 let points = step.polygons.positions();
                 assert_near(points[0], corner);
-                // Along the boundary (1, 6, 1)/8; where the crease ends on it there are three sharp
-                // edges, and 3 stays. The middle goes along the crease: 6/8 of 64.
+                // Boundary vertices use (1, 6, 1)/8. The crease ends at 3, which has three sharp
+                // edges and stays. Vertex 4 follows the crease: 6/8 of 64.
                 assert_near(points[1], Point::new(1.0, 0.0, 0.0));
                 assert_near(points[3], Point::new(0.0, 1.0, 0.0));
                 assert_near(points[4], Point::new(1.0, 1.0, 48.0));

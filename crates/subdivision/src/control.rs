@@ -1,26 +1,26 @@
-//! What the control mesh brings along: sharpness, and faces that only take part.
+//! Sharpness of the control mesh, and control faces that are not part of the result.
 
-use mesh_core::{Creases, EdgeUse, Pair, PolygonMesh, Representation, SHARP_FOR_EVER, VertexId};
+use sixfold_core::{Creases, EdgeUse, Pair, PolygonMesh, Representation, SHARP_FOR_EVER, VertexId};
 
 use crate::error::SubdivisionError;
 use crate::options::Boundary;
 use crate::subdivision::Subdivision;
 
 impl Subdivision {
-    /// The sharpness that the first step of `mesh`, which was built from `polygons`, starts from:
-    /// that of `creases`, and what the rules make sharp for ever. By the numbers of
+    /// Returns the sharpness before the first step of `mesh`, which was built from `polygons`: that
+    /// of `creases`, and infinite sharpness for the elements below. Uses the numbers of
     /// `mesh.to_polygons()`. O(corners) expected.
     ///
-    /// - With [`Boundary::EdgeAndCorner`], the vertices with exactly one face.
-    /// - Edges whose two faces run along them the same way. (Boundary edges and edges of three or more
-    ///   faces need not be said to be sharp: every step sees them.)
-    /// - Vertices at such edges, at edges of three or more faces, or of several fans. But one inside
-    ///   the spine of a book, with two such edges, no boundary edge and more faces than edges, moves
-    ///   along the spine, as a crease.
+    /// - With [`Boundary::EdgeAndCorner`], vertices with exactly one face.
+    /// - Edges with three or more faces, and edges whose two faces run along them in the same
+    ///   direction. Boundary edges are not listed: every step finds them.
+    /// - Vertices at such edges, and vertices with several fans. Exception: a vertex inside the
+    ///   spine of a book moves along the spine, as on a crease. It has two such edges, no boundary
+    ///   edge, and more faces than edges.
     ///
     /// # Errors
     ///
-    /// [`SubdivisionError::NoCreases`] where the scheme has no rules for `creases`.
+    /// Returns [`SubdivisionError::NoCreases`] if the scheme has no rules for `creases`.
     pub fn control<M: Representation>(
         &self,
         mesh: &M,
@@ -44,7 +44,7 @@ impl Subdivision {
         Ok(self.sharpened::<M>(&welded, &creases))
     }
 
-    /// `creases` and what the rules make sharp in `polygons`.
+    /// Returns `creases` with the elements that the rules make sharp in `polygons`.
     fn sharpened<M: Representation>(&self, polygons: &PolygonMesh, creases: &Creases) -> Creases {
         let (mut edges, mut corners) = (creases.edges().to_vec(), creases.corners().to_vec());
         let for_ever = |v: VertexId| (v, f32::INFINITY);
@@ -78,9 +78,9 @@ impl Subdivision {
         Creases::sorted(edges, corners)
     }
 
-    /// The faces of the control mesh that the boundary leaves out of the result: with
-    /// [`Boundary::None`] those at a boundary vertex whose boundary edges are not all said to be
-    /// sharp for ever. `None` where all stay. O(corners) expected.
+    /// Returns, by face of the control mesh, whether the boundary rule leaves it out of the result.
+    /// With [`Boundary::None`], these are the faces at a vertex with a boundary edge that is not
+    /// infinitely sharp in `creases`. Returns `None` if all faces stay. O(corners) expected.
     pub fn left_out(&self, polygons: &PolygonMesh, creases: &Creases) -> Option<Vec<bool>> {
         if self.boundary != Boundary::None || !self.scheme.kind().creases {
             return None;
@@ -108,13 +108,13 @@ impl Subdivision {
     }
 }
 
-/// What there is around a vertex.
+/// The number of faces and edges at a vertex.
 #[derive(Clone, Copy, Debug, Default)]
 struct Around {
     faces: usize,
     edges: usize,
     boundary_edges: usize,
-    /// Edges of three or more faces, or of two that run the same way.
+    /// Edges with three or more faces, or with two that run in the same direction.
     odd_edges: usize,
 }
 
@@ -125,14 +125,15 @@ impl Around {
         self.odd_edges += usize::from(!edge.is_manifold());
     }
 
-    /// Whether the sheets that meet here meet along one curve that runs through.
+    /// Returns whether the sheets at this vertex meet along one curve that passes through it.
     fn is_inside_a_spine(&self) -> bool {
         self.odd_edges == 2 && self.boundary_edges == 0 && self.faces > self.edges
     }
 }
 
-/// The creases of `polygons` as those of `mesh.to_polygons()`, where a vertex may be its coordinates.
-/// Of two edges or vertices that have become one the sharper counts.
+/// Renumbers the creases of `polygons` to those of `mesh.to_polygons()`, for structures that
+/// identify a vertex by its coordinates. If two edges or vertices have become one, the greater
+/// sharpness counts.
 pub fn renumbered<M: Representation>(
     mesh: &M,
     polygons: &PolygonMesh,
@@ -155,7 +156,7 @@ pub fn renumbered<M: Representation>(
     for (v, _) in &mut corners {
         *v = number(*v);
     }
-    // Of those with one name the last stays.
+    // Of several entries for one element, `sorted` keeps the last.
     edges.sort_by(|a, b| a.1.total_cmp(&b.1));
     corners.sort_by(|a, b| a.1.total_cmp(&b.1));
     Creases::sorted(edges, corners)
@@ -163,8 +164,8 @@ pub fn renumbered<M: Representation>(
 
 #[cfg(test)]
 mod tests {
-    use indexed_face_set::IndexedFaceSet;
-    use mesh_core::{FaceId, Point};
+    use sixfold_core::{FaceId, Point};
+    use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
     use crate::{Method, Scheme, subdivide};
@@ -186,7 +187,7 @@ mod tests {
         PolygonMesh::new(points, lower.map(quad)).expect("nine quads")
     }
 
-    /// The faces that stay with boundary `none`, and those there are after a step.
+    /// Returns the faces that stay with boundary `none`, and the number of faces after a step.
     fn staying(sharp: impl Fn([u32; 2]) -> f32, rim_corners: f32) -> (Vec<usize>, usize) {
         let nine = nine();
         let uses = nine.edge_uses();
@@ -201,7 +202,7 @@ mod tests {
             boundary: Boundary::None,
             ..Subdivision::new(Scheme::CatmullClark)
         };
-        let out = scheme.left_out(&nine, &creases).expect("of boundary none");
+        let out = scheme.left_out(&nine, &creases).expect("boundary none");
         let faces = nine.faces().iter().map(|(f, _): (FaceId, _)| f.index());
         let stay: Vec<usize> = faces.filter(|&f| !out[f]).collect();
         let step =
@@ -212,12 +213,12 @@ mod tests {
     #[test]
     fn faces_at_an_open_boundary_are_left_out() {
         assert_eq!(staying(|_| 0.0, 0.0), (vec![4], 4));
-        // What wears off does not close a boundary, nor do corners.
+        // Neither finite sharpness nor sharp corners close a boundary.
         assert_eq!(staying(|_| 9.99, f32::INFINITY), (vec![4], 4));
-        // All edges of the rim sharp for ever.
+        // All boundary edges are infinitely sharp.
         let all: Vec<usize> = (0..9).collect();
         assert_eq!(staying(|_| 10.0, 0.0), (all, 36));
-        // The left side alone: 4 and 8 keep both edges, 0 and 12 do not.
+        // Only the left side is sharp: 4 and 8 have two sharp boundary edges, 0 and 12 only one.
         let left = |[a, b]: [u32; 2]| if a % 4 == 0 && b % 4 == 0 { 10.0 } else { 0.0 };
         assert_eq!(staying(left, 0.0), (vec![3, 4], 8));
     }
@@ -233,11 +234,12 @@ mod tests {
         }
     }
 
-    /// What the rules make sharp in a mesh without creases: edges by their ends, and vertices.
+    /// Returns what the rules make sharp in a mesh without creases: edges by their ends, and
+    /// vertices.
     fn sharp(points: u32, faces: &[&[u32]], boundary: Boundary) -> (Vec<[usize; 2]>, Vec<usize>) {
         let points: Vec<Point> = (0..points).map(|i| Point::splat(i as f32)).collect();
         let polygons = PolygonMesh::new(points, faces).expect("faces");
-        let mesh = IndexedFaceSet::from_polygons(&polygons).expect("holds all");
+        let mesh = IndexedFaceSet::from_polygons(&polygons).expect("it accepts any mesh");
         let scheme = Subdivision {
             boundary,
             ..Subdivision::new(Scheme::CatmullClark)
@@ -251,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn vertices_of_one_face_are_corners_on_demand() {
+    fn vertices_of_one_face_are_corners_with_edge_and_corner_only() {
         let two: [&[u32]; 2] = [&[0, 1, 2], &[2, 1, 3]];
         assert_eq!(
             sharp(4, &two, Boundary::EdgeAndCorner),
@@ -261,8 +263,8 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_manifold_is_sharp() {
-        // Two faces that run 1 → 2 both.
+    fn non_manifold_edges_and_vertices_are_sharp() {
+        // Two faces that both run 1 → 2.
         let same_way: [&[u32]; 2] = [&[0, 1, 2, 3], &[1, 2, 5, 4]];
         let expected = (vec![[1, 2]], vec![1, 2]);
         assert_eq!(sharp(6, &same_way, Boundary::EdgeOnly), expected);
@@ -283,8 +285,8 @@ mod tests {
             sharp(12, &book, Boundary::EdgeOnly),
             (spine.clone(), vec![0, 2])
         );
-        // With a page torn at 1 it has a boundary edge, and is a corner; 1–2 has two faces now, that
-        // run opposite ways.
+        // Without the last page, 1 has a boundary edge and is a corner; 1–2 has two faces now,
+        // which run in opposite directions.
         assert_eq!(
             sharp(12, &book[..5], Boundary::EdgeOnly),
             (vec![[0, 1]], vec![0, 1])

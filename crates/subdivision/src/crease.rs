@@ -1,41 +1,41 @@
-//! Sharpness: what it does to points, and what is left of it one level on.
+//! Sharpness: its effect on points, and the sharpness that remains at the next level.
 //!
-//! The rules are those of DeRose, Kass & Truong (1998), with fractional sharpness as film
-//! production follows them. A step first places all points as if nothing were sharp; then those at
-//! sharp edges and vertices are placed again, here, the same way for every scheme and method.
+//! The rules are those of DeRose, Kass & Truong (1998), with fractional sharpness as used in film
+//! production. A step first places all points as if nothing were sharp. This module then places the
+//! points at sharp edges and vertices again, in the same way for every scheme and method.
 //!
 //! ```text
-//!   sharp edges at a vertex       it is        and goes to
-//!   none                          smooth       the scheme's own vertex point
-//!   one                           a dart       the same
-//!   two                           a crease     1/8 end + 3/4 itself + 1/8 end
-//!   more, or sharp by itself      a corner     where it is
+//!   sharp edges at a vertex       kind         new position
+//!   0                             smooth       the vertex point of the scheme
+//!   1                             dart         the same
+//!   2                             crease       1/8 end + 3/4 vertex + 1/8 end
+//!   more, or a sharp vertex       corner       unchanged
 //! ```
 //!
-//! Sharpness wears off by one a level. Where a vertex is another kind at the next level, it goes in
-//! between: w · (what it is now) + (1 − w) · (what it will be), with w the mean of the sharpnesses
-//! that reach zero.
+//! Sharpness decreases by one per level. If a vertex has another kind at the next level, its new
+//! position is w · (position of the current kind) + (1 − w) · (position of the next kind). Here w
+//! is the mean of the sharpnesses that reach zero.
 
-use mesh_core::{Creases, Pair, Point, SHARP_FOR_EVER, VertexId};
+use sixfold_core::{Creases, Pair, Point, SHARP_FOR_EVER, VertexId};
 
 use crate::mask::midpoint;
 use crate::options::Creasing;
 
-/// An edge that is sharp at this level, by the numbers of a step.
+/// An edge that is sharp at this level, with the numbers of a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SharpEdge {
-    /// Its place among all edges.
+    /// Its index among all edges.
     pub(crate) edge: usize,
     /// Its two ends.
     pub(crate) ends: [u32; 2],
     /// Above 0.
     pub(crate) sharpness: f32,
-    /// Whether it is sharp by what it is, a boundary edge or one with three faces: then its halves
-    /// will be, too, and need not be told.
+    /// Whether it is sharp by its number of faces, as a boundary edge or an edge with three faces.
+    /// Its halves will be so too, and need no entry.
     pub(crate) by_nature: bool,
 }
 
-/// All that is sharp at one level.
+/// The sharp elements of one level.
 #[derive(Debug, Default)]
 pub(crate) struct SharpLevel {
     /// In any order, each once.
@@ -44,19 +44,19 @@ pub(crate) struct SharpLevel {
     pub(crate) corners: Vec<(VertexId, f32)>,
 }
 
-/// A sharp edge as one of its ends sees it.
+/// One end of a sharp edge.
 #[derive(Clone, Copy, Debug)]
 struct Spoke {
     at: u32,
     far: u32,
     sharpness: f32,
-    /// Which edge of the level, and which end of it.
+    /// The index of the edge in the level, and which of its ends this is.
     edge: (usize, usize),
-    /// The sharpness of the half at this end, one level on.
+    /// The sharpness of the half at this end, at the next level.
     child: f32,
 }
 
-/// What a vertex is by its own sharpness and that of its edges.
+/// The kind of a vertex, by its own sharpness and its number of sharp edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rule {
     Smooth,
@@ -68,7 +68,7 @@ impl Rule {
     pub(crate) fn of(own: f32, sharp_edges: usize) -> Self {
         match sharp_edges {
             _ if own > 0.0 => Self::Corner,
-            // A dart moves as a smooth vertex does.
+            // A dart moves like a smooth vertex.
             0 | 1 => Self::Smooth,
             2 => Self::Crease,
             _ => Self::Corner,
@@ -76,7 +76,7 @@ impl Rule {
     }
 }
 
-/// What sharpness comes to in one level, by itself.
+/// Returns the sharpness one level later, without the influence of other edges.
 fn worn(sharpness: f32) -> f32 {
     if sharpness >= SHARP_FOR_EVER {
         f32::INFINITY
@@ -90,15 +90,16 @@ pub(crate) fn is_semi_sharp(sharpness: f32) -> bool {
 }
 
 impl SharpLevel {
-    /// Whether nothing is sharp.
+    /// Returns whether nothing is sharp.
     pub(crate) fn is_empty(&self) -> bool {
         self.edges.is_empty() && self.corners.is_empty()
     }
 
-    /// Places the points at what is sharp, and yields the sharpness of the next level.
+    /// Places the points at sharp elements, and returns the creases of the next level.
     ///
     /// `points` holds the vertex points from 0 and the edge points from `first_edge`, all placed as
-    /// if nothing were sharp; `old` is where vertices were. O(s log s) for s sharp elements.
+    /// if nothing were sharp. `old` returns the old position of a vertex. O(s log s) for s sharp
+    /// elements.
     pub(crate) fn place(
         &self,
         old: impl Fn(u32) -> Point,
@@ -117,7 +118,7 @@ impl SharpLevel {
         Creases::sorted(self.halves(&children, first_edge), corners)
     }
 
-    /// Both views of every edge, by vertex.
+    /// Returns the two spokes of every edge.
     fn spokes(&self, creasing: Creasing) -> Vec<Spoke> {
         let edges = self.edges.iter().enumerate();
         let mut spokes: Vec<Spoke> = edges
@@ -160,7 +161,8 @@ impl SharpLevel {
         }
     }
 
-    /// Places every vertex at a sharp edge or sharp by itself; yields the sharp ones of the next level.
+    /// Places every vertex that is sharp or has a sharp edge; returns the sharp vertices of the
+    /// next level.
     fn place_vertices(
         &self,
         spokes: &[Spoke],
@@ -188,12 +190,12 @@ impl SharpLevel {
         next.collect()
     }
 
-    /// The halves of the edges, from each end to the edge point.
+    /// Returns the halves of the edges, from each end to the edge point, with their sharpness.
     fn halves(&self, children: &[[f32; 2]], first_edge: usize) -> Vec<(Pair<VertexId>, f32)> {
         let told = self.edges.iter().zip(children);
         told.filter(|(edge, _)| !edge.by_nature)
             .flat_map(|(edge, children)| {
-                // The numbers of points fit, or the step would have been refused.
+                // This number fits; otherwise the step has returned an error before.
                 let middle = VertexId::new((first_edge + edge.edge) as u32);
                 let half = |end: usize| {
                     let ends = Pair::new(VertexId::new(edge.ends[end]), middle);
@@ -205,7 +207,7 @@ impl SharpLevel {
     }
 }
 
-/// Chaikin's rule for the sharpness of the halves around one vertex.
+/// Applies Chaikin's rule to the sharpness of the halves around one vertex.
 fn even_out(around: &mut [Spoke]) {
     let semi_sharp = |spoke: &&Spoke| is_semi_sharp(spoke.sharpness);
     let (count, sum) = around
@@ -226,7 +228,7 @@ fn even_out(around: &mut [Spoke]) {
     }
 }
 
-/// Where vertex `v` goes, of the sharpness `own` and with these sharp edges.
+/// Returns the new position of vertex `v` with the sharpness `own` and the sharp edges `around`.
 fn placed(v: u32, own: f32, around: &[Spoke], old: &impl Fn(u32) -> Point, smooth: Point) -> Point {
     let staying = || around.iter().filter(|spoke| spoke.child > 0.0);
     let now = Rule::of(own, around.len());
@@ -246,8 +248,8 @@ fn placed(v: u32, own: f32, around: &[Spoke], old: &impl Fn(u32) -> Point, smoot
     at(then, &mut staying()).lerp(parent, transition(own, around))
 }
 
-/// How far a vertex that changes its kind is still of the old one: the mean of the sharpnesses that
-/// reach zero, at most 1.
+/// Returns the weight of the current kind for a vertex that changes its kind: the mean of the
+/// sharpnesses that reach zero, at most 1.
 fn transition(own: f32, around: &[Spoke]) -> f32 {
     let edges = around.iter().filter(|spoke| spoke.child == 0.0);
     let vertex = (own > 0.0 && worn(own) == 0.0).then_some(own);
@@ -258,8 +260,8 @@ fn transition(own: f32, around: &[Spoke]) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use indexed_face_set::IndexedFaceSet;
-    use mesh_core::{PolygonMesh, Representation};
+    use sixfold_core::{PolygonMesh, Representation};
+    use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
     use crate::{Boundary, Scheme, Step, Subdivision};
@@ -280,7 +282,8 @@ mod tests {
         PolygonMesh::new(points, [0, 1, 3, 4].map(quad)).expect("four quads")
     }
 
-    /// A step of the hill with the edges from 4 to 1, 3, 5, 7 so sharp, and 4 itself.
+    /// Runs a step of the hill. `spokes` are the sharpnesses of the edges from 4 to 1, 3, 5, 7;
+    /// `own` is that of 4.
     fn step(creasing: Creasing, spokes: &[f32], own: f32) -> Step {
         let hill = hill();
         let mesh = IndexedFaceSet::from_polygons(&hill).expect("quads");
@@ -297,14 +300,15 @@ mod tests {
         step.expect("quads")
     }
 
-    /// The point of the edge from 4 to `far`: by the symmetry of the hill above its middle.
+    /// Returns the point of the edge from 4 to `far`: by symmetry it is above the middle of the
+    /// edge.
     fn edge_point(step: &Step, far: usize) -> VertexId {
         let middle = midpoint([hill().positions()[4], hill().positions()[far]]);
         let above = |p: Point| p.truncate().distance(middle.truncate()) < 1e-6;
         let mut points = step.polygons.vertices().skip(9 + 4);
         points
             .find(|&v| above(step.polygons.position(v)))
-            .expect("there")
+            .expect("a point")
     }
 
     fn assert_heights(creasing: Creasing, cases: &[(f32, &[f32], f32)]) {
@@ -312,19 +316,20 @@ mod tests {
             let z = step(creasing, spokes, own).polygons.positions()[4].z;
             assert!(
                 (z - expected).abs() < 1e-6,
-                "{own} with {spokes:?}: {z}, not {expected}"
+                "{own} with {spokes:?}: {z}, expected {expected}"
             );
         }
     }
 
-    /// w · (what it is) + (1 − w) · (what it will be), worked out by hand.
+    /// w · (position of the current kind) + (1 − w) · (position of the next kind), computed by
+    /// hand.
     #[test]
-    fn a_vertex_goes_between_what_it_is_and_what_it_will_be() {
+    fn a_vertex_blends_between_its_current_and_next_kind() {
         assert_heights(
             Creasing::Uniform,
             &[
                 (0.0, &[], 0.5625),
-                // A dart moves as smooth, and does not blend.
+                // A dart moves like a smooth vertex, without a blend.
                 (0.0, &[0.3], 0.5625),
                 (0.0, &[INF], 0.5625),
                 // Crease to smooth or to dart: 0.3 · 0.75 + 0.7 · 0.5625; the mean of 0.3, 0.7.
@@ -340,7 +345,7 @@ mod tests {
                 (0.0, &[0.3, 0.6, 2.0, 2.0], 0.8625),
                 // Corner to corner.
                 (0.0, &[0.3, 2.0, 2.0, 2.0], 1.0),
-                // Sharp by itself: w has a part in the mean.
+                // A sharp vertex: its own sharpness is part of the mean.
                 (0.4, &[], 0.7375),
                 (0.4, &[0.8], 0.825),
                 (0.4, &[3.0], 0.7375),
@@ -360,7 +365,7 @@ mod tests {
         }
     }
 
-    /// The halves of spokes that are so sharp: at the vertex 4, and at the far end.
+    /// Returns the sharpness of the halves of the spokes, at vertex 4 and at the far end.
     fn halves(creasing: Creasing, spokes: &[f32]) -> Vec<[f32; 2]> {
         let step = step(creasing, spokes, 0.0);
         let spokes = [1, 3, 5, 7].into_iter().zip(spokes);
@@ -376,7 +381,7 @@ mod tests {
         let got = halves(creasing, spokes);
         for (got, expected) in got.iter().flatten().zip(expected.iter().flatten()) {
             let is_near = got == expected || (got - expected).abs() < 1e-6;
-            assert!(is_near, "{spokes:?}: {got}, not {expected}");
+            assert!(is_near, "{spokes:?}: {got}, expected {expected}");
         }
         assert_eq!(got.len(), expected.len());
     }
@@ -393,15 +398,15 @@ mod tests {
         uniform(&[1.0, 1.25], &[[0.0; 2], [0.25; 2]]);
     }
 
-    /// 3/4 of its own and 1/4 of the mean of the others, less 1, at the vertex 4; less 1 alone at the
-    /// far end, where there are none.
+    /// At vertex 4, 3/4 of the own sharpness plus 1/4 of the mean of the others, minus 1. At the
+    /// far end, which has no others, only minus 1.
     #[test]
     fn chaikin_evens_out_sharpness() {
         let chaikin = |spokes: &[f32], expected: &[[f32; 2]]| {
             assert_halves(Creasing::Chaikin, spokes, expected);
         };
         chaikin(&[1.5], &[[0.5, 0.5]]);
-        // What is sharp for ever has no part in a mean.
+        // Infinite sharpness is not part of a mean.
         chaikin(&[1.5, INF], &[[0.5, 0.5], [INF, INF]]);
         chaikin(&[0.5, 2.0], &[[0.0, 0.0], [0.625, 1.0]]);
         chaikin(&[1.2, 0.2, 2.0], &[[0.175, 0.2], [0.0, 0.0], [0.675, 1.0]]);
@@ -409,13 +414,13 @@ mod tests {
         assert_heights(
             Creasing::Chaikin,
             &[
-                // Both halves at 4 stay sharp: it is a crease and will be one.
+                // Both halves at 4 stay sharp, so the vertex stays a crease vertex.
                 (0.0, &[0.8, 4.0], 0.75),
                 // 1.2 reaches zero here too: w is the mean of 1.2 and 0.1.
                 (0.0, &[1.2, 0.1], 0.65 * 0.75 + 0.35 * 0.5625),
             ],
         );
-        // One half of 0.8 is not sharp: w = 0.8.
+        // One half of the edge with sharpness 0.8 is not sharp: w = 0.8.
         let step = step(Creasing::Chaikin, &[0.8, 4.0], 0.0);
         let z = step.polygons.position(edge_point(&step, 1)).z;
         assert!((z - 0.475).abs() < 1e-6, "{z}");

@@ -1,58 +1,60 @@
-//! Curves: a polygon becomes a cubic B-spline, or has its corners cut.
+//! Curves: refines a polygon towards a cubic B-spline, or cuts its corners.
 //!
 //! ```text
 //!   add edge midpoints, add struts                  cut corners (Chaikin 1974)
 //!
 //!            v        a strut runs from a                  v
-//!           ╱┊╲       vertex to the middle of             ╱ ╲       each edge leaves the points
+//!           ╱┊╲       vertex to the middle of             ╱ ╲       each edge yields the points
 //!          ╱ v'╲      the new midpoints; the             •───•      at 1/4 and 3/4 of it
 //!         m──┊──m     vertex moves half-way             ╱     ╲
 //!        ╱   s   ╲    along it:                        •       •
 //!       a         b   (a + 6v + b)/8                  a         b
 //! ```
 //!
-//! The first is the uniform cubic B-spline (Lane & Riesenfeld 1980), C²; the second the quadratic, C¹
-//! (Riesenfeld 1975). Both lie in the convex hull of the polygon.
+//! The limit of the first is the uniform cubic B-spline (Lane & Riesenfeld 1980), C². The limit of
+//! the second is the quadratic B-spline, C¹ (Riesenfeld 1975). Both lie in the convex hull of the
+//! polygon.
 
-use mesh_core::{MAX_ROWS, Point};
+use sixfold_core::{MAX_ROWS, Point};
 
 use crate::error::CurveError;
 use crate::mask::midpoint;
 
-/// What the ends of a polygon, or of the rows of a grid, do.
+/// The treatment of the ends of a polygon, or of the rows of a grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Ends {
-    /// There are none: the last point is joined to the first.
+    /// There are no ends: the last point is joined to the first.
     Closed,
-    /// They stay, as a boundary does with its corners kept. The curve is that of the polygon with
-    /// one point more beyond each end: its mirror image for the cubic, the end itself for Chaikin.
+    /// They stay, like a boundary with fixed corners. The curve is that of the polygon with one
+    /// more point beyond each end: the mirror image for the cubic, the end itself for Chaikin.
     #[default]
     Kept,
-    /// They are dropped, for want of a neighbour: what is left is the B-spline of the points alone.
+    /// They are dropped because they lack a neighbour. The result is the B-spline of the given
+    /// points only.
     Dropped,
 }
 
-/// The points of an edge polygon after `levels` steps of "add midpoints, add struts", on their way to
-/// the uniform cubic B-spline.
+/// Returns the points of a polygon after `levels` steps of "add midpoints, add struts". They
+/// converge to the uniform cubic B-spline.
 ///
-/// Of n points, 2n come out of a step if the polygon is closed, 2n − 1 if the ends are kept, and 2n − 3
-/// if they are dropped. O(points that come out).
+/// A step makes 2n points from n if the polygon is closed, 2n − 1 if the ends are kept, and 2n − 3
+/// if they are dropped. O(points of the result).
 ///
 /// # Errors
 ///
-/// Fewer than 3 points of a closed polygon, 2 with ends kept, 4 with ends dropped; or more than
-/// [`MAX_ROWS`] at the end.
+/// Returns an error for fewer than 3 points if the polygon is closed, 2 if the ends are kept, or 4
+/// if they are dropped, and for more than [`MAX_ROWS`] points in the result.
 ///
 /// # Examples
 ///
 /// ```
-/// use mesh_core::Point;
-/// use subdivision::{Ends, cubic_b_spline};
+/// use sixfold_core::Point;
+/// use sixfold_subdivision::{Ends, cubic_b_spline};
 ///
 /// let roof = [Point::ZERO, Point::new(4.0, 8.0, 0.0), Point::new(8.0, 0.0, 0.0)];
 /// let curve = cubic_b_spline(&roof, Ends::Kept, 1)?;
 /// assert_eq!(curve[2], Point::new(4.0, 6.0, 0.0));
-/// # Ok::<(), subdivision::CurveError>(())
+/// # Ok::<(), sixfold_subdivision::CurveError>(())
 /// ```
 pub fn cubic_b_spline(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<Point>, CurveError> {
     repeated(points, levels, cubic_loss(ends), least(ends), |points| {
@@ -60,14 +62,15 @@ pub fn cubic_b_spline(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<P
     })
 }
 
-/// The points of a polygon after its corners have been cut `levels` times, on their way to the uniform
-/// quadratic B-spline (Chaikin 1974).
+/// Returns the points of a polygon after its corners are cut `levels` times. They converge to the
+/// uniform quadratic B-spline (Chaikin 1974).
 ///
-/// Of n points, 2n come out of a step, or 2n − 2 if the ends are dropped. O(points that come out).
+/// A step makes 2n points from n, or 2n − 2 if the ends are dropped. O(points of the result).
 ///
 /// # Errors
 ///
-/// Fewer than 3 points, or 2 with ends kept; or more than [`MAX_ROWS`] at the end.
+/// Returns an error for fewer than 3 points, or 2 if the ends are kept, and for more than
+/// [`MAX_ROWS`] points in the result.
 pub fn chaikin(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<Point>, CurveError> {
     let (loss, least) = match ends {
         Ends::Closed => (0, 3),
@@ -79,11 +82,11 @@ pub fn chaikin(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<Point>, 
     })
 }
 
-/// The point of the uniform cubic B-spline of `points` at `t`, where control point i has the parameter
-/// i: the limit of [`cubic_b_spline`].
+/// Returns the point of the uniform cubic B-spline of `points` at the parameter `t`: the limit of
+/// [`cubic_b_spline`]. Control point i has the parameter i.
 ///
-/// `t` runs from 0 to n − 1 if the ends are kept, from 1 to n − 2 if they are dropped, and round and
-/// round if the polygon is closed. `None` elsewhere, and for too few points. O(1).
+/// `t` runs from 0 to n − 1 if the ends are kept, and from 1 to n − 2 if they are dropped; it is
+/// periodic if the polygon is closed. Returns `None` outside, and for too few points. O(1).
 pub fn cubic_b_spline_at(points: &[Point], ends: Ends, t: f64) -> Option<Point> {
     let n = points.len();
     if n < least(ends) {
@@ -104,7 +107,7 @@ pub fn cubic_b_spline_at(points: &[Point], ends: Ends, t: f64) -> Option<Point> 
     Some(controls.zip(weights).map(|(p, w)| p * w as f32).sum())
 }
 
-/// The first and the last parameter of a curve of enough points.
+/// Returns the first and the last parameter of a curve with enough points.
 pub(crate) fn cubic_domain(points: usize, ends: Ends) -> (f64, f64) {
     let n = points as f64;
     match ends {
@@ -114,7 +117,7 @@ pub(crate) fn cubic_domain(points: usize, ends: Ends) -> (f64, f64) {
     }
 }
 
-/// The four weights at `s`, 0 to 1, of a piece of the uniform cubic B-spline.
+/// Returns the four weights at `s`, 0 to 1, of a piece of the uniform cubic B-spline.
 fn cubic_basis(s: f64) -> [f64; 4] {
     let r = 1.0 - s;
     [
@@ -125,7 +128,7 @@ fn cubic_basis(s: f64) -> [f64; 4] {
     ]
 }
 
-/// Control point `number` − 1, with those beyond the ends.
+/// Returns control point `number` − 1, also beyond the ends.
 fn control(points: &[Point], ends: Ends, number: usize) -> Point {
     let n = points.len();
     match ends {
@@ -136,7 +139,7 @@ fn control(points: &[Point], ends: Ends, number: usize) -> Point {
     }
 }
 
-/// The fewest points of a cubic.
+/// Returns the smallest number of points of a cubic.
 pub(crate) fn least(ends: Ends) -> usize {
     match ends {
         Ends::Closed => 3,
@@ -145,7 +148,7 @@ pub(crate) fn least(ends: Ends) -> usize {
     }
 }
 
-/// How many points fewer than twice as many come out of a step.
+/// Returns how many points a step makes fewer than twice the number before.
 fn cubic_loss(ends: Ends) -> usize {
     match ends {
         Ends::Closed => 0,
@@ -154,12 +157,12 @@ fn cubic_loss(ends: Ends) -> usize {
     }
 }
 
-/// How many points come out of a cubic step.
+/// Returns the number of points after a cubic step.
 pub(crate) fn cubic_count(points: usize, ends: Ends) -> usize {
     (2 * points).saturating_sub(cubic_loss(ends))
 }
 
-/// One step of "add midpoints, add struts".
+/// Runs one step of "add midpoints, add struts".
 pub(crate) fn cubic_step(points: &[Point], ends: Ends) -> Vec<Point> {
     let n = points.len();
     let mut refined = Vec::with_capacity(cubic_count(n, ends));
@@ -181,7 +184,7 @@ pub(crate) fn cubic_step(points: &[Point], ends: Ends) -> Vec<Point> {
     refined
 }
 
-/// One cut of all corners.
+/// Cuts all corners once.
 fn chaikin_step(points: &[Point], ends: Ends) -> Vec<Point> {
     let n = points.len();
     let mut refined = Vec::with_capacity(2 * n);
@@ -199,7 +202,7 @@ fn chaikin_step(points: &[Point], ends: Ends) -> Vec<Point> {
     refined
 }
 
-/// `levels` steps, each of which makes 2n − `loss` points of n.
+/// Runs `levels` steps; each makes 2n − `loss` points from n.
 fn repeated(
     points: &[Point],
     levels: u32,
@@ -211,7 +214,7 @@ fn repeated(
     if given < least {
         return Err(CurveError::TooFewPoints { given, least });
     }
-    // There are loss + (n − loss)·2^levels of them at the end, and n is above the loss.
+    // The result has loss + (n − loss)·2^levels points, and n is above the loss.
     let growth = 1_usize.checked_shl(levels);
     let last = growth.and_then(|growth| (given - loss).checked_mul(growth));
     if last.is_none_or(|last| last > MAX_ROWS - loss) {
@@ -250,7 +253,7 @@ mod tests {
         prop::collection::vec(point.prop_map(Point::from), 4..9)
     }
 
-    /// The quadratic B-spline, where corner i of the polygon is at i.
+    /// Returns a point of the quadratic B-spline; corner i of the polygon has the parameter i.
     fn quadratic(points: &[Point], t: f64) -> Point {
         let i = (t + 0.5).floor();
         let s = (t + 0.5 - i) as f32;
@@ -261,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_is_what_the_weights_say() {
+    fn a_step_matches_the_weights() {
         let points = x(&[0.0, 8.0, 0.0, 16.0]);
         let step = |ends| cubic_b_spline(&points, ends, 1).expect("four points");
         assert_eq!(step(Ends::Kept), x(&[0.0, 4.0, 6.0, 4.0, 3.0, 8.0, 16.0]));
@@ -277,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn each_fault_is_named() {
+    fn each_invalid_input_returns_its_error() {
         for ends in ALL {
             let few = least(ends) - 1;
             let error = cubic_b_spline(&vec![Point::ZERO; few], ends, 1).unwrap_err();
@@ -310,7 +313,7 @@ mod tests {
                 let refined = cubic_b_spline(&points, ends, levels).expect("enough points");
                 let step = f64::from(1 << levels).recip();
                 let (first, last) = cubic_domain(points.len(), ends);
-                // With ends dropped each step loses one half of what is before the first parameter.
+                // With ends dropped, each step halves the part before the first parameter.
                 let start = if ends == Ends::Dropped { first - step } else { first };
                 prop_assert_eq!(refined.len(), ((last - start) / step).round() as usize
                     + match ends { Ends::Closed => 0, Ends::Kept => 1, Ends::Dropped => 2 });
@@ -329,14 +332,15 @@ mod tests {
             let cut = chaikin(&points, Ends::Closed, levels).expect("enough points");
             let step = f64::from(1 << levels).recip();
             for (i, &point) in cut.iter().enumerate() {
-                // The points of the first edge stay around its middle, half a step to either side.
+                // The points of the first edge stay half a step before and after its middle.
                 let t = 0.5 + (i as f64 - 0.5) * step;
                 let near = quadratic(&points, t);
                 prop_assert!(point.distance(near) < 5e-3, "{}: {} {}", i, point, near);
             }
         }
 
-        /// What ends that are kept mean.
+        /// Kept ends give the same points as dropped ends of a polygon with one more point at each
+        /// end.
         #[test]
         fn kept_ends_are_dropped_ones_of_a_longer_polygon(points in polygon()) {
             let n = points.len();
@@ -355,7 +359,7 @@ mod tests {
             }
         }
 
-        /// Affine maps go through, so that the weights sum to one; and so do the hulls.
+        /// Steps commute with affine maps, so the weights sum to 1; equal points stay equal.
         #[test]
         fn affine_maps_commute_with_steps(points in polygon(), shift in -9.0_f32..9.0) {
             let map = |p: Point| Point::new(p.x - 2.0 * p.y + shift, 0.5 * p.z, p.y + p.x - shift);

@@ -1,7 +1,7 @@
-//! Doo–Sabin: every corner a vertex, every face, inner edge and inner vertex a face; C¹.
+//! Doo–Sabin: every corner becomes a vertex; every face, inner edge and inner vertex a face; C¹.
 //!
-//! Doo & Sabin (1978). Any polygons come in; after one step all inner vertices have valence 4, but for
-//! those beside a vertex of valence 2.
+//! Doo & Sabin (1978). The input may have any polygons. After one step all inner vertices have
+//! valence 4, except next to a vertex of valence 2.
 //!
 //! ```text
 //!   ┌───────────┬──            each corner i of a face of degree n moves into the face:
@@ -13,14 +13,14 @@
 //!   │ •───────• │ •            inner edge, one around each inner vertex
 //! ```
 //!
-//! No faces are made of boundary edges and boundary vertices, so that an open mesh shrinks. Around an
-//! inner vertex of valence 2 there is no face either: the two edge faces meet there. Isolated vertices
-//! go.
+//! Boundary edges and boundary vertices do not become faces, so an open mesh shrinks. An inner
+//! vertex of valence 2 does not become a face either: its two edge faces meet there. Isolated
+//! vertices are removed.
 //!
 //! # Sizes
 //!
-//! Of V vertices, I of them isolated and T inner ones with two faces; E edges, B of them at boundaries;
-//! F faces with C corners, R of them at boundary vertices:
+//! For V vertices, of them I isolated and T inner ones with two faces; E edges, of them B on
+//! boundaries; F faces with C corners, of them R at boundary vertices:
 //!
 //! ```text
 //!   V' = C      E' = C + 2(E − B) − T      F' = F + (E − B) + (V − I − B − T)
@@ -29,26 +29,26 @@
 
 use std::f64::consts::TAU;
 
-use mesh_core::{Creases, FaceList, MeshQuery, Point, PolygonMesh, VertexId};
+use sixfold_core::{Creases, FaceList, MeshQuery, Point, PolygonMesh, VertexId};
 
 use crate::error::SubdivisionError;
 use crate::scheme::Scheme;
 use crate::sheet::{Sheet, non_manifold_vertex, vertex_numbers};
 use crate::step::Step;
 
-/// Degrees whose turns are kept; few faces have more corners.
+/// Number of degrees with precomputed turns, from 0; few faces have more corners.
 const KEPT: usize = 16;
 
 /// The weights of Doo & Sabin (1978).
 ///
-/// As cos(i − j) = cos i cos j + sin i sin j, all corners of a face take three sums, not n:
+/// Because cos(i − j) = cos i cos j + sin i sin j, three sums serve all n corners of a face:
 /// vᵢ' = vᵢ/4 + 3/4 · mean + (cos(2πi/n) Σ cos(2πj/n) vⱼ + sin(2πi/n) Σ sin(2πj/n) vⱼ)/(2n).
 struct DooSabin {
     /// By degree, cos and sin of 2πi/n.
     turns: [Vec<[f32; 2]>; KEPT],
 }
 
-/// cos and sin of 2πi/n.
+/// Returns cos and sin of 2πi/n for every i.
 fn turns(degree: usize) -> Vec<[f32; 2]> {
     let angles = (0..degree).map(|i| TAU * i as f64 / degree as f64);
     let turns = angles.map(|angle| [angle.cos() as f32, angle.sin() as f32]);
@@ -62,7 +62,7 @@ impl DooSabin {
         }
     }
 
-    /// The points of the corners of a face; O(degree).
+    /// Appends the points of the corners of a face; O(degree).
     fn face(&self, corners: &[Point], points: &mut Vec<Point>) {
         let made;
         let turns = match self.turns.get(corners.len()) {
@@ -88,8 +88,8 @@ impl DooSabin {
     }
 }
 
-/// One step, by asking each edge for its faces, and each vertex for its ring and its faces. O(the sum
-/// of the squares of the degrees) beyond the cost of the queries.
+/// Runs one step with queries for the faces of each edge, and for the ring and the faces of each
+/// vertex. O(sum of the squares of the degrees) plus the cost of the queries.
 pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
     let sheet = Sheet::gathered(mesh, Scheme::DooSabin)?;
     let mut draft = Draft::of(mesh, &sheet)?;
@@ -103,7 +103,7 @@ pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
     let numbers = vertex_numbers(mesh);
     let (mut spokes, mut around) = (Vec::new(), Vec::new());
     for v in mesh.vertices() {
-        // By the neighbour after v in each face.
+        // Each corner at v, keyed by the neighbour after v in its face.
         spokes.clear();
         mesh.vertex_faces(v).for_each(|f| {
             let mut corner = first_corners[f];
@@ -131,7 +131,7 @@ pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
     draft.finish()
 }
 
-/// One step from one pass over the faces, whose corners are linked around the vertices.
+/// Runs one step from one pass over the faces, whose corners are then linked around the vertices.
 pub(crate) fn scatter<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
     let sheet = Sheet::scattered(mesh, Scheme::DooSabin)?;
     let mut draft = Draft::of(mesh, &sheet)?;
@@ -149,7 +149,7 @@ struct Draft {
 }
 
 impl Draft {
-    /// The corners of the old faces, moved in, and the faces that they make.
+    /// Adds the moved corners of the old faces, and the faces that they form.
     fn of<M: MeshQuery>(mesh: &M, sheet: &Sheet) -> Result<Self, SubdivisionError> {
         let scheme = DooSabin::new();
         let mut draft = Self {
@@ -168,10 +168,10 @@ impl Draft {
         Ok(draft)
     }
 
-    /// A quad across each inner edge.
+    /// Adds a quad across each inner edge.
     ///
     /// ```text
-    ///      b             from the side c, which runs a → b, to the side d across it:
+    ///      b             side c runs a → b, d is the side across it:
     ///   lb │ rb          (la, ra, rb, lb) = (c, after(d), d, after(c))
     ///   la │ ra
     ///      a
@@ -186,7 +186,7 @@ impl Draft {
         Ok(())
     }
 
-    /// The face of an inner vertex, of the corners around it; none of two.
+    /// Adds the face of an inner vertex from the corners around it; two corners give no face.
     fn vertex_face(&mut self, around: &[u32]) -> Result<(), SubdivisionError> {
         if around.len() > 2 {
             self.push(around.iter().copied())?;
@@ -209,10 +209,10 @@ impl Draft {
 
 #[cfg(test)]
 mod tests {
-    use half_edge::HalfEdgeMesh;
-    use indexed_face_set::IndexedFaceSet;
-    use mesh_core::{Facts, Representation};
     use proptest::prelude::*;
+    use sixfold_core::{Facts, Representation};
+    use sixfold_half_edge::HalfEdgeMesh;
+    use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
     use crate::alike::{assert_affine, assert_alike, assert_near, built};
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn the_weights_are_those_of_the_paper() {
+    fn the_weights_match_the_paper() {
         for degree in [3, 4, 5, 6, 11, 40] {
             let n = degree as f64;
             let mut unit = vec![Point::ZERO; degree];
@@ -245,8 +245,8 @@ mod tests {
     }
 
     #[test]
-    fn a_cube_goes_where_the_paper_says() {
-        let cube = shapes::cube();
+    fn a_cube_matches_the_paper() {
+        let cube = sixfold_shapes::cube();
         let centre = cube.positions().iter().sum::<Point>() / 8.0;
         let half = (cube.positions()[0] - centre).abs().x;
         for method in [Method::Gather, Method::Scatter] {
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn between_two_triangles_lies_a_prism() {
+    fn two_triangles_back_to_back_become_a_prism() {
         let corners = [Point::ZERO, Point::X, Point::Y];
         let pillow = PolygonMesh::new(corners, [[0, 1, 2], [0, 2, 1]]).expect("two triangles");
         for method in [Method::Gather, Method::Scatter] {
@@ -284,7 +284,7 @@ mod tests {
 
     #[test]
     fn an_open_mesh_shrinks() {
-        let grid = shapes::grid(3, 2).expect("a small grid");
+        let grid = sixfold_shapes::grid(3, 2).expect("a small grid");
         for method in [Method::Gather, Method::Scatter] {
             let step = step_of::<IndexedFaceSet>(method, &grid);
             // 6 faces, 7 inner edges, 2 inner vertices.
@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_rule_is_named() {
+    fn non_manifold_meshes_return_errors() {
         let corners = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(Point::splat);
         let refused = |faces: &[[u32; 3]]| {
             let mesh: IndexedFaceSet = built(&PolygonMesh::new(corners, faces).expect("valid"));
@@ -327,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn a_large_face_takes_no_square_of_its_degree() {
+    fn a_face_of_large_degree_is_fast_enough() {
         let corners = 30_000;
         let around = (0..corners).map(|i| {
             let angle = TAU * f64::from(i) / f64::from(corners);
@@ -336,7 +336,7 @@ mod tests {
         let all: Vec<u32> = (0..corners).collect();
         let polygon = PolygonMesh::new(around.collect::<Vec<_>>(), [all]).expect("one face");
         let step = step_of::<IndexedFaceSet>(Method::Scatter, &polygon);
-        // Of a regular polygon, each corner keeps 1/4 + 1/2 of its distance from the centre.
+        // In a regular polygon, each corner keeps 1/4 + 1/2 of its distance from the centre.
         for (p, old) in step.positions().iter().zip(polygon.positions()) {
             assert!(
                 p.distance(*old * 0.5) < 1e-4 || p.distance(*old * 0.75) < 1e-4,
@@ -347,11 +347,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn all_methods_agree(mesh in conformance::strategy::manifold_mesh()) {
+        fn all_methods_agree(mesh in sixfold_conformance::strategy::manifold_mesh()) {
             let list = step_of::<IndexedFaceSet>(Method::Gather, &mesh);
             let known = list.vertex_count();
             assert_alike(&list, &step_of::<IndexedFaceSet>(Method::Scatter, &mesh), known);
-            // A structure may start a face at another corner; its own order of corners names them.
+            // A structure may start a face at another corner, so compare with its own order of
+            // corners.
             let halves = HalfEdgeMesh::from_polygons(&mesh).expect("a manifold").to_polygons();
             let list = step_of::<IndexedFaceSet>(Method::Gather, &halves);
             for method in [Method::Gather, Method::Scatter] {
@@ -360,7 +361,7 @@ mod tests {
         }
 
         #[test]
-        fn affine_maps_commute(mesh in conformance::strategy::manifold_mesh()) {
+        fn affine_maps_commute(mesh in sixfold_conformance::strategy::manifold_mesh()) {
             assert_affine(Scheme::DooSabin, &mesh, 0);
         }
     }

@@ -1,28 +1,28 @@
-//! Why a mesh cannot be subdivided.
+//! Errors of subdivision.
 
-use mesh_core::{BuildError, FaceId, Point, PolygonError, RefineError, VertexId};
+use sixfold_core::{BuildError, FaceId, Point, PolygonError, RefineError, VertexId};
 
 use crate::scheme::{Method, Scheme};
 
-/// Why a step, or a whole subdivision, cannot be done; nothing has changed then.
+/// The reason why a step, or a whole subdivision, failed. In this case nothing was changed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the message says what each field is")]
+#[expect(missing_docs, reason = "the message explains each field")]
 pub enum SubdivisionError {
-    /// A polygon where the scheme splits triangles alone.
+    /// A face with more than three corners, but the scheme splits only triangles.
     #[error(
-        "face {face} has {degree} corners, and {scheme} splits triangles alone: triangulate the mesh, or choose catmull-clark, doo-sabin or bilinear"
+        "face {face} has {degree} corners, and {scheme} splits only triangles: triangulate the mesh, or choose catmull-clark, doo-sabin or bilinear"
     )]
     NotATriangle {
         scheme: Scheme,
         face: FaceId,
         degree: usize,
     },
-    /// Sharpness where the scheme has no rule for it.
-    #[error("{scheme} has no rule for creases: leave them out, or choose catmull-clark or loop")]
+    /// Creases, but the scheme has no rule for them.
+    #[error("{scheme} has no rule for creases: remove them, or choose catmull-clark or loop")]
     NoCreases { scheme: Scheme },
-    /// A limit surface of which no masks are known here.
-    #[error("{scheme} has no limit masks: choose catmull-clark or loop, or take more levels")]
+    /// A scheme for which this crate has no limit masks.
+    #[error("{scheme} has no limit masks: choose catmull-clark or loop, or use more levels")]
     NoLimit { scheme: Scheme },
     /// A method that the scheme does not have.
     #[error("{scheme} has no {method} method: choose {choice}")]
@@ -40,13 +40,13 @@ pub enum SubdivisionError {
     },
     /// A vertex that the scheme has no rule for.
     #[error(
-        "the faces at vertex {vertex} are not one fan, and {scheme} needs one: double the vertex, or choose catmull-clark or loop"
+        "the faces at vertex {vertex} are not one fan, and {scheme} needs one: duplicate the vertex, or choose catmull-clark or loop"
     )]
     NonManifoldVertex { scheme: Scheme, vertex: VertexId },
     /// The structure cannot be refined.
     #[error(transparent)]
     Refine(#[from] RefineError),
-    /// More elements than a handle can name.
+    /// More elements than a 32-bit handle can number.
     #[error(transparent)]
     Polygons(#[from] PolygonError),
     /// The structure cannot hold the refined mesh.
@@ -58,51 +58,51 @@ pub enum SubdivisionError {
     },
 }
 
-/// Why a polygon or a control grid is no curve or patch.
+/// The reason why points do not define a curve or a patch.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the message says what each field is")]
+#[expect(missing_docs, reason = "the message explains each field")]
 pub enum CurveError {
-    /// Too few points one way.
-    #[error("{given} points, and these ends need at least {least}: add points, or keep the ends")]
+    /// Too few points in one direction.
+    #[error("{given} points given, these ends need at least {least}: add points, or keep the ends")]
     TooFewPoints { given: usize, least: usize },
-    /// More points than a handle can name.
+    /// More points than a 32-bit handle can number.
     #[error(
-        "{levels} levels of {given} points make more than {limit}: refine fewer levels, handles are 32 bits"
+        "{levels} levels of {given} points make too many points, 32-bit handles allow at most {limit}: refine fewer levels"
     )]
     TooManyPoints {
         given: usize,
         levels: u32,
         limit: usize,
     },
-    /// A last row that is not full.
-    #[error("{given} points do not fill rows of {columns}: add or take away points")]
+    /// An incomplete last row.
+    #[error("{given} points do not fill rows of {columns}: add or remove points")]
     RaggedGrid { given: usize, columns: usize },
 }
 
-/// Why a mesh cannot be refined here and there.
+/// The reason why a mesh cannot be refined locally.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the message says what each field is")]
+#[expect(missing_docs, reason = "the message explains each field")]
 pub enum LocalError {
-    /// A polygon where triangles alone can be refined.
+    /// A face with more than three corners: local refinement needs triangles.
     #[error(
-        "face {face} has {degree} corners, and triangles alone are refined here and there: triangulate the mesh"
+        "face {face} has {degree} corners, and local refinement needs triangles: triangulate the mesh"
     )]
     NotATriangle { face: FaceId, degree: usize },
-    /// A chosen face that is not there.
-    #[error("face {face} is not there: the mesh has {faces}, counted from 0")]
+    /// A chosen face that does not exist.
+    #[error("face {face} does not exist: the mesh has {faces}, counted from 0")]
     MissingFace { face: FaceId, faces: usize },
-    /// A box that contains nothing.
-    #[error("no box runs from {min} to {max}: give numbers, the lower ones first")]
+    /// A box with NaN or with swapped bounds.
+    #[error("{min} to {max} is not a box: give numbers, the lower ones first")]
     BadBox { min: Point, max: Point },
-    /// An angle that no two faces make.
-    #[error("{degrees} is no angle between two faces: give degrees from 0 to 180")]
+    /// An angle outside 0 to 180 degrees.
+    #[error("{degrees} is not an angle between two faces: give degrees from 0 to 180")]
     BadAngle { degrees: f32 },
-    /// An edge without a number between its ends.
-    #[error("edge {0}–{1} is too short to be halved, coordinates are 32 bits: refine fewer levels", .ends[0], .ends[1])]
+    /// An edge so short that no coordinate lies between its ends.
+    #[error("edge {0}–{1} is too short to be halved with 32-bit coordinates: refine fewer levels", .ends[0], .ends[1])]
     TooShort { ends: [VertexId; 2] },
-    /// More elements than a handle can name.
+    /// More elements than a 32-bit handle can number.
     #[error(transparent)]
     Polygons(#[from] PolygonError),
     /// The structure cannot hold the mesh.

@@ -1,11 +1,11 @@
-//! How large a mesh will be, before it is made.
+//! The size of a refined mesh, computed in advance.
 
-use mesh_core::{Counts, PolygonMesh, Split};
+use sixfold_core::{Counts, PolygonMesh, Split};
 
 use crate::scheme::Scheme;
 use crate::subdivision::Subdivision;
 
-/// The sizes of a mesh that decide how large the next level is, in closed form.
+/// The sizes of a mesh from which the sizes at the next level follow in closed form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extent {
     /// Vertices, edges, faces and corners.
@@ -16,12 +16,12 @@ pub struct Extent {
     pub boundary_corners: usize,
     /// Vertices without a face.
     pub isolated_vertices: usize,
-    /// Vertices inside with no more than two faces.
+    /// Inner vertices with exactly two faces.
     pub pinched_vertices: usize,
 }
 
 impl Extent {
-    /// The extent of `polygons`; O(corners) expected.
+    /// Returns the extent of `polygons`; O(corners) expected.
     pub fn of(polygons: &PolygonMesh) -> Self {
         let mut corners = vec![0_usize; polygons.vertex_count()];
         for v in polygons.faces().corners() {
@@ -46,7 +46,7 @@ impl Extent {
         }
     }
 
-    /// After a Doo–Sabin step; the formulas stand in `doo_sabin.rs`.
+    /// Returns the extent after a Doo–Sabin step; the formulas are in `doo_sabin.rs`.
     fn vertex_split(&self) -> Self {
         let &Self {
             counts,
@@ -78,10 +78,11 @@ impl Extent {
         }
     }
 
-    /// After every face is split.
+    /// Returns the extent after every face is split.
     fn face_split(&self, split: Split) -> Self {
         let boundary = self.boundary_edges;
-        // How many edges a boundary edge becomes, and how many corners come to the boundary for it.
+        // For each boundary edge: the number of edges it becomes, and of corners added at the
+        // boundary.
         let (edges, corners) = match split {
             Split::Quads => (2, 2),
             Split::Triangles => (2, 3),
@@ -99,10 +100,12 @@ impl Extent {
 }
 
 impl Subdivision {
-    /// The extent of a mesh after step `level`, counted from 0; O(1). Exact for manifolds, also before
-    /// the faces of a boundary are left out; of edges with three or more faces Catmull–Clark, Loop
-    /// and their linear twins count vertices, edges and faces right. Saturates where sizes leave
-    /// `usize`. The faces after a Doo–Sabin step are said to be of mixed degrees.
+    /// Returns the extent of a mesh after step `level`, counted from 0; O(1).
+    ///
+    /// Exact for manifolds; faces that the boundary rule leaves out later are included. With three
+    /// or more faces at an edge, the vertices, edges and faces are still exact for Catmull–Clark,
+    /// Loop, bilinear and midpoint. Sizes above `usize` saturate. A Doo–Sabin result is reported
+    /// with mixed degrees.
     pub fn grown(&self, extent: &Extent, level: u32) -> Extent {
         match self.split(level) {
             Some(split) => extent.face_split(split),
@@ -116,15 +119,15 @@ impl Subdivision {
 
 #[cfg(test)]
 mod tests {
-    use indexed_face_set::IndexedFaceSet;
-    use mesh_core::Creases;
     use proptest::prelude::*;
+    use sixfold_core::Creases;
+    use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
     use crate::alike::triangle_mesh;
     use crate::{Method, subdivide};
 
-    /// Holds two steps of a scheme to be as large as was told before.
+    /// Asserts that two steps of a scheme have the sizes computed in advance.
     fn assert_foretold(scheme: Scheme, polygons: &PolygonMesh) {
         let subdivision = Subdivision::new(scheme);
         let mut extent = Extent::of(polygons);
@@ -169,14 +172,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn polygons_grow_as_told(mesh in conformance::strategy::manifold_mesh()) {
+        fn polygons_grow_as_computed(mesh in sixfold_conformance::strategy::manifold_mesh()) {
             for scheme in [Scheme::DooSabin, Scheme::CatmullClark] {
                 assert_foretold(scheme, &mesh);
             }
         }
 
         #[test]
-        fn triangles_grow_as_told(mesh in triangle_mesh()) {
+        fn triangles_grow_as_computed(mesh in triangle_mesh()) {
             for scheme in [Scheme::Sqrt3, Scheme::Loop, Scheme::Butterfly] {
                 assert_foretold(scheme, &mesh);
             }

@@ -1,12 +1,12 @@
-//! Gather: for every new point, its neighbourhood is asked for.
+//! Gather: queries the neighbourhood of every new point.
 //!
 //! ```text
-//!   face point    FV                 Each question is asked where it arises, so that a structure
+//!   face point    FV                 Each query is made when its point is computed. A structure
 //!   edge point    EV, EF             that has to search for EF or VV searches once for each edge
 //!   vertex point  VV, VF             and each vertex: O(faces²) on a polygon soup.
 //! ```
 
-use mesh_core::{Creases, FaceMap, HandleMap, MeshQuery, Point};
+use sixfold_core::{Creases, FaceMap, HandleMap, MeshQuery, Point};
 
 use crate::SubdivisionError;
 use crate::crease::{SharpEdge, SharpLevel};
@@ -14,7 +14,7 @@ use crate::mask::{Mask, midpoint};
 use crate::options::Creasing;
 use crate::step::{Marked, Outline, Step};
 
-/// One step of a scheme that splits faces.
+/// Runs one step of a scheme that splits faces.
 pub(crate) fn step<M: MeshQuery, K: Mask>(
     mesh: &M,
     mask: K,
@@ -23,7 +23,7 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
     corners: usize,
 ) -> Result<Step, SubdivisionError> {
     let mut outline = Outline::of(K::SPLIT, mesh, corners);
-    // Without a row where no face value is read.
+    // The map stays empty if no face value is read.
     let mut values: FaceMap<M, Point> = HandleMap::filled(0, Point::ZERO);
     if K::EDGES_SEE_FACES || K::VERTICES_SEE_FACES || outline.has_face_points() {
         values = mesh.face_map(Point::ZERO);
@@ -80,20 +80,20 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
     outline.finish(creases)
 }
 
-/// Where vertices are, by their numbers; worked out where it is asked for.
+/// Collects the positions of the vertices; returns a function from number to position.
 pub(crate) fn by_number<M: MeshQuery>(mesh: &M) -> impl Fn(u32) -> Point {
     let positions: Vec<Point> = mesh.vertices().map(|v| mesh.position(v)).collect();
     move |v| positions[v as usize]
 }
 
-/// The face value of `f`.
+/// Returns the face value of `f`.
 #[inline(always)]
 pub(crate) fn face_value<M: MeshQuery, K: Mask>(mesh: &M, mask: K, f: M::Face) -> Point {
     let (sum, degree) = corner_sum(mesh, f);
     mask.face(sum, degree)
 }
 
-/// The sum of the corners of `f`, and how many there are.
+/// Returns the sum of the corners of `f`, and their number.
 #[inline(always)]
 pub(crate) fn corner_sum<M: MeshQuery>(mesh: &M, f: M::Face) -> (Point, usize) {
     let (mut sum, mut degree) = (Point::ZERO, 0);
@@ -104,7 +104,7 @@ pub(crate) fn corner_sum<M: MeshQuery>(mesh: &M, f: M::Face) -> (Point, usize) {
     (sum, degree)
 }
 
-/// The sum of the neighbours of `v`, and how many there are.
+/// Returns the sum of the neighbours of `v`, and their number.
 #[inline(always)]
 pub(crate) fn neighbour_sum<M: MeshQuery>(mesh: &M, v: M::Vertex) -> (Point, usize) {
     let (mut sum, mut valence) = (Point::ZERO, 0);
@@ -115,8 +115,8 @@ pub(crate) fn neighbour_sum<M: MeshQuery>(mesh: &M, v: M::Vertex) -> (Point, usi
     (sum, valence)
 }
 
-/// The point of edge `e` as if it were not sharp, and how many faces it has. Where these are not
-/// two it is the midpoint.
+/// Returns the point of edge `e` as if it were not sharp, and its number of faces. If this number
+/// is not 2, the point is the midpoint.
 #[inline(always)]
 pub(crate) fn edge_point<M: MeshQuery, K: Mask>(
     mesh: &M,
@@ -138,7 +138,7 @@ pub(crate) fn edge_point<M: MeshQuery, K: Mask>(
     }
 }
 
-/// Where vertex `v` goes as if nothing were sharp there; an isolated vertex stays.
+/// Returns the new position of vertex `v` as if nothing were sharp there; an isolated vertex stays.
 #[inline(always)]
 pub(crate) fn vertex_point<M: MeshQuery, K: Mask>(
     mesh: &M,

@@ -1,6 +1,6 @@
 //! Several steps, from polygons to polygons.
 
-use mesh_core::{Creases, FaceId, FaceList, PolygonMesh, Refine, Representation, VertexId};
+use sixfold_core::{Creases, FaceId, FaceList, PolygonMesh, Refine, Representation, VertexId};
 
 use crate::control::renumbered;
 use crate::error::SubdivisionError;
@@ -8,13 +8,14 @@ use crate::scheme::Method;
 use crate::step::Step;
 use crate::subdivision::Subdivision;
 
-/// Takes `levels` steps with a structure of type `M`, built anew for each; `watch` is told the level
-/// and its number of faces after every step. No level is the mesh itself.
+/// Runs `levels` steps with a structure of type `M`, which is built again for each step. Calls
+/// `watch` with the level and its number of faces after every step. With 0 levels, returns the mesh
+/// itself.
 ///
 /// # Errors
 ///
-/// What the scheme cannot split, what `M` cannot hold, or [`SubdivisionError::NoMethod`] for
-/// [`Method::Native`], which is [`subdivide_native`].
+/// Returns an error if the scheme cannot split the mesh, or if `M` cannot hold it. Returns
+/// [`SubdivisionError::NoMethod`] for [`Method::Native`]: use [`subdivide_native`].
 pub fn subdivide<M: Representation>(
     subdivision: &Subdivision,
     method: Method,
@@ -43,7 +44,7 @@ pub fn subdivide<M: Representation>(
             Method::Scatter => subdivision.scatter(&mesh, &creases, level)?,
             Method::Native => return Err(subdivision.not_by_polygons()),
         };
-        // The parts of one face follow one another: so many as it has corners, or four.
+        // The parts of one face are consecutive: as many as it has corners, or four.
         left_out = left_out.map(|left_out| {
             let degrees = at.polygons.faces().iter().map(|(_, face)| face.len());
             let parts = degrees.map(|degree| subdivision.parts_of(degree));
@@ -57,13 +58,14 @@ pub fn subdivide<M: Representation>(
     Ok(without(at, left_out))
 }
 
-/// Takes `levels` steps in the tables of a structure of type `M`, which is built once; on the threads
-/// of the current rayon pool. As [`subdivide`], but for the order of faces and edge points, which
-/// is the structure's own.
+/// Runs `levels` steps in the tables of a structure of type `M`, which is built once, on the
+/// threads of the current rayon pool. The result is that of [`subdivide`], except that faces and
+/// edge points have the order of the structure.
 ///
 /// # Errors
 ///
-/// What the scheme cannot split, what `M` cannot hold, or cannot do in its own tables.
+/// Returns an error if the scheme cannot split the mesh, or if `M` cannot hold it or cannot split
+/// its own tables.
 pub fn subdivide_native<M: Refine>(
     subdivision: &Subdivision,
     polygons: &PolygonMesh,
@@ -97,11 +99,11 @@ pub fn subdivide_native<M: Refine>(
     Ok(without(Step { polygons, creases }, left_out))
 }
 
-/// The structure of a level, from its polygons.
+/// Builds the structure of a level from its polygons.
 ///
 /// # Errors
 ///
-/// [`SubdivisionError::Build`] with the refusal, and the level, counted from the control mesh at 0.
+/// Returns [`SubdivisionError::Build`] with the refusal and the level; the control mesh is level 0.
 pub fn built<M: Representation>(polygons: &PolygonMesh, level: u32) -> Result<M, SubdivisionError> {
     M::from_polygons(polygons).map_err(|refusal| SubdivisionError::Build {
         structure: M::NAME,
@@ -110,7 +112,8 @@ pub fn built<M: Representation>(polygons: &PolygonMesh, level: u32) -> Result<M,
     })
 }
 
-/// The mesh without the faces that are left out, and without the vertices that only they had.
+/// Returns the mesh without the faces that are left out, and without the vertices of only such
+/// faces.
 fn without(step: Step, left_out: Option<Vec<bool>>) -> Step {
     let Some(left_out) = left_out.filter(|left_out| left_out.contains(&true)) else {
         return step;
@@ -129,7 +132,7 @@ fn without(step: Step, left_out: Option<Vec<bool>>) -> Step {
     let mut positions = Vec::new();
     let mut names = vec![None; polygons.vertex_count()];
     for v in polygons.vertices() {
-        // Vertices that had no face before stay isolated.
+        // Vertices that had no face before stay, isolated.
         if used[v.index()] || !lost[v.index()] {
             names[v.index()] = Some(VertexId::new(positions.len() as u32));
             positions.push(polygons.position(v));
@@ -142,7 +145,7 @@ fn without(step: Step, left_out: Option<Vec<bool>>) -> Step {
     }
     let edges = creases.edges().iter().filter_map(|&(ends, sharpness)| {
         let [a, b] = ends.ends().map(|v| names[v.index()]);
-        Some((mesh_core::Pair::new(a?, b?), sharpness))
+        Some((sixfold_core::Pair::new(a?, b?), sharpness))
     });
     let corners = creases.corners().iter();
     let corners = corners.filter_map(|&(v, sharpness)| Some((names[v.index()]?, sharpness)));

@@ -1,16 +1,19 @@
-//! Subdivision: schemes written once, run on any structure, in three ways.
+//! Subdivision schemes. Each scheme is written once and runs on any structure, by up to three
+//! methods.
 //!
-//! - [`Scheme`]: what schemes there are, and [`Kind`] the classification of each.
+//! - [`Scheme`]: the schemes; [`Kind`]: the classification of each.
 //! - [`Subdivision`]: a scheme with its options; one step by [`gather`](Subdivision::gather),
 //!   [`scatter`](Subdivision::scatter) or [`refine_into`](Subdivision::refine_into).
 //! - [`subdivide`], [`subdivide_native`]: several steps from polygons to polygons.
-//! - [`Extent`]: how large the result will be, before it is made.
-//! - [`limit`](Subdivision::limit): where vertices go in endless levels, as [`LimitPoint`]s.
-//! - [`cubic_b_spline`], [`chaikin`]: the same for curves; [`ControlGrid`]: for curves of curves.
-//! - [`refine_locally`]: triangles split where a [`Selection`] says, and conforming all the same.
+//! - [`Extent`]: the size of the result, computed in advance.
+//! - [`limit`](Subdivision::limit): the limit positions and normals of the vertices, as
+//!   [`LimitPoint`]s.
+//! - [`cubic_b_spline`], [`chaikin`]: the same for curves; [`ControlGrid`]: for tensor-product
+//!   patches.
+//! - [`refine_locally`]: splits the triangles of a [`Selection`] and keeps the mesh conforming.
 //!
-//! The weights of each scheme stand in a file of its own; what is sharp is placed afterwards, for all
-//! schemes and methods in one place (`crease.rs`).
+//! Each scheme has its weights in a file of its own. Points at sharp edges and vertices are placed
+//! afterwards, in one file for all schemes and methods (`crease.rs`).
 
 #[cfg(test)]
 mod alike;

@@ -1,7 +1,8 @@
-//! Where the vertices of Catmull–Clark and Loop go in endless levels, and how the surface stands there.
+//! Limit positions and normals of the vertices of Catmull–Clark and Loop, after infinitely many
+//! levels.
 //!
-//! A step is a matrix on the neighbourhood of a vertex. Its left eigenvectors do not change from level
-//! to level: that of the eigenvalue 1 is the limit position, those of the next two are tangents.
+//! A step is a matrix on the neighbourhood of a vertex. Its left eigenvectors are the same at every
+//! level: that of the eigenvalue 1 gives the limit position, those of the next two give tangents.
 //!
 //! ```text
 //!   smooth, Catmull–Clark       smooth, Loop          crease            corner
@@ -16,7 +17,7 @@
 //!
 //! Positions: Halstead, Kass & DeRose (1993), Loop (1987). Tangents: `tangent.rs`.
 
-use mesh_core::{Creases, FaceId, MeshQuery, Point, SHARP_FOR_EVER, VertexId, VertexMap};
+use sixfold_core::{Creases, FaceId, MeshQuery, Point, SHARP_FOR_EVER, VertexId, VertexMap};
 
 use crate::crease::{Rule, is_semi_sharp};
 use crate::error::SubdivisionError;
@@ -26,49 +27,51 @@ use crate::step::Marked;
 use crate::subdivision::Subdivision;
 use crate::tangent::{Fan, Surface, far_corner, normal, rounding};
 
-/// What becomes of a vertex in endless levels.
+/// The limit of a vertex after infinitely many levels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitPoint {
-    /// It comes to a place that its neighbourhood tells at once.
+    /// The limit follows directly from the neighbourhood of the vertex.
     Defined {
-        /// The place on the limit surface.
+        /// The position on the limit surface.
         position: Point,
-        /// How the surface stands there.
+        /// The normal of the limit surface.
         normal: LimitNormal,
     },
-    /// No mask tells its place at this level.
+    /// No mask gives the limit at this level.
     Undefined(NoLimit),
 }
 
-/// How the limit surface stands at a vertex; normals have length 1 and point to the side from which
-/// faces run counter-clockwise.
+/// The normal of the limit surface at a vertex. Normals have length 1 and point to the side from
+/// which faces run counter-clockwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitNormal {
-    /// It has this normal.
+    /// One normal.
     One(Point),
-    /// A crease runs through: it has one normal on each side, first that of the faces which come
-    /// counter-clockwise after the crease's end with the lower number.
+    /// A crease passes through the vertex: one normal on each side. The first is that of the faces
+    /// that follow counter-clockwise after the end of the crease with the lower number.
     TwoSides([Point; 2]),
-    /// It has none that a mask tells: at corners of several faces, where a face beside it is no quad
-    /// (Catmull–Clark), inside at valence 2, where faces are not one oriented fan, and where the
-    /// neighbourhood has no area.
+    /// No mask gives a normal. This is so at corners with several faces, next to a face that is not
+    /// a quad (Catmull–Clark), at inner vertices of valence 2, if the faces are not one oriented
+    /// fan, and if the neighbourhood has no area.
     Undefined,
 }
 
-/// Why a vertex has no limit at this level.
+/// The reason why a vertex has no limit at this level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum NoLimit {
-    /// It, or an edge there, is sharp for some levels yet: a later level tells.
+    /// The vertex, or one of its edges, has finite sharpness: the limit is defined at a later
+    /// level.
     SemiSharp,
-    /// A face there is no quad, and Catmull–Clark's mask is for quads: the next level tells.
+    /// A face at the vertex is not a quad, and the Catmull–Clark mask needs quads: the limit is
+    /// defined at the next level.
     NotAllQuads,
-    /// One crease ends there: the rules of a step have no mask for it.
+    /// One crease ends at the vertex: the rules of a step have no limit mask for it.
     Dart,
 }
 
 impl LimitPoint {
-    /// Where it comes to, if that is defined.
+    /// Returns the limit position, if it is defined.
     pub fn position(self) -> Option<Point> {
         match self {
             Self::Defined { position, .. } => Some(position),
@@ -76,14 +79,14 @@ impl LimitPoint {
         }
     }
 
-    /// Its normal, if that is defined; on a crease the mean of both sides.
+    /// Returns the normal, if it is defined; on a crease the mean of both sides.
     pub fn normal(self) -> Option<Point> {
         match self {
             Self::Defined { normal, .. } => match normal {
                 LimitNormal::One(normal) => Some(normal),
                 LimitNormal::TwoSides([a, b]) => {
                     let sum = a + b;
-                    // Where the sides lie back to back what is left of the sum is rounding.
+                    // If the sides are back to back, the sum is only rounding error.
                     (sum.length() > 1e-3).then(|| sum.normalize())
                 }
                 LimitNormal::Undefined => None,
@@ -94,15 +97,18 @@ impl LimitPoint {
 }
 
 impl Subdivision {
-    /// Where each vertex of `mesh` goes in endless levels, of Catmull–Clark and Loop.
+    /// Returns the limit of each vertex of `mesh` after infinitely many levels, for Catmull–Clark
+    /// and Loop.
     ///
-    /// `creases` are those of `mesh.to_polygons()`, from [`control`](Self::control) or the step that
-    /// made it. Of n-gons the limit is defined on creases and at corners, and everywhere after one
-    /// step. O(valence log valence) a vertex beyond the costs of EF, VV, VF and FV.
+    /// `creases` are those of `mesh.to_polygons()`, from [`control`](Self::control) or from the
+    /// step that made the mesh. Next to faces that are not quads, Catmull–Clark has limits only on
+    /// creases and at corners; after one step, everywhere. O(valence log valence) per vertex, plus
+    /// the costs of EF, VV, VF and FV.
     ///
     /// # Errors
     ///
-    /// [`SubdivisionError::NoLimit`] for other schemes, and a face that Loop cannot split.
+    /// Returns [`SubdivisionError::NoLimit`] for other schemes, and
+    /// [`SubdivisionError::NotATriangle`] for a face that Loop cannot split.
     pub fn limit<M: MeshQuery>(
         &self,
         mesh: &M,
@@ -119,7 +125,7 @@ impl Subdivision {
     }
 }
 
-/// That every face has three corners.
+/// Checks that every face has three corners.
 fn all_triangles<M: MeshQuery>(mesh: &M, scheme: Scheme) -> Result<(), SubdivisionError> {
     let degrees = mesh.faces().map(|f| mesh.face_vertices(f).count());
     match (0..).zip(degrees).find(|&(_, degree)| degree != 3) {
@@ -132,14 +138,14 @@ fn all_triangles<M: MeshQuery>(mesh: &M, scheme: Scheme) -> Result<(), Subdivisi
     }
 }
 
-/// A sharp edge as one of its ends sees it.
+/// One end of a sharp edge.
 struct Spoke<V> {
     at: u32,
     far: V,
     sharpness: f32,
 }
 
-/// Both views of every sharp edge, in the order of the vertices, and of the far ends there.
+/// Returns the two spokes of every sharp edge, sorted by vertex and then by far end.
 fn spokes<M: MeshQuery>(mesh: &M, creases: &Creases) -> Vec<Spoke<M::Vertex>> {
     let mut numbers = mesh.vertex_map(0_u32);
     for (number, v) in (0..).zip(mesh.vertices()) {
@@ -178,10 +184,10 @@ fn limits<M: MeshQuery>(mesh: &M, creases: &Creases, surface: Surface) -> Vertex
     limits
 }
 
-/// The limit of `v`, of the sharpness `own` and with these sharp edges.
+/// Returns the limit of `v` with the sharpness `own` and the sharp edges `around`.
 ///
-/// Edges that do not end at `v` do not matter, sharp or not: the next ring around it is made of the
-/// points of its own edges and faces.
+/// Edges that do not end at `v` have no influence, sharp or not: the next ring around `v` consists
+/// of the points of its own edges and faces.
 fn limit_of<M: MeshQuery>(
     mesh: &M,
     v: M::Vertex,
@@ -216,8 +222,8 @@ fn limit_of<M: MeshQuery>(
     }
 }
 
-/// The normal of a vertex with one face: the rules keep its two edges where they are. Of more faces
-/// no two need lie in one plane.
+/// Returns the normal of a corner with one face: the rules keep the directions of its two edges.
+/// With more faces it is undefined, because no two faces need to lie in one plane.
 fn corner_normal<M: MeshQuery>(mesh: &M, v: M::Vertex) -> LimitNormal {
     let mut faces = mesh.vertex_faces(v);
     let (Some(face), None) = (faces.next(), faces.next()) else {
@@ -240,7 +246,7 @@ fn smooth_limit<M: MeshQuery>(mesh: &M, v: M::Vertex, surface: Surface) -> Limit
         valence += 1;
     });
     if valence == 0 {
-        // Isolated: every step leaves it where it is.
+        // Every step leaves an isolated vertex unchanged.
         return LimitPoint::Defined {
             position: at,
             normal: LimitNormal::Undefined,

@@ -1,8 +1,8 @@
-//! Local refinement: only chosen triangles are split, and still no corner lies on a side.
+//! Local refinement: splits only chosen triangles, and no corner lies inside a side afterwards.
 //!
-//! Red and green, after Bank, Sherman & Weiser (1983). Chosen faces are split in four, *red*. What
-//! has two or three split sides then becomes red as well, until nothing changes; what has one is
-//! halved, *green*.
+//! Red-green refinement after Bank, Sherman & Weiser (1983). Chosen faces are split in four, *red*.
+//! Faces with two or three split sides then become red as well, until nothing changes. Faces with
+//! one split side are halved, *green*.
 //!
 //! ```text
 //!    red             green            green that must be split again: its parent becomes red
@@ -14,10 +14,10 @@
 //!  a───m───b        a───m───b               a─x─m───b                 a─x─m───b   (a, m, q) is green
 //! ```
 //!
-//! So every face is a part of a first one like it in shape, or half of such a part: angles do not
-//! become smaller and smaller with the levels. New points are midpoints, and old ones stay.
+//! Every face therefore has the shape of a face of the first mesh, or is half of such a face:
+//! angles do not keep shrinking with the levels. New points are midpoints; old points stay.
 
-use mesh_core::{
+use sixfold_core::{
     EdgeMap, FaceId, FaceList, MAX_ROWS, MeshQuery, Point, PolygonError, PolygonMesh,
     Representation, VertexId,
 };
@@ -26,28 +26,29 @@ use crate::error::LocalError;
 use crate::mask::midpoint;
 use crate::select::{Selection, triangle};
 
-/// Takes `levels` steps of local refinement with a structure of type `M`, built anew for each.
+/// Runs `levels` steps of local refinement with a structure of type `M`, which is built again for
+/// each step.
 ///
-/// Of a list of faces, the parts are chosen at the next level; a box and an angle are asked anew.
-/// O(faces) a level beyond the costs of FE, EF and FV.
+/// For a list of faces, their parts are chosen at the next level. A box and an angle are evaluated
+/// again at every level. O(faces) per level, plus the costs of FE, EF and FV.
 ///
 /// # Errors
 ///
-/// A selection that makes no sense, a face that is no triangle, edges that are too short to be
-/// halved, more faces than a handle can name, or what `M` cannot hold.
+/// Returns an error for an invalid selection, a face that is not a triangle, an edge that is too
+/// short to be halved, more faces than a 32-bit handle can number, or a mesh that `M` cannot hold.
 ///
 /// # Examples
 ///
 /// ```
-/// use indexed_face_set::IndexedFaceSet;
-/// use mesh_core::FaceId;
-/// use subdivision::{Selection, refine_locally};
+/// use sixfold_indexed_face_set::IndexedFaceSet;
+/// use sixfold_core::FaceId;
+/// use sixfold_subdivision::{Selection, refine_locally};
 ///
-/// // One face in four, and three neighbours in two.
+/// // One face is split in four, and its three neighbours in two.
 /// let one = Selection::Faces(vec![FaceId::new(0)]);
-/// let refined = refine_locally::<IndexedFaceSet>(&shapes::octahedron(), &one, 1)?;
+/// let refined = refine_locally::<IndexedFaceSet>(&sixfold_shapes::octahedron(), &one, 1)?;
 /// assert_eq!(refined.polygons().face_count(), 4 + 3 * 2 + 4);
-/// # Ok::<(), subdivision::LocalError>(())
+/// # Ok::<(), sixfold_subdivision::LocalError>(())
 /// ```
 pub fn refine_locally<M: Representation>(
     polygons: &PolygonMesh,
@@ -74,7 +75,7 @@ pub fn refine_locally<M: Representation>(
     Ok(local)
 }
 
-/// A triangle mesh that has been refined here and there, and how it came about.
+/// A triangle mesh after local refinement, and how each face was made.
 ///
 /// # Invariants
 ///
@@ -87,17 +88,17 @@ pub struct LocalMesh {
     kinds: Vec<Kind>,
 }
 
-/// How a face came about.
+/// How a face was made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Kind {
-    /// Which face of the first mesh it is a part of.
+    /// The face of the first mesh that it is part of.
     origin: FaceId,
     half: Option<Half>,
     /// Whether it is part of a face that was chosen in the last step.
     chosen: bool,
 }
 
-/// Which face of a green pair.
+/// The position of a face in a green pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Half {
     First,
@@ -105,11 +106,11 @@ enum Half {
 }
 
 impl LocalMesh {
-    /// A mesh that has not been refined.
+    /// Builds a mesh that has not been refined.
     ///
     /// # Errors
     ///
-    /// The first face that is no triangle.
+    /// Returns [`LocalError::NotATriangle`] for the first face that is not a triangle.
     pub fn new(polygons: PolygonMesh) -> Result<Self, LocalError> {
         let faces = polygons.faces();
         if let Some((face, degree)) = polygons.first_polygon() {
@@ -124,48 +125,49 @@ impl LocalMesh {
         Ok(Self { polygons, kinds })
     }
 
-    /// The mesh: vertices of the mesh before in its order, then midpoints; the parts of a face follow
-    /// one another.
+    /// Returns the mesh: first the vertices of the previous mesh in its order, then the midpoints.
+    /// The parts of a face are consecutive.
     pub fn polygons(&self) -> &PolygonMesh {
         &self.polygons
     }
 
-    /// Which face of the first mesh each face is a part of, in their order.
+    /// Returns for each face, in order, the face of the first mesh that it is part of.
     pub fn origins(&self) -> impl ExactSizeIterator<Item = FaceId> {
         self.kinds.iter().map(|kind| kind.origin)
     }
 
-    /// Whether `f` is half of a face, and will be undone rather than split.
+    /// Returns whether `f` is half of a face. A half is not split again; its pair is undone
+    /// instead.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// Panics if `f` does not exist.
     pub fn is_green(&self, f: FaceId) -> bool {
         self.kinds[f.index()].half.is_some()
     }
 
-    /// The parts of the faces that were chosen in the last step.
+    /// Returns the parts of the faces that were chosen in the last step.
     pub fn chosen_parts(&self) -> Vec<FaceId> {
         let kinds = (0..).map(FaceId::new).zip(&self.kinds);
         let chosen = kinds.filter(|(_, kind)| kind.chosen);
         chosen.map(|(f, _)| f).collect()
     }
 
-    /// One step: splits the faces `chosen`, numbers in the order of faces, and what must be split with
-    /// them. `mesh` is any structure that was built from [`polygons`](Self::polygons). Where the faces
-    /// of an edge are more than two all of them take part.
+    /// Runs one step: splits the faces `chosen`, given by number in the order of faces, and the
+    /// faces that must be split with them. `mesh` is any structure that was built from
+    /// [`polygons`](Self::polygons). If an edge has more than two faces, all of them take part.
     ///
     /// # Errors
     ///
-    /// A number that no face has, an edge that is too short to be halved, or more faces than a handle
-    /// can name.
+    /// Returns an error for a face that does not exist, an edge that is too short to be halved, or
+    /// more faces than a 32-bit handle can number.
     ///
     /// # Panics
     ///
-    /// If `mesh` has another number of faces.
+    /// Panics if `mesh` has another number of faces.
     pub fn refined<M: MeshQuery>(&self, mesh: &M, chosen: &[FaceId]) -> Result<Self, LocalError> {
         let faces = self.kinds.len();
-        assert_eq!(mesh.face_count(), faces, "a mesh of these polygons");
+        assert_eq!(mesh.face_count(), faces, "the mesh has other polygons");
         Selection::check_faces(chosen, faces)?;
         let mut step = Step::new(self, mesh)?;
         for f in chosen {
@@ -177,21 +179,21 @@ impl LocalMesh {
     }
 }
 
-/// A step under way.
+/// A step in progress.
 struct Step<'a, M: MeshQuery> {
     before: &'a [Kind],
     mesh: &'a M,
-    numbers: mesh_core::FaceMap<M, u32>,
-    /// Of a green face the first corner is the one that the other half does not have: (a, m, c) and
+    numbers: sixfold_core::FaceMap<M, u32>,
+    /// The first corner of a green face is the one that the other half does not have: (a, m, c) and
     /// (b, c, m).
     faces: Vec<Triangle<M::Vertex, M::Edge>>,
     split: EdgeMap<M, bool>,
-    /// By face: how many of its sides are split; whether it, or the whole it is half of, is red;
+    /// By face: the number of its split sides; whether it is red, or half of a face that is red;
     /// whether it was chosen.
     split_sides: Vec<u8>,
     red: Vec<bool>,
     chosen: Vec<bool>,
-    /// Faces that are to become red.
+    /// Faces that must become red.
     waiting: Vec<usize>,
 }
 
@@ -227,7 +229,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
         })
     }
 
-    /// Makes faces red until no more have to be; every side is split at most once.
+    /// Makes faces red until no other face must be red; splits every side at most once.
     fn close(&mut self) {
         while let Some(f) = self.waiting.pop() {
             if self.red[f] {
@@ -237,7 +239,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
             let sides = self.faces[f].sides;
             match self.before[f].half {
                 None => sides.into_iter().for_each(|side| self.split(side)),
-                // The side of the whole that is not halved yet: c–a of (a, m, c), b–c of (b, c, m).
+                // The side of the whole face not halved yet: c–a of (a, m, c), b–c of (b, c, m).
                 Some(Half::First) => {
                     self.split(sides[2]);
                     self.waiting.push(f + 1);
@@ -257,7 +259,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
         for f in self.mesh.edge_faces(side) {
             let f = self.numbers[f] as usize;
             self.split_sides[f] += 1;
-            // Half a face cannot be halved.
+            // A half is not halved again.
             if self.split_sides[f] > 1 || self.before[f].half.is_some() {
                 self.waiting.push(f);
             }
@@ -274,7 +276,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
         let mut names = mesh.vertex_map(VertexId::new(0));
         let mut points: Vec<Point> = Vec::with_capacity(mesh.vertex_count());
         for v in mesh.vertices() {
-            names[v] = VertexId::new(mesh_core::row(points.len()));
+            names[v] = VertexId::new(sixfold_core::row(points.len()));
             points.push(mesh.position(v));
         }
         let mut middles = mesh.edge_map(None);
@@ -286,7 +288,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
                 let ends = ends.map(|v| names[v]);
                 return Err(LocalError::TooShort { ends });
             }
-            middles[e] = Some(VertexId::new(mesh_core::row(points.len())));
+            middles[e] = Some(VertexId::new(sixfold_core::row(points.len())));
             points.push(middle);
         }
         let mut parts = Parts::default();
@@ -313,7 +315,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
                     let halves = [corners, other.corners.map(|v| names[v])];
                     parts.split_again(kind, halves, [sides, other.sides].map(middles_of))?;
                 }
-                // Done with the first half.
+                // Handled with the first half.
                 Some(Half::Second) => {}
             }
         }
@@ -322,7 +324,8 @@ impl<'a, M: MeshQuery> Step<'a, M> {
         Ok(LocalMesh { polygons, kinds })
     }
 
-    /// How many parts come of a face; those of a green pair that is undone are counted at each half.
+    /// Returns the number of parts of a face; each half of a green pair that is undone counts its
+    /// own.
     fn parts(&self, f: usize) -> usize {
         let is_red = self.red[f];
         match self.before[f].half {
@@ -342,7 +345,7 @@ struct Triangle<V, E> {
 }
 
 impl<V: Copy + Eq, E: Copy> Triangle<V, E> {
-    /// The same from the corner on that `other` does not have.
+    /// Returns the same face, starting at the corner that `other` does not have.
     fn turned(self, other: Self) -> Self {
         let alone = |v: &V| !other.corners.contains(v);
         let from = self.corners.iter().position(alone);
@@ -368,7 +371,7 @@ impl Parts {
         self.faces.push(corners)
     }
 
-    /// A face with the middles of its sides, where these are split: none, one, or all three.
+    /// Adds the parts of a face with these middles of its split sides: no side, one, or all three.
     fn split(
         &mut self,
         kind: Kind,
@@ -393,7 +396,7 @@ impl Parts {
         }
     }
 
-    /// The halves of a face whose first side has the middle `m`.
+    /// Adds the halves of a face whose first side has the middle `m`.
     fn halve(
         &mut self,
         kind: Kind,
@@ -408,8 +411,8 @@ impl Parts {
         self.push(half(Half::Second), [m, b, c])
     }
 
-    /// The whole of two halves (a, m, c) and (b, c, m), made red: the outer parts at a and b are halved
-    /// where their part of the side is split again.
+    /// Adds the parts of the whole of two halves (a, m, c) and (b, c, m), which is now red. The
+    /// outer parts at a and b are halved if their part of the side is split again.
     fn split_again(
         &mut self,
         kind: Kind,

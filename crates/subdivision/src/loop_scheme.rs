@@ -1,7 +1,7 @@
-//! Loop: every triangle into four, approximating, C² but at extraordinary vertices.
+//! Loop: splits every triangle into four; approximating, C² except at extraordinary vertices.
 //!
-//! Loop (1987), with his weights or Warren's (Warren 1995; 3/16 at valence 3, 3/(8n) beyond). The
-//! file is not called after the scheme alone, for `loop` is a word of the language.
+//! Loop (1987), with Loop's weights or Warren's (Warren 1995; 3/16 at valence 3, 3/(8n) at higher
+//! valence). The file is not called `loop.rs` because `loop` is a keyword.
 //!
 //! ```text
 //!     edge point                  vertex point, valence n
@@ -15,12 +15,12 @@
 
 use std::f64::consts::TAU;
 
-use mesh_core::{Point, Split};
+use sixfold_core::{Point, Split};
 
 use crate::mask::Mask;
 use crate::options::LoopWeights;
 
-/// Valences whose β is looked up; few vertices have more.
+/// Number of valences with precomputed β, from 0; few vertices have a higher valence.
 const LOOKED_UP: usize = 16;
 
 /// The weights of Loop (1987), or of Warren.
@@ -31,7 +31,7 @@ pub(crate) struct Loop {
 }
 
 impl Loop {
-    /// The scheme with these weights.
+    /// Builds the scheme with these weights.
     pub(crate) fn new(weights: LoopWeights) -> Self {
         let betas = std::array::from_fn(|n| beta(weights, n.max(1)) as f32);
         Self { weights, betas }
@@ -45,7 +45,7 @@ impl Loop {
     }
 }
 
-/// The weight of each of `valence` neighbours.
+/// Returns the weight of each of `valence` neighbours.
 pub(crate) fn beta(weights: LoopWeights, valence: usize) -> f64 {
     let n = valence as f64;
     match weights {
@@ -64,8 +64,8 @@ impl Mask for Loop {
     const EDGES_SEE_FACES: bool = true;
     const VERTICES_SEE_FACES: bool = false;
 
-    /// The sum of the corners. Both faces' together hold the ends twice and the two far corners
-    /// once, so that no corner has to be told from another.
+    /// Returns the sum of the corners. The sums of both faces together contain the ends twice and
+    /// the two far corners once, so no corner has to be distinguished from another.
     #[inline(always)]
     fn face(self, corners: Point, _: usize) -> Point {
         corners
@@ -85,15 +85,15 @@ impl Mask for Loop {
 
 #[cfg(test)]
 mod tests {
-    use indexed_face_set::IndexedFaceSet;
-    use mesh_core::{Creases, PolygonMesh};
+    use sixfold_core::{Creases, PolygonMesh};
+    use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
     use crate::alike::assert_near;
     use crate::{Method, Scheme, Subdivision, subdivide};
 
     #[test]
-    fn the_weights_are_those_of_the_papers() {
+    fn the_weights_match_the_papers() {
         let loops = |n| beta(LoopWeights::Loop, n);
         assert!((loops(6) - 1.0 / 16.0).abs() < 1e-15);
         assert!((loops(3) - 3.0 / 16.0).abs() < 1e-15);
@@ -107,7 +107,7 @@ mod tests {
         assert_eq!(scheme.beta(40), (3.0_f64 / 320.0) as f32);
     }
 
-    /// The points of a step, by gather and by scatter.
+    /// Returns the points of a step, by gather and by scatter.
     fn steps(weights: LoopWeights, polygons: &PolygonMesh) -> [Vec<Point>; 2] {
         let scheme = Subdivision {
             loop_weights: weights,
@@ -120,10 +120,10 @@ mod tests {
         })
     }
 
-    /// Around its centre the four neighbours of a vertex v add up to 0, and so do the far corners of
-    /// an edge: v goes to (1 − 4β) v, an edge point to 3/8 (a + b).
+    /// Relative to the centre, the four neighbours of a vertex v sum to 0, and so do the far
+    /// corners of an edge: v moves to (1 − 4β) v, an edge point is 3/8 (a + b).
     #[test]
-    fn an_octahedron_goes_where_the_paper_says() {
+    fn an_octahedron_matches_the_paper() {
         let octahedron = octahedron();
         // β = (5/8 − (3/8)²)/4 = 31/256, and Warren's 3/32.
         let of_loop = steps(LoopWeights::Loop, &octahedron).map(|points| (points, 33.0 / 64.0));
@@ -144,7 +144,7 @@ mod tests {
     fn octahedron() -> PolygonMesh {
         let axes = [Point::X, Point::Y, Point::Z];
         let corners = axes.map(|axis| [axis, -axis]).concat();
-        // Corner 2k is +, 2k + 1 is − on axis k; with an odd number of minuses a face runs backwards.
+        // Corner 2k is +, 2k + 1 is − on axis k; a face with an odd number of minuses is reversed.
         let faces = (0..8_u32).map(|signs| {
             let [x, y, z] = [0, 1, 2].map(|axis| 2 * axis + (signs >> axis & 1));
             if signs.count_ones() % 2 == 0 {
@@ -156,11 +156,11 @@ mod tests {
         PolygonMesh::new(corners, faces.collect::<Vec<_>>()).expect("eight triangles")
     }
 
-    /// Around its centre the other three corners of a tetrahedron add up to −v, and with β = 3/16
-    /// v goes to 7/16 v − 3/16 v = v/4. The far corners of an edge add up to −(a + b), and its point is
-    /// 3/8 (a + b) − 1/8 (a + b) = (a + b)/4.
+    /// Relative to the centre, the other three corners of a tetrahedron sum to −v, and with
+    /// β = 3/16 v moves to 7/16 v − 3/16 v = v/4. The far corners of an edge sum to −(a + b), and
+    /// its point is 3/8 (a + b) − 1/8 (a + b) = (a + b)/4.
     #[test]
-    fn a_tetrahedron_goes_where_the_paper_says() {
+    fn a_tetrahedron_matches_the_paper() {
         let corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]];
         let corners = corners.map(|at: [i8; 3]| Point::from(at.map(f32::from)));
         let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
@@ -171,7 +171,7 @@ mod tests {
             for (old, new) in corners.iter().zip(points) {
                 assert_near(*new, *old * 0.25);
             }
-            // Half-way along an axis of the cube around it.
+            // Half-way along an axis of the surrounding cube.
             for p in &points[4..] {
                 let mut sizes = p.abs().to_array();
                 sizes.sort_by(f32::total_cmp);

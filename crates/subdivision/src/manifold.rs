@@ -1,12 +1,13 @@
-//! What a mesh must be where a scheme looks across edges or around vertices: oriented, in fans.
+//! Checks that a mesh is an oriented manifold, for schemes that look across edges or around
+//! vertices.
 
-use mesh_core::{MeshQuery, Refine, in_given_parts};
+use sixfold_core::{MeshQuery, Refine, in_given_parts};
 
 use crate::error::SubdivisionError;
 use crate::scheme::Scheme;
 use crate::sheet::{non_manifold_edge, non_manifold_vertex};
 
-/// Whether `f` has `b` after `a`.
+/// Returns whether `f` has `b` after `a`.
 pub(crate) fn runs<M: MeshQuery>(mesh: &M, f: M::Face, [a, b]: [M::Vertex; 2]) -> bool {
     let (mut first, mut last, mut found) = (None, None, false);
     mesh.face_vertices(f).for_each(|v| {
@@ -17,7 +18,8 @@ pub(crate) fn runs<M: MeshQuery>(mesh: &M, f: M::Face, [a, b]: [M::Vertex; 2]) -
     found || (last == Some(a) && first == Some(b))
 }
 
-/// Whether `e` has one face, or two that run along it in opposite directions; else how many.
+/// Checks that `e` has one face, or two that run along it in opposite directions; otherwise the
+/// error is the number of its faces.
 fn check_edge<M: MeshQuery>(mesh: &M, e: M::Edge) -> Result<(), usize> {
     let ends = mesh.edge_vertices(e);
     let mut along = [0, 0];
@@ -30,12 +32,12 @@ fn check_edge<M: MeshQuery>(mesh: &M, e: M::Edge) -> Result<(), usize> {
     }
 }
 
-/// Whether every edge has one face, or two that run along it in opposite directions, and the faces
-/// at every vertex are one fan.
+/// Checks that every edge has one face, or two that run along it in opposite directions, and that
+/// the faces at every vertex are one fan.
 ///
 /// # Errors
 ///
-/// The first edge that has not, else the first vertex where they are not.
+/// The first edge that fails, otherwise the first vertex that fails.
 pub(crate) fn check<M: MeshQuery>(mesh: &M, scheme: Scheme) -> Result<(), SubdivisionError> {
     let number_of = |v: M::Vertex| mesh.vertices().position(|w| w == v).unwrap_or(0) as u32;
     for e in mesh.edges() {
@@ -52,17 +54,18 @@ pub(crate) fn check<M: MeshQuery>(mesh: &M, scheme: Scheme) -> Result<(), Subdiv
     Ok(())
 }
 
-/// Whether a structure holds nothing that [`check`] would find.
+/// Returns whether every mesh in a structure of type `M` passes [`check`].
 pub(crate) fn is_sure<M: Refine>() -> bool {
     let can = M::CAPABILITIES;
     !(can.non_manifold_edges || can.non_manifold_vertices || can.inconsistent_orientation)
 }
 
-/// The boundary edges in their order, each as its face runs along it; in parts that threads share.
+/// Returns the boundary edges in their order, each in the direction of its face. Threads share the
+/// parts.
 ///
 /// # Errors
 ///
-/// The first edge with three faces, or with two that run along it the same way.
+/// The first edge with three faces, or with two that run along it in the same direction.
 pub(crate) fn boundary<M: Refine>(
     mesh: &M,
     numbers: &M::EdgeNumbers,
@@ -70,7 +73,7 @@ pub(crate) fn boundary<M: Refine>(
 ) -> Result<Vec<[u32; 2]>, SubdivisionError> {
     let parts = mesh.edge_parts(numbers);
     let is_sure = is_sure::<M>();
-    // Nothing is written by edge, and nothing is what these rows take.
+    // No value is stored by edge, so the rows take no memory.
     let mut rows = vec![(); parts.last().copied().unwrap_or(0)];
     let found = in_given_parts(&mut rows, &parts, |part, _, _| {
         let mut boundary = Vec::new();

@@ -1,4 +1,4 @@
-//! Midpoint: every triangle into four, and no smoothing.
+//! Midpoint: splits every triangle into four, without smoothing.
 //!
 //! ```text
 //!        c            edge points at the midpoints; old vertices stay
@@ -8,11 +8,11 @@
 //!    a───m───b
 //! ```
 
-use mesh_core::{Point, Split};
+use sixfold_core::{Point, Split};
 
 use crate::mask::{Mask, midpoint};
 
-/// Every triangle into four, where it is.
+/// Splits every triangle into four and does not move the old vertices.
 #[derive(Clone, Copy)]
 pub(crate) struct Midpoint;
 
@@ -38,13 +38,13 @@ impl Mask for Midpoint {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::PolygonMesh;
+    use sixfold_core::PolygonMesh;
 
     use super::*;
     use crate::Scheme;
     use crate::alike::all_ways;
 
-    /// Boundaries are no curves here: corners stay, and so do all vertices.
+    /// Boundaries do not become curves here: corners stay, and so do all vertices.
     #[test]
     fn a_triangle_keeps_its_corners() {
         let corners = [Point::ZERO, Point::X, Point::Y];

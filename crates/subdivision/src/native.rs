@@ -1,10 +1,10 @@
-//! Native: the structure splits its own tables, and the points are gathered into them.
+//! Native: the structure splits its own tables, and the new points are computed with queries.
 //!
-//! Nothing is rebuilt: [`Refine`] knows where each new record goes. The points are worked out by the
-//! very queries and rules of a gather, each by itself, so that they are the same on any number of
-//! threads.
+//! The structure is not built again: [`Refine`] defines the place of each new record. Each point is
+//! computed independently, with the queries and rules of a gather, so the points are the same on
+//! any number of threads.
 
-use mesh_core::{Creases, FaceId, PART, Point, Refine, RowId, Split, in_given_parts, in_parts};
+use sixfold_core::{Creases, FaceId, PART, Point, Refine, RowId, Split, in_given_parts, in_parts};
 
 use crate::SubdivisionError;
 use crate::crease::{SharpEdge, SharpLevel};
@@ -12,7 +12,7 @@ use crate::gather::{edge_point, face_value, vertex_point};
 use crate::mask::Mask;
 use crate::options::Creasing;
 
-/// One step of a scheme that splits faces, into `child`; yields the creases of the child.
+/// Runs one step of a scheme that splits faces, into `child`; returns the creases of the child.
 pub(crate) fn step<M: Refine, K: Mask>(
     mesh: &M,
     mask: K,
@@ -31,7 +31,8 @@ pub(crate) fn step<M: Refine, K: Mask>(
     let face_points = &*face_points;
     let value = |f: FaceId| match K::SPLIT {
         Split::Quads => face_points[f.index()],
-        // To keep them would be quicker, and take more than a tenth of a corner table beside it.
+        // Stored values would be faster, but take more than a tenth of the memory of a corner
+        // table.
         _ => face_value(mesh, mask, f),
     };
     if K::APPROXIMATES {
@@ -70,7 +71,7 @@ pub(crate) fn step<M: Refine, K: Mask>(
     Ok(level.place(old, child.positions_mut(), first_edge, creasing))
 }
 
-/// Gives each row its value, in parts that threads share.
+/// Computes the value of each row; threads share the parts.
 pub(crate) fn place<H: RowId, T: Send>(rows: &mut [T], value: impl Fn(H) -> T + Sync) {
     in_parts(rows, PART, |first, rows| {
         for (row, name) in rows.iter_mut().zip(first as u32..) {
@@ -79,14 +80,14 @@ pub(crate) fn place<H: RowId, T: Send>(rows: &mut [T], value: impl Fn(H) -> T + 
     });
 }
 
-/// Copies `old`, in parts that threads share.
+/// Copies `old`; threads share the parts.
 pub(crate) fn keep(points: &mut [Point], old: &[Point]) {
     in_parts(points, PART, |first, points| {
         points.copy_from_slice(&old[first..first + points.len()]);
     });
 }
 
-/// The edges that are said to be sharp and are not so by nature.
+/// Returns the edges with an entry in `creases` that are not sharp by nature.
 fn creased<M: Refine>(
     mesh: &M,
     creases: &Creases,

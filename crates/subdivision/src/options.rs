@@ -1,27 +1,28 @@
-//! What a user can choose beside the scheme.
+//! The options besides the scheme.
 
 use serde::Serialize;
 
-/// What the rim of an open mesh does.
+/// The treatment of the boundary of an open mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Boundary {
-    /// Boundary edges are sharp for ever, and so are vertices with exactly one face.
+    /// Boundary edges are infinitely sharp, and so are vertices with exactly one face.
     #[default]
     EdgeAndCorner,
-    /// Boundary edges are sharp for ever: the boundary becomes a B-spline curve, corners rounded.
+    /// Boundary edges are infinitely sharp: the boundary becomes a B-spline curve with rounded
+    /// corners.
     EdgeOnly,
-    /// Faces that touch a boundary vertex are left out of the result, unless all boundary edges
-    /// there are said to be sharp for ever; they still shape their neighbours.
+    /// Faces at a boundary vertex are left out of the result, unless all its boundary edges are
+    /// given infinite sharpness. They still shape the adjacent faces.
     None,
 }
 
 impl Boundary {
-    /// All of them.
+    /// All boundary rules.
     pub const ALL: [Self; 3] = [Self::EdgeAndCorner, Self::EdgeOnly, Self::None];
 
-    /// What users call it.
+    /// Returns the name on the command line and in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::EdgeAndCorner => "edge-and-corner",
@@ -31,24 +32,24 @@ impl Boundary {
     }
 }
 
-/// How the sharpness of an edge passes on to its halves.
+/// The rule by which the halves of an edge get their sharpness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Creasing {
-    /// Less by one.
+    /// The sharpness of the edge minus 1.
     #[default]
     Uniform,
-    /// At each end 3/4 of the edge's own and 1/4 of the mean of the other semi-sharp edges there,
-    /// less by one: sharpness varies along a crease as smoothly as Chaikin's curve.
+    /// At each end, 3/4 of the sharpness of the edge plus 1/4 of the mean of the other semi-sharp
+    /// edges there, minus 1. Sharpness then varies along a crease as smoothly as Chaikin's curve.
     Chaikin,
 }
 
 impl Creasing {
-    /// Both of them.
+    /// Both rules.
     pub const ALL: [Self; 2] = [Self::Uniform, Self::Chaikin];
 
-    /// What users call it.
+    /// Returns the name on the command line and in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Uniform => "uniform",
@@ -57,23 +58,23 @@ impl Creasing {
     }
 }
 
-/// Whose weights Loop's scheme gives the neighbours of an extraordinary vertex.
+/// The weights of Loop's scheme for the neighbours of an extraordinary vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum LoopWeights {
-    /// Loop's own, of 1987.
+    /// Loop's (1987).
     #[default]
     Loop,
-    /// Warren's: 3/(8n), and 3/16 at valence 3.
+    /// Warren's (1995): 3/(8n), and 3/16 at valence 3.
     Warren,
 }
 
 impl LoopWeights {
-    /// Both of them.
+    /// Both sets of weights.
     pub const ALL: [Self; 2] = [Self::Loop, Self::Warren];
 
-    /// What users call it.
+    /// Returns the name on the command line and in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Loop => "loop",

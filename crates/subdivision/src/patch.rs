@@ -1,6 +1,6 @@
-//! Tensor-product B-spline patches: a curve of curves over a grid of control points.
+//! Tensor-product B-spline patches: curves along the rows and columns of a grid of control points.
 //!
-//! Where Catmull & Clark (1978) start from: a step of the bicubic patch puts a point on every face,
+//! Catmull & Clark (1978) start from these: a step of the bicubic patch puts a point on every face,
 //! edge and vertex of the grid.
 //!
 //! ```text
@@ -11,37 +11,39 @@
 //!   c ─── i ─── d
 //! ```
 //!
-//! All three are products of the curve's own rules: the midpoint, (1, 1)/2, and the strut, (1, 6, 1)/8.
-//! So a step is the step of a curve along every row, then along every column.
+//! All three are products of the rules of the curve: the midpoint, (1, 1)/2, and the strut,
+//! (1, 6, 1)/8. A step therefore runs the step of the curve along every row, then every column.
 
-use mesh_core::{FaceList, MAX_ROWS, Point, PolygonError, PolygonMesh, VertexId};
+use sixfold_core::{FaceList, MAX_ROWS, Point, PolygonError, PolygonMesh, VertexId};
 
 use crate::curve::{Ends, cubic_b_spline_at, cubic_count, cubic_domain, cubic_step, least};
 use crate::error::CurveError;
 
-/// Control points in rows, and the uniform bicubic B-spline patch that they govern.
+/// Control points in rows, and the uniform bicubic B-spline patch that they define.
 ///
-/// With [`Ends::Dropped`] both ways, m × n points govern (m − 3) × (n − 3) bicubic pieces, and grids
-/// shrink towards them; with [`Ends::Kept`] the boundary becomes B-spline curves between corners that
-/// stay, as Catmull–Clark does with `edge-and-corner`; [`Ends::Closed`] makes tubes, and tori.
+/// With [`Ends::Dropped`] in both directions, m × n points define (m − 3) × (n − 3) bicubic pieces,
+/// and grids shrink towards them. With [`Ends::Kept`], the boundary becomes B-spline curves between
+/// corners that stay, as with Catmull–Clark and `edge-and-corner`. [`Ends::Closed`] makes tubes and
+/// tori.
 ///
 /// # Invariants
 ///
 /// - G1  Every row has the same number of points.
-/// - G2  Either way there are as many as the ends need: 2 kept, 3 closed, 4 dropped.
+/// - G2  Rows and columns have at least as many points as their ends need: 2 kept, 3 closed, 4
+///   dropped.
 ///
 /// # Examples
 ///
 /// ```
-/// use mesh_core::Point;
-/// use subdivision::{ControlGrid, Ends};
+/// use sixfold_core::Point;
+/// use sixfold_subdivision::{ControlGrid, Ends};
 ///
 /// let hills = (0..16).map(|i| Point::new((i % 4) as f32, (i / 4) as f32, (i % 3) as f32));
 /// let grid = ControlGrid::new(4, hills.collect::<Vec<_>>(), [Ends::Dropped; 2])?;
 /// let refined = grid.refined(3)?;
 /// assert_eq!([refined.columns(), refined.rows()], [11, 11]);
 /// assert!(grid.evaluate(1.5, 1.5).is_some() && grid.evaluate(0.5, 1.5).is_none());
-/// # Ok::<(), subdivision::CurveError>(())
+/// # Ok::<(), sixfold_subdivision::CurveError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ControlGrid {
@@ -51,11 +53,12 @@ pub struct ControlGrid {
 }
 
 impl ControlGrid {
-    /// Rows of `columns` points each, row after row; `ends` are those of the rows and of the columns.
+    /// Builds a grid from rows of `columns` points, row after row; `ends` are those of the rows and
+    /// of the columns.
     ///
     /// # Errors
     ///
-    /// A last row that is not full, or too few points either way.
+    /// Returns an error for an incomplete last row, or for too few points in one direction.
     pub fn new(
         columns: usize,
         points: impl Into<Vec<Point>>,
@@ -79,35 +82,36 @@ impl ControlGrid {
         })
     }
 
-    /// How many points a row has.
+    /// Returns the number of points in a row.
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// How many rows there are.
+    /// Returns the number of rows.
     pub fn rows(&self) -> usize {
         self.points.len() / self.columns
     }
 
-    /// What the ends of rows do, and those of columns.
+    /// Returns the treatment of the ends of rows, and of columns.
     pub fn ends(&self) -> [Ends; 2] {
         self.ends
     }
 
-    /// The points, row after row.
+    /// Returns the points, row after row.
     pub fn points(&self) -> &[Point] {
         &self.points
     }
 
-    /// The grid after `levels` steps; either way as many points as a curve would have. O(points that
-    /// come out).
+    /// Returns the grid after `levels` steps, with as many points in each direction as a curve
+    /// would have. O(points of the result).
     ///
     /// # Errors
     ///
-    /// More than [`MAX_ROWS`] points at the end.
+    /// Returns an error for more than [`MAX_ROWS`] points in the result.
     pub fn refined(&self, levels: u32) -> Result<Self, CurveError> {
         let mut sizes = [self.columns, self.rows()];
-        // By G2 sizes grow with every level, so that few are looked at; before the first is made.
+        // Checked before the first step. By G2 sizes grow with every level, so this loop ends
+        // early.
         for _ in 0..levels.min(usize::BITS) {
             let next: [usize; 2] =
                 std::array::from_fn(|way| cubic_count(sizes[way], self.ends[way]));
@@ -128,7 +132,7 @@ impl ControlGrid {
         Ok(grid)
     }
 
-    /// One step along every row, then along every column.
+    /// Runs one step along every row, then along every column.
     fn step(&self) -> Self {
         let [of_rows, of_columns] = self.ends;
         let rows = self.points.chunks(self.columns);
@@ -151,11 +155,12 @@ impl ControlGrid {
         }
     }
 
-    /// The point of the patch at (`u`, `v`), where the control point in column i of row j has the
-    /// parameters (i, j): the limit of [`refined`](Self::refined).
+    /// Returns the point of the patch at (`u`, `v`): the limit of [`refined`](Self::refined). The
+    /// control point in column i of row j has the parameters (i, j).
     ///
-    /// Either way the parameter runs from 0 to n − 1 if the ends are kept, from 1 to n − 2 if they are
-    /// dropped, and round and round if they are joined; `None` elsewhere. O(rows).
+    /// In each direction the parameter runs from 0 to n − 1 if the ends are kept, and from 1 to
+    /// n − 2 if they are dropped; it is periodic if they are joined. Returns `None` outside.
+    /// O(rows).
     pub fn evaluate(&self, u: f64, v: f64) -> Option<Point> {
         let [of_rows, of_columns] = self.ends;
         let rows = self.points.chunks(self.columns);
@@ -164,18 +169,18 @@ impl ControlGrid {
         cubic_b_spline_at(&column?, of_columns, v)
     }
 
-    /// The first and last parameters, along rows and along columns.
+    /// Returns the first and last parameters, along rows and along columns.
     pub fn domain(&self) -> [(f64, f64); 2] {
         let sizes = [self.columns, self.rows()];
         std::array::from_fn(|way| cubic_domain(sizes[way], self.ends[way]))
     }
 
-    /// The grid as quads, counter-clockwise where rows run to the right and columns up: vertex
+    /// Returns the grid as quads, counter-clockwise if rows run to the right and columns up. Vertex
     /// j · columns + i is the point in column i of row j. O(points).
     ///
     /// # Errors
     ///
-    /// [`PolygonError::TooMany`] where there are more corners than [`MAX_ROWS`].
+    /// Returns [`PolygonError::TooMany`] if there are more corners than [`MAX_ROWS`].
     pub fn to_polygons(&self) -> Result<PolygonMesh, PolygonError> {
         let sizes = [self.columns, self.rows()];
         let [across, up]: [usize; 2] = std::array::from_fn(|way| {
@@ -189,7 +194,7 @@ impl ControlGrid {
         }
         let at = |i: usize, j: usize| {
             let number = j % sizes[1] * sizes[0] + i % sizes[0];
-            VertexId::new(mesh_core::row(number))
+            VertexId::new(sixfold_core::row(number))
         };
         let quads = (0..up).flat_map(|j| (0..across).map(move |i| (i, j)));
         let corners = quads.flat_map(|(i, j)| {
@@ -204,9 +209,9 @@ impl ControlGrid {
 
 #[cfg(test)]
 mod tests {
-    use indexed_face_set::IndexedFaceSet;
-    use mesh_core::{Creases, Representation};
     use proptest::prelude::*;
+    use sixfold_core::{Creases, Representation};
+    use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
     use crate::{Scheme, Subdivision};
@@ -223,9 +228,9 @@ mod tests {
         })
     }
 
-    /// By coordinates, so that points can be compared in any order.
+    /// Returns sorted coordinates, so that points can be compared in any order.
     fn sorted(points: impl IntoIterator<Item = Point>) -> Vec<[i64; 3]> {
-        // Coordinates of a refined grid of whole numbers are whole 64ths.
+        // Coordinates of a refined grid of integers are multiples of 1/64.
         let keys = points
             .into_iter()
             .map(|p| p.to_array().map(|x| (f64::from(x) * 1024.0).round() as i64));
@@ -235,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn each_fault_is_named() {
+    fn each_invalid_input_returns_its_error() {
         let new = |columns, points: usize, ends| {
             ControlGrid::new(columns, vec![Point::ZERO; points], [ends, Ends::Kept]).unwrap_err()
         };
@@ -256,9 +261,9 @@ mod tests {
         }
     }
 
-    /// The boundary too: kept ends are Catmull–Clark's edges and corners.
+    /// The boundary agrees too: kept ends are the edges and corners of Catmull–Clark.
     #[test]
-    fn a_step_is_that_of_catmull_and_clark() {
+    fn a_step_equals_that_of_catmull_clark() {
         let points: Vec<Point> = (0..42)
             .map(|i| Point::new((i % 7) as f32, (i / 7) as f32, (i * i % 11) as f32))
             .collect();
@@ -276,7 +281,7 @@ mod tests {
                 let all = step.polygons.positions();
                 let refined = grid.refined(1).expect("small");
                 if ends.contains(&Ends::Dropped) {
-                    // What is left of the grid is inside that of the mesh.
+                    // The refined grid is inside the refined mesh.
                     for &point in refined.points() {
                         assert!(all.iter().any(|p| p.distance(point) < 1e-6), "{point}");
                     }
@@ -286,7 +291,7 @@ mod tests {
                         let near = |p: &&Point| p.distance(point) < 1e-6;
                         assert!(refined.points().iter().any(|p| near(&p)), "{point}");
                     }
-                    // And so are the faces: as many, and with the same centres.
+                    // The faces agree too: the same number, with the same centres.
                     let centres = |mesh: &PolygonMesh| {
                         let centre = |face: &[VertexId]| -> Point {
                             face.iter().map(|&v| mesh.position(v)).sum()
@@ -301,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn quads_face_up_and_close_up() {
+    fn quads_face_up_and_closed_ends_are_joined() {
         let points: Vec<Point> = (0..16)
             .map(|i| Point::new((i % 4) as f32, (i / 4) as f32, 0.0))
             .collect();
@@ -331,7 +336,7 @@ mod tests {
             let step = f64::from(1 << levels).recip();
             let place = |way: usize, i: usize| {
                 let (first, last) = grid.domain()[way];
-                // Dropped ends leave one point beside the first parameter, where there is no patch.
+                // Dropped ends leave one point before the first parameter, where there is no patch.
                 let shift = f64::from(u8::from(grid.ends()[way] == Ends::Dropped));
                 let at = first + (i as f64 - shift) * step;
                 (first <= at && at <= last).then_some(at)
@@ -347,9 +352,9 @@ mod tests {
             prop_assert!(compared >= (1 << levels) * (1 << levels));
         }
 
-        /// A grid and its refinement govern one patch.
+        /// A grid and its refinement define the same patch.
         #[test]
-        fn a_step_leaves_the_patch_where_it_is(grid in grid(), at in prop::array::uniform2(0.0..1.0)) {
+        fn a_step_does_not_change_the_patch(grid in grid(), at in prop::array::uniform2(0.0..1.0)) {
             let refined = grid.refined(1).expect("small");
             let place = |grid: &ControlGrid, way: usize| {
                 let (first, last) = grid.domain()[way];

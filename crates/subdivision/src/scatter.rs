@@ -1,14 +1,14 @@
-//! Scatter: one pass over the faces, each of which gives to its corners and sides what it has.
+//! Scatter: one pass over the faces adds the value of each face to its corners and sides.
 //!
 //! ```text
-//!   each face     its value to every corner and every side        FV, FE
-//!   each edge     its ends to each other                          met for the first time on the way
+//!   each face     adds its value to every corner and every side   FV, FE
+//!   each edge     adds its ends to each other                     when it is first found
 //! ```
 //!
-//! Only FV and FE are asked, which every structure answers at once: near-linear on all of them,
-//! where edges and vertices that are no rows are found in hash maps.
+//! Only FV and FE are queried, which no structure has to search for. The time is near-linear on all
+//! structures; edges and vertices whose handles are not rows are found in hash maps.
 
-use mesh_core::{Creases, HandleMap, MeshQuery, Point};
+use sixfold_core::{Creases, HandleMap, MeshQuery, Point};
 
 use crate::SubdivisionError;
 use crate::crease::{SharpEdge, SharpLevel};
@@ -17,27 +17,27 @@ use crate::mask::{Mask, midpoint};
 use crate::options::Creasing;
 use crate::step::{Marked, Outline, Step};
 
-/// What a vertex has been given by its edges.
+/// The sums over the edges of a vertex.
 #[derive(Clone, Copy, Default)]
 struct VertexSum {
     valence: u32,
     neighbours: Point,
 }
 
-/// The ends of an edge, and how many faces have given to it.
+/// The ends of an edge, and the number of its faces found so far.
 #[derive(Clone, Copy)]
 struct EdgeSum {
     ends: [u32; 2],
     count: u32,
 }
 
-/// No edge has this number yet.
+/// Marks an edge that has no number yet.
 const UNMET: u32 = u32::MAX;
 
-/// One step of a scheme that splits faces.
+/// Runs one step of a scheme that splits faces.
 ///
-/// The points of the result hold what is summed up until they are placed: the old positions and, for
-/// each edge, the sum of its face values.
+/// Until the points of the result are placed, they store the old positions and, for each edge, the
+/// sum of its face values.
 pub(crate) fn step<M: MeshQuery, K: Mask>(
     mesh: &M,
     mask: K,
@@ -66,7 +66,7 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
     let mut edge_numbers = mesh.edge_map(UNMET);
     edge_numbers.reserve(outline.expected_edges());
     let mut edges: Vec<EdgeSum> = Vec::with_capacity(outline.expected_edges());
-    // Of one face: its vertices, and the edge points of the sides that start there.
+    // For one face: its vertices, and the edge points of the sides that start there.
     let (mut own, mut middles) = (Vec::new(), Vec::new());
     let mut face_point = vertices;
     mesh.faces().for_each(|f| {

@@ -1,10 +1,10 @@
-//! The schemes, and what kind each is.
+//! The schemes and their classification.
 
 use std::fmt;
 
 use serde::{Serialize, Serializer};
 
-use mesh_core::Split;
+use sixfold_core::Split;
 
 /// A subdivision scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -20,13 +20,13 @@ pub enum Scheme {
     Butterfly,
     /// Doo & Sabin (1978).
     DooSabin,
-    /// Every triangle into four at the midpoints of its edges.
+    /// Splits every triangle into four at the midpoints of its edges.
     Midpoint,
-    /// Every polygon into quads at the midpoints of its edges and its own.
+    /// Splits every polygon into quads at the midpoints of its edges and the mean of its corners.
     Bilinear,
 }
 
-/// What a step does to the faces of a mesh.
+/// The elements that a step splits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Primitive {
@@ -36,35 +36,35 @@ pub enum Primitive {
     VertexSplit,
 }
 
-/// What kind a scheme is: a row of the classification.
+/// The classification of a scheme: a row of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Kind {
-    /// What is split.
+    /// The elements that are split.
     pub primitive: Primitive,
-    /// What it takes: `triangles` or `polygons`.
+    /// The input: `triangles` or `polygons`.
     pub takes: &'static str,
-    /// What it makes: `triangles`, `quads`, or `polygons`.
+    /// The output: `triangles`, `quads`, or `polygons`.
     pub makes: &'static str,
     /// Whether old vertices stay where they are.
     pub interpolating: bool,
-    /// The smoothness of the limit surface: where the mesh is regular, and at extraordinary vertices.
+    /// The smoothness of the limit surface: at regular and at extraordinary vertices.
     pub continuity: &'static str,
-    /// How many faces a step makes of one, in the long run.
+    /// The number of faces that a step makes from one face, in the long run.
     pub growth: &'static str,
-    /// What it does at boundaries.
+    /// The behaviour at boundaries.
     pub boundary: &'static str,
     /// Whether it has rules for creases.
     pub creases: bool,
-    /// How it splits faces in a structure's own tables, if it does.
+    /// The split of faces in the tables of a structure, if the scheme has one.
     pub split: Option<Split>,
-    /// Whether it can be run as a pass over faces.
+    /// Whether it can run as a pass over the faces.
     pub scatter: bool,
-    /// Where it comes from.
+    /// The publication.
     pub source: &'static str,
 }
 
 impl Scheme {
-    /// All of them, in the order in which tables show them.
+    /// All schemes, in the order of tables.
     pub const ALL: [Self; 7] = [
         Self::CatmullClark,
         Self::Loop,
@@ -75,7 +75,7 @@ impl Scheme {
         Self::Bilinear,
     ];
 
-    /// What users call it: `catmull-clark`.
+    /// Returns the name on the command line and in files, for example `catmull-clark`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::CatmullClark => "catmull-clark",
@@ -88,12 +88,12 @@ impl Scheme {
         }
     }
 
-    /// The scheme that users call `name`.
+    /// Returns the scheme with this [`name`](Self::name).
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|scheme| scheme.name() == name)
     }
 
-    /// What kind it is.
+    /// Returns the classification.
     pub const fn kind(self) -> Kind {
         const BASE: Kind = Kind {
             primitive: Primitive::FaceSplit,
@@ -180,23 +180,24 @@ impl Serialize for Scheme {
     }
 }
 
-/// A way to run a scheme; all give the same mesh.
+/// A way to run a scheme. All methods give the same mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// For every new point, the neighbourhood is asked for: VV, VF, EF of each element.
+    /// Queries the neighbourhood of every new point: VV, VF, EF of each element.
     Gather,
-    /// One pass over the faces adds what each has to give to data kept by handle: FV and FE alone.
+    /// One pass over the faces adds their values to data stored by handle: FV and FE only.
     Scatter,
-    /// Points by queries, but the structure splits its own tables: nothing is rebuilt.
+    /// Computes points with queries, but the structure splits its own tables and is not built
+    /// again.
     Native,
 }
 
 impl Method {
-    /// All three.
+    /// All methods.
     pub const ALL: [Self; 3] = [Self::Gather, Self::Scatter, Self::Native];
 
-    /// What users call it.
+    /// Returns the name on the command line and in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Gather => "gather",

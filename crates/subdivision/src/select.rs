@@ -1,36 +1,38 @@
-//! Which faces to refine.
+//! Selection of the faces to refine.
 
-use mesh_core::{FaceId, MeshQuery, Point};
+use sixfold_core::{FaceId, MeshQuery, Point};
 
 use crate::error::LocalError;
 
-/// A choice among the faces of a triangle mesh.
+/// A selection of faces of a triangle mesh.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Selection {
-    /// These faces, and at later levels the parts of them.
+    /// These faces; at later levels, their parts.
     Faces(Vec<FaceId>),
-    /// The faces that have a point in common with a box, its surface included, be it only a corner:
-    /// a box smaller than any face still finds the faces it is in. Sides may be infinite. Asked anew
-    /// at every level.
+    /// The faces that share at least one point with a box, including its surface. A box smaller
+    /// than any face still selects the faces it is in. Bounds may be infinite. Evaluated again at
+    /// every level.
     Box {
         /// The lowest coordinates.
         min: Point,
         /// The highest coordinates.
         max: Point,
     },
-    /// The faces that bend from a neighbour by more than so many degrees, 0 to 180, and those along
-    /// edges of three or more faces. Asked anew at every level, and as new points do not move, the
-    /// faces along the same folds are found again. Faces without area do not count.
+    /// The faces that bend from an adjacent face by more than this angle in degrees, 0 to 180, and
+    /// the faces along edges of three or more faces. Evaluated again at every level; new points lie
+    /// on the old faces, so the faces along the same folds are selected again. Faces without area
+    /// do not count.
     Angle(f32),
 }
 
 impl Selection {
-    /// Whether this can be asked of a mesh with so many faces.
+    /// Checks that this selection is valid for a mesh with `faces` faces.
     ///
     /// # Errors
     ///
-    /// A face that is not there, a box with NaN or its corners swapped, an angle outside 0 to 180.
+    /// Returns an error for a face that does not exist, a box with NaN or swapped bounds, or an
+    /// angle outside 0 to 180.
     pub fn check(&self, faces: usize) -> Result<(), LocalError> {
         match self {
             Self::Faces(list) => Self::check_faces(list, faces),
@@ -49,12 +51,12 @@ impl Selection {
         }
     }
 
-    /// The faces of `mesh` that are chosen, as numbers in the order of [`MeshQuery::faces`]. O(faces), or
-    /// for an angle O(edges), beyond the costs of FV and EF.
+    /// Returns the selected faces of `mesh`, as numbers in the order of [`MeshQuery::faces`].
+    /// O(faces), or O(edges) for an angle, plus the costs of FV and EF.
     ///
     /// # Errors
     ///
-    /// As [`check`](Self::check), or a face that is no triangle.
+    /// As [`check`](Self::check), and for a face that is not a triangle.
     pub fn faces<M: MeshQuery>(&self, mesh: &M) -> Result<Vec<FaceId>, LocalError> {
         self.check(mesh.face_count())?;
         match self {
@@ -75,7 +77,7 @@ impl Selection {
     }
 }
 
-/// The corners of a face, whose number is `face`.
+/// Returns the corners of the face with the number `face`, or an error if it is not a triangle.
 pub(crate) fn triangle<M: MeshQuery>(
     mesh: &M,
     f: M::Face,
@@ -92,11 +94,11 @@ pub(crate) fn triangle<M: MeshQuery>(
     }
 }
 
-/// Whether a triangle and a box have a point in common: they have none if the shadows on a line are
-/// apart, and of all lines thirteen are enough (Akenine-Möller 2001).
+/// Returns whether a triangle and a box have a point in common. They have no common point if their
+/// projections on some line are apart; thirteen lines are enough (Akenine-Möller 2001).
 fn touches(corners: [Point; 3], min: Point, max: Point) -> bool {
     let [a, b, c] = corners;
-    // The part of the box beside the triangle; these are the three lines along the axes.
+    // Cuts the box to the bounds of the triangle; this tests the three lines along the axes.
     let (min, max) = (min.max(a.min(b).min(c)), max.min(a.max(b).max(c)));
     if !min.cmple(max).all() {
         return false;
@@ -114,13 +116,13 @@ fn touches(corners: [Point; 3], min: Point, max: Point) -> bool {
         let (low, high) = (line * min, line * max);
         let least = low.min(high).element_sum();
         let most = low.max(high).element_sum();
-        // Sums of products of three rounded differences: what touches must not be missed.
+        // Allows for rounding in sums of products of three differences: contact must not be missed.
         let slack = 1e-12 * line.abs().dot(min.abs().max(max.abs()));
         shadow.iter().any(|&at| at >= least - slack) && shadow.iter().any(|&at| at <= most + slack)
     })
 }
 
-/// The faces along edges that bend by more than `degrees`.
+/// Returns the faces along edges that bend by more than `degrees`.
 fn bent<M: MeshQuery>(mesh: &M, degrees: f32) -> Result<Vec<FaceId>, LocalError> {
     let mut numbers = mesh.face_map(FaceId::new(0));
     let mut chosen = vec![false; mesh.face_count()];
@@ -141,7 +143,7 @@ fn bent<M: MeshQuery>(mesh: &M, degrees: f32) -> Result<Vec<FaceId>, LocalError>
         let is_bent = match faces[..] {
             [f, g] => {
                 let ((m, along), (n, other)) = (seen(f, a, b), seen(g, a, b));
-                // Two that run the same way show their backs to each other.
+                // If both run in the same direction, one of the normals points to the other side.
                 let n = if along == other { -n } else { n };
                 let angle = m.cross(n).length().atan2(m.dot(n));
                 angle.to_degrees() > f64::from(degrees)
@@ -167,7 +169,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_box_finds_what_it_touches() {
+    fn a_box_selects_the_triangles_it_touches() {
         let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 4.0]].map(Point::from);
         let near = |min: [f32; 3], max: [f32; 3]| touches(corners, min.into(), max.into());
         assert!(

@@ -1,10 +1,10 @@
-//! A mesh by numbers: its corners, and which of them lie at one edge.
+//! A mesh as tables of numbers: its corners, and the sides of each edge.
 //!
-//! For schemes that make faces across old edges: these have to know the face on the other side.
+//! For schemes that make faces across old edges and need the face on the other side.
 //!
 //! ```text
 //!          b
-//!        ╱ │ ╲       A side is called by the corner it starts at. Side c runs a → b, and d runs
+//!        ╱ │ ╲       A side is named by the corner it starts at. Side c runs a → b, and d runs
 //!       ╱ c│  ╲      b → a: across(c) = d, across(d) = c.
 //!       ╲  │d ╱
 //!        ╲ │ ╱       after(c) is the next corner of the same face, here at b.
@@ -13,12 +13,12 @@
 
 use std::iter::successors;
 
-use mesh_core::{MeshQuery, VertexId, VertexMap};
+use sixfold_core::{MeshQuery, VertexId, VertexMap};
 
 use crate::error::SubdivisionError;
 use crate::scheme::Scheme;
 
-/// The corners of all faces in their order, and how the faces hang together.
+/// The corners of all faces in their order, and how the faces are connected.
 pub(crate) struct Sheet {
     /// The vertex at each corner.
     pub(crate) corners: Vec<u32>,
@@ -34,20 +34,21 @@ pub(crate) struct Sheet {
 pub(crate) struct SheetEdge {
     /// The side of its face, or of one of them.
     pub(crate) first: u32,
-    /// The side of the other face; none at a boundary.
+    /// The side of the other face; `None` at a boundary.
     pub(crate) second: Option<u32>,
 }
 
-/// No edge has this number yet.
+/// Marks an edge that has no number yet.
 const UNMET: u32 = u32::MAX;
 
 impl Sheet {
-    /// The sheet of `mesh`, for `scheme`, by asking each edge for its faces; edges as `edges()` has
-    /// them. FV, EV and EF: O(the sum of the degrees of the faces of all edges) beyond their cost.
+    /// Builds the sheet of `mesh` for `scheme` with queries for the faces of each edge; edges have
+    /// the order of `edges()`. Queries FV, EV and EF: O(sum of the degrees of the faces of all
+    /// edges) plus their cost.
     ///
     /// # Errors
     ///
-    /// An edge with three faces, or with two that run along it the same way.
+    /// An edge with three faces, or with two that run along it in the same direction.
     pub(crate) fn gathered<M: MeshQuery>(
         mesh: &M,
         scheme: Scheme,
@@ -85,12 +86,12 @@ impl Sheet {
         Ok(sheet)
     }
 
-    /// The same from one pass over the faces, FV and FE alone; edges as the faces name them. O(corners)
-    /// expected.
+    /// Builds the sheet from one pass over the faces, with FV and FE only; edges have the order in
+    /// which the faces list them. O(corners) expected.
     ///
     /// # Errors
     ///
-    /// An edge with three faces, or with two that run along it the same way.
+    /// An edge with three faces, or with two that run along it in the same direction.
     pub(crate) fn scattered<M: MeshQuery>(
         mesh: &M,
         scheme: Scheme,
@@ -143,14 +144,14 @@ impl Sheet {
         }
     }
 
-    /// Links the corners from `first` on into a face.
+    /// Links the corners from index `first` to the end into a face.
     fn close_face(&mut self, first: usize) {
         let next = first as u32 + 1..self.corners.len() as u32;
         self.after.extend(next.chain([first as u32]));
     }
 
-    /// The side of a face between `ends`, and whether it runs backwards: 0 from the first to the
-    /// second, 1 from the second to the first.
+    /// Returns the direction and the side of a face between `ends`. The direction is 0 from the
+    /// first to the second end, 1 from the second to the first.
     fn side_between(&self, corner_of_face: u32, ends: [u32; 2]) -> (usize, u32) {
         let mut side = corner_of_face;
         loop {
@@ -163,25 +164,25 @@ impl Sheet {
         }
     }
 
-    /// The next corner of the same face.
+    /// Returns the next corner of the same face.
     #[inline]
     pub(crate) fn after(&self, corner: u32) -> u32 {
         self.after[corner as usize]
     }
 
-    /// Where a side starts and ends.
+    /// Returns the vertices at which a side starts and ends.
     #[inline]
     pub(crate) fn ends(&self, side: u32) -> [u32; 2] {
         [side, self.after(side)].map(|corner| self.corners[corner as usize])
     }
 
-    /// The edge of a side.
+    /// Returns the edge of a side.
     #[inline]
     pub(crate) fn edge_of(&self, side: u32) -> usize {
         self.sides[side as usize] as usize
     }
 
-    /// The side that runs along the same edge the other way; none at a boundary.
+    /// Returns the side that runs along the same edge in the other direction; `None` at a boundary.
     #[inline]
     pub(crate) fn across(&self, side: u32) -> Option<u32> {
         let edge = self.edges[self.edge_of(side)];
@@ -192,12 +193,12 @@ impl Sheet {
         }
     }
 
-    /// All edges.
+    /// Returns all edges.
     pub(crate) fn edges(&self) -> &[SheetEdge] {
         &self.edges
     }
 
-    /// Tells `fan` the corners around each inner vertex, counter-clockwise; O(corners).
+    /// Calls `fan` with the corners around each inner vertex, counter-clockwise; O(corners).
     ///
     /// ```text
     ///      f  w  g      c is the corner of v in f, whose side runs v → w; across it is the side w → v
@@ -208,14 +209,15 @@ impl Sheet {
     ///
     /// # Errors
     ///
-    /// A vertex whose faces are several fans, or what `fan` says.
+    /// A vertex whose faces are several fans, or an error that `fan` returns.
     pub(crate) fn fans(
         &self,
         vertices: usize,
         scheme: Scheme,
         mut fan: impl FnMut(&[u32]) -> Result<(), SubdivisionError>,
     ) -> Result<(), SubdivisionError> {
-        // By vertex: a corner of it, and whether the fan begins there, at a boundary; how many there are.
+        // By vertex: a corner of it, and whether the fan begins there, at a boundary; the number of
+        // corners.
         let mut starts = vec![(None, false); vertices];
         let mut counts = vec![0_usize; vertices];
         for (corner, &v) in (0..).zip(&self.corners) {
@@ -253,7 +255,7 @@ impl Sheet {
     }
 }
 
-/// The number of each vertex: its place in `vertices()`.
+/// Returns the number of each vertex: its position in `vertices()`.
 pub(crate) fn vertex_numbers<M: MeshQuery>(mesh: &M) -> VertexMap<M, u32> {
     let mut numbers = mesh.vertex_map(0_u32);
     let mut number = 0;
@@ -264,7 +266,8 @@ pub(crate) fn vertex_numbers<M: MeshQuery>(mesh: &M) -> VertexMap<M, u32> {
     numbers
 }
 
-/// That an edge does not have one face, or two that run along it in opposite directions.
+/// Returns the error for an edge that does not have one face, or two that run along it in opposite
+/// directions.
 pub(crate) fn non_manifold_edge(scheme: Scheme, ends: [u32; 2], faces: usize) -> SubdivisionError {
     SubdivisionError::NonManifoldEdge {
         scheme,
@@ -273,7 +276,7 @@ pub(crate) fn non_manifold_edge(scheme: Scheme, ends: [u32; 2], faces: usize) ->
     }
 }
 
-/// That the faces at a vertex are several fans.
+/// Returns the error for a vertex whose faces are several fans.
 pub(crate) fn non_manifold_vertex(scheme: Scheme, v: u32) -> SubdivisionError {
     let vertex = VertexId::new(v);
     SubdivisionError::NonManifoldVertex { scheme, vertex }

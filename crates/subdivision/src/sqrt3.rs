@@ -1,7 +1,8 @@
-//! √3: every triangle into three, approximating, C² but at extraordinary vertices; growth 3.
+//! √3: splits every triangle into three; approximating, C² except at extraordinary vertices.
 //!
-//! Kobbelt (2000). A face point in each triangle, then every old inner edge is flipped. Two steps
-//! cut each old edge in three and make nine triangles of one, turned back to where they were.
+//! Kobbelt (2000); growth 3. A step adds a face point in each triangle, then flips every old inner
+//! edge. Two steps cut each old edge in three and each triangle into nine, which are aligned with
+//! it again.
 //!
 //! ```text
 //!    c ─────── d        c ─────── d        face point     the mean of the corners
@@ -12,21 +13,21 @@
 //!    a ─────── b        a ─────── b        α = (4 − 2 cos(2π/n))/9
 //! ```
 //!
-//! Boundary edges are not flipped. Steps 1, 3, … leave boundary edges and vertices as they are;
-//! steps 2, 4, … cut them in three, by the mask of a cubic B-spline curve:
+//! Boundary edges are not flipped. Steps 1, 3, … leave boundary edges and vertices unchanged. Steps
+//! 2, 4, … cut boundary edges in three, by the mask of a cubic B-spline curve:
 //!
 //! ```text
 //!    p₀ ──── p₁ ──── p₂           p₁ ↦ (4 p₀ + 19 p₁ + 4 p₂)/27
 //!        •  •  •  •               before it (10 p₀ + 16 p₁ + p₂)/27, after it (p₀ + 16 p₁ + 10 p₂)/27
 //! ```
 //!
-//! A vertex with other than two boundary edges stays, and a point beside it lies at a third of its
-//! edge. An isolated vertex stays.
+//! A boundary vertex that does not have exactly two boundary edges stays, and a new point next to
+//! it lies at a third of its edge. An isolated vertex stays.
 
 use std::f64::consts::TAU;
 
-use mesh_core::{Creases, FaceList, MAX_ROWS, MeshQuery, Point, PolygonError, PolygonMesh};
-use mesh_core::{Refine, Split, VertexId};
+use sixfold_core::{Creases, FaceList, MAX_ROWS, MeshQuery, Point, PolygonError, PolygonMesh};
+use sixfold_core::{Refine, Split, VertexId};
 
 use crate::error::SubdivisionError;
 use crate::gather::{corner_sum, neighbour_sum};
@@ -36,7 +37,7 @@ use crate::scheme::Scheme;
 use crate::sheet::Sheet;
 use crate::step::Step;
 
-/// Valences whose α is looked up; few vertices have more.
+/// Number of valences with precomputed α, from 0; few vertices have a higher valence.
 const LOOKED_UP: usize = 16;
 
 /// The weights of Kobbelt (2000).
@@ -44,7 +45,7 @@ struct Sqrt3 {
     alphas: [f32; LOOKED_UP],
 }
 
-/// The weight of all `valence` neighbours together.
+/// Returns the total weight of all `valence` neighbours.
 fn alpha(valence: usize) -> f64 {
     (4.0 - 2.0 * (TAU / valence as f64).cos()) / 9.0
 }
@@ -56,7 +57,7 @@ impl Sqrt3 {
         }
     }
 
-    /// Where a vertex inside goes, with the sum of its neighbours.
+    /// Returns the new position of an inner vertex from the sum of its neighbours.
     #[inline(always)]
     fn vertex(&self, at: Point, neighbours: Point, valence: usize) -> Point {
         let alpha = match self.alphas.get(valence) {
@@ -68,13 +69,13 @@ impl Sqrt3 {
     }
 }
 
-/// The face point of a triangle with this sum of its corners.
+/// Returns the face point of a triangle from the sum of its corners.
 #[inline(always)]
 fn face_point(corners: Point) -> Point {
     corners * (1.0 / 3.0)
 }
 
-/// One step, by queries for each new point.
+/// Runs one step with queries for each new point.
 pub(crate) fn gather<M: MeshQuery>(mesh: &M, trisect: bool) -> Result<Step, SubdivisionError> {
     let sheet = Sheet::gathered(mesh, Scheme::Sqrt3)?;
     let scheme = Sqrt3::new();
@@ -88,7 +89,7 @@ pub(crate) fn gather<M: MeshQuery>(mesh: &M, trisect: bool) -> Result<Step, Subd
     finish(&sheet, &old, points, trisect)
 }
 
-/// One step, by one pass over the faces.
+/// Runs one step with one pass over the faces.
 pub(crate) fn scatter<M: MeshQuery>(mesh: &M, trisect: bool) -> Result<Step, SubdivisionError> {
     let sheet = Sheet::scattered(mesh, Scheme::Sqrt3)?;
     let scheme = Sqrt3::new();
@@ -109,7 +110,7 @@ pub(crate) fn scatter<M: MeshQuery>(mesh: &M, trisect: bool) -> Result<Step, Sub
     finish(&sheet, &old, points, trisect)
 }
 
-/// One step in the structure's own tables.
+/// Runs one step in the tables of the structure.
 pub(crate) fn native<M: Refine>(
     mesh: &M,
     numbers: &M::EdgeNumbers,
@@ -130,7 +131,7 @@ pub(crate) fn native<M: Refine>(
     Ok(Creases::default())
 }
 
-/// Places the boundary, and makes the triangles.
+/// Places the boundary, and builds the triangles.
 fn finish(
     sheet: &Sheet,
     old: &[Point],
@@ -150,7 +151,7 @@ fn finish(
     let (vertices, rest) = points.split_at_mut(old.len());
     let (_, cuts) = rest.split_at_mut(sheet.corners.len() / 3);
     rim.place(trisect, old, vertices, cuts);
-    // The first of the two points of each boundary side.
+    // By side: the first of the two points of a boundary side.
     let mut cut_of = vec![0; if trisect { sheet.corners.len() } else { 0 }];
     if trisect {
         for (rank, edge) in (0..).zip(open()) {
@@ -179,9 +180,9 @@ fn finish(
 
 /// The boundary of a mesh, as curves.
 struct Rim {
-    /// Its edges in their order, each as its face runs along it.
+    /// Its edges in their order, each in the direction of its face.
     sides: Vec<[u32; 2]>,
-    /// The same, from both ends, sorted.
+    /// The same edges from both ends, sorted.
     spokes: Vec<[u32; 2]>,
 }
 
@@ -193,7 +194,7 @@ impl Rim {
         Self { sides, spokes }
     }
 
-    /// Places the vertices of the boundary, and where it is cut, the two points of each edge.
+    /// Places the vertices of the boundary and, if it is cut, the two points of each edge.
     /// O(b log b) for b boundary edges.
     fn place(&self, trisect: bool, old: &[Point], vertices: &mut [Point], cuts: &mut [Point]) {
         let at = |v: u32| old[v as usize];
@@ -211,7 +212,7 @@ impl Rim {
         }
     }
 
-    /// The point between `near` and `far` that is nearer to `near`.
+    /// Returns the point between `near` and `far` that is nearer to `near`.
     fn third(&self, near: u32, far: u32, at: impl Fn(u32) -> Point) -> Point {
         let first = self.spokes.partition_point(|spoke| spoke[0] < near);
         let around = self.spokes[first..].iter();
@@ -230,8 +231,8 @@ impl Rim {
 mod tests {
     use std::collections::BTreeMap;
 
-    use indexed_face_set::IndexedFaceSet;
     use proptest::prelude::*;
+    use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
     use crate::alike::{
@@ -255,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn the_weights_are_those_of_the_paper() {
+    fn the_weights_match_the_paper() {
         for (valence, expected) in [(3, 5.0 / 9.0), (4, 4.0 / 9.0), (6, 1.0 / 3.0)] {
             assert!((alpha(valence) - expected).abs() < 1e-15, "{valence}");
         }
@@ -264,8 +265,8 @@ mod tests {
     }
 
     #[test]
-    fn a_tetrahedron_goes_where_the_paper_says() {
-        let tetrahedron = shapes::tetrahedron();
+    fn a_tetrahedron_matches_the_paper() {
+        let tetrahedron = sixfold_shapes::tetrahedron();
         for mesh in all_ways(Scheme::Sqrt3, &tetrahedron, 0).expect("triangles") {
             assert_eq!([mesh.vertex_count(), mesh.face_count()], [8, 12]);
             let centre = tetrahedron.positions().iter().sum::<Point>() * 0.25;
@@ -309,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn beside_a_vertex_where_boundaries_cross_an_edge_is_cut_in_thirds() {
+    fn edges_at_a_crossing_of_boundaries_are_cut_in_thirds() {
         let corners = [0.0, 1.0, 2.0, 3.0, 4.0].map(|x| Point::new(x, x * x, 0.0));
         let bow_tie = PolygonMesh::new(corners, [[0, 1, 2], [0, 3, 4]]).expect("two triangles");
         let mesh: IndexedFaceSet = built(&bow_tie);
@@ -326,15 +327,15 @@ mod tests {
     /// ```text
     ///              c
     ///             ╱ ╲
-    ///           ca1 ─ bc2        m is the face point of the first step; what the second step puts into
-    ///           ╱ ╲ ╱ ╲          its three triangles are the points at a third of the edges
+    ///           ca1 ─ bc2        m is the face point of the first step; the face points of the
+    ///           ╱ ╲ ╱ ╲          second step in its three triangles are at a third of the edges
     ///         ca2 ─ m ─ bc1
     ///         ╱ ╲ ╱ ╲ ╱ ╲
     ///        a ─ ab1 ─ ab2 ─ b
     /// ```
     #[test]
     fn two_steps_cut_every_edge_in_three() {
-        let torus = shapes::triangle_torus(4, 5).expect("a small torus");
+        let torus = sixfold_shapes::triangle_torus(4, 5).expect("a small torus");
         let twice = steps(&torus, 2);
         let (vertices, faces) = (torus.vertex_count(), torus.face_count());
         let mut near = BTreeMap::new();
@@ -362,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn edges_without_a_rule_are_named() {
+    fn non_manifold_edges_return_errors() {
         let corners = [0.0, 1.0, 2.0, 3.0, 4.0].map(Point::splat);
         let refused = |faces: &[[u32; 3]]| {
             let mesh: IndexedFaceSet = built(&PolygonMesh::new(corners, faces).expect("valid"));
@@ -385,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn threads_change_nothing() {
+    fn the_result_does_not_depend_on_threads() {
         assert_same_on_threads(Scheme::Sqrt3, 0);
         assert_same_on_threads(Scheme::Sqrt3, 1);
     }

@@ -1,22 +1,22 @@
-//! The refined mesh of one step, while it is made out of polygons.
+//! The refined mesh of one step, built from polygons.
 
-use mesh_core::{Creases, FaceList, MeshQuery, Point, PolygonMesh, Split, VertexId};
+use sixfold_core::{Creases, FaceList, MeshQuery, Point, PolygonMesh, Split, VertexId};
 
 use crate::SubdivisionError;
 
-/// A refined mesh, and what of it is still sharp.
+/// A refined mesh, and its remaining creases.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
     /// The old vertices, then the face points, then the edge points, each in the order of the
-    /// structure that was refined; the faces that one face was split into follow one another. After a
-    /// vertex split the vertices are the corners of the old faces, and the faces are those of faces,
-    /// of edges and of vertices, each in their order.
+    /// structure that was refined. The faces that one face was split into are consecutive. After a
+    /// vertex split, the vertices are the corners of the old faces, and the faces are those of
+    /// faces, of edges and of vertices, each in their order.
     pub polygons: PolygonMesh,
     /// The creases of [`polygons`](Self::polygons).
     pub creases: Creases,
 }
 
-/// Points and corners that have been made so far.
+/// The points and corners made so far.
 pub(crate) struct Outline {
     split: Split,
     vertices: usize,
@@ -27,8 +27,8 @@ pub(crate) struct Outline {
 }
 
 impl Outline {
-    /// Nothing yet, with room for what `mesh` will be split into. Its faces have `corners` corners
-    /// together.
+    /// Builds an empty outline with capacity for the split of `mesh`, whose faces have `corners`
+    /// corners in total.
     pub(crate) fn of<M: MeshQuery>(split: Split, mesh: &M, corners: usize) -> Self {
         let (vertices, faces) = (mesh.vertex_count(), mesh.face_count());
         // Exact on a closed mesh and, by Euler's formula, close on a mesh with boundaries. If there are
@@ -47,12 +47,12 @@ impl Outline {
         }
     }
 
-    /// How many vertices the mesh has that is split.
+    /// Returns the number of vertices of the mesh that is split.
     pub(crate) fn vertices(&self) -> usize {
         self.vertices
     }
 
-    /// About how many edges the mesh has that is split.
+    /// Returns the approximate number of edges of the mesh that is split.
     pub(crate) fn expected_edges(&self) -> usize {
         self.expected_edges
     }
@@ -61,7 +61,8 @@ impl Outline {
         self.split == Split::Quads
     }
 
-    /// Splits all faces; `number` tells the number of a vertex, `edge_point` that of an edge's point.
+    /// Splits all faces; `number` returns the number of a vertex, `edge_point` that of the point of
+    /// an edge.
     pub(crate) fn split_faces<M: MeshQuery>(
         &mut self,
         mesh: &M,
@@ -81,7 +82,7 @@ impl Outline {
         Ok(())
     }
 
-    /// Splits a face with these corners and the points of the sides that start there.
+    /// Splits a face with these corners; `middles` are the points of the sides that start there.
     #[inline(always)]
     pub(crate) fn split_face(&mut self, corners: &[u32], middles: &[u32], face_point: u32) {
         let mut before = middles[middles.len() - 1];
@@ -99,7 +100,7 @@ impl Outline {
         }
     }
 
-    /// The refined mesh.
+    /// Builds the refined mesh.
     pub(crate) fn finish(self, creases: Creases) -> Result<Step, SubdivisionError> {
         let degree = match self.split {
             Split::Quads => 4,
@@ -111,7 +112,7 @@ impl Outline {
     }
 }
 
-/// Which vertices have a crease, so that few edges are looked up.
+/// The vertices with a crease, so that few edges are looked up.
 pub(crate) struct Marked(Vec<bool>);
 
 impl Marked {
@@ -126,7 +127,7 @@ impl Marked {
         Self(marked)
     }
 
-    /// How sharp the edge between two vertices is.
+    /// Returns the sharpness of the edge between two vertices.
     pub(crate) fn sharpness(&self, creases: &Creases, ends: [u32; 2], by_nature: bool) -> f32 {
         if by_nature {
             return f32::INFINITY;

@@ -1,6 +1,6 @@
-//! A scheme with its options, one step at a time.
+//! A scheme with its options, run one step at a time.
 
-use mesh_core::{Creases, FaceId, MAX_ROWS, MeshQuery, PolygonError, Refine, Split};
+use sixfold_core::{Creases, FaceId, MAX_ROWS, MeshQuery, PolygonError, Refine, Split};
 
 use crate::bilinear::Bilinear;
 use crate::catmull_clark::CatmullClark;
@@ -12,7 +12,7 @@ use crate::scheme::{Method, Scheme};
 use crate::step::Step;
 use crate::{butterfly, doo_sabin, gather, native, scatter, sqrt3};
 
-/// A step by the mask of the scheme, for those that are no more than a mask; then the other schemes.
+/// Runs a step with the mask of the scheme if the scheme is only a mask; other schemes follow.
 macro_rules! by_mask {
     ($self:ident, $mask:ident => $step:expr, { $($others:tt)* }) => {
         match $self.scheme {
@@ -28,18 +28,18 @@ macro_rules! by_mask {
 /// A scheme and its options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Subdivision {
-    /// What rules there are.
+    /// The scheme.
     pub scheme: Scheme,
-    /// What the rim does; of Catmull–Clark and Loop.
+    /// The treatment of the boundary, for Catmull–Clark and Loop.
     pub boundary: Boundary,
-    /// How sharpness passes on; of Catmull–Clark and Loop.
+    /// The rule for the sharpness of the halves of an edge, for Catmull–Clark and Loop.
     pub creasing: Creasing,
-    /// Whose weights; of Loop.
+    /// The weights of extraordinary vertices, for Loop.
     pub loop_weights: LoopWeights,
 }
 
 impl Subdivision {
-    /// `scheme` with the options that are usual.
+    /// Builds `scheme` with the default options.
     pub fn new(scheme: Scheme) -> Self {
         Self {
             scheme,
@@ -49,14 +49,14 @@ impl Subdivision {
         }
     }
 
-    /// One step, by queries for each new point.
+    /// Runs one step with queries for each new point.
     ///
     /// `creases` are those of `mesh.to_polygons()`, from [`control`](Self::control) or the step
-    /// before; `level` counts the steps before this one.
+    /// before; `level` is the number of steps before this one.
     ///
     /// # Errors
     ///
-    /// What the scheme cannot split.
+    /// Returns an error if the scheme cannot split the mesh.
     pub fn gather<M: MeshQuery>(
         &self,
         mesh: &M,
@@ -71,12 +71,13 @@ impl Subdivision {
         })
     }
 
-    /// One step, by a pass over the faces. As [`gather`](Self::gather), but for the order of edge
-    /// points, which come as the faces name them.
+    /// Runs one step with one pass over the faces. The result is that of [`gather`](Self::gather),
+    /// except that edge points have the order in which the faces list the edges.
     ///
     /// # Errors
     ///
-    /// What the scheme cannot split, or that it is no pass over faces.
+    /// Returns an error if the scheme cannot split the mesh, or cannot run as a pass over the
+    /// faces.
     pub fn scatter<M: MeshQuery>(
         &self,
         mesh: &M,
@@ -91,16 +92,16 @@ impl Subdivision {
         })
     }
 
-    /// One step in the structure's own tables, into `child`, whose tables are used again where they
-    /// are large enough; yields the creases of the child. Runs on the threads of the current rayon
-    /// pool, with the same bytes on any number.
+    /// Runs one step in the tables of the structure, into `child`; returns the creases of the
+    /// child. The tables of `child` are reused if they are large enough. Runs on the threads of the
+    /// current rayon pool; the result has the same bytes on any number of threads.
     ///
-    /// `numbers` are filled for `mesh`, and may be used again for other meshes.
+    /// `numbers` are filled for `mesh`, and may be reused for other meshes.
     ///
     /// # Errors
     ///
-    /// What the scheme cannot split, or the structure cannot do in its own tables; `child` is as it
-    /// was then.
+    /// Returns an error if the scheme cannot split the mesh, or if the structure cannot split its
+    /// own tables; `child` is then unchanged.
     pub fn refine_into<M: Refine>(
         &self,
         mesh: &M,
@@ -117,7 +118,7 @@ impl Subdivision {
         })
     }
 
-    /// How step `level`, counted from 0, splits faces; `None` if it does not.
+    /// Returns how step `level`, counted from 0, splits faces; `None` if it does not.
     pub fn split(&self, level: u32) -> Option<Split> {
         match self.scheme.kind().split? {
             Split::Sqrt3 { .. } => Some(Split::Sqrt3 {
@@ -127,7 +128,7 @@ impl Subdivision {
         }
     }
 
-    /// How many parts a face of `degree` corners is split into.
+    /// Returns the number of parts of a face with `degree` corners.
     pub(crate) fn parts_of(&self, degree: usize) -> usize {
         match self.scheme.kind().split {
             Some(Split::Triangles) => 4,
@@ -135,7 +136,8 @@ impl Subdivision {
         }
     }
 
-    /// That native steps take no polygons.
+    /// Returns the error for a native step that starts from polygons or that the scheme does not
+    /// have.
     pub(crate) fn not_by_polygons(&self) -> SubdivisionError {
         self.no_method(Method::Native, "gather or scatter")
     }
@@ -148,8 +150,8 @@ impl Subdivision {
         }
     }
 
-    /// Checks that the scheme can split the faces of `mesh`, and that the result has names for all;
-    /// O(faces). Returns how many corners the faces have together.
+    /// Checks that the scheme can split the faces of `mesh`, and that 32-bit handles can number the
+    /// result; O(faces). Returns the total number of corners of the faces.
     fn check<M: MeshQuery>(&self, mesh: &M) -> Result<usize, SubdivisionError> {
         let kind = self.scheme.kind();
         let (mut corners, mut odd) = (0, None);
@@ -168,8 +170,8 @@ impl Subdivision {
                 degree,
             });
         }
-        // No step makes more than four corners of one, and no more edges than corners; but for √3 where
-        // boundaries are cut, which counts them.
+        // A step makes at most four corners from one, and at most as many edges as corners. The
+        // exception is √3 when it cuts boundaries; that step checks its own size.
         let limit = MAX_ROWS;
         if corners.saturating_mul(4) > limit {
             let elements = "corners";
@@ -179,7 +181,7 @@ impl Subdivision {
     }
 }
 
-/// Whether step `level`, counted from 0, is one of those in which √3 cuts the edges of boundaries.
+/// Returns whether √3 cuts boundary edges in step `level`, counted from 0.
 fn is_second(level: u32) -> bool {
     level % 2 == 1
 }

@@ -1,30 +1,32 @@
-//! How the limit surface of Catmull–Clark and Loop stands at a vertex: two tangents.
+//! Two tangents of the limit surface of Catmull–Clark and Loop at a vertex.
 //!
-//! Inside, those of Halstead, Kass & DeRose (1993) and Loop (1987): the neighbours weighed with cosines,
-//! and with sines. Those across creases were derived for the rules of a step as they are here, for
-//! Biermann, Levin & Zorin (2000) change the rules beside a crease; see [`Sector`].
+//! At smooth vertices they are those of Halstead, Kass & DeRose (1993) and Loop (1987): the
+//! neighbours weighted with cosines, and with sines. The tangents across creases were derived for
+//! the step rules of this crate, because Biermann, Levin & Zorin (2000) change the rules next to a
+//! crease; see [`Sector`].
 
 use std::f64::consts::{PI, TAU};
 
-use mesh_core::{Handle, MeshQuery, Point};
+use sixfold_core::{Handle, MeshQuery, Point};
 
 use crate::options::LoopWeights;
 
-/// The direction that is square to both; `None` where it is hidden in errors of size `rounding`.
+/// Returns the direction perpendicular to both; `None` if errors of size `rounding` could hide it.
 pub(crate) fn normal([a, b]: [Point; 2], rounding: f32) -> Option<Point> {
     let tilt = rounding / a.length() + rounding / b.length();
     let across = a.try_normalize()?.cross(b.try_normalize()?);
     (across.length() > 8.0 * tilt).then(|| across.normalize())
 }
 
-/// About how wrong a sum over the points around `at` may be, for positions are rounded.
+/// Estimates the error of a sum over the points around `at`, because positions are rounded.
 pub(crate) fn rounding(at: Point, around: &[Point]) -> f32 {
     let reach = around.iter().map(|p| p.length()).fold(0.0, f32::max);
     // The weights are up to six.
     6.0 * f32::EPSILON * around.len() as f32 * (at.length() + reach)
 }
 
-/// The neighbour after `v` in `f`, and the place of the corner opposite to `v` if `f` is a quad.
+/// Returns the neighbour after `v` in `f`, and the position of the corner opposite to `v`, if `f`
+/// is a quad.
 pub(crate) fn far_corner<M: MeshQuery>(
     mesh: &M,
     v: M::Vertex,
@@ -45,7 +47,7 @@ pub(crate) fn far_corner<M: MeshQuery>(
         .then_some((quad[(place + 1) % 4], far))
 }
 
-/// The faces around a vertex in their order, seen from there.
+/// The faces around a vertex in their order, with positions relative to it.
 ///
 /// ```text
 ///     o₁ ── e₁ ── o₀        e  the neighbours, counter-clockwise
@@ -62,7 +64,8 @@ pub(crate) struct Fan<V> {
 }
 
 impl<V: Handle> Fan<V> {
-    /// `None` where there is no such order, or a face that `surface` has no mask for.
+    /// Builds the fan; `None` if the faces have no such order, or if `surface` has no mask for a
+    /// face.
     pub(crate) fn around<M: MeshQuery<Vertex = V>>(
         mesh: &M,
         v: V,
@@ -94,7 +97,7 @@ impl<V: Handle> Fan<V> {
         })
     }
 
-    /// The tangents of a smooth vertex, the second counter-clockwise from the first.
+    /// Returns the tangents of a smooth vertex, the second counter-clockwise from the first.
     pub(crate) fn tangents(&self, surface: Surface) -> [Point; 2] {
         let n = self.edges.len();
         if !self.is_closed || n < 3 {
@@ -109,7 +112,7 @@ impl<V: Handle> Fan<V> {
         [wave(f64::cos), wave(f64::sin)]
     }
 
-    /// The faces from neighbour `from` on to neighbour `to`.
+    /// Returns the faces from neighbour `from` to neighbour `to`.
     pub(crate) fn sector(&self, from: usize, to: usize) -> Sector {
         let n = self.edges.len();
         let faces = if to > from { to - from } else { to + n - from };
@@ -126,27 +129,27 @@ impl<V: Handle> Fan<V> {
 
 /// The faces of a vertex between two edges of a crease or boundary.
 ///
-/// With k faces let θ = π/k, and the neighbours e₀ … eₖ, of which the first and the last are on the
-/// crease. The matrix of a step takes apart into the crease, a cubic B-spline with the eigenvalues 1,
-/// 1/2, 1/4, and k − 1 modes inside, each of them sin(ijθ) along the edges with an eigenvalue that falls
-/// as j rises. Inside mode 1 and whatever comes second make up the tangents:
+/// With k faces let θ = π/k, and let e₀ … eₖ be the neighbours, with the first and the last on the
+/// crease. The matrix of a step decomposes into the crease, a cubic B-spline with the eigenvalues
+/// 1, 1/2, 1/4, and k − 1 inner modes. Mode j is sin(ijθ) along the edges; its eigenvalue falls as
+/// j rises. The tangents are inner mode 1 and the part with the next eigenvalue:
 ///
 /// ```text
 ///   across  Σ a·sin(iθ) eᵢ + Σ b·(sin(iθ) + sin((i + 1)θ)) oᵢ + l (e₀ + eₖ)   mode 1
 ///   along   e₀ − eₖ                                                          the crease
-///      or   the same sums of sin(2iθ) + m (e₀ − eₖ)                          mode 2, from 1/2 on
+///      or   the same sums of sin(2iθ) + m (e₀ − eₖ)                          mode 2, if above 1/2
 /// ```
 ///
-/// One face has no mode inside; then e₀ + eₖ − 2v is across.
+/// One face has no inner mode; then e₀ + eₖ − 2v is the tangent across.
 pub(crate) struct Sector {
-    /// The neighbours, seen from the vertex; at least two.
+    /// The neighbours, relative to the vertex; at least two.
     edges: Vec<Point>,
     /// The far corners of quads.
     far: Vec<Point>,
 }
 
 impl Sector {
-    /// The tangents along and across, the second counter-clockwise from the first.
+    /// Returns the tangents along and across, the second counter-clockwise from the first.
     pub(crate) fn tangents(&self, surface: Surface) -> [Point; 2] {
         let k = self.edges.len() - 1;
         let (first, last) = (self.edges[0], self.edges[k]);
@@ -164,7 +167,7 @@ impl Sector {
             };
             mode.sum(&self.edges, &self.far, wave)
         };
-        // From the columns of e₀ and of the vertex, whose weight makes the sum zero.
+        // The weight l, from the columns of e₀ and of the vertex, whose weight makes the sum zero.
         let mode = surface.mode(angle);
         let ends = (8.0 * mode.spill * angle.sin() - mode.weight() / (angle / 2.0).tan())
             / (8.0 * mode.value - 2.0);
@@ -181,33 +184,33 @@ impl Sector {
     }
 }
 
-/// A scheme whose limit is known.
+/// A scheme with known limit masks.
 #[derive(Clone, Copy)]
 pub(crate) enum Surface {
     CatmullClark,
     Loop(LoopWeights),
 }
 
-/// An eigenvector of a step with a sine along the edges, but for the crease.
+/// An eigenvector of a step: a sine along the edges, except on the crease.
 #[derive(Clone, Copy)]
 struct Mode {
     /// The eigenvalue.
     value: f64,
     /// The amplitude at edges.
     edge: f64,
-    /// The amplitude at far corners, for each of the two edges beside.
+    /// The amplitude at far corners, for each of their two edges.
     far: f64,
-    /// How much of an old neighbour goes to the new points beside it.
+    /// The weight of an old neighbour in the new points next to it.
     spill: f64,
 }
 
 impl Surface {
-    /// The greater mode in which neighbours are `angle` apart.
+    /// Returns the mode with the greater eigenvalue for neighbours `angle` apart.
     fn mode(self, angle: f64) -> Mode {
         let cos = angle.cos();
         match self {
             Self::CatmullClark => {
-                // For π the root is of zero, which rounding may miss.
+                // At π the radicand is zero, but rounding may make it negative.
                 let edge = 1.0 + cos + ((cos + 9.0) * (cos + 1.0)).max(0.0).sqrt();
                 let value = (edge + 4.0) / 16.0;
                 Mode {
@@ -228,12 +231,12 @@ impl Surface {
 }
 
 impl Mode {
-    /// The amplitude of an edge with its part of the far corners.
+    /// Returns the amplitude of an edge, including its part of the far corners.
     fn weight(self) -> f64 {
         self.edge + 2.0 * self.far
     }
 
-    /// The sum over edges and far corners, with `wave` along the edges.
+    /// Returns the sum over edges and far corners, with `wave` along the edges.
     fn sum(self, edges: &[Point], far: &[Point], wave: impl Fn(usize) -> f64) -> Point {
         let edges = (0..).zip(edges);
         let edges: Point = edges.map(|(i, &e)| e * (self.edge * wave(i)) as f32).sum();

@@ -1,12 +1,13 @@
-//! Walks around a vertex and along a face: ordinary iterators that end after one turn.
+//! Walks around a vertex and along a face, as iterators that end after one turn.
 
-use mesh_core::{EdgeId, Editing, FaceId, Probe, VertexId};
+use sixfold_core::{EdgeId, Editing, FaceId, Probe, VertexId};
 
 use crate::edge::Run;
 use crate::mesh::AnyWingedEdgeMesh;
 
 impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
-    /// Every edge at `v` run away from it, counter-clockwise; from the boundary, if `v` is on one.
+    /// Iterates over the runs that leave `v`, counter-clockwise, starting on the boundary if `v` is
+    /// on one.
     #[inline]
     pub(crate) fn runs_from(&self, v: VertexId) -> RunsFrom<'_, P, E> {
         let at = self.spoke(v);
@@ -18,7 +19,7 @@ impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
         }
     }
 
-    /// Every edge of `f` run with `f` on its left, counter-clockwise.
+    /// Iterates over the runs with `f` on their left, counter-clockwise.
     #[inline]
     pub(crate) fn runs_along(&self, f: FaceId) -> RunsAlong<'_, P, E> {
         let first = self.side(f);
@@ -31,7 +32,7 @@ impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
     }
 }
 
-/// The edges at a vertex, each run away from it; each record is all that its step reads.
+/// The runs that leave a vertex, each with its edge. A step reads one record.
 #[derive(Clone, Debug)]
 pub(crate) struct RunsFrom<'a, P: Probe, E: Editing> {
     mesh: &'a AnyWingedEdgeMesh<P, E>,
@@ -69,7 +70,7 @@ impl<'a, P: Probe, E: Editing> Iterator for RunsFrom<'a, P, E> {
     }
 }
 
-/// The edges of a face, each run with the face on its left.
+/// The runs along a face, each with its edge. A step reads one record.
 #[derive(Clone, Debug)]
 pub(crate) struct RunsAlong<'a, P: Probe, E: Editing> {
     mesh: &'a AnyWingedEdgeMesh<P, E>,
@@ -106,7 +107,8 @@ impl<'a, P: Probe, E: Editing> Iterator for RunsAlong<'a, P, E> {
     }
 }
 
-/// The edges at both ends of an edge, but for itself: two walks that begin and end at it.
+/// The edges at both ends of an edge, except the edge itself: one walk around each end, which
+/// starts and stops at the edge itself.
 #[derive(Clone, Debug)]
 pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
     mesh: &'a AnyWingedEdgeMesh<P, E>,
@@ -120,7 +122,8 @@ pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
 impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
     #[inline]
     pub(crate) fn new(mesh: &'a AnyWingedEdgeMesh<P, E>, e: EdgeId) -> Self {
-        // The sides of e itself are known: it leaves its start on the left, its end on the right.
+        // The sides of e itself are known: its left run leaves its start, its right run leaves its
+        // end.
         let edge = mesh.edge(e);
         let ([v, other], [at, there]) = (edge.ends(), edge.prev());
         Self {
@@ -171,12 +174,12 @@ impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{MeshQuery, Point, PolygonMesh, Representation};
+    use sixfold_core::{MeshQuery, Point, PolygonMesh, Representation};
 
     use super::*;
     use crate::mesh::WingedEdgeMesh;
 
-    /// A polygon of `3 * petals` sides, and petals that share three sides with it each.
+    /// Builds a polygon with `3 * petals` sides, and petals that share three sides with it each.
     fn flower(petals: u32) -> WingedEdgeMesh {
         let sides = 3 * petals;
         let corners = vec![Point::ZERO; (sides + petals) as usize];
@@ -190,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn a_face_of_very_many_sides_meets_each_neighbour_once() {
+    fn a_face_with_many_sides_lists_each_neighbour_once() {
         for petals in [2, 3, 4, 5, 31, 32, 33, 34, 300] {
             let mesh = flower(petals);
             let middle = FaceId::new(0);
@@ -200,7 +203,7 @@ mod tests {
                 faces
             });
             assert_eq!(folded, expected);
-            // One by one, and the last ones in a fold: an answer may change hands on the way.
+            // The first item by `next`, the others by `fold`.
             let mut faces = mesh.face_faces(middle);
             let first = faces.next();
             let rest = faces.fold(first.into_iter().collect(), |mut faces: Vec<_>, f| {
@@ -215,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_walk_taken_up_half_way_ends_where_the_whole_does() {
+    fn a_walk_continued_after_some_steps_ends_at_the_same_place() {
         let mesh = flower(4);
         for v in mesh.vertices() {
             let whole: Vec<EdgeId> = mesh.vertex_edges(v).collect();

@@ -1,10 +1,10 @@
-//! In from polygons, and out again.
+//! Building from polygons, and conversion to polygons.
 
-use mesh_core::{
+use sixfold_core::{
     BuildError, Capabilities, Counts, EDGE_HOLES, EdgeId, Editing, FACE_HOLES, FaceId, FaceList,
-    HoleSet, InvariantError, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe,
-    QueryCost, Representation, RowMap, Slot, Table, TwinPairs, Untraced, VERTEX_HOLES, VertexId,
-    row,
+    HoleSet, InvariantError, Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh,
+    Probe, QueryCost, Representation, RowMap, Slot, Table, TwinPairs, Untraced, VERTEX_HOLES,
+    VertexId, row,
 };
 
 use crate::edge::{Edge, Run};
@@ -18,15 +18,21 @@ impl<E: Editing> Representation for AnyWingedEdgeMesh<Untraced, E> {
 
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
 
-    type Probed<P: Probe> = AnyWingedEdgeMesh<P, E>;
+    fn type_path() -> &'static str {
+        match E::DELETES {
+            true => "sixfold_winged_edge::EditableWingedEdgeMesh",
+            false => "sixfold_winged_edge::WingedEdgeMesh",
+        }
+    }
 
-    /// Pairs the sides, writes each side into its edge, then closes each hole with a boundary loop;
-    /// O(corners + vertices), without hashing.
+    /// Pairs the sides, writes each side into its edge, then links the boundary loops, without
+    /// hashing; O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let refusal = || Self::CAPABILITIES.refusal(polygons);
         let faces = polygons.faces();
-        // With scratch of its own. Sorted in the rows of the edges, which are four times as large, the
-        // sides fall out of the caches: the build of 392,000 triangles took 1.5 times as long.
+        // Uses separate scratch memory. The rows of the edges are four times as large: if the sides
+        // were sorted in them, they would not fit in the caches, and building 392,000 triangles
+        // took 1.5× the time.
         let pairs = TwinPairs::of(polygons.vertex_count(), faces).ok_or_else(refusal)?;
         let mut draft = Draft::link(polygons.vertex_count(), faces, &pairs);
         let closed = faces.corners().len() == 2 * pairs.edge_count;
@@ -41,7 +47,7 @@ impl<E: Editing> Representation for AnyWingedEdgeMesh<Untraced, E> {
         ))
     }
 
-    /// Without the holes: what remains moves up in order.
+    /// If there are holes, the rows after them get lower numbers.
     fn to_polygons(&self) -> PolygonMesh {
         const FEW: &str = "no more corners than sides of edges";
         let mut faces = FaceList::with_capacity(2 * self.edge_count());
@@ -95,12 +101,16 @@ impl<E: Editing> Representation for AnyWingedEdgeMesh<Untraced, E> {
         .collect()
     }
 
-    fn layout_bytes(counts: &Counts) -> usize {
-        size_of::<Edge>() * counts.edges + 16 * counts.vertices + 4 * counts.faces
-    }
-
     fn validate(&self) -> Result<(), InvariantError> {
         crate::validate::validate(self)
+    }
+}
+
+impl<E: Editing> Measured for AnyWingedEdgeMesh<Untraced, E> {
+    type Probed<P: Probe> = AnyWingedEdgeMesh<P, E>;
+
+    fn layout_bytes(counts: &Counts) -> usize {
+        size_of::<Edge>() * counts.edges + 16 * counts.vertices + 4 * counts.faces
     }
 
     fn probed<P: Probe>(self, probe: P) -> AnyWingedEdgeMesh<P, E> {
@@ -117,7 +127,7 @@ impl<E: Editing> Representation for AnyWingedEdgeMesh<Untraced, E> {
 }
 
 impl<E: Editing> AnyWingedEdgeMesh<Untraced, E> {
-    /// A mesh of these rows, without holes.
+    /// Builds a mesh from these tables, without holes.
     pub(crate) fn of(
         positions: Vec<Point>,
         spokes: Vec<Slot<EdgeId>>,
@@ -136,7 +146,7 @@ impl<E: Editing> AnyWingedEdgeMesh<Untraced, E> {
     }
 }
 
-/// The tables while they are being filled.
+/// The tables during construction.
 struct Draft {
     spokes: Vec<Slot<EdgeId>>,
     edges: Vec<Edge>,
@@ -144,7 +154,8 @@ struct Draft {
 }
 
 impl Draft {
-    /// Writes every corner's side into its edge; sides without a face stay blank, but for their ends.
+    /// Writes the side of every corner into its edge. Sides without a face stay blank, except for
+    /// their ends.
     fn link(vertices: usize, faces: &FaceList, pairs: &TwinPairs) -> Self {
         let mut draft = Self {
             spokes: vec![Slot::NONE; vertices],
@@ -164,7 +175,7 @@ impl Draft {
         draft
     }
 
-    /// Links faces of a degree that the compiler knows and unrolls.
+    /// Links faces of one degree, which is known at compile time so that the loop is unrolled.
     fn link_uniform<const DEGREE: usize>(&mut self, corners: &[VertexId], halves: &[u32]) {
         let faces = corners
             .as_chunks::<DEGREE>()
@@ -189,7 +200,7 @@ impl Draft {
             let (here, then) = (corners[i], corners[next]);
             let edge = &mut self.edges[name(halves[i]).index()];
             let side = Side::right_if(halves[i] & 1 == 1);
-            // The even half of a pair runs from the lower end to the higher.
+            // The even half-edge of a pair runs from the lower end to the higher end.
             edge.ends = [here.min(then), here.max(then)];
             edge.faces[side.index()] = Slot::some(face);
             edge.next.link(side, name(halves[next]));
@@ -198,7 +209,7 @@ impl Draft {
         }
     }
 
-    /// Links the blank sides into loops; false if two of them arrive at one vertex.
+    /// Links the blank sides into loops. Returns false if two of them arrive at one vertex.
     fn close_boundary_loops(&mut self) -> bool {
         for e in 0..self.edges.len() {
             let Some(side) = self.edges[e].blank_side() else {
@@ -206,7 +217,8 @@ impl Draft {
             };
             let target = self.edges[e].ends[side.other().index()];
             let spoke = &mut self.spokes[target.index()];
-            // Run away from the vertex, an edge whose blank side arrives there has it on the right.
+            // If the blank side of an edge arrives at a vertex, it is on the right of the run from
+            // there.
             let arrives = |other: EdgeId| {
                 let run = Run::from(&self.edges[other.index()], target);
                 run.across() == Slot::NONE
@@ -224,7 +236,7 @@ impl Draft {
             let Some(side) = self.edges[e].blank_side() else {
                 continue;
             };
-            // As many blank sides arrive at a vertex as leave it, and one leaves this one.
+            // At each vertex, as many blank sides arrive as leave. One leaves here, so one arrives.
             let origin = self.edges[e].ends[side.index()];
             let before = self.spokes[origin.index()].get();
             let before = before.expect("a side arrives at every origin");
@@ -236,7 +248,7 @@ impl Draft {
         true
     }
 
-    /// Whether the walks around all vertices meet every edge twice, once from each end.
+    /// Returns whether the walks around all vertices visit every edge twice, once from each end.
     fn every_vertex_is_one_fan(&self) -> bool {
         let mut met = 0;
         for (v, spoke) in (0..).map(VertexId::new).zip(&self.spokes) {

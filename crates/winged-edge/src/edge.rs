@@ -2,38 +2,38 @@
 
 use std::hint::select_unpredictable;
 
-use mesh_core::{EdgeId, FaceId, Slot, VertexId};
+use sixfold_core::{EdgeId, FaceId, Slot, VertexId};
 
 use crate::wings::{Side, Wings};
 
 /// One edge: a row of the table `edges`.
 ///
-/// Along its left face it runs from start to end, along its right face back again; `next` and `prev`
-/// of a side follow the direction of the face there.
+/// It runs from start to end along its left face, and from end to start along its right face.
+/// `next` and `prev` of a side follow the direction of the face there.
 ///
-/// 32 bytes that start at a multiple of 32: every step of a walk touches one cache line. Left to
-/// the allocator, every second record of a large table would lie across two.
+/// 32 bytes, aligned to 32: every step of a walk touches one cache line. Without the alignment,
+/// every second record of a large table would lie across two lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(align(32))]
 pub struct Edge {
-    /// Where it starts, and where it ends: where the run along each side has its origin.
+    /// The start and the end: the origin of the left run and of the right run.
     pub(crate) ends: [VertexId; 2],
-    /// The face on each side; none outside a boundary.
+    /// The face on each side; empty outside a boundary.
     pub(crate) faces: [Slot<FaceId>; 2],
-    /// The wings ahead: the next edge along each side.
+    /// The next edge along each side.
     pub(crate) next: Wings,
-    /// The wings behind: the edge before along each side.
+    /// The previous edge along each side.
     pub(crate) prev: Wings,
 }
 
-/// Where a deleted edge starts and ends: no row of any table has this number.
+/// The value of both ends of a deleted edge; no vertex has this row.
 const NOWHERE: VertexId = VertexId::new(u32::MAX);
 
-/// The side of a deleted face: no row of any table has this number.
+/// The value of the side of a deleted face; no edge has this row.
 pub(crate) const NO_EDGE: EdgeId = EdgeId::new(u32::MAX);
 
 impl Edge {
-    /// Nothing linked yet, from the first vertex to itself.
+    /// A record that is not linked yet, from the first vertex to itself.
     pub(crate) const BLANK: Self = Self {
         ends: [VertexId::new(0); 2],
         faces: [Slot::NONE; 2],
@@ -41,53 +41,53 @@ impl Edge {
         prev: Wings::BLANK,
     };
 
-    /// What the row of a deleted edge holds.
+    /// The row of a deleted edge.
     pub(crate) const HOLE: Self = Self {
         ends: [NOWHERE; 2],
         ..Self::BLANK
     };
 
-    /// Whether the edge is deleted.
+    /// Returns whether the edge is deleted.
     #[inline(always)]
     pub(crate) fn is_hole(&self) -> bool {
         self.ends[0] == NOWHERE
     }
 
-    /// The side without a face, if there is one.
+    /// Returns the side without a face, if there is one.
     #[inline(always)]
     pub(crate) fn blank_side(&self) -> Option<Side> {
         let mut sides = [Side::LEFT, Side::RIGHT].into_iter();
         sides.find(|&side| self.faces[side.index()] == Slot::NONE)
     }
 
-    /// The vertex where it starts, and the one where it ends.
+    /// Returns the start and the end.
     #[inline]
     pub fn ends(&self) -> [VertexId; 2] {
         self.ends
     }
 
-    /// The face on the left, and the one on the right; none outside a boundary.
+    /// Returns the faces on the left and on the right; `None` outside a boundary.
     #[inline]
     pub fn faces(&self) -> [Option<FaceId>; 2] {
         self.faces.map(Slot::get)
     }
 
-    /// The next edge along the left, and along the right.
+    /// Returns the next edges along the left and along the right.
     #[inline]
     pub fn next(&self) -> [EdgeId; 2] {
         self.next.both()
     }
 
-    /// The edge before along the left, and along the right.
+    /// Returns the previous edges along the left and along the right.
     #[inline]
     pub fn prev(&self) -> [EdgeId; 2] {
         self.prev.both()
     }
 }
 
-/// An edge run along one of its sides: the cursor of every walk, never stored.
+/// An edge as it runs along one of its sides: the cursor of every walk, never stored.
 ///
-/// Along the left it runs from start to end, along the right from end to start.
+/// Along the left side it runs from start to end, along the right side from end to start.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Run<'a> {
     edge: &'a Edge,
@@ -95,93 +95,97 @@ pub(crate) struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// `edge` run along `side`.
+    /// Returns the run of `edge` along `side`.
     #[inline(always)]
     pub(crate) fn on(edge: &'a Edge, side: Side) -> Self {
         Self { edge, side }
     }
 
-    /// `edge`, which has `v`, run away from it: the side test of a walk around a vertex.
+    /// Returns the run of `edge` that leaves its end `v`: the side test of a walk around a vertex.
     #[inline(always)]
     pub(crate) fn from(edge: &'a Edge, v: VertexId) -> Self {
         let side = Side::right_if(edge.ends[0] != v);
         Self { edge, side }
     }
 
-    /// `edge`, which has `f`, run with it on the left: the side test of a walk along a face.
+    /// Returns the run of `edge` with its face `f` on the left: the side test of a walk along a
+    /// face.
     #[inline(always)]
     pub(crate) fn along(edge: &'a Edge, f: FaceId) -> Self {
         let side = Side::right_if(edge.faces[0] != Slot::some(f));
         Self { edge, side }
     }
 
-    /// The side that it runs along.
+    /// Returns the side.
     #[inline(always)]
     pub(crate) fn side(self) -> Side {
         self.side
     }
 
-    /// The same edge run back along its other side.
+    /// Returns the run of the same edge along its other side.
     #[inline(always)]
     pub(crate) fn back(self) -> Self {
         Self::on(self.edge, self.side.other())
     }
 
-    // No step waits for these four. What the side test has read already is selected, for that is one
-    // instruction more; the rest is indexed, for that loads one value and not two.
+    // No step waits for these four. A value that the side test has already read is selected, which
+    // costs one more instruction. The others are indexed, which loads one value instead of two.
 
-    /// Where the run starts.
+    /// Returns the vertex where the run starts.
     #[inline(always)]
     pub(crate) fn origin(self) -> VertexId {
         self.edge.ends[self.side.index()]
     }
 
-    /// Where the run ends.
+    /// Returns the vertex where the run ends.
     #[inline(always)]
     pub(crate) fn target(self) -> VertexId {
         let [start, end] = self.edge.ends;
         select_unpredictable(self.side.is_right(), start, end)
     }
 
-    /// The face on the left of the run.
+    /// Returns the face on the left of the run.
     #[inline(always)]
     pub(crate) fn face(self) -> Slot<FaceId> {
         self.edge.faces[self.side.index()]
     }
 
-    /// The face on the right of the run.
+    /// Returns the face on the right of the run.
     #[inline(always)]
     pub(crate) fn across(self) -> Slot<FaceId> {
         let [left, right] = self.edge.faces;
         select_unpredictable(self.side.is_right(), left, right)
     }
 
-    /// The next edge along the face.
+    /// Returns the next edge along the face.
     #[inline(always)]
     pub(crate) fn next(self) -> EdgeId {
         self.edge.next.on(self.side)
     }
 
-    /// The edge before along the face.
+    /// Returns the previous edge along the face.
     #[inline(always)]
     pub(crate) fn prev(self) -> EdgeId {
         self.edge.prev.on(self.side)
     }
 
-    /// The next edge around the origin, counter-clockwise: the one before along the face on the left.
+    /// Returns the next edge around the origin, counter-clockwise: the previous edge along the face
+    /// on the left.
     #[inline(always)]
     pub(crate) fn ccw(self) -> EdgeId {
         self.prev()
     }
 
-    /// The next edge around the origin, clockwise: the next along the face on the right.
+    /// Returns the next edge around the origin, clockwise: the next edge along the face on the
+    /// right.
     #[inline(always)]
     pub(crate) fn cw(self) -> EdgeId {
         self.edge.next.on(self.side.other())
     }
 }
 
-/// A run by name, which may be kept while the records are written: what a half-edge is elsewhere.
+/// A run as an edge and a side, which can be kept while the records are written. It corresponds to
+/// a half-edge of a half-edge mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct RunId {
     pub(crate) edge: EdgeId,
@@ -189,13 +193,13 @@ pub(crate) struct RunId {
 }
 
 impl RunId {
-    /// `edge` run along `side`.
+    /// Returns the run of `edge` along `side`.
     #[inline(always)]
     pub(crate) const fn on(edge: EdgeId, side: Side) -> Self {
         Self { edge, side }
     }
 
-    /// The same edge run back along its other side.
+    /// Returns the run of the same edge along its other side.
     #[inline(always)]
     pub(crate) fn back(self) -> Self {
         Self::on(self.edge, self.side.other())
@@ -207,7 +211,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn records_fill_their_cache_lines() {
+    fn records_have_32_bytes_and_are_aligned() {
         assert_eq!((size_of::<Edge>(), align_of::<Edge>()), (32, 32));
     }
 }

@@ -1,13 +1,13 @@
-//! Changing the mesh in place: the surgery of Baumgart (1975).
+//! Edits in place: the implementation of [`MeshEdit`], after Baumgart (1975).
 //!
-//! Both wings of both sides are stored, so that an edge is linked and unlinked without a search. All
-//! that costs O(valence) is to give the edges at a vertex another end, and to find out whether an edit
-//! is legal.
+//! Both wings of both sides are stored, so that an edge is linked and unlinked without a search.
+//! Only two things cost O(valence): to check that an edit is legal, and to change the ends of the
+//! edges at a vertex.
 //!
-//! Every edit asks first and writes afterwards. Below, a run `a→b` is the edge between `a` and `b`
-//! along the side where it runs that way.
+//! Every edit checks before it writes. Below, a run `a→b` is the edge between `a` and `b` along the
+//! side where it runs from `a` to `b`.
 
-use mesh_core::{
+use sixfold_core::{
     EdgeId, Edit, EditLog, FaceId, MeshEdit, NoHoles, Point, Probe, QueryCost, Refusal, VertexId,
 };
 
@@ -67,7 +67,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
         Ok(self.push_vertex(at, log))
     }
 
-    /// O(corners), and the valence of a corner from which a new edge leaves.
+    /// O(corners), plus the valence of each corner that a new edge leaves.
     fn add_face(
         &mut self,
         corners: &[VertexId],
@@ -85,7 +85,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
         self.remove(f, log)
     }
 
-    /// O(corners of its faces), times their logarithm where the faces are no triangles.
+    /// O(corners of its faces), times their logarithm if some faces are not triangles.
     fn remove_vertex(
         &mut self,
         v: VertexId,
@@ -99,7 +99,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
         self.remove_isolated(log)
     }
 
-    /// O(1): the old edge keeps its start, the new one runs on to its end.
+    /// O(1). The old edge keeps its start; the new edge continues to the old end.
     fn split_edge(
         &mut self,
         e: EdgeId,
@@ -132,7 +132,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
         self.poke(f, at, log)
     }
 
-    /// O(degree), and the valence of one end: the smaller part is the new face.
+    /// O(degree), plus the valence of one end. The smaller part becomes the new face.
     fn split_face(
         &mut self,
         f: FaceId,
@@ -142,7 +142,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
         self.split(f, ends, log)
     }
 
-    /// O(degree) of both faces: the larger one stays.
+    /// O(degree) of both faces. The larger face stays.
     fn dissolve_edge(
         &mut self,
         e: EdgeId,
@@ -151,7 +151,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
         self.dissolve(e, log)
     }
 
-    /// O(1), and the valence of one third corner.
+    /// O(smaller valence) of the third corners.
     #[inline]
     fn flip_edge(
         &mut self,
@@ -161,7 +161,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
         self.flip(e)
     }
 
-    /// O(valence) of both ends; O(1) where the end that goes has three edges.
+    /// O(valence) of both ends; O(1) if the removed end has three triangles.
     #[inline]
     fn collapse_edge(
         &mut self,

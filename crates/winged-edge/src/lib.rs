@@ -1,73 +1,76 @@
 //! Winged-edge mesh: one record for every edge, with two ends, two faces and four wings.
 //!
-//! Choose it where edges are what is asked for, or where an edge must be one thing with one
-//! record; not for input with three faces on an edge, which it refuses. It is the oldest structure
-//! with constant-time neighbourhoods. Start at [`AnyWingedEdgeMesh`], whose numbered invariants explain
-//! the rest. After Baumgart (1972, 1975).
+//! Use it if most queries are about edges, or if an edge must be one object with one record. It
+//! does not hold edges with three faces: building from them returns an error. It is the oldest
+//! structure with constant-time neighbourhoods. Start at [`AnyWingedEdgeMesh`]; its numbered
+//! invariants define the tables. After Baumgart (1972, 1975).
 //!
 //! | holds | |
 //! |---|---|
 //! | polygons of any degree, boundaries, isolated vertices | yes |
-//! | edges with three faces, vertices with two fans, faces that disagree about the side | no: refused by name |
+//! | edges with three faces, vertices with two fans, faces with inconsistent orientation | no: the error names the elements |
 //!
 //! | query | cost | reads |
 //! |---|---|---|
-//! | VV, VE, VF | O(valence) | `spokes`, then one edge a neighbour |
+//! | VV, VE, VF | O(valence) | `spokes`, then one edge per neighbour |
 //! | EV, EF | O(1) | one edge |
-//! | EE | O(valence) of both ends | its edge, then one edge a neighbour |
-//! | FV, FE, FF | O(degree) | `sides`, then one edge a side |
+//! | EE | O(valence) of both ends | its edge, then one edge per neighbour |
+//! | FV, FE, FF | O(degree) | `sides`, then one edge per side |
 //! | refining (quads, triangles) | O(edges + vertices) | each edge and its four wings, in closed form |
 //!
-//! Vertices, edges and faces are rows, so that counting and listing them reads nothing.
+//! Vertices, edges and faces are rows. Counting and listing them reads only the bits of the holes,
+//! if there are any.
 //!
-//! | edit | cost | which records change |
+//! | edit ([`MeshEdit`](sixfold_core::MeshEdit)) | cost | rows that change |
 //! |---|---|---|
 //! | `set_position`, `add_vertex` | O(1) | one vertex |
-//! | `add_face` | O(degree), and the valence of corners that get an edge | its sides, and at each corner the boundary edges |
+//! | `add_face` | O(degree), plus the valence of each corner that a new edge leaves | its sides, and at each corner the boundary edges |
 //! | `remove_face` | O(degree) | its sides, and at each corner the boundary edges |
 //! | `remove_vertex` | O(corners of its faces) | its faces and edges, their outline, the boundary edges there |
-//! | `split_edge` | O(1) | the edge, a new one, the two wings at its end |
-//! | `bisect_edge` | O(1) | these, and all sides of its triangles |
-//! | `poke_face` | O(degree) | its sides, and as many new edges |
+//! | `split_edge` | O(1) | the edge, a new edge, the two wings at its end |
+//! | `bisect_edge` | O(1) | as for `split_edge`, and all sides of its triangles |
+//! | `poke_face` | O(degree) | its sides, one new edge per side |
 //! | `split_face` | O(degree + valence) | the sides of the smaller part, a new edge, two wings |
-//! | `dissolve_edge` | O(degrees) | the edge, its four wings, the sides of the smaller face |
+//! | `dissolve_edge` | O(degree) of both faces | the edge, its four wings, the sides of the smaller face |
 //! | `flip_edge` | O(smaller valence) of the third corners | the edge and its four wings |
-//! | `collapse_edge` | O(valences) of its ends; O(1) at an end of three triangles | the edges at the end that goes, the sides of its triangles |
-//! | `split_vertex` | O(valence) | the edges that move, those to the sides, three new ones |
+//! | `collapse_edge` | O(valence) of both ends; O(1) if the removed end has three triangles | the edges at the removed end, the sides of its triangles |
+//! | `split_vertex` | O(valence) | the edges that move, the edges to the sides, up to three new edges |
 //! | `remove_isolated_vertices`, `compact` | O(rows) | all |
 //!
-//! Both wings of both sides are stored, so an edge is linked and unlinked without a search. What costs
-//! a walk is to ask whether an edit is legal, and to give the edges at a vertex another end.
+//! Both wings of both sides are stored, so that an edge is linked and unlinked without a search.
+//! Only two things need a walk: to check that an edit is legal, and to change the ends of the edges
+//! at a vertex.
 //!
 //! # The side test
 //!
-//! An edge lies in the walks around both of its ends and both of its faces, so every step has to
-//! ask which side of the edge it is on: does the edge start at this vertex, is this face on its
-//! left? A walk keeps its vertex or face at hand, so that one comparison with the record it has
-//! just read tells. Which way the answer falls is for the numbering to say; taken as a branch it is
-//! guessed wrong every second time on a mesh in random order. Here it selects between two values
-//! that are loaded already, without a branch.
+//! An edge is part of the walks around both of its ends and along both of its faces. So every step
+//! must test on which side of the edge it is: does the edge start at this vertex, or is this face
+//! on its left? A walk keeps its vertex or face, so one comparison with the record that it has just
+//! read is enough. The result depends on the numbering. As a branch, it would be mispredicted every
+//! second time on a mesh in random order. Here it selects between two loaded values, without a
+//! branch.
 //!
-//! What it costs, as ratios to the half-edge mesh of this workspace, which need not ask, on 82,000
-//! triangles in order and shuffled: counting incident faces and corners 1.6 and 1.5, smoothing over
-//! VV 1.5 and 1.3, vertex normals 1.4 and 1.2, all nine relations 1.3 and 1.2, breadth-first search
-//! over FF 1.1 and 1.0. It shows least where memory or a queue is what a walk waits for, since a step
-//! reads one record in one cache line.
+//! Its cost, as the time relative to the half-edge mesh of this workspace, which needs no side
+//! test, on 82,000 triangles in order and shuffled: counting incident faces and corners 1.6× and
+//! 1.5×, smoothing over VV 1.5× and 1.3×, vertex normals 1.4× and 1.2×, all nine relations 1.3× and
+//! 1.2×, breadth-first search over FF 1.1× and 1.0×. The cost is smallest if a walk waits for
+//! memory or for a queue, because a step reads one record in one cache line.
 //!
-//! # What the sweeps are bound by
+//! # What limits the speed of the sweeps
 //!
-//! In cache VV, VE, VF, FV, FE and FF are bound by latency: a step cannot begin before the step
-//! before it has loaded its record, compared and selected, about 8 cycles against the 6 of a
-//! half-edge, and a walk of six leaves room for two or three vertices at once. Beyond the cache each
-//! step waits for one line, in an order that the numbering of the edges decides. EV and EF read the
-//! records in order, 32 bytes each, of which they use 8: bound by bandwidth. Building is bound by the
-//! counting sort that pairs the sides, half of its time, and by one record written a side.
+//! If the mesh is in the cache, latency limits VV, VE, VF, FV, FE and FF. A step cannot begin
+//! before the previous step has loaded its record, compared and selected: about 8 cycles, against 6
+//! in the half-edge mesh. With walks of six steps, the processor has room for two or three vertices
+//! at once. If the mesh is not in the cache, each step waits for one cache line, in an order that
+//! depends on the numbering of the edges. Bandwidth limits EV and EF: they read the records in
+//! order and use 8 of 32 bytes. The counting sort that pairs the sides limits building: it takes
+//! half of the time. The other limit is writing one record per side.
 //!
 //! # Examples
 //!
 //! ```
-//! use mesh_core::{MeshQuery, Point, PolygonMesh, Representation, VertexId};
-//! use winged_edge::WingedEdgeMesh;
+//! use sixfold_core::{MeshQuery, Point, PolygonMesh, Representation, VertexId};
+//! use sixfold_winged_edge::WingedEdgeMesh;
 //!
 //! let square = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
 //! let polygons = PolygonMesh::new(square, [[0, 1, 2], [0, 2, 3]])?;
@@ -92,3 +95,23 @@ mod wings;
 
 pub use edge::Edge;
 pub use mesh::{AnyWingedEdgeMesh, EditableWingedEdgeMesh, WingedEdgeMesh};
+
+/// The traits and types that all Sixfold structures share: `PolygonMesh`, `MeshQuery`, handles,
+/// errors.
+pub use sixfold_core;
+
+/// Imports for a program that uses this structure: its types, and the traits of its queries and
+/// edits.
+///
+/// ```
+/// use sixfold_winged_edge::prelude::*;
+///
+/// let triangle = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]])?;
+/// let mesh = WingedEdgeMesh::from_polygons(&triangle)?;
+/// assert_eq!(mesh.edge_count(), 3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub mod prelude {
+    pub use crate::{EditableWingedEdgeMesh, WingedEdgeMesh};
+    pub use sixfold_core::prelude::*;
+}

@@ -1,13 +1,13 @@
 //! The tables, their invariants, and the classic operators.
 
-use mesh_core::{
+use sixfold_core::{
     EDGE_HOLES, EdgeId, Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe, Slot, Table,
     Untraced, VERTEX_HOLES, VertexId, Whole,
 };
 
 use crate::edge::{Edge, NO_EDGE, Run};
 
-/// A mesh of edges that know their ends, their faces and the four edges around them.
+/// A mesh of edges that store their ends, their faces and the four edges around them.
 ///
 /// ```text
 ///     left_next(e)         right_prev(e)
@@ -23,31 +23,32 @@ use crate::edge::{Edge, NO_EDGE, Run};
 ///     left_prev(e)         right_next(e)
 /// ```
 ///
-/// The side of a boundary edge that has no face has wings as well: they follow the boundary loop, as
-/// if it were a face. So all walks close, and a boundary costs no query more.
+/// The side of a boundary edge without a face has wings too: they follow the boundary loop as if it
+/// were a face. So all walks close, and a boundary adds no cost to a query.
 ///
 /// # Invariants
 ///
-/// Below, an edge *run* along one side goes from its origin to its target: on the left from start
-/// to end, on the right from end to start.
+/// Below, a *run* is an edge along one of its sides, from its origin to its target: on the left
+/// from start to end, on the right from end to start.
 ///
-/// - I1  The two ends of an edge differ, and so do what is on its two sides: one comparison tells
-///   the side. Every name in the tables is that of a row.
-/// - I2  The next wing of a run starts at its target, the one before ends at its origin.
-/// - I3  A run and its next wing have one face; none along a boundary loop.
-/// - I4  `next` and `prev` undo each other.
-/// - I5  `spoke(v)` ends at `v`, and leaves it with no face on its right if `v` is on a boundary;
-///   none if `v` is isolated.
-/// - I6  All edges at `v` are one cycle of turns around it: every vertex is manifold.
-/// - I7  `side(f)` has face `f`, and its cycle names at least three vertices, each once.
+/// - I1  The two ends of an edge differ, and so do its two faces (one may be empty): one comparison
+///   finds the side. Every handle in the tables is that of a row.
+/// - I2  The next wing of a run starts at its target, the previous wing ends at its origin.
+/// - I3  A run and its next wing have the same face; it is empty along a boundary loop.
+/// - I4  `next` and `prev` are inverse to each other.
+/// - I5  `spoke(v)` has the end `v`; if `v` is on a boundary, its run from `v` has no face on the
+///   right. It is empty if `v` is isolated.
+/// - I6  All edges at `v` are one cycle of steps around it: every vertex is manifold.
+/// - I7  `side(f)` has face `f`, and its cycle has at least three vertices, each once.
 /// - I8  No two edges have the same ends.
-/// - I9  A deleted vertex has no spoke, a deleted edge starts nowhere, a deleted face has no side: the
-///   last two hold a number that no row has. Nothing that is there names what is deleted.
+/// - I9  The bits of deleted vertices, edges and faces are set, and no others. The spoke of a
+///   deleted vertex is empty. The ends of a deleted edge, and the side of a deleted face, hold
+///   values that no row has. Elements that are not deleted never refer to deleted elements.
 ///
 /// # Memory
 ///
-/// 12 bytes a vertex for its position and 4 for its spoke, 32 an edge, 4 a face: 120 bytes, or 30
-/// words, per vertex of a large closed triangle mesh. Once something was deleted, also a bit for each
+/// 12 bytes per vertex for its position and 4 for its spoke, 32 per edge, 4 per face: 120 bytes, or
+/// 30 words, per vertex of a large closed triangle mesh. After the first deletion, also one bit per
 /// row up to the last hole.
 #[derive(Debug)]
 pub struct AnyWingedEdgeMesh<P: Probe, E: Editing> {
@@ -60,12 +61,13 @@ pub struct AnyWingedEdgeMesh<P: Probe, E: Editing> {
     pub(crate) face_holes: E::Holes<P>,
 }
 
-mesh_core::clone_by_field!(AnyWingedEdgeMesh<P: Probe, E: Editing> { positions, spokes, edges, sides, vertex_holes, edge_holes, face_holes });
+sixfold_core::clone_by_field!(AnyWingedEdgeMesh<P: Probe, E: Editing> { positions, spokes, edges, sides, vertex_holes, edge_holes, face_holes });
 
-/// A winged-edge mesh of which nothing can be deleted: [`AnyWingedEdgeMesh`] whose rows are all elements.
+/// A winged-edge mesh that cannot delete elements: an [`AnyWingedEdgeMesh`] without holes.
 pub type WingedEdgeMesh<P = Untraced> = AnyWingedEdgeMesh<P, Whole>;
 
-/// A winged-edge mesh that can be edited ([`MeshEdit`](mesh_core::MeshEdit)): [`AnyWingedEdgeMesh`] with holes.
+/// A winged-edge mesh that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an
+/// [`AnyWingedEdgeMesh`] with holes.
 pub type EditableWingedEdgeMesh<P = Untraced> = AnyWingedEdgeMesh<P, Editable>;
 
 impl<P: Probe> From<WingedEdgeMesh<P>> for EditableWingedEdgeMesh<P> {
@@ -83,10 +85,10 @@ impl<P: Probe> From<WingedEdgeMesh<P>> for EditableWingedEdgeMesh<P> {
     }
 }
 
-/// What an edge knows. Each panics, and names the edge, if the mesh does not have it; all O(1), one
-/// record read.
+/// The fields of an edge. Each panics with the handle of the edge if it does not exist. All are
+/// O(1) and read one record.
 impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
-    /// The record of `e`.
+    /// Returns the record of `e`.
     #[inline]
     pub fn edge(&self, e: EdgeId) -> &Edge {
         let edge = self.record(e);
@@ -96,71 +98,72 @@ impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
         edge
     }
 
-    /// The same for walks, which never come to a deleted edge.
+    /// Returns the record of `e` without a check, for walks, which never reach a deleted edge.
     #[inline]
     pub(crate) fn record(&self, e: EdgeId) -> &Edge {
         self.edges.read(e.index())
     }
 
-    /// The vertex where `e` starts.
+    /// Returns the vertex where `e` starts.
     #[inline]
     pub fn start(&self, e: EdgeId) -> VertexId {
         self.edge(e).ends()[0]
     }
 
-    /// The vertex where `e` ends.
+    /// Returns the vertex where `e` ends.
     #[inline]
     pub fn end(&self, e: EdgeId) -> VertexId {
         self.edge(e).ends()[1]
     }
 
-    /// The face on the left of `e`; none on a boundary.
+    /// Returns the face on the left of `e`, or `None` outside a boundary.
     #[inline]
     pub fn left(&self, e: EdgeId) -> Option<FaceId> {
         self.edge(e).faces()[0]
     }
 
-    /// The face on the right of `e`; none on a boundary.
+    /// Returns the face on the right of `e`, or `None` outside a boundary.
     #[inline]
     pub fn right(&self, e: EdgeId) -> Option<FaceId> {
         self.edge(e).faces()[1]
     }
 
-    /// The wing at the end of `e`, on its left: the next edge along the left face.
+    /// Returns the wing at the end of `e`, on its left: the next edge along the left face.
     #[inline]
     pub fn left_next(&self, e: EdgeId) -> EdgeId {
         self.edge(e).next()[0]
     }
 
-    /// The wing at the start of `e`, on its left: the edge before along the left face.
+    /// Returns the wing at the start of `e`, on its left: the previous edge along the left face.
     #[inline]
     pub fn left_prev(&self, e: EdgeId) -> EdgeId {
         self.edge(e).prev()[0]
     }
 
-    /// The wing at the start of `e`, on its right: the next edge along the right face.
+    /// Returns the wing at the start of `e`, on its right: the next edge along the right face.
     #[inline]
     pub fn right_next(&self, e: EdgeId) -> EdgeId {
         self.edge(e).next()[1]
     }
 
-    /// The wing at the end of `e`, on its right: the edge before along the right face.
+    /// Returns the wing at the end of `e`, on its right: the previous edge along the right face.
     #[inline]
     pub fn right_prev(&self, e: EdgeId) -> EdgeId {
         self.edge(e).prev()[1]
     }
 
-    /// Whether `e` has only one face.
+    /// Returns whether `e` has only one face.
     #[inline]
     pub fn is_boundary(&self, e: EdgeId) -> bool {
         self.edge(e).faces().contains(&None)
     }
 
-    /// An edge at `v`, the first counter-clockwise if `v` is on a boundary; none if `v` is isolated.
+    /// Returns an edge at `v`, the first counter-clockwise if `v` is on a boundary, or `None` if
+    /// `v` is isolated.
     ///
     /// # Panics
     ///
-    /// If there is no such vertex.
+    /// Panics if `v` is not a vertex of this mesh.
     #[inline]
     pub fn spoke(&self, v: VertexId) -> Option<EdgeId> {
         let spoke = self.spokes.read(v.index()).get();
@@ -170,11 +173,11 @@ impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
         spoke
     }
 
-    /// An edge of `f`.
+    /// Returns an edge of `f`.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// Panics if `f` is not a face of this mesh.
     #[inline]
     pub fn side(&self, f: FaceId) -> EdgeId {
         let side = *self.sides.read(f.index());
@@ -203,40 +206,41 @@ fn no_such_face(f: FaceId) -> ! {
     panic!("no face {f}: it was deleted")
 }
 
-/// Moves from an edge that know where they stand: Baumgart's ECCW, ECW and OTHER. Each panics if the
-/// edge does not end at the vertex, or does not lie along the face; all O(1), one record read.
+/// Moves from an edge around a vertex or a face: Baumgart's ECCW, ECW and OTHER. Each panics if the
+/// vertex is not an end of the edge, or the edge is not a side of the face. All are O(1) and read
+/// one record.
 impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
-    /// The end of `e` that is not `v`.
+    /// Returns the end of `e` that is not `v`.
     #[inline]
     pub fn other_end(&self, e: EdgeId, v: VertexId) -> VertexId {
         self.run_from(e, v).target()
     }
 
-    /// The face of `e` that is not `f`; none on a boundary.
+    /// Returns the face of `e` that is not `f`, or `None` on a boundary.
     #[inline]
     pub fn other_face(&self, e: EdgeId, f: FaceId) -> Option<FaceId> {
         self.run_along(e, f).across().get()
     }
 
-    /// The edge after `e` around `v`, counter-clockwise.
+    /// Returns the edge after `e` around `v`, counter-clockwise.
     #[inline]
     pub fn ccw_around_vertex(&self, e: EdgeId, v: VertexId) -> EdgeId {
         self.run_from(e, v).ccw()
     }
 
-    /// The edge after `e` around `v`, clockwise.
+    /// Returns the edge after `e` around `v`, clockwise.
     #[inline]
     pub fn cw_around_vertex(&self, e: EdgeId, v: VertexId) -> EdgeId {
         self.run_from(e, v).cw()
     }
 
-    /// The edge after `e` along `f`, counter-clockwise.
+    /// Returns the edge after `e` along `f`, counter-clockwise.
     #[inline]
     pub fn ccw_around_face(&self, e: EdgeId, f: FaceId) -> EdgeId {
         self.run_along(e, f).next()
     }
 
-    /// The edge after `e` along `f`, clockwise.
+    /// Returns the edge after `e` along `f`, clockwise.
     #[inline]
     pub fn cw_around_face(&self, e: EdgeId, f: FaceId) -> EdgeId {
         self.run_along(e, f).prev()
@@ -244,36 +248,37 @@ impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
 
     fn run_from(&self, e: EdgeId, v: VertexId) -> Run<'_> {
         let edge = self.edge(e);
-        assert!(edge.ends().contains(&v), "{e} does not end at {v}");
+        assert!(edge.ends().contains(&v), "{v} is not an end of {e}");
         Run::from(edge, v)
     }
 
     fn run_along(&self, e: EdgeId, f: FaceId) -> Run<'_> {
         let edge = self.edge(e);
         let along = edge.faces().contains(&Some(f));
-        assert!(along, "{e} does not lie along {f}");
+        assert!(along, "{e} is not a side of {f}");
         Run::along(edge, f)
     }
 }
 
-/// The tables as they lie in memory, for export and for loops of one's own.
+/// The tables as they are in memory, for export and for the caller's own loops. I9 defines the rows
+/// of deleted elements.
 impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
-    /// Positions by vertex.
+    /// Returns the positions by vertex.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
     }
 
-    /// An edge by vertex.
+    /// Returns one edge for each vertex (I5).
     pub fn spoke_rows(&self) -> &[Slot<EdgeId>] {
         self.spokes.rows()
     }
 
-    /// The records by edge.
+    /// Returns the records by edge.
     pub fn edge_records(&self) -> &[Edge] {
         self.edges.rows()
     }
 
-    /// An edge by face.
+    /// Returns one edge for each face (I7).
     pub fn side_rows(&self) -> &[EdgeId] {
         self.sides.rows()
     }
@@ -281,7 +286,7 @@ impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{MeshQuery, PolygonMesh, Representation};
+    use sixfold_core::{MeshQuery, PolygonMesh, Representation};
 
     use super::*;
 
@@ -298,10 +303,10 @@ mod tests {
     }
 
     #[test]
-    fn the_lecture_rows_come_out() {
-        // The notes' first three rows, with v3 the far end of their e3, e4 and e12, and v4 that of
-        // e16 and e18. They give e2 the faces f0 and f1; then f1 would have v0 twice, so it is a
-        // face of its own here, f3.
+    fn the_lecture_mesh_has_the_expected_rows() {
+        // The first three rows of the lecture notes. v3 is the other end of their e3, e4 and e12,
+        // and v4 that of e16 and e18. The notes give e2 the faces f0 and f1, but then f1 would have
+        // v0 twice. So here it is a separate face, f3.
         let mesh = mesh(
             5,
             &[
@@ -314,7 +319,7 @@ mod tests {
         );
         let [e0, e1, e2] = [[0, 1], [1, 2], [2, 0]];
         let [e3, e4, e12, e16, e18] = [[0, 3], [3, 1], [2, 3], [4, 2], [1, 4]];
-        // The edge as it runs; wings left ahead, right at the end, left behind, right at the start.
+        // The ends; the wings left next, right prev, left prev and right next; the faces.
         let rows = [
             (e0, [e1, e4, e2, e3], [0, 1]),
             (e1, [e2, e16, e0, e18], [0, 2]),
@@ -335,7 +340,7 @@ mod tests {
                 assert_eq!(got, wings, "the wings of {ends:?}");
                 assert_eq!([mesh.left(e), mesh.right(e)], [Some(left), Some(right)]);
             } else {
-                // Stored the other way round: left and right, ahead and behind change places.
+                // Stored in the other direction: left and right are exchanged.
                 assert_eq!([mesh.end(e), mesh.start(e)], [start, end]);
                 let got = [
                     mesh.right_next(e),
@@ -343,7 +348,7 @@ mod tests {
                     mesh.right_prev(e),
                     mesh.left_next(e),
                 ];
-                assert_eq!(got, wings, "the wings of {ends:?}, which runs back");
+                assert_eq!(got, wings, "the wings of {ends:?}, stored in reverse");
                 assert_eq!([mesh.right(e), mesh.left(e)], [Some(left), Some(right)]);
             }
             assert_eq!(mesh.other_face(e, left), Some(right));
@@ -352,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn moves_around_vertices_and_faces_undo_each_other() {
+    fn moves_around_vertices_and_faces_are_inverse() {
         let open = mesh(5, &[&[0, 1, 2, 3], &[1, 0, 4]]);
         for e in open.edges() {
             for v in open.edge_vertices(e) {
@@ -373,7 +378,7 @@ mod tests {
     #[test]
     fn wings_without_a_face_follow_the_boundary() {
         let open = mesh(5, &[&[0, 1, 2, 3], &[1, 0, 4]]);
-        // Clockwise around the outline from v0: 4, 1, 2, 3.
+        // Clockwise around the outline from v0: 3, 2, 1, 4.
         let outline = [[0, 3], [3, 2], [2, 1], [1, 4], [4, 0]].map(|ends| between(&open, ends));
         for (i, &e) in outline.iter().enumerate() {
             let next = outline[(i + 1) % outline.len()];
@@ -391,7 +396,7 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "no vertex 5: table `spokes` has 5 rows")]
-    fn a_vertex_that_is_not_there_panics_by_name() {
+    fn a_missing_vertex_panics_with_its_handle() {
         let _ = mesh(5, &[&[0, 1, 2]])
             .vertex_vertices(VertexId::new(5))
             .count();
@@ -399,13 +404,13 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "no edge 3: table `edges` has 3 rows")]
-    fn an_edge_that_is_not_there_panics_by_name() {
+    fn a_missing_edge_panics_with_its_handle() {
         mesh(3, &[&[0, 1, 2]]).start(EdgeId::new(3));
     }
 
     #[test]
-    #[should_panic(expected = "e0 does not end at v2")]
-    fn an_edge_elsewhere_panics_by_name() {
+    #[should_panic(expected = "v2 is not an end of e0")]
+    fn a_vertex_that_is_not_an_end_of_the_edge_panics() {
         mesh(3, &[&[0, 1, 2]]).other_end(EdgeId::new(0), VertexId::new(2));
     }
 }

@@ -1,6 +1,6 @@
 //! The nine relations.
 
-use mesh_core::{
+use sixfold_core::{
     DistinctWalk, EdgeId, Editing, FaceId, HoleSet, MeshQuery, Point, Probe, Slot, VertexId,
 };
 
@@ -48,7 +48,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyWingedEdgeMesh<P, E> {
         *position
     }
 
-    /// Counter-clockwise; from the boundary, if `v` is on one.
+    /// Counter-clockwise, starting on the boundary if `v` is on one.
     #[inline]
     fn vertex_vertices(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
         self.runs_from(v).map(|(_, run)| run.target())
@@ -61,7 +61,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyWingedEdgeMesh<P, E> {
 
     #[inline]
     fn vertex_faces(&self, v: VertexId) -> impl Iterator<Item = FaceId> {
-        // Each face at v is on the left of one edge that leaves it.
+        // Each face at v is on the left of one run that leaves v.
         self.runs_from(v).filter_map(|(_, run)| run.face().get())
     }
 
@@ -95,11 +95,26 @@ impl<P: Probe, E: Editing> MeshQuery for AnyWingedEdgeMesh<P, E> {
         DistinctWalk::new(self.runs_along(f).map(|(_, run)| run.across()))
     }
 
-    /// A walk around `a`.
+    /// Walks around `a`.
     #[inline]
     fn edge_between(&self, a: VertexId, b: VertexId) -> Option<EdgeId> {
         let mut runs = self.runs_from(a);
         runs.find_map(|(e, run)| (run.target() == b).then_some(e))
+    }
+
+    #[inline]
+    fn contains_vertex(&self, v: VertexId) -> bool {
+        v.index() < self.vertex_rows() && !self.vertex_holes.has(v.index())
+    }
+
+    #[inline]
+    fn contains_edge(&self, e: EdgeId) -> bool {
+        e.index() < self.edge_rows() && !self.edge_holes.has(e.index())
+    }
+
+    #[inline]
+    fn contains_face(&self, f: FaceId) -> bool {
+        f.index() < self.face_rows() && !self.face_holes.has(f.index())
     }
 
     fn vertex_rows(&self) -> usize {
@@ -114,7 +129,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyWingedEdgeMesh<P, E> {
         self.sides.len()
     }
 
-    /// The walk around `v` as it is, for it is counter-clockwise and begins at the boundary.
+    /// Returns the walk around `v` unchanged: it is counter-clockwise and starts on the boundary.
     #[inline]
     fn one_ring(&self, v: VertexId) -> Option<impl Iterator<Item = VertexId>> {
         Some(self.vertex_vertices(v))

@@ -1,9 +1,9 @@
-//! Every face split in the structure's own tables, in closed form.
+//! Refinement: splits every face in the structure's own tables, in closed form.
 //!
-//! A *run* is an edge along one of its sides, and so is a corner: the one where the run starts.
-//! Edge by edge, left before right, the runs that have a face have the ranks 0, 1, 2 …, and all that a
-//! corner gives to the child goes by its rank. Below, h₀ and h₁ are the halves of a run that starts
-//! at `o`, and `r` is the edge that the run adds inside its face.
+//! A *run* is an edge along one of its sides. A run with a face stands for the corner where it
+//! starts. The runs with a face have the ranks 0, 1, 2 …, edge by edge, left before right; the rows
+//! that a corner adds to the child follow from its rank. Below, h₀ and h₁ are the halves of a run
+//! that starts at `o`, and `r` is the edge that the run adds inside its face.
 //!
 //! ```text
 //!              Quads                               Triangles
@@ -17,9 +17,10 @@
 //!                                               o ─h₀─► m ─h₁─► ·
 //! ```
 //!
-//! Edge `e` becomes the edges 2e, from its start to its middle, and 2e + 1, on to its end: they keep
-//! its direction, and the run on side s (0 left, 1 right) has h₀ = 2e + s and h₁ = 2e + 1 − s. With
-//! E edges, F faces and C corners before, rank k, and k₋, k₊ the ranks of the runs before and after:
+//! Edge `e` becomes the edges 2e, from its start to its middle, and 2e + 1, from its middle to its
+//! end. They keep its direction, and the run on side s (0 left, 1 right) has h₀ = 2e + s and h₁ =
+//! 2e + 1 − s. With E edges and C corners in the parent, face number f, rank k, and k₋, k₊ the
+//! ranks of the runs before and after:
 //!
 //! | | face | next | prev |
 //! |---|---|---|---|
@@ -31,12 +32,12 @@
 //! | r = 2E + k, triangles: left, m to m₋ | k | h₁ of the run before | h₀ |
 //! | and right, m₋ to m | C + f | 2E + k₊ | 2E + k₋ |
 //!
-//! Along a side without a face h₀ and h₁ follow each other. An edge reads its four wings, to know on
-//! which side of them it is, and writes its four children.
+//! Along a side without a face, h₀ and h₁ follow each other. An edge reads its four wings, to find
+//! on which of their sides they run, and writes its children.
 
 use std::ops::Range;
 
-use mesh_core::{
+use sixfold_core::{
     Counts, EdgeId, FaceId, MeshQuery, NoHoles, PART, Point, Ranks, Refine, RefineError, RowId,
     Slot, Split, Table, VertexId, all_rows, check_split, in_parts, row, row_parts, rows_of_part,
 };
@@ -48,7 +49,7 @@ use crate::wings::{Side, Wings};
 impl Refine for WingedEdgeMesh {
     const SPLITS: &'static [Split] = &[Split::Quads, Split::Triangles];
 
-    /// Edges are rows; what has to be known is the runs with a face, for their ranks.
+    /// The ranks of the runs with a face; the number of an edge is its row.
     type EdgeNumbers = Ranks;
 
     fn empty() -> Self {
@@ -79,7 +80,7 @@ impl Refine for WingedEdgeMesh {
         rows_of_part(self.edges.len(), part).map(EdgeId::new)
     }
 
-    /// Its row; O(1).
+    /// Returns the row of `e`; O(1).
     #[inline]
     fn edge_number(&self, _: &Ranks, e: EdgeId) -> usize {
         e.index()
@@ -93,7 +94,11 @@ impl Refine for WingedEdgeMesh {
         child: &mut Self,
     ) -> Result<(), RefineError> {
         let runs = 2 * self.edges.len();
-        assert_eq!(numbers.items(), runs, "the numbers are of another mesh");
+        assert_eq!(
+            numbers.items(),
+            runs,
+            "the edge numbers belong to another mesh"
+        );
         let counts = Counts {
             vertices: self.positions.len(),
             edges: self.edges.len(),
@@ -116,7 +121,7 @@ impl Refine for WingedEdgeMesh {
         };
         child.edges.resize(grown.edges, blank);
         child.sides.resize(grown.faces, EdgeId::new(0));
-        // Compiled once for closed meshes, where the rank of a run is its number.
+        // Compiled separately for closed meshes, where the rank of a run is its number.
         match (split, numbers.missing() == 0) {
             (Split::Quads, true) => self.splitting::<true, true>(numbers).fill(child),
             (Split::Quads, false) => self.splitting::<true, false>(numbers).fill(child),
@@ -135,7 +140,7 @@ impl Refine for WingedEdgeMesh {
         }
         let run = numbers.select(child.index());
         let face = self.edge(EdgeId::new(row(run / 2))).faces()[run % 2];
-        face.expect("a run of a rank has a face")
+        face.expect("a run with a rank has a face")
     }
 
     fn positions_mut(&mut self) -> &mut [Point] {
@@ -148,7 +153,7 @@ impl Refine for WingedEdgeMesh {
 }
 
 impl WingedEdgeMesh {
-    /// Refuses a face that is no triangle: there is one if the corners are not three a face.
+    /// Refuses a face that is not a triangle. There is one unless there are three corners per face.
     fn check_triangles(&self, counts: &Counts) -> Result<(), RefineError> {
         if counts.corners == 3 * counts.faces {
             return Ok(());
@@ -160,7 +165,8 @@ impl WingedEdgeMesh {
         }
     }
 
-    /// Refuses two triangles that share two edges: the vertex between these has no other edge.
+    /// Refuses two triangles that share two edges: the vertex between these edges has no other
+    /// edge.
     fn check_double_edges(&self) -> Result<(), RefineError> {
         let twofold = |edge: &Edge| {
             let alone = edge.next.on(Side::LEFT) == edge.prev.on(Side::RIGHT);
@@ -192,29 +198,30 @@ impl WingedEdgeMesh {
     }
 }
 
-/// How many edges have their wings read at once.
+/// The number of edges whose wings are read together.
 const BLOCK: usize = 64;
 
-/// A mesh while it is split: its tables as they lie in memory, and where in the child things begin.
+/// A mesh during a split: its tables, and the first rows of some elements in the child.
 #[derive(Clone, Copy)]
 struct Splitting<'a, const QUADS: bool, const CLOSED: bool> {
     spokes: &'a [Slot<EdgeId>],
     edges: &'a [Edge],
     sides: &'a [EdgeId],
     ranks: &'a Ranks,
-    /// The middle of the first edge.
+    /// The middle vertex of the first edge.
     middle: u32,
     /// The edge that the first corner adds.
     inner: u32,
 }
 
-/// What some edges in a row give to the child: two halves each, and an edge for each corner.
+/// The rows of the child that come from consecutive edges: two halves for each, and one edge for
+/// each corner.
 struct Part<'a> {
     halves: &'a mut [Edge],
     inner: &'a mut [Edge],
 }
 
-/// A run and what lies along it, by the names of child edges. Ranks mean nothing without a face.
+/// A run and the child edges along it. Its ranks have no meaning without a face.
 struct Run {
     face: Slot<FaceId>,
     has_face: bool,
@@ -224,14 +231,14 @@ struct Run {
     half_before: EdgeId,
     /// h₀ of the run after.
     half_after: EdgeId,
-    /// The run before, the run itself and the run after.
+    /// The ranks of the run before, the run itself and the run after.
     ranks: [u32; 3],
     /// The middle of the run before.
     middle_before: VertexId,
 }
 
 impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
-    /// Overwrites the tables of `child`, which have their lengths already.
+    /// Overwrites the tables of `child`, which already have their lengths.
     fn fill(self, child: &mut WingedEdgeMesh) {
         self.fill_edges(child.edges.rows_mut());
         self.fill_sides(child.sides.rows_mut());
@@ -260,8 +267,8 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         });
     }
 
-    /// Block by block: what has to be read of the wings first, for it may lie anywhere, and a short
-    /// loop has more of it under way at once; then the rows.
+    /// Fills the rows block by block. The reads of the wings come first: they may be anywhere in
+    /// memory, and a short loop has more of them in flight at once.
     fn fill_part(self, edges: Range<usize>, part: &mut Part<'_>) {
         let mut rank = self.ranks.rank(2 * edges.start) as u32;
         let mut inner = part.inner.iter_mut();
@@ -283,7 +290,7 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
                 rank += u32::from(right.has_face);
                 for run in [&left, &right] {
                     if run.has_face {
-                        let inner = inner.next().expect("as many as ranks");
+                        let inner = inner.next().expect("one row per rank");
                         *inner = self.inner_edge(EdgeId::new(e), run);
                     }
                 }
@@ -293,7 +300,7 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         }
     }
 
-    /// On which of its sides the wing before runs, along `side` of `edge`, and the wing after.
+    /// Returns the sides on which the wing before and the wing after run, along `side` of `edge`.
     #[inline(always)]
     fn sides_of_wings(self, edge: &Edge, side: Side) -> [Side; 2] {
         let [before, after] = [edge.prev.on(side), edge.next.on(side)];
@@ -305,7 +312,7 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         ]
     }
 
-    /// The run of `e` along `side`, of rank `rank`, whose wings run on the sides `wings`.
+    /// Returns the run of `e` along `side`, with rank `rank`. Its wings run on the sides `wings`.
     #[inline(always)]
     fn run(self, e: EdgeId, edge: &Edge, side: Side, wings: [Side; 2], rank: u32) -> Run {
         let [before, after] = [edge.prev.on(side), edge.next.on(side)];
@@ -341,13 +348,13 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         VertexId::new(self.middle + e.row())
     }
 
-    /// The edge that a corner adds.
+    /// Returns the edge that a corner adds.
     #[inline(always)]
     fn inner(self, rank: u32) -> EdgeId {
         EdgeId::new(self.inner + rank)
     }
 
-    /// The two halves of `e`: its children from start to middle, and from middle to end.
+    /// Returns the two halves of `e`, from start to middle and from middle to end.
     #[inline(always)]
     fn halves(self, e: EdgeId, edge: &Edge, left: &Run, right: &Run) -> [Edge; 2] {
         let ([start, end], m) = (edge.ends, self.middle(e));
@@ -359,7 +366,7 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         ]
     }
 
-    /// What h₀ and h₁ of a run have along its side.
+    /// Returns what h₀ and h₁ of a run have along its side.
     #[inline(always)]
     fn lanes(self, run: &Run) -> [Lane; 2] {
         let [first, second] = run.halves;
@@ -385,7 +392,8 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         ]
     }
 
-    /// The edge that `run`, which has a face, adds inside it: from the middle of `e`.
+    /// Returns the edge that `run`, which has a face, adds inside it, starting at the middle of
+    /// `e`.
     #[inline(always)]
     fn inner_edge(self, e: EdgeId, run: &Run) -> Edge {
         let face = run.face.get().expect("a run with a face");
@@ -414,19 +422,21 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         between([self.middle(e), end], left, right)
     }
 
-    /// Of quads.
+    /// Returns the vertex in the middle of `face`; for quads only.
     #[inline(always)]
     fn face_point(self, face: FaceId) -> VertexId {
         VertexId::new(self.spokes.len() as u32 + face.row())
     }
 
-    /// Of triangles: they come after those of the corners.
+    /// Returns the middle triangle of `face`; for triangles only. These follow the faces of the
+    /// corners.
     #[inline(always)]
     fn middle_face(self, face: FaceId) -> FaceId {
         FaceId::new(self.ranks.members() as u32 + face.row())
     }
 
-    /// The edge that a corner adds lies along the face of the corner, and along the middle triangle.
+    /// Sets the sides. The edge that a corner adds is a side of the face of the corner and of the
+    /// middle triangle.
     fn fill_sides(self, child: &mut [EdgeId]) {
         let (of_corners, of_middles) = child.split_at_mut(self.ranks.members());
         in_parts(of_corners, PART, |first, sides| {
@@ -441,15 +451,16 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         });
     }
 
-    /// An edge that a corner of `face` adds, by an edge along it.
+    /// Returns an edge that a corner of `face` adds; `e` is a side of `face`.
     #[inline(always)]
     fn edge_inside(self, face: FaceId, e: EdgeId) -> EdgeId {
         let on = Side::right_if(self.edges[e.index()].faces[0] != Slot::some(face));
         self.inner(self.rank(e, on))
     }
 
-    /// An old vertex keeps the half of its spoke that is near; a face point takes an edge that ends
-    /// there; a middle has its own edge, and leaves it with no face on the right where it can.
+    /// Sets the spokes. An old vertex gets the near half of its spoke. A face point gets an edge
+    /// that ends there. A middle gets a half of its own edge, with no face on the right of the run
+    /// from the middle if possible.
     fn fill_spokes(self, child: &mut [Slot<EdgeId>]) {
         let (old, new) = child.split_at_mut(self.spokes.len());
         let (of_faces, of_edges) = new.split_at_mut(if QUADS { self.sides.len() } else { 0 });
@@ -474,7 +485,8 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
                 return;
             }
             for ((e, edge), spoke) in (first as u32..).zip(&self.edges[first..]).zip(spokes) {
-                // Towards the start the right of the edge is on the left, towards the end it stays.
+                // In the run from the middle to the start, the right face of the edge is on the
+                // left; in the run to the end, it is on the right.
                 let on = Side::right_if(edge.faces[1] == Slot::NONE);
                 *spoke = Slot::some(half(EdgeId::new(e), on));
             }
@@ -482,7 +494,7 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
     }
 }
 
-/// What an edge has on one of its sides.
+/// What an edge has on one of its sides: the face and two wings.
 #[derive(Clone, Copy)]
 struct Lane {
     face: Slot<FaceId>,
@@ -500,7 +512,8 @@ fn between(ends: [VertexId; 2], left: Lane, right: Lane) -> Edge {
     }
 }
 
-/// Half of `e`: the one that the run along `side` begins with. Its row is the number of the run, too.
+/// Returns the half of `e` with which the run along `side` begins. Its row is also the number of
+/// the run.
 #[inline(always)]
 fn half(e: EdgeId, side: Side) -> EdgeId {
     EdgeId::new(2 * e.row() + side.index() as u32)
@@ -508,12 +521,12 @@ fn half(e: EdgeId, side: Side) -> EdgeId {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{PolygonMesh, Representation};
+    use sixfold_core::{PolygonMesh, Representation};
 
     use super::*;
 
-    /// One triangle: e0 from v0 to v1 and e2 from v1 to v2 with the face on the left, e1 from v0 to v2
-    /// with it on the right. The ranks of these runs are 0, 2 and 1.
+    /// Splits one triangle: e0 from v0 to v1 and e2 from v1 to v2 have the face on the left, e1
+    /// from v0 to v2 has it on the right. The ranks of these runs are 0, 2 and 1.
     fn split(split: Split) -> WingedEdgeMesh {
         let polygons = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]]);
         let mesh = WingedEdgeMesh::from_polygons(&polygons.expect("valid")).expect("manifold");
@@ -527,7 +540,7 @@ mod tests {
 
     type Row = ([u32; 2], [Option<u32>; 2], [u32; 2], [u32; 2]);
 
-    /// Ends, faces, the next wings and the ones before; each on the left, then on the right.
+    /// Returns the ends, the faces, the next wings and the previous wings, each left then right.
     fn rows(mesh: &WingedEdgeMesh) -> Vec<Row> {
         let row_of = |edge: &Edge| {
             (

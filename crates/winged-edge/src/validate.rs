@@ -2,12 +2,12 @@
 
 use std::collections::HashSet;
 
-use mesh_core::{EdgeId, Editing, HoleSet, InvariantError, MeshQuery, Slot, Untraced};
+use sixfold_core::{EdgeId, Editing, HoleSet, InvariantError, MeshQuery, Slot, Untraced};
 
 use crate::edge::{Edge, NO_EDGE, Run};
 use crate::mesh::AnyWingedEdgeMesh;
 
-/// Checks I9 and I1 to I8 in turn; the later ones rely on the earlier ones.
+/// Checks I9, then I1 to I8; each check relies on the earlier ones.
 pub(crate) fn validate<E: Editing>(
     mesh: &AnyWingedEdgeMesh<Untraced, E>,
 ) -> Result<(), InvariantError> {
@@ -27,7 +27,7 @@ fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> 
     Err(InvariantError::new(invariant, detail))
 }
 
-/// Both runs of every edge, each from the end where it starts.
+/// Iterates over both runs of every edge that is not deleted.
 fn runs<E: Editing>(
     mesh: &AnyWingedEdgeMesh<Untraced, E>,
 ) -> impl Iterator<Item = (EdgeId, Run<'_>)> {
@@ -37,14 +37,14 @@ fn runs<E: Editing>(
     })
 }
 
-/// Each edge with its record.
+/// Iterates over the edges that are not deleted, with their records.
 fn records<E: Editing>(
     mesh: &AnyWingedEdgeMesh<Untraced, E>,
 ) -> impl Iterator<Item = (EdgeId, &Edge)> {
     mesh.edges().map(|e| (e, mesh.edge(e)))
 }
 
-/// I9, its first half: the rows that are marked as deleted are the holes.
+/// Checks the first part of I9: exactly the rows of deleted elements are marked as deleted.
 fn holes_are_marked<E: Editing>(
     mesh: &AnyWingedEdgeMesh<Untraced, E>,
 ) -> Result<(), InvariantError> {
@@ -64,22 +64,17 @@ fn holes_are_marked<E: Editing>(
     }
     let edge_differs = |&e: &usize| mesh.edge_holes.has(e) != mesh.edge_records()[e].is_hole();
     if let Some(e) = (0..edges).find(edge_differs) {
-        return fails(
-            "I9",
-            format!("e{e} is marked as deleted, or a hole: not both"),
-        );
+        return fails("I9", format!("deletion marks of e{e} disagree"));
     }
     let face_differs = |&f: &usize| mesh.face_holes.has(f) != (mesh.side_rows()[f] == NO_EDGE);
     match (0..faces).find(face_differs) {
-        Some(f) => fails(
-            "I9",
-            format!("f{f} is marked as deleted, or a hole: not both"),
-        ),
+        Some(f) => fails("I9", format!("deletion marks of f{f} disagree")),
         None => Ok(()),
     }
 }
 
-/// I1, its second half, and that of I9: without it no other check could walk.
+/// Checks the second part of I1 and of I9: every handle in the tables names an element that exists;
+/// the other checks walk, and need this.
 fn names_exist<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let [vertices, edges, faces] = [mesh.positions.len(), mesh.edges.len(), mesh.sides.len()];
     if vertices != mesh.spokes.len() {
@@ -92,26 +87,26 @@ fn names_exist<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), 
         let mut wings = edge.next().into_iter().chain(edge.prev());
         let mut sides = edge.faces().into_iter().flatten();
         if !ends || !wings.all(has_edge) || !sides.all(|f| f.index() < faces) {
-            return fails("I1", format!("{e} names what is not there: {edge:?}"));
+            return fails("I1", format!("{e} refers to a missing element: {edge:?}"));
         }
         let ends = edge.ends().iter().any(|v| mesh.vertex_holes.has(v.index()));
         let mut wings = edge.next().into_iter().chain(edge.prev());
         let mut sides = edge.faces().into_iter().flatten();
         let face = sides.any(|f| mesh.face_holes.has(f.index()));
         if ends || face || wings.any(|w| mesh.edge_holes.has(w.index())) {
-            return fails("I9", format!("{e} names what is deleted: {edge:?}"));
+            return fails("I9", format!("{e} refers to a deleted element: {edge:?}"));
         }
     }
     let spokes = mesh.vertices().filter_map(|v| mesh.spoke(v));
     let mut named = spokes.chain(mesh.faces().map(|f| mesh.side(f)));
     match named.find(|&e| !has_edge(e) || mesh.edge_holes.has(e.index())) {
-        Some(e) if has_edge(e) => fails("I9", format!("{e} is named but deleted")),
-        Some(e) => fails("I1", format!("{e} is named but not there")),
+        Some(e) if has_edge(e) => fails("I9", format!("{e} is referred to, but deleted")),
+        Some(e) => fails("I1", format!("{e} is referred to, but missing")),
         None => Ok(()),
     }
 }
 
-/// I1, its first half.
+/// Checks the first part of I1.
 fn sides_differ<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     for (e, edge) in records(mesh) {
         let ([start, end], [left, right]) = (edge.ends(), edge.faces());
@@ -131,7 +126,7 @@ fn ends_meet<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), In
             if !mesh.edge(wing).ends().contains(&v) {
                 return fails(
                     "I2",
-                    format!("{wing}, a wing of {e} at {v}, does not end there"),
+                    format!("{wing} is a wing of {e} at {v}, but {v} is not its end"),
                 );
             }
         }
@@ -146,7 +141,7 @@ fn faces_agree<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), 
             let (wing, v) = (run.next(), run.target());
             return fails(
                 "I3",
-                format!("{e} and its next wing {wing} at {v} differ in face"),
+                format!("{e} and its next wing {wing} have different faces at {v}"),
             );
         }
     }
@@ -157,7 +152,8 @@ fn wings_undo_each_other<E: Editing>(
     mesh: &AnyWingedEdgeMesh<Untraced, E>,
 ) -> Result<(), InvariantError> {
     for (e, run) in runs(mesh) {
-        // The wing before arrives at the origin: run away from it, `e` is its next clockwise.
+        // The previous wing arrives at the origin, and `e` is the next edge clockwise from it
+        // there.
         let next = Run::from(mesh.edge(run.next()), run.target());
         let prev = Run::from(mesh.edge(run.prev()), run.origin());
         if next.prev() != e || prev.cw() != e {
@@ -174,17 +170,17 @@ fn wings_undo_each_other<E: Editing>(
 fn spokes<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     for v in mesh.vertices() {
         if let Some(e) = mesh.spoke(v).filter(|&e| !mesh.edge(e).ends().contains(&v)) {
-            return fails("I5", format!("{e}, the spoke of {v}, does not end there"));
+            return fails("I5", format!("{v} is not an end of its spoke {e}"));
         }
     }
     for (e, run) in runs(mesh) {
         let v = run.origin();
         let Some(spoke) = mesh.spoke(v) else {
-            return fails("I5", format!("{e} ends at {v}, which has no spoke"));
+            return fails("I5", format!("{v} is an end of {e}, but has no spoke"));
         };
         let first = Run::from(mesh.edge(spoke), v);
         if run.across() == Slot::NONE && first.across() != Slot::NONE {
-            let detail = format!("{v} is on a boundary, but its spoke {spoke} is not first there");
+            let detail = format!("{v} is on a boundary, but its spoke {spoke} is not first");
             return fails("I5", detail);
         }
     }
@@ -201,7 +197,7 @@ fn one_fan_each<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(),
         if walked != all {
             return fails(
                 "I6",
-                format!("the walk around {v} meets {walked} of {all} edges"),
+                format!("the walk around {v} visits {walked} of {all} edges"),
             );
         }
     }
@@ -213,12 +209,12 @@ fn faces<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), Invari
     for f in mesh.faces() {
         let e = mesh.side(f);
         if !mesh.edge(e).faces().contains(&Some(f)) {
-            return fails("I7", format!("{e}, the side of {f}, does not lie along it"));
+            return fails("I7", format!("{f} is not a face of its side {e}"));
         }
         let corners: Vec<_> = mesh.face_vertices(f).collect();
         let distinct: HashSet<_> = corners.iter().collect();
         if corners.len() < 3 || distinct.len() < corners.len() {
-            return fails("I7", format!("{f} has the corners {corners:?}"));
+            return fails("I7", format!("{f} has invalid corners: {corners:?}"));
         }
         along += corners.len();
     }
@@ -226,7 +222,7 @@ fn faces<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), Invari
         .filter(|(_, run)| run.face() != Slot::NONE)
         .count();
     if along != with_face {
-        let detail = format!("edges have {with_face} sides with a face, {along} are along one");
+        let detail = format!("{with_face} sides have a face, the walks along faces visit {along}");
         return fails("I7", detail);
     }
     Ok(())
@@ -239,7 +235,7 @@ fn edges_differ<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(),
         if !ends.insert([a.min(b), a.max(b)]) {
             return fails(
                 "I8",
-                format!("{e} has the ends {a} and {b} of another edge"),
+                format!("{e} and another edge have the same ends, {a} and {b}"),
             );
         }
     }
@@ -248,7 +244,9 @@ fn edges_differ<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(),
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{FaceId, MeshEdit, Point, PolygonMesh, Representation, RowId, Table, VertexId};
+    use sixfold_core::{
+        FaceId, MeshEdit, Point, PolygonMesh, Representation, RowId, Table, VertexId,
+    };
 
     use super::*;
     use crate::mesh::EditableWingedEdgeMesh;
@@ -262,12 +260,12 @@ mod tests {
         mesh
     }
 
-    /// A square of two triangles and an isolated vertex; the diagonal runs from v0 to v2.
+    /// Returns a square of two triangles and an isolated vertex; the diagonal runs from v0 to v2.
     fn sound() -> EditableWingedEdgeMesh {
         mesh(5, &[&[0, 1, 2], &[0, 2, 3]])
     }
 
-    /// The invariant that fails once `break_it` has had its way.
+    /// Returns the invariant that fails after `break_it`.
     fn broken(break_it: impl Fn(&mut EditableWingedEdgeMesh)) -> &'static str {
         let mut mesh = sound();
         break_it(&mut mesh);
@@ -280,23 +278,23 @@ mod tests {
         edges.find(|&e| has(e, a) && has(e, b)).expect("an edge")
     }
 
-    /// The record of the edge between `a` and `b`, to be broken.
+    /// Returns the record of the edge between `a` and `b`.
     fn record(mesh: &mut EditableWingedEdgeMesh, a: u32, b: u32) -> &mut Edge {
         let e = between(mesh, a, b);
         &mut mesh.edges.rows_mut()[e.index()]
     }
 
-    /// The record of the diagonal.
+    /// Returns the record of the diagonal.
     fn inner(mesh: &mut EditableWingedEdgeMesh) -> &mut Edge {
         record(mesh, 0, 2)
     }
 
-    /// Writes over the wing on the left (0) or on the right (1).
+    /// Overwrites the wing on the left (0) or on the right (1).
     fn put(wings: &mut Wings, side: usize, wing: EdgeId) {
         wings.put(Side::right_if(side == 1), wing);
     }
 
-    /// Makes one vertex of two in all records, and leaves the second without a spoke.
+    /// Replaces the vertex `merged` by `kept` in all records, and clears its spoke.
     fn merge(mesh: &mut EditableWingedEdgeMesh, kept: u32, merged: u32) {
         for edge in mesh.edges.rows_mut() {
             let merge = |v: VertexId| VertexId::new(if v.row() == merged { kept } else { v.row() });
@@ -306,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn names_that_are_not_there_break_i1() {
+    fn references_to_missing_elements_break_i1() {
         let (v, e, f) = (VertexId::new(9), EdgeId::new(9), Slot::some(FaceId::new(9)));
         assert_eq!(broken(|m| inner(m).ends[1] = v), "I1");
         assert_eq!(broken(|m| put(&mut inner(m).next, 0, e)), "I1");
@@ -321,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn sides_that_do_not_differ_break_i1() {
+    fn two_equal_sides_break_i1() {
         let loops = |m: &mut EditableWingedEdgeMesh| inner(m).ends[1] = VertexId::new(0);
         assert_eq!(broken(loops), "I1");
         let folded = |m: &mut EditableWingedEdgeMesh| inner(m).faces[1] = inner(m).faces[0];
@@ -330,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn wings_that_lie_elsewhere_break_i2() {
+    fn wings_at_another_vertex_break_i2() {
         let far = |m: &mut EditableWingedEdgeMesh, side, a, b| {
             let wing = between(m, a, b);
             put(&mut inner(m).next, side, wing);
@@ -353,8 +351,9 @@ mod tests {
     }
 
     #[test]
-    fn wings_that_do_not_lead_back_break_i4() {
-        // Two triangles with a vertex in common: there the boundary of one may lead on to the other.
+    fn wings_that_are_not_inverse_break_i4() {
+        // Two triangles with a common vertex, where the boundary of one could continue along the
+        // other.
         let mut mesh = mesh(6, &[&[0, 1, 2], &[3, 4, 5]]);
         merge(&mut mesh, 0, 5);
         let v = VertexId::new(0);
@@ -365,12 +364,12 @@ mod tests {
                 [run.face(), run.across()].map(|f| f == Slot::NONE),
                 [false, true]
             );
-            // The blank side arrives at v; what follows it there is the edge clockwise of `to`.
+            // The blank side arrives at v; the edge after it there is the one clockwise of `to`.
             let next = Run::from(mesh.edge(to), v).cw();
             let blank = usize::from(mesh.edge(e).ends()[0] == v);
             let mut broken = mesh.clone();
             put(&mut broken.edges.rows_mut()[e.index()].next, blank, next);
-            assert_eq!(broken.validate().expect_err("no way back").invariant, "I4");
+            assert_eq!(broken.validate().expect_err("not inverse").invariant, "I4");
         }
     }
 
@@ -392,20 +391,20 @@ mod tests {
     }
 
     #[test]
-    fn a_vertex_of_two_fans_breaks_i6() {
+    fn a_vertex_with_two_fans_breaks_i6() {
         let mut mesh = mesh(6, &[&[0, 1, 2], &[3, 4, 5]]);
         merge(&mut mesh, 0, 5);
         assert_eq!(mesh.validate().expect_err("two fans").invariant, "I6");
     }
 
     #[test]
-    fn a_face_that_is_not_along_its_side_breaks_i7() {
+    fn a_face_that_is_not_at_its_side_breaks_i7() {
         let elsewhere = |m: &mut EditableWingedEdgeMesh| {
             let side = between(m, 0, 3);
             m.sides.rows_mut()[0] = side;
         };
         assert_eq!(broken(elsewhere), "I7");
-        // A square that is folded until two of its corners are one.
+        // A square that is folded so that two of its corners are one vertex.
         let mut folded = mesh(
             9,
             &[
@@ -428,14 +427,12 @@ mod tests {
     }
 
     #[test]
-    fn holes_that_are_not_marked_or_still_named_break_i9() {
-        // The triangle f1 and the edges that only it has, deleted.
+    fn unmarked_holes_and_references_to_holes_break_i9() {
+        // f1 and the edges that only it has are deleted.
         let mut edited = sound();
         let gone = FaceId::new(1);
         let side = between(&edited, 0, 3);
-        edited
-            .remove_face(gone, &mut ())
-            .expect("a square comes apart");
+        edited.remove_face(gone, &mut ()).expect("a legal removal");
         edited
             .remove_vertex(VertexId::new(3), &mut ())
             .expect("it is isolated");

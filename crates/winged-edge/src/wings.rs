@@ -1,9 +1,9 @@
-//! Two wings in one word: the edges on the left and on the right of an edge, ahead or behind.
+//! Two wings in one word: the edges along the left and along the right side of an edge.
 
 use std::fmt;
 use std::hint::select_unpredictable;
 
-use mesh_core::{EdgeId, RowId};
+use sixfold_core::{EdgeId, RowId};
 
 /// One of the two sides of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ impl Side {
         self.right
     }
 
-    /// 0 for left, 1 for right.
+    /// Returns 0 for left, 1 for right.
     #[inline(always)]
     pub(crate) fn index(self) -> usize {
         usize::from(self.right)
@@ -37,22 +37,22 @@ impl Side {
     }
 }
 
-/// A left and a right wing in the two halves of one word, the left in the lower.
+/// A left and a right wing in the two halves of one word, the left wing in the lower half.
 ///
-/// The next step of a walk waits for its wing, so the selection must be quick. One load brings both,
-/// at once with what the side test compares, and the test then selects between two registers. Two
-/// fields and a selection would read the same in source; but the compiler makes of it a selection
-/// between two addresses and a load that waits for it. Ring sweeps over 82,000 triangles, ns a
-/// vertex in order and shuffled: this 11 and 22, two fields indexed by the side 13 and 24, two
-/// fields and a selection 16 and 28, a branch 10 and 36.
+/// The next step of a walk waits for its wing, so the selection must be fast. One load brings both
+/// wings, at the same time as the values for the side test, which then selects between two
+/// registers. With two fields, the compiler makes it a selection between two addresses, and a load
+/// that waits for it. One-ring sweeps over 82,000 triangles, ns per vertex in order and shuffled:
+/// this word 11 and 22, two fields indexed by the side 13 and 24, two fields and a selection 16 and
+/// 28, a branch 10 and 36.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Wings(u64);
 
 impl Wings {
-    /// Nothing linked on either side.
+    /// No wing is linked yet.
     pub(crate) const BLANK: Self = Self(0);
 
-    /// The left wing, and the right one.
+    /// Packs the left wing and the right wing.
     #[inline(always)]
     pub(crate) fn of([left, right]: [EdgeId; 2]) -> Self {
         Self(u64::from(left.row()) | u64::from(right.row()) << 32)
@@ -64,23 +64,24 @@ impl Wings {
         EdgeId::new(select_unpredictable(side.right, turned, self.0) as u32)
     }
 
-    /// The left one, then the right one.
+    /// Returns the left wing, then the right wing.
     #[inline(always)]
     pub(crate) fn both(self) -> [EdgeId; 2] {
         [self.on(Side::LEFT), self.on(Side::RIGHT)]
     }
 
-    /// Links a side that is blank: one instruction, where writing over any value takes four.
+    /// Links a blank side: one instruction; overwriting any value takes four.
     #[inline(always)]
     pub(crate) fn link(&mut self, side: Side, wing: EdgeId) {
-        debug_assert_eq!(self.on(side).row(), 0, "the side is linked already");
+        debug_assert_eq!(self.on(side).row(), 0, "the side is already linked");
         self.0 |= u64::from(wing.row()) << (u32::from(side.right) << 5);
     }
 
-    /// Writes over a side, whatever it holds.
+    /// Overwrites the wing of a side.
     #[inline(always)]
     pub(crate) fn put(&mut self, side: Side, wing: EdgeId) {
-        // All in a register: to write the half alone would keep the next load of the whole waiting.
+        // Writes the whole word: if only one half were written, the next load of the whole word
+        // would wait.
         let shift = u32::from(side.right) << 5;
         let other = self.0 & !(u64::from(u32::MAX) << shift);
         self.0 = other | u64::from(wing.row()) << shift;
@@ -98,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_side_holds_what_it_is_given() {
+    fn each_side_has_its_own_wing() {
         for (left, right) in [(0, 1), (u32::MAX - 1, 0), (7, u32::MAX - 1)] {
             let [left, right] = [left, right].map(EdgeId::new);
             let mut wings = Wings::BLANK;

@@ -1,5 +1,5 @@
-//! The laws of `conformance`, on this structure.
+//! The conformance tests for the winged-edge mesh.
 
-conformance::suite!(winged_edge::WingedEdgeMesh);
-conformance::refine_suite!(winged_edge::WingedEdgeMesh);
-conformance::edit_suite!(winged_edge::EditableWingedEdgeMesh);
+sixfold_conformance::suite!(sixfold_winged_edge::WingedEdgeMesh);
+sixfold_conformance::refine_suite!(sixfold_winged_edge::WingedEdgeMesh);
+sixfold_conformance::edit_suite!(sixfold_winged_edge::EditableWingedEdgeMesh);

@@ -1,4 +1,4 @@
-//! How many bytes an operation asks the allocator for, beside the bytes of its result.
+//! The number of bytes that an operation requests from the allocator, and the bytes of its result.
 
 use sixfold::remeshing::{Decimation, Target, decimate};
 use sixfold::subdivision::Method;
@@ -11,10 +11,11 @@ use crate::editing::Editing;
 use crate::operation::Operation;
 use crate::series::Series;
 
-/// The counter of an allocator that adds up all requests; a program that installs one implements it.
+/// The counter of an allocator that adds up all requests. The program that installs such an
+/// allocator implements it.
 pub trait AllocationCounter: Sync {
-    /// Bytes requested since the program started. A block that grows counts by its growth, and a block
-    /// that is freed stays counted.
+    /// Returns the bytes requested since the program started. A block that grows counts by its
+    /// growth, and a freed block stays counted.
     fn allocated(&self) -> usize;
 }
 
@@ -23,11 +24,11 @@ pub trait AllocationCounter: Sync {
 pub struct Allocated {
     /// Bytes requested from the allocator during the timed part.
     pub bytes: usize,
-    /// Bytes of the result, by the formula of the layout.
+    /// Bytes of the result, computed by the formula of the layout.
     pub result_bytes: usize,
 }
 
-/// The reason why an operation has no figures.
+/// The reason why an operation was not counted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NotCounted {
     /// The structure or the scheme refuses the mesh, or the structure lacks the method.
@@ -36,11 +37,11 @@ pub enum NotCounted {
     Scans,
 }
 
-/// The most faces of a mesh on which operations that scan are run.
+/// The maximum number of faces of a mesh on which operations that scan are run.
 pub const MOST_SCANNED_FACES: usize = 2_000;
 
-/// A clock that shows bytes instead of time, so that set-up stays out of the figures as it does when
-/// time is measured.
+/// A clock that returns bytes instead of time, so that set-up is excluded as it is in time
+/// measurements.
 struct ByteClock<'a>(&'a dyn AllocationCounter);
 
 impl Clock for ByteClock<'_> {
@@ -50,16 +51,16 @@ impl Clock for ByteClock<'_> {
 }
 
 impl Backend {
-    /// Runs `operation` once and counts the bytes that it requests. A native step is counted with new
-    /// tables: its first run, not the later runs, which reuse the tables.
+    /// Runs `operation` once and counts the bytes that it requests. A native step is counted with
+    /// new tables: its first run, not the later runs, which reuse the tables.
     ///
-    /// The result is: of `build` the structure; of a subdivision the structure of the refined mesh; of
-    /// an edit workload the mesh after the edits; of `ff_bfs` the depth of each face. `edges` is the
-    /// number of edges of `polygons`.
+    /// The result is the structure for `build`, the structure of the refined mesh for a
+    /// subdivision, the mesh after the edits for an edit workload, and the depth of each face for
+    /// `ff_bfs`. `edges` is the number of edges of `polygons`.
     ///
     /// # Errors
     ///
-    /// Why there are no figures.
+    /// Returns the reason if the operation cannot be counted.
     pub fn allocated(
         &self,
         operation: Operation,
@@ -113,7 +114,7 @@ impl Backend {
     }
 }
 
-/// The sizes of the mesh that `editing` leaves on the structure called `backend`.
+/// Returns the counts of the mesh after `editing` on the structure called `backend`.
 fn counts_after(
     editing: Editing,
     backend: &str,
@@ -137,7 +138,7 @@ fn counts_after(
     }
 
     let ratio = match editing {
-        // Both leave as many elements as there were.
+        // Neither changes the number of elements.
         Editing::SplitCollapse | Editing::FlipAll => return *before,
         Editing::DecimateHalf => 0.5,
         Editing::DecimateTenth => 0.1,

@@ -1,11 +1,11 @@
-//! A representation as a study takes it.
+//! A representation in the form that a study measures.
 
 use std::fmt;
 use std::sync::atomic::AtomicBool;
 
 use sixfold::{
-    BackendInfo, BuildError, Counts, MemoryFootprint, PolygonMesh, Relation, Representation,
-    Visitor, visit_all,
+    BackendInfo, BuildError, Counts, Measured, MemoryFootprint, PolygonMesh, Relation,
+    for_each_representation,
 };
 
 use crate::candidate::{Candidate, Subject};
@@ -13,33 +13,33 @@ use crate::heap::{Heap, Weighed, weigh};
 use crate::reads::{Counted, count};
 use crate::sample::Draw;
 
-/// A representation, with what is known of it and how it is built and put to the test.
+/// A representation with its properties and the functions that build and measure it.
 ///
-/// [`Backend::roster`] has those of Sixfold; [`Backend::of`] makes one of any other, which a study
-/// then measures beside them (`Settings::extra` there).
+/// [`Backend::roster`] returns those of Sixfold. [`Backend::of`] makes a backend from any other
+/// representation, which a study then also measures (`Settings::extra` there).
 #[derive(Clone, Copy)]
 pub struct Backend {
-    /// What is known of it without building it.
+    /// Properties that are known without building it.
     pub info: BackendInfo,
-    /// Bytes that its layout takes in theory for a mesh with such counts.
+    /// Computes the bytes of its layout, by formula, for a mesh with these counts.
     pub layout_bytes: fn(&Counts) -> usize,
     pub(crate) build: Build,
     pub(crate) weigh: fn(&PolygonMesh, &dyn Heap) -> Result<Weighed, BuildError>,
     count: Count,
 }
 
-/// Builds the structure and puts it on the bench; what it weighs is asked before anything is run.
+/// Builds the structure and prepares it for measurement. Its memory is read before anything is run.
 type Build = for<'a> fn(&'a PolygonMesh, Option<&'a Draw>) -> Result<OnTheBench<'a>, BuildError>;
 
-/// Builds the structure, and counts what relations read.
+/// Builds the structure and counts the table reads of relations.
 type Count = fn(&PolygonMesh, &[Relation], &AtomicBool, &mut dyn Counted) -> Result<(), BuildError>;
 
-/// A structure ready to be measured, and what it weighs.
+/// A structure ready to be measured, and its memory footprint.
 pub type OnTheBench<'a> = (Box<dyn Subject + 'a>, MemoryFootprint);
 
 impl Backend {
-    /// `M` as a backend.
-    pub fn of<M: Representation + 'static>() -> Self {
+    /// Makes a backend from `M`.
+    pub fn of<M: Measured + 'static>() -> Self {
         Self {
             info: BackendInfo::of::<M>(),
             layout_bytes: M::layout_bytes,
@@ -56,27 +56,19 @@ impl Backend {
         }
     }
 
-    /// Every representation of Sixfold, in the order in which tables show them.
+    /// Returns every representation of Sixfold, in the order in which tables show them.
     pub fn roster() -> Vec<Self> {
-        struct Row;
-
-        impl Visitor for Row {
-            type Output = Backend;
-
-            fn visit<M: Representation + 'static>(&mut self) -> Backend {
-                Backend::of::<M>()
-            }
-        }
-
-        visit_all(&mut Row)
+        let mut backends = Vec::new();
+        for_each_representation!(M => { backends.push(Self::of::<M>()); });
+        backends
     }
 
-    /// Builds it from `polygons` and puts it on the bench, with its names of what is drawn, if anything
-    /// is; and what it weighs.
+    /// Builds it from `polygons` and prepares it for measurement, with its handles of the elements
+    /// of `draw`, if given. Also returns its memory footprint.
     ///
     /// # Errors
     ///
-    /// Why it cannot hold them.
+    /// Returns the reason if the structure cannot hold `polygons`.
     pub fn put_on_the_bench<'a>(
         &self,
         polygons: &'a PolygonMesh,
@@ -85,20 +77,21 @@ impl Backend {
         (self.build)(polygons, draw)
     }
 
-    /// Builds it from `polygons` alone, with nothing beside it, and has `heap` count what that takes.
+    /// Builds only the structure from `polygons`, and counts with `heap` the bytes that this
+    /// allocates.
     ///
     /// # Errors
     ///
-    /// Why it cannot hold them.
+    /// Returns the reason if the structure cannot hold `polygons`.
     pub fn weigh(&self, polygons: &PolygonMesh, heap: &dyn Heap) -> Result<Weighed, BuildError> {
         (self.weigh)(polygons, heap)
     }
 
-    /// Builds it from `polygons` and counts what `relations` read, until told to stop.
+    /// Builds it from `polygons` and counts the table reads of `relations`, until `stop` is true.
     ///
     /// # Errors
     ///
-    /// Why it cannot hold them.
+    /// Returns the reason if the structure cannot hold `polygons`.
     pub fn count_reads(
         &self,
         polygons: &PolygonMesh,
@@ -109,14 +102,14 @@ impl Backend {
         (self.count)(polygons, relations, stop, counted)
     }
 
-    /// What users call it.
+    /// Returns its name, as users write it.
     pub fn name(&self) -> &'static str {
         self.info.name
     }
 }
 
 impl PartialEq for Backend {
-    /// Backends are told apart by name.
+    /// Returns whether both have the same name.
     fn eq(&self, other: &Self) -> bool {
         self.name() == other.name()
     }

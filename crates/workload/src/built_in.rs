@@ -1,8 +1,8 @@
-//! The workloads that Sixfold brings along, as the very files that users can copy and change.
+//! The workloads that Sixfold contains, as files that users can copy and change.
 
 use crate::workload::Workload;
 
-/// The names, and the files.
+/// The names and the texts of the files.
 const FILES: [(&str, &str); 12] = [
     (
         "rendering-upload",
@@ -42,19 +42,18 @@ const FILES: [(&str, &str); 12] = [
     ),
 ];
 
-/// The names of the built-in workloads and the text of their files, in the order in which they are
-/// listed.
+/// Returns the names of the built-in workloads and the texts of their files, in listing order.
 pub fn built_ins() -> impl Iterator<Item = (&'static str, &'static str)> {
     FILES.into_iter()
 }
 
-/// The built-in workload called `name`.
+/// Returns the built-in workload called `name`.
 ///
 /// # Panics
 ///
-/// If a file that we ship were faulty; a test reads them all.
+/// Panics if the built-in file has an error. A test parses all of them.
 pub fn built_in(name: &str) -> Option<Workload> {
     let (name, text) = FILES.into_iter().find(|(known, _)| *known == name)?;
     let workload = Workload::parse(name, &format!("{name}.toml"), text);
-    Some(workload.unwrap_or_else(|error| panic!("a file of ours is faulty: {error}")))
+    Some(workload.unwrap_or_else(|error| panic!("a built-in file has an error: {error}")))
 }

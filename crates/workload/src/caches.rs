@@ -1,36 +1,37 @@
-//! The caches of the processor, where the platform tells: what fits into which explains many a figure.
+//! The caches of the processor, if the platform reports them. Whether a mesh fits into a cache
+//! explains many measured times.
 //!
-//! Linux keeps them as small files under `/sys`. Elsewhere the list is empty, and who reads it says
-//! so instead of guessing.
+//! Linux describes the caches in small files under `/sys`. On other platforms the list is empty,
+//! and reports say so instead of guessing.
 
 use std::fs;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-/// Where Linux describes the caches that the first processor sees.
+/// The folder in which Linux describes the caches of the first processor.
 const FOLDER: &str = "/sys/devices/system/cpu/cpu0/cache";
 
-/// One cache, as one processor sees it.
+/// One cache of one processor.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Cache {
-    /// 1 is the nearest.
+    /// The level; 1 is the nearest to the processor.
     pub level: u8,
-    /// What it keeps: `data`, `instruction`, or `unified` for both.
+    /// The content: `data`, `instruction`, or `unified` for both.
     pub kind: String,
-    /// Its size.
+    /// The size in bytes.
     pub bytes: u64,
-    /// How many processors share it, where the platform tells.
+    /// The number of processors that share it, if the platform reports it.
     pub shared_by: Option<usize>,
 }
 
 impl Cache {
-    /// Whether data comes through it.
+    /// Returns whether it holds data.
     pub fn holds_data(&self) -> bool {
         self.kind != "instruction"
     }
 
-    /// From what the file of each name says.
+    /// Reads one cache; `file` returns the content of the file with the given name.
     fn read(file: impl Fn(&str) -> Option<String>) -> Option<Self> {
         Some(Self {
             level: file("level")?.trim().parse().ok()?,
@@ -41,7 +42,8 @@ impl Cache {
     }
 }
 
-/// The caches of the first processor, the nearest first; empty where the platform does not tell.
+/// Returns the caches of the first processor, the nearest first. Empty if the platform does not
+/// report them.
 pub fn caches() -> Vec<Cache> {
     let Ok(entries) = fs::read_dir(FOLDER) else {
         return Vec::new();
@@ -55,14 +57,14 @@ pub fn caches() -> Vec<Cache> {
     caches
 }
 
-/// The bytes of the last level that data comes through, if any is known.
+/// Returns the size in bytes of the last-level cache that holds data, if one is known.
 pub fn last_level(caches: &[Cache]) -> Option<u64> {
     let data = caches.iter().filter(|cache| cache.holds_data());
     data.max_by_key(|cache| cache.level)
         .map(|cache| cache.bytes)
 }
 
-/// The bytes of the cache of `level` that data comes through, if it is known.
+/// Returns the size in bytes of the cache of `level` that holds data, if it is known.
 pub(crate) fn level_bytes(caches: &[Cache], level: u8) -> Option<u64> {
     let data = caches.iter().filter(|cache| cache.holds_data());
     data.filter(|cache| cache.level == level)
@@ -70,7 +72,7 @@ pub(crate) fn level_bytes(caches: &[Cache], level: u8) -> Option<u64> {
         .next()
 }
 
-/// `32K`, `1M` in bytes: a thousand and twenty-four of each to the next.
+/// Parses a size such as `32K` or `1M` into bytes; K is 1024, M is 1024².
 fn size(text: &str) -> Option<u64> {
     let digits = text.trim_end_matches(|c: char| !c.is_ascii_digit());
     let unit = match &text[digits.len()..] {
@@ -83,7 +85,7 @@ fn size(text: &str) -> Option<u64> {
     digits.parse::<u64>().ok()?.checked_mul(unit)
 }
 
-/// How many numbers a list like `0-3,8` names.
+/// Returns how many numbers a list such as `0-3,8` contains.
 fn listed(text: &str) -> Option<usize> {
     let part = |part: &str| {
         let (first, last) = part.split_once('-').unwrap_or((part, part));
@@ -114,7 +116,7 @@ mod tests {
         assert_eq!(cache(&files), Some(expected.clone()));
         let shared = [&files[..], &[("shared_cpu_list", "0-3,8,10-11")]].concat();
         assert_eq!(cache(&shared).and_then(|c| c.shared_by), Some(7));
-        // Half an answer is none.
+        // A cache without a known size is left out.
         assert_eq!(cache(&files[..2]), None);
         for wrong in ["", "K", "12Q", "0K", "many"] {
             let files = [files[0], files[1], ("size", wrong)];
@@ -132,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_and_sizes_are_counted() {
+    fn lists_and_sizes_are_parsed() {
         assert_eq!(["0", "0-1", "0,4"].map(listed), [Some(1), Some(2), Some(2)]);
         assert_eq!(["", "x", "3-1"].map(listed), [None; 3]);
         assert_eq!(
@@ -142,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn instructions_are_no_data() {
+    fn instruction_caches_are_ignored() {
         let level = |level: u8, kind: &str, bytes: u64| Cache {
             level,
             kind: kind.into(),
@@ -154,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn what_this_machine_tells_is_in_order() {
+    fn caches_of_this_machine_are_sorted_by_level() {
         let caches = caches();
         assert!(caches.is_sorted_by_key(|cache| cache.level), "{caches:?}");
         assert!(caches.iter().all(|cache| cache.bytes > 0));

@@ -1,28 +1,29 @@
-//! What time it is: on the wall, and for this thread's processor.
+//! Clocks: wall time and processor time of this thread.
 
 use std::ops::Sub;
 use std::time::Instant;
 
 use crate::pages;
 
-/// A moment, or the time between two.
+/// A point in time, or the difference of two.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Time {
-    /// Processor time of this thread, in nanoseconds; `None` where the platform does not tell.
+    /// Processor time of this thread, in nanoseconds; `None` if the platform does not report it.
     pub cpu_ns: Option<f64>,
     /// Wall time, in nanoseconds.
     pub wall_ns: f64,
-    /// Page faults of this thread meanwhile; `None` where they were not counted.
+    /// Page faults of this thread during that time; `None` if they were not counted.
     pub faults: Option<u64>,
 }
 
 impl Time {
-    /// The figure to judge by: processor time where there is one, for a busy machine disturbs it less.
+    /// Returns the time to compare, in nanoseconds: processor time if it is known, because a busy
+    /// machine disturbs it less, otherwise wall time.
     pub fn ns(self) -> f64 {
         self.cpu_ns.unwrap_or(self.wall_ns)
     }
 
-    /// A time of wall time alone.
+    /// Makes a time that has only wall time.
     pub fn of_wall(wall_ns: f64) -> Self {
         Self {
             wall_ns,
@@ -30,7 +31,7 @@ impl Time {
         }
     }
 
-    /// Both times multiplied by `factor`; the page faults stay as they were counted.
+    /// Multiplies both times by `factor`; the number of page faults stays unchanged.
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             cpu_ns: self.cpu_ns.map(|ns| ns * factor),
@@ -39,7 +40,8 @@ impl Time {
         }
     }
 
-    /// Both times and the page faults added up; page faults are known if either part knows them.
+    /// Adds both times and the page faults. Page faults are known if at least one of the two has
+    /// them.
     pub fn plus(self, other: Self) -> Self {
         let known = self.faults.is_some() || other.faults.is_some();
         Self {
@@ -49,7 +51,7 @@ impl Time {
         }
     }
 
-    /// No time at all, on both clocks or on the wall clock alone as `like` has it, and no page faults counted.
+    /// Returns a time of zero with the same clocks as `like`, and without counted page faults.
     pub fn none_like(like: Self) -> Self {
         Self {
             faults: None,
@@ -57,8 +59,8 @@ impl Time {
         }
     }
 
-    /// Subtracts `overhead` from both times, but leaves a tenth of each: work that is shorter than reading the
-    /// clock takes some time, too.
+    /// Subtracts `overhead` from both times, but leaves at least a tenth of each: work that is
+    /// shorter than reading the clock still takes some time.
     fn without(self, overhead: Self) -> Self {
         let less = |ns: f64, overhead: f64| (ns - overhead).max(0.1 * ns);
         Self {
@@ -83,32 +85,32 @@ impl Sub for Time {
     }
 }
 
-/// Something that tells the time; a test can tell it what it likes.
+/// A source of times. Tests can implement it with chosen times.
 ///
-/// Work may be done on another thread: it is asked there, and then speaks of that thread.
+/// If work runs on another thread, the clock is read on that thread and reports its processor time.
 pub trait Clock: Sync {
-    /// The moment.
+    /// Returns the current time.
     fn now(&self) -> Time;
 
-    /// What reading the clock twice costs, which [`timed`] subtracts from every time.
+    /// Returns the cost of reading the clock twice, which [`timed`] subtracts from every time.
     fn overhead(&self) -> Time {
         Time::default()
     }
 
-    /// Page faults of this thread so far; `None` where they are not counted.
+    /// Returns the page faults of this thread so far; `None` if they are not counted.
     fn faults(&self) -> Option<u64> {
         None
     }
 }
 
-/// How often the clock is read for each figure of its overhead.
+/// The number of measurements for each value of the clock overhead.
 const READINGS: usize = 301;
-/// Words that the work between two readings goes through: more than a first-level cache holds.
+/// Words that the work between two readings reads: more than a first-level cache holds.
 const WORDS: usize = 8192;
-/// Reading the clock in use takes at most this multiple of what it takes in a loop that does nothing else.
+/// Upper limit of the overhead, relative to reading the clock in a loop that does nothing else.
 const MOST_TIMES_HOT: f64 = 3.0;
 
-/// The clocks of this machine, and its counter of page faults.
+/// The clocks of this machine and its counter of page faults.
 #[derive(Clone, Debug)]
 pub struct MachineClock {
     start: Instant,
@@ -117,7 +119,7 @@ pub struct MachineClock {
 }
 
 impl MachineClock {
-    /// A clock that starts now. Reading it is timed first, which takes some milliseconds.
+    /// Starts a clock. First measures the cost of reading it, which takes some milliseconds.
     pub fn start() -> Self {
         let mut clock = Self {
             start: Instant::now(),
@@ -128,8 +130,9 @@ impl MachineClock {
         clock
     }
 
-    /// What two readings add to the time of the work between them: twice the time of some work, less that of
-    /// twice the work, so that the caches are as in use; at least what they take one right after the other.
+    /// Measures the time that two readings add to the work between them. The result is twice the
+    /// time of some work minus the time of twice the work, so that the caches are in the same state
+    /// as in real use. The minimum is the time of two readings without work between them.
     fn cost_of_reading(&self) -> Time {
         let words: Vec<u64> = vec![1; WORDS];
         let pass = || std::hint::black_box(std::hint::black_box(&words).iter().sum::<u64>());
@@ -161,7 +164,7 @@ impl MachineClock {
         }
     }
 
-    /// Which clock the figures of a study are of: `thread-cpu` or `wall`.
+    /// Returns the name of the clock that the times of a study come from: `thread-cpu` or `wall`.
     pub fn name() -> &'static str {
         match thread_cpu_ns() {
             Some(_) => "thread-cpu",
@@ -192,7 +195,7 @@ impl Clock for MachineClock {
     }
 }
 
-/// The time that `work` takes, without that of reading the clock, and the page faults meanwhile.
+/// Runs `work` and returns its time, without the cost of reading the clock, and its page faults.
 #[inline]
 pub fn timed(clock: &dyn Clock, work: impl FnOnce()) -> Time {
     let faults = clock.faults();
@@ -248,13 +251,13 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_without_processor_time_stays_without() {
+    fn times_without_processor_time_stay_without_it() {
         let wall = Time::of_wall;
         assert_eq!((wall(5.0) - wall(2.0)).scaled(2.0).ns(), 6.0);
         assert_eq!(Time::none_like(wall(9.0)).plus(wall(4.0)), wall(4.0));
     }
 
-    /// A clock on which each reading takes 300 ns, and during each work four pages fault.
+    /// A clock with readings of 300 ns each, and a counter of page faults.
     struct Slow(Mutex<(f64, u64)>);
 
     impl Clock for Slow {
@@ -294,7 +297,7 @@ mod tests {
         assert_eq!(time.faults, Some(4));
         assert_eq!(time.plus(work(0.0)).faults, Some(8));
         assert_eq!(time.scaled(0.5).faults, Some(4));
-        assert_eq!(work(-100.0).ns(), 20.0, "a tenth of what was read");
+        assert_eq!(work(-100.0).ns(), 20.0, "a tenth of the measured 200 ns");
         assert_eq!(Time::none_like(time).plus(Time::of_wall(1.0)).faults, None);
     }
 }

@@ -1,4 +1,4 @@
-//! Whole workloads that change a mesh: what programs do with edits, on one structure.
+//! Edit workloads: whole passes of edits over a mesh, on one structure.
 
 use std::fmt;
 
@@ -11,23 +11,23 @@ use sixfold::{
 use crate::clock::Time;
 use crate::series::{KeptCopies, Series};
 
-/// One of the workloads that change a mesh of triangles.
+/// One of the workloads that change a triangle mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Editing {
-    /// A vertex into the middle of every face; then each back into a neighbour, with all checks; then
-    /// the holes are closed. The mesh is what it was.
+    /// Inserts a vertex into the centre of every face, then collapses each into a neighbour, with
+    /// all checks, then compacts the tables. At the end the mesh has its original faces.
     SplitCollapse,
-    /// Every edge that the mesh has at the start, in the order in which the faces first name them,
-    /// flipped where that is legal; then again.
+    /// Flips every edge of the initial mesh if the flip is legal, in the order in which the faces
+    /// first list the edges; then does the same again.
     FlipAll,
-    /// Edge collapse by quadric error, to half of the faces.
+    /// Collapses edges by quadric error until half of the faces are left.
     DecimateHalf,
-    /// The same to a tenth.
+    /// Collapses edges by quadric error until a tenth of the faces is left.
     DecimateTenth,
 }
 
 impl Editing {
-    /// All four.
+    /// All four workloads.
     pub const ALL: [Self; 4] = [
         Self::SplitCollapse,
         Self::FlipAll,
@@ -35,7 +35,7 @@ impl Editing {
         Self::DecimateTenth,
     ];
 
-    /// What users call it: `split_collapse`.
+    /// Returns its name, as users write it: `split_collapse`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::SplitCollapse => "split_collapse",
@@ -45,11 +45,12 @@ impl Editing {
         }
     }
 
-    /// Sets it up on the structure called `backend`; `None` where there is none, or none to be edited.
+    /// Sets it up on the structure called `backend`. Returns `None` if there is no such structure,
+    /// or it cannot be edited.
     ///
     /// # Errors
     ///
-    /// Why the structure cannot hold `polygons`, or the workload is not for them.
+    /// Returns the reason if the structure cannot hold `polygons`, or a face is not a triangle.
     pub fn on(
         self,
         backend: &str,
@@ -90,23 +91,23 @@ impl fmt::Display for Editing {
     }
 }
 
-/// A workload that is set up to be run again and again, each time on the mesh as it was.
+/// A workload that is ready to be run repeatedly, each time on the initial mesh.
 pub trait Editor {
-    /// Runs it as `series` says; the time is that of all timed runs together.
+    /// Runs it as `series` describes and returns the total time of all timed runs.
     fn time(&mut self, series: &Series<'_>) -> Time;
 
-    /// What the last run came to.
+    /// Returns the counts of a run; all runs do the same.
     fn result(&self) -> Edits;
 }
 
-/// What a run came to.
+/// The counts of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Edits {
-    /// What it visited: faces to be split or decimated, edges to be flipped.
+    /// Visited elements: faces to split or to decimate, edges to flip.
     pub elements: u64,
-    /// How many edits were done.
+    /// Number of edits that were done.
     pub done: u64,
-    /// How many were refused.
+    /// Number of edits that were refused.
     pub refused: u64,
     /// The sum of all edge lengths afterwards.
     pub checksum: f64,
@@ -116,13 +117,12 @@ pub struct Edits {
 struct Edited<M: MeshEdit> {
     job: Editing,
     mesh: M,
-    /// Those to be flipped, in their order.
+    /// The edges to flip, in order.
     edges: Vec<M::Edge>,
     copies: KeptCopies<Changed<M>>,
 }
 
-/// A copy of the mesh, what its workload needs to know of where its edges are, and what the last run on
-/// it came to.
+/// A copy of the mesh, the current handles of its edges, and the counts of the last run on it.
 struct Changed<M: MeshEdit> {
     mesh: M,
     edges: Option<Followed<M>>,
@@ -245,7 +245,7 @@ fn decimate_to<M: Representation + MeshEdit>(mesh: &mut M, ratio: f64) -> Edits 
     }
 }
 
-/// The edges in the order in which the faces first name them.
+/// Returns the edges in the order in which the faces first list them.
 fn first_named<M: MeshQuery>(mesh: &M) -> Vec<M::Edge> {
     let mut named = mesh.edge_map(false);
     let mut edges = Vec::new();
@@ -259,17 +259,18 @@ fn first_named<M: MeshQuery>(mesh: &M) -> Vec<M::Edge> {
     edges
 }
 
-/// Edges by the names they have now, whatever flips call them.
+/// The current handles of a list of edges, updated when flips change handles.
 ///
-/// The flipped edge is returned by its new name. Its neighbours are renamed only where an edge is
-/// named by a corner that faces it: who is who then is looked up.
+/// A flip returns the new handle of the flipped edge. It changes handles of other edges only in
+/// structures whose edge handle is a corner that faces the edge. Then `places` finds the list
+/// entry.
 struct Followed<M: MeshEdit> {
     edges: Vec<M::Edge>,
-    /// By edge: its place among them.
+    /// By edge: its index in `edges`.
     places: EdgeMap<M, u32>,
-    /// The place of the edge that is being flipped.
+    /// The index of the edge that is being flipped.
     flipping: usize,
-    /// Places and names that the flip has told of, until it is over.
+    /// Indices and new handles that the current flip has reported.
     told: Vec<(u32, M::Edge)>,
 }
 
@@ -283,7 +284,7 @@ impl<M: MeshEdit> Clone for Followed<M> {
         }
     }
 
-    /// Copies into the tables that are there.
+    /// Copies into the existing tables.
     fn clone_from(&mut self, source: &Self) {
         let Self {
             edges,
@@ -301,7 +302,8 @@ impl<M: MeshEdit> Clone for Followed<M> {
 impl<M: MeshEdit> Followed<M> {
     fn of(mesh: &M, edges: &[M::Edge]) -> Self {
         let mut places = mesh.edge_map(0);
-        // A hash map is not needed where flips rename no neighbour; rows are filled for all.
+        // Maps by row are always filled. Edges without rows need a hash map; their flips rename
+        // only the flipped edge, so the map stays empty.
         if mesh.edge_rows() > 0 {
             for (place, &e) in (0..).zip(edges) {
                 places.insert(e, place);
@@ -315,7 +317,7 @@ impl<M: MeshEdit> Followed<M> {
         }
     }
 
-    /// Takes the new names over, all at once: one may be another's old one.
+    /// Stores all new handles at once: a new handle may be the old handle of another edge.
     #[inline]
     fn settle(&mut self) {
         while let Some((place, name)) = self.told.pop() {
@@ -373,12 +375,12 @@ mod tests {
     }
 
     #[test]
-    fn polygons_are_refused_by_name() {
+    fn polygons_are_refused_with_the_first_such_face() {
         let refused = Editing::FlipAll
             .on("half-edge", &shapes::cube())
             .expect("one of six");
         let Err(refusal) = refused else {
-            panic!("quads are no triangles")
+            panic!("quads were accepted")
         };
         assert!(refusal.contains("face f0 has 4 corners"), "{refusal}");
         assert!(Editing::FlipAll.on("abacus", &shapes::cube()).is_none());

@@ -1,31 +1,32 @@
-//! How much is allocated, as the program's allocator counts it.
+//! The number of allocated bytes, as the program's allocator counts them.
 
 use sixfold::{BuildError, MemoryFootprint, PolygonMesh, Representation};
 
-/// The counters of an allocator; who installs one for the whole program implements it.
+/// The counters of an allocator. The program that installs such an allocator implements it.
 pub trait Heap {
-    /// Bytes that are allocated now, as they were asked for: without what the allocator adds.
+    /// Returns the bytes that are allocated now, as requested, without the allocator's overhead.
     fn live(&self) -> usize;
-    /// Begins a new peak here.
+    /// Restarts the peak at the bytes that are allocated now.
     fn restart_peak(&self);
-    /// By how much the bytes allocated at once have exceeded, at most, those at the last restart.
+    /// Returns the maximum number of allocated bytes since the last restart, minus those at the
+    /// restart.
     fn peak(&self) -> usize;
 }
 
-/// What building a structure left on the heap, and what the structure says of that.
+/// The memory of a structure: as counted by the allocator and as reported by the structure.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Weighed {
-    /// Bytes that the allocator counts after building beyond those before: those of the structure.
+    /// Bytes that the allocator counts after building minus those before: those of the structure.
     pub counted: usize,
-    /// The most bytes beyond those before at any moment of building, the structure included.
+    /// The maximum of the same difference during building; it includes the structure.
     pub peak: usize,
-    /// The tables of the structure, in its own words.
+    /// The tables, as the structure reports them.
     pub memory: MemoryFootprint,
-    /// How many vertices of the polygons are no vertices of their own here.
+    /// The number of input vertices that were merged with others.
     pub merged_vertices: usize,
 }
 
-/// Builds `M` once, and weighs it.
+/// Builds `M` once and measures its memory.
 pub(crate) fn weigh<M: Representation>(
     polygons: &PolygonMesh,
     heap: &dyn Heap,
@@ -33,7 +34,7 @@ pub(crate) fn weigh<M: Representation>(
     let before = heap.live();
     heap.restart_peak();
     let mesh = M::from_polygons(polygons)?;
-    // Before anything else: a list of tables is on the heap as well.
+    // Read first: the list of tables below is on the heap as well.
     let (live, peak) = (heap.live(), heap.peak());
     Ok(Weighed {
         counted: live.saturating_sub(before),

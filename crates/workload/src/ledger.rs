@@ -1,8 +1,8 @@
-//! What queries read, counted as they read it: rows, bytes, and the cache lines these lie in.
+//! Counts what queries read: rows, bytes, and the cache lines that contain these bytes.
 //!
-//! The model is of plain memory, so that the figures are exact and the same on every machine: each
-//! table starts at a multiple of 64 bytes, its rows lie one after the other, and a line is 64 bytes of
-//! one table. A row that straddles two lines touches both.
+//! The counts come from a model of memory, so they are exact and the same on every machine. Each
+//! table starts at a multiple of 64 bytes, its rows follow one another, and a line is 64 bytes of
+//! one table. A row that crosses the boundary of two lines touches both.
 //!
 //! ```text
 //! lines of 64   0                  1                  2                  3
@@ -11,10 +11,11 @@
 //!               rows 2 and 5 touch two lines each: bytes 48 to 71, and 120 to 143
 //! ```
 //!
-//! Beside it runs a model of a small cache, [`CACHE_LINES`] lines of any table, the first to come the
-//! first to go. A line that is touched and not there is *fetched*; it is a *jump* if none of the
-//! [`REACH`] lines on either side is there either. A stream is fetched and hardly ever jumps, even if it
-//! leaves lines out, and the prefetchers of a processor see it coming; what jumps, they do not.
+//! A model of a small cache is also updated. It holds [`CACHE_LINES`] lines of any table, first in,
+//! first out. A touched line that is not in the cache is *fetched*. The fetch is a *jump* if the
+//! cache also has none of the [`REACH`] lines on either side. Streaming access fetches lines but
+//! rarely jumps, even if it skips lines; the prefetchers of a processor predict it. They do not
+//! predict jumps.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -24,14 +25,14 @@ use sixfold::{MemoryFootprint, Probe, TableBytes};
 
 /// Bytes of a cache line.
 pub const LINE_BYTES: usize = 64;
-/// Lines that the small cache of the model holds: 256 KiB, what a core has to itself at the least on most
-/// processors. What comes back from there is near, and a walk hardly waits for it.
+/// Lines that the small cache of the model holds: 256 KiB, which most processors have at least for
+/// each core. Data in it arrives quickly, so a walk hardly waits for it.
 pub const CACHE_LINES: u64 = 4096;
-/// How many lines beside one that is there can be foreseen, on either side.
+/// A fetch within this many lines of a cached line, on either side, is not a jump.
 pub const REACH: usize = 4;
 
-/// A number that clones of a probe share. Whoever counts asks from one thread: of two threads that
-/// count at once, one may be lost.
+/// A number that clones of a probe share. Only one thread may count: if two threads count at the
+/// same time, a count may be lost.
 #[derive(Debug, Default)]
 struct Shared(AtomicU64);
 
@@ -58,18 +59,18 @@ fn zero<const N: usize>(numbers: [&Shared; N]) {
     }
 }
 
-/// What one line has been through.
+/// The state of one line.
 #[derive(Debug, Default)]
 struct Line {
-    /// The last question that touched it.
+    /// The number of the last query that touched it.
     asked: Shared,
-    /// Which of its bytes that question has read, a bit for each.
+    /// The bytes that this query has read, one bit for each byte.
     read: Shared,
-    /// Which fetch brought it last, counted from 1; 0 if none did.
+    /// The number of the last fetch that loaded it, from 1; 0 if it was never fetched.
     fetch: Shared,
 }
 
-/// One table, and all its lines.
+/// One table with all its lines.
 #[derive(Debug)]
 struct Page {
     name: Cow<'static, str>,
@@ -78,27 +79,27 @@ struct Page {
     lines: Vec<Line>,
 }
 
-/// What a series of questions came to.
+/// The counts of a series of queries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Sum {
-    /// Rows read, one as often as it is read.
+    /// Row reads; a row counts each time it is read.
     pub(crate) reads: u64,
-    /// Bytes that a question reads, each once for each question.
+    /// Bytes read; each byte counts once for each query.
     pub(crate) bytes: u64,
-    /// Lines that a question touches, each once for each question.
+    /// Lines touched; each line counts once for each query.
     pub(crate) lines: u64,
-    /// Lines that the small cache did not have.
+    /// Lines that were not in the small cache.
     pub(crate) fetched: u64,
-    /// Those of them that lie beside none it had.
+    /// Fetched lines that were not near a line in the small cache.
     pub(crate) jumps: u64,
 }
 
-/// What is being done while rows are read.
+/// The activity during which rows are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
-    /// The next element is looked for.
+    /// The next element is listed.
     Listing,
-    /// An element is asked.
+    /// An element is queried.
     Asking,
 }
 
@@ -118,19 +119,19 @@ struct Book {
     totals: [Totals; 2],
     step: Shared,
     question: Shared,
-    /// Lines fetched by now: the clock of the small cache.
+    /// Number of lines fetched so far. The age of a cached line is measured in fetches.
     fetches: Shared,
-    /// Lines touched at all.
+    /// Number of distinct lines touched.
     touched: Shared,
 }
 
-/// A probe that counts; its clones count into one book.
+/// A probe that counts reads. Its clones share one [`Book`].
 #[derive(Clone, Debug)]
 pub(crate) struct Ledger(Arc<Book>);
 
 impl Ledger {
-    /// An empty book with a page for each table of `memory`. A read of any other table counts as a
-    /// read, and touches nothing that is known.
+    /// Makes a ledger with zero counts and a [`Page`] for each table of `memory`. A read of any
+    /// other table counts as a row read, but touches no line.
     pub(crate) fn of(memory: &MemoryFootprint) -> Self {
         let page = |table: &TableBytes| {
             let lines = (table.rows * table.row_bytes).div_ceil(LINE_BYTES);
@@ -151,7 +152,7 @@ impl Ledger {
         }))
     }
 
-    /// Forgets everything, the small cache included.
+    /// Resets all counts and empties the small cache.
     pub(crate) fn clear(&self) {
         let Book {
             pages,
@@ -180,14 +181,14 @@ impl Ledger {
         zero([step, question, fetches, touched]);
     }
 
-    /// What is read from now on belongs to another question, and to `step`.
+    /// Starts a new query: the following reads belong to it and to `step`.
     #[inline]
     pub(crate) fn begin(&self, step: Step) {
         self.0.question.add(1);
         self.0.step.set(step as u64);
     }
 
-    /// What the questions of `step` came to.
+    /// Returns the counts of `step`.
     pub(crate) fn sum(&self, step: Step) -> Sum {
         let total = &self.0.totals[step as usize];
         Sum {
@@ -199,12 +200,13 @@ impl Ledger {
         }
     }
 
-    /// Lines touched by anything, each once.
+    /// Returns the number of lines touched in any step, each once.
     pub(crate) fn touched(&self) -> u64 {
         self.0.touched.get()
     }
 
-    /// The tables that questions (and no listing) have read, with the bytes of a row and how many rows.
+    /// Returns the tables that queries have read, with the bytes per row and the number of row
+    /// reads. Reads by listing do not count.
     pub(crate) fn tables(&self) -> impl Iterator<Item = (&str, usize, u64)> {
         let pages = self.0.pages.iter();
         let read = pages.map(|page| (&*page.name, page.row_bytes, page.reads.get()));
@@ -213,7 +215,8 @@ impl Ledger {
 }
 
 impl Book {
-    /// Touches `bytes` of one line, a bit for each; they are `number`.
+    /// Records a read of `bytes` of the line `at`, one bit for each byte; `number` is the number of
+    /// bits.
     #[inline]
     fn touch(&self, lines: &[Line], at: usize, bytes: u64, number: usize, total: &Totals) {
         let line = &lines[at];
@@ -225,7 +228,7 @@ impl Book {
         }
         let before = line.read.get();
         let new = match before & bytes {
-            0 => number, // a stream has this alone; counting bits takes longer
+            0 => number, // the only case in streaming access; counting bits would take longer
             _ => (bytes & !before).count_ones() as usize,
         };
         total.bytes.add(new as u64);
@@ -262,14 +265,14 @@ impl Probe for Ledger {
         if book.step.get() == Step::Asking as u64 {
             page.reads.add(1);
         }
-        // A part of a row is taken to be its beginning.
+        // If only part of a row is read, the model assumes that it is the beginning.
         let start = row.saturating_mul(page.row_bytes);
         let end = start.saturating_add(bytes);
         let mut from = start;
         while from < end {
             let line = from / LINE_BYTES;
             if line >= page.lines.len() {
-                return; // no such row: the table says so itself
+                return; // no such row: the table itself reports the error
             }
             let to = end.min((line + 1) * LINE_BYTES);
             let bits = (u64::MAX >> (LINE_BYTES - (to - from))) << (from % LINE_BYTES);
@@ -295,7 +298,7 @@ mod tests {
         Ledger::of(&tables.iter().map(table).collect())
     }
 
-    /// Reads whole rows of one table as one question: the lines and the bytes.
+    /// Reads whole rows of one table as one query and returns the numbers of lines and bytes.
     fn ask(ledger: &Ledger, table: &'static str, bytes: usize, rows: &[usize]) -> [u64; 2] {
         let before = ledger.sum(Step::Asking);
         ledger.begin(Step::Asking);
@@ -307,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_may_straddle_two_lines() {
+    fn a_row_across_two_lines_touches_both() {
         let ledger = ledger(&[("halves", 100, 24)]);
         assert_eq!(ask(&ledger, "halves", 24, &[0, 1]), [1, 48]);
         assert_eq!(ask(&ledger, "halves", 24, &[2]), [2, 24], "bytes 48 to 71");
@@ -330,15 +333,16 @@ mod tests {
     }
 
     #[test]
-    fn part_of_a_row_lies_where_the_row_does() {
+    fn a_read_of_part_of_a_row_starts_where_the_row_starts() {
         let ledger = ledger(&[("halves", 100, 24)]);
-        // Row 5 begins at byte 120: four bytes of it are in line 1, the whole also in line 2.
+        // Row 5 begins at byte 120: its first four bytes are in line 1, the whole row also in line
+        // 2.
         assert_eq!(ask(&ledger, "halves", 4, &[5]), [1, 4]);
         assert_eq!(ask(&ledger, "halves", 24, &[5]), [2, 24]);
     }
 
     #[test]
-    fn tables_share_no_line_and_a_missing_row_is_none() {
+    fn tables_share_no_line_and_a_missing_row_touches_no_line() {
         let ledger = ledger(&[("one", 1, 4), ("two", 1, 4)]);
         ledger.begin(Step::Asking);
         ledger.read("one", 0, 4);
@@ -359,7 +363,7 @@ mod tests {
         ask(&ledger, "corners", 4, &rows);
         let sum = ledger.sum(Step::Asking);
         assert_eq!((sum.fetched, sum.jumps), (lines as u64, 1));
-        // The first lines have gone meanwhile, and come again.
+        // The first lines were evicted, and are fetched again.
         ask(&ledger, "corners", 4, &rows);
         let sum = ledger.sum(Step::Asking);
         assert_eq!((sum.fetched, sum.jumps), (2 * lines as u64, 2));
@@ -367,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn the_small_cache_holds_what_came_last() {
+    fn the_small_cache_holds_the_lines_fetched_last() {
         let far = REACH + 1;
         let lines = CACHE_LINES as usize;
         let ledger = ledger(&[("spread", far * (lines + 2), 64)]);
@@ -376,8 +380,8 @@ mod tests {
         let full = ledger.sum(Step::Asking);
         assert_eq!((full.fetched, full.jumps), (CACHE_LINES, CACHE_LINES));
         ask(&ledger, "spread", 64, &spread);
-        assert_eq!(ledger.sum(Step::Asking).fetched, CACHE_LINES, "all there");
-        // One more drives the first out, and no other.
+        assert_eq!(ledger.sum(Step::Asking).fetched, CACHE_LINES, "all cached");
+        // One more line evicts only the first one.
         ask(&ledger, "spread", 64, &[far * lines, far]);
         assert_eq!(ledger.sum(Step::Asking).fetched, CACHE_LINES + 1);
         ask(&ledger, "spread", 64, &[0]);
@@ -385,7 +389,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stream_may_leave_lines_out_and_go_either_way() {
+    fn a_stream_may_skip_lines_and_go_in_either_direction() {
         for (stride, jumps) in [(1, 1), (REACH, 1), (REACH + 1, 20)] {
             let ledger = ledger(&[("records", 20 * stride, 64)]);
             let up: Vec<usize> = (0..20).map(|i| i * stride).collect();
@@ -400,14 +404,14 @@ mod tests {
     }
 
     #[test]
-    fn listing_is_counted_apart_and_all_is_forgotten_together() {
+    fn listing_is_counted_separately_and_clear_resets_all_counts() {
         let ledger = ledger(&[("opposite", 64, 4)]);
         ledger.begin(Step::Listing);
         ledger.read("opposite", 0, 4);
         ask(&ledger, "opposite", 4, &[0, 16]);
         assert_eq!(ledger.sum(Step::Listing).reads, 1);
         assert_eq!(ledger.sum(Step::Asking).lines, 2);
-        assert_eq!(ledger.sum(Step::Asking).fetched, 1, "line 0 was there");
+        assert_eq!(ledger.sum(Step::Asking).fetched, 1, "line 0 was cached");
         assert_eq!(ledger.tables().next(), Some(("opposite", 4, 2)));
         ledger.clear();
         assert_eq!(ledger.sum(Step::Listing), Sum::default());

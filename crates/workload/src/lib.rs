@@ -1,8 +1,9 @@
-//! What is run on a structure and timed: operations, whole passes, edits, subdivisions.
+//! The work that is run on a structure and timed: queries, whole-mesh operations, edits,
+//! subdivisions.
 //!
-//! [`Backend::of`] puts any representation on the bench as a [`Subject`], which runs a [`Job`] and says
-//! how long that took and what it found. Everything that is compiled once for each structure is in
-//! this crate; who measures, and judges, is above it and knows no types of meshes.
+//! [`Backend::of`] makes any representation measurable as a [`Subject`], which runs a [`Job`] and
+//! returns its time and its result. This crate contains everything that is compiled once for each
+//! structure. The crates above it measure and evaluate, without any mesh type.
 
 mod allocation;
 mod backend;

@@ -1,11 +1,13 @@
-//! How fast this machine reads memory: in order, and one line after the other.
+//! Measures how fast this machine reads memory: bandwidth in sequential reads, and latency in
+//! dependent reads.
 //!
-//! Both are measured in buffers of growing size, so that a mesh can be held to what the caches give
-//! that it fits, and the largest buffer tells of the memory itself. One thread reads, as one thread
-//! asks a mesh. In order: the sum over all words of the buffer, pass after pass. One after the other:
-//! each line holds the place of the next, in one cycle through all of them in random order, so that no
-//! read can begin before the one before it has come. Every figure is the least disturbed of several
-//! series, after one that nobody times. What finding the page costs is in both, as it is for a mesh.
+//! Both are measured in buffers of growing size. A mesh can then be compared with the speed of the
+//! caches that it fits in; the largest buffer shows the speed of the main memory. One thread reads,
+//! as one thread queries a mesh. Bandwidth: the sum over all words of the buffer, in several
+//! passes. Latency: each line holds the index of the next line, in one cycle through all lines in
+//! random order, so that no read can start before the previous one has finished. Each value is the
+//! shortest of several timed series, after one untimed series. Address translation (TLB misses) is
+//! included in both, as it is for a mesh.
 
 use std::hint::black_box;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,8 +20,8 @@ use serde::{Deserialize, Serialize};
 use crate::clock::{Clock, timed};
 use crate::ledger::LINE_BYTES;
 
-/// Bytes of the buffers: half of a small inner cache, and then four times as much each time. The last
-/// is far beyond the outermost cache of most machines.
+/// Sizes of the buffers in bytes: the first is half of a small first-level cache, and each next one
+/// is four times as large. The last is far larger than the last-level cache of most machines.
 const SIZES: [usize; 8] = [
     1 << 14,
     1 << 16,
@@ -30,36 +32,37 @@ const SIZES: [usize; 8] = [
     1 << 26,
     1 << 28,
 ];
-/// Timed series of each kind.
+/// Number of timed series of each kind.
 const SERIES: usize = 7;
-/// Bytes that a series reads in order, at the least.
+/// Minimum number of bytes that a series reads sequentially.
 const STREAMED: usize = 1 << 24;
-/// Reads that a series makes one after the other.
+/// Number of dependent reads in a series.
 const CHASED: usize = 1 << 16;
 
-/// Words of a cache line; the first may be the place of another line.
+/// Words of a cache line. The first may hold the index of another line.
 const WORDS: usize = LINE_BYTES / size_of::<u64>();
 
-/// How fast a buffer of one size is read.
+/// The read speed of a buffer of one size.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Rung {
-    /// The size of the buffer.
+    /// The size of the buffer in bytes.
     pub bytes: usize,
-    /// Bytes a nanosecond, that is, GB/s, read in order.
+    /// The bandwidth of sequential reads, in GB/s (bytes per nanosecond).
     pub gb_per_s: f64,
-    /// Nanoseconds until a line has come that no other read could foresee.
+    /// The time of one dependent read of an unpredictable line, in nanoseconds.
     pub latency_ns: f64,
 }
 
-/// How fast this machine reads buffers of growing size.
+/// The speed at which this machine reads buffers of growing size.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct MemorySpeed {
-    /// By size, the smallest first; there is one at least.
+    /// By size, the smallest first; never empty.
     rungs: Vec<Rung>,
 }
 
 impl MemorySpeed {
-    /// Measures it, in a second or two and 256 MiB; `None` if told to stop.
+    /// Measures the speed. Takes one or two seconds and 256 MiB. Returns `None` if `stop` becomes
+    /// true.
     pub fn measure(clock: &dyn Clock, stop: &AtomicBool) -> Option<Self> {
         Self::of_sizes(&SIZES, clock, stop)
     }
@@ -80,25 +83,25 @@ impl MemorySpeed {
         Some(Self { rungs })
     }
 
-    /// By size, the smallest first.
+    /// Returns the measured speeds by size, the smallest first.
     pub fn rungs(&self) -> &[Rung] {
         &self.rungs
     }
 
-    /// How fast what takes `bytes` is read: the largest buffer that is no larger, so as not to make
-    /// the machine slower than it is; the smallest of all for less.
+    /// Returns the read speed for data of `bytes`: that of the largest buffer of at most this size,
+    /// so that the speed is not underestimated; that of the smallest buffer if all are larger.
     pub fn at(&self, bytes: usize) -> Rung {
         let larger = self.rungs.partition_point(|rung| rung.bytes <= bytes);
         self.rungs[larger.saturating_sub(1)]
     }
 
-    /// How fast the largest buffer is read: the memory itself.
+    /// Returns the read speed of the largest buffer, which is that of the main memory.
     pub fn memory(&self) -> Rung {
         self.at(usize::MAX)
     }
 }
 
-/// Lines whose first words each name the next, one cycle through them all in random order.
+/// Returns lines whose first words each hold the index of the next: one cycle in random order.
 fn cycle(lines: usize) -> Vec<u64> {
     let mut order: Vec<u32> = (0..).take(lines).collect();
     order.shuffle(&mut ChaCha8Rng::seed_from_u64(1));
@@ -110,7 +113,7 @@ fn cycle(lines: usize) -> Vec<u64> {
     words
 }
 
-/// Bytes a nanosecond.
+/// Measures the bandwidth of sequential reads, in bytes per nanosecond.
 fn bandwidth(words: &[u64], clock: &dyn Clock) -> f64 {
     let bytes = size_of_val(words);
     let passes = (STREAMED / bytes).max(1);
@@ -122,14 +125,15 @@ fn bandwidth(words: &[u64], clock: &dyn Clock) -> f64 {
     (passes * bytes) as f64 / ns
 }
 
-/// All words added up: over a plain slice, so that it becomes vectors, and several of them at once.
+/// Adds all words. It iterates over a plain slice so that the compiler vectorizes and unrolls the
+/// loop.
 fn sum(words: &[u64]) -> u64 {
     words
         .iter()
         .fold(0, |sum: u64, &word| sum.wrapping_add(word))
 }
 
-/// Nanoseconds a read, when each waits for the one before.
+/// Measures the time of one dependent read, in nanoseconds.
 fn latency(words: &[u64], clock: &dyn Clock) -> f64 {
     let mut at = 0;
     let ns = least(clock, || {
@@ -141,11 +145,11 @@ fn latency(words: &[u64], clock: &dyn Clock) -> f64 {
     ns / CHASED as f64
 }
 
-/// The shortest of several series, after one that is not timed.
+/// Returns the shortest time of several series, in nanoseconds, after one untimed series.
 fn least(clock: &dyn Clock, mut series: impl FnMut()) -> f64 {
     series();
     let times = (0..SERIES).map(|_| timed(clock, &mut series).ns());
-    // A clock may be too coarse to see it.
+    // A coarse clock may measure 0.
     times.fold(f64::INFINITY, f64::min).max(1.0)
 }
 
@@ -164,7 +168,7 @@ mod tests {
                 assert!(!std::mem::replace(&mut seen[at], true), "{at} of {lines}");
                 at = words[WORDS * at] as usize;
             }
-            assert_eq!(at, 0, "and comes back");
+            assert_eq!(at, 0, "the cycle is closed");
         }
     }
 
@@ -174,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_size_is_held_to_the_buffer_below_it() {
+    fn a_size_gets_the_speed_of_the_next_smaller_buffer() {
         let rung = |bytes, latency_ns| Rung {
             bytes,
             gb_per_s: 1.0,
@@ -188,7 +192,7 @@ mod tests {
         assert_eq!(speed.memory(), speed.rungs()[2]);
     }
 
-    /// Tells a nanosecond more each time it is asked.
+    /// A clock that advances by one nanosecond at each reading.
     struct Ticking(std::sync::atomic::AtomicU64);
 
     impl Clock for Ticking {
@@ -198,16 +202,16 @@ mod tests {
     }
 
     #[test]
-    fn figures_are_bytes_and_reads_by_the_clock() {
+    fn speeds_are_bytes_and_reads_divided_by_time() {
         let clock = Ticking(0.into());
         let go = AtomicBool::new(false);
-        let speed = MemorySpeed::of_sizes(&[1 << 14], &clock, &go).expect("nobody stops it");
+        let speed = MemorySpeed::of_sizes(&[1 << 14], &clock, &go).expect("not stopped");
         let Rung {
             gb_per_s,
             latency_ns,
             ..
         } = speed.memory();
-        assert_eq!(gb_per_s, STREAMED as f64, "all of it in a nanosecond");
+        assert_eq!(gb_per_s, STREAMED as f64, "all bytes in one nanosecond");
         assert_eq!(latency_ns, 1.0 / CHASED as f64);
         go.store(true, Ordering::Relaxed);
         assert_eq!(MemorySpeed::of_sizes(&[1 << 14], &clock, &go), None);

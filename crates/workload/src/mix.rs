@@ -1,9 +1,9 @@
-//! A workload run as a mix: all its operations in one loop, in its order of elements.
+//! Runs a workload as a mix: all its operations in one loop, in its access order.
 //!
-//! Operations on elements go in turns of 256, of 64 where there are edits: a turn asks each part of the mix in proportion to its
-//! weight, of elements one after the other along a route that is the same for all structures. So the
-//! parts share caches as they do in a program, and what chooses between them costs next to nothing.
-//! Passes over the whole mesh take their place between turns.
+//! Operations on elements are grouped into turns of 256 operations, or 64 if there are edits. A
+//! turn runs each part of the mix in proportion to its weight, on consecutive elements of a route
+//! that is the same for all structures. So the parts share caches as they do in a program, and
+//! switching between them costs almost nothing. Passes over the whole mesh run between turns.
 
 mod bench;
 mod passes;
@@ -24,45 +24,49 @@ pub use route::Route;
 pub use script::Script;
 pub use tables::tabulate;
 
-/// What some operations of a mix came to.
+/// The time and the counts of some operations of a mix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixRun {
-    /// The time of all of them.
+    /// The total time of the operations.
     pub time: Time,
-    /// How many operations there were.
+    /// The number of operations.
     pub operations: u64,
-    /// How many elements they yielded, or positions they read: the same for all structures that go
-    /// through all elements, or along one route.
+    /// The number of elements that they yielded, or of positions that they read. It is the same for
+    /// all structures that visit all elements, or the same route.
     pub yielded: u64,
-    /// How many edits were refused.
+    /// The number of edits that were refused.
     pub refused: u64,
 }
 
 /// A structure on which a mix can be run.
 pub trait Mixer {
-    /// What users call it.
+    /// Returns its name, as users write it.
     fn name(&self) -> &'static str;
 
-    /// The bytes held.
+    /// Returns the paths of the types that a program needs to use this backend.
+    fn type_paths(&self) -> Vec<&'static str>;
+
+    /// Returns the bytes of its tables.
     fn bytes(&self) -> usize;
 
-    /// How many vertices of the input are no vertices of their own here.
+    /// Returns how many vertices of the input were merged with others.
     fn merged_vertices(&self) -> usize;
 
-    /// By part of the mix: whether it looks at all faces.
+    /// Returns for each part of the mix whether it visits all faces of the mesh for one operation.
     fn scans(&self) -> Vec<bool>;
 
-    /// Runs the element operations of `turns` turns, from `turn` on. If there are edits, it does so
-    /// `copies` times, each time on a copy that is put back while the clock stands still.
+    /// Runs the element operations of `turns` turns, starting with turn `turn`. If there are edits,
+    /// it does so `copies` times, each time on a copy that is reset outside the timing.
     fn run(&mut self, turn: u64, turns: u64, copies: usize, clock: &dyn Clock) -> MixRun;
 
-    /// Runs `operations` operations of one part alone, from a place on its route; edits at fresh places.
+    /// Runs `operations` operations of one part alone, from operation `first` of its route. Edits
+    /// start at the first place, on a reset copy.
     fn run_part(&mut self, part: usize, first: u64, operations: u64, clock: &dyn Clock) -> MixRun;
 
-    /// How many operations of `part` go through each of its elements once, or are done at all places.
+    /// Returns the number of operations of `part` that visit each of its elements, or places, once.
     fn cycle(&self, part: usize) -> u64;
 
-    /// Runs a pass over the whole mesh, or over a sample that stands for it.
+    /// Runs a pass over the whole mesh, or over a sample that represents it.
     fn run_pass(
         &mut self,
         operation: Operation,
@@ -70,12 +74,13 @@ pub trait Mixer {
         series: &Series<'_>,
     ) -> Run;
 
-    /// By edit of the script, and by place: whether it is accepted.
+    /// Returns for each edit of the script, and each place, whether the edit is accepted.
     fn accepted(&mut self) -> Vec<Vec<bool>>;
 
-    /// Goes on with the places where `accepted` says so, which are the same for all structures.
+    /// Keeps only the places that are true in `accepted`, which is the same for all structures.
     fn keep(&mut self, accepted: &[Vec<bool>]);
 
-    /// Builds it from the polygons as often as `series` says; the time is that of one building.
+    /// Builds it from the polygons as often as `series` describes and returns the time of one
+    /// build.
     fn build(&self, series: &Series<'_>) -> Time;
 }

@@ -1,4 +1,4 @@
-//! The operations of a study: what each is called, asks and counts.
+//! The operations of a study: their names, the relations that they query, and what they count.
 
 use std::fmt;
 use std::str::FromStr;
@@ -23,20 +23,20 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All three, in the order in which [`Kind::index`] counts them.
+    /// All three, in the order of [`Kind::index`].
     pub const ALL: [Self; 3] = [Self::Vertex, Self::Edge, Self::Face];
 
-    /// Its place in [`Kind::ALL`].
+    /// Returns its index in [`Kind::ALL`].
     pub const fn index(self) -> usize {
         self as usize
     }
 
-    /// The kind of element that `relation` is asked of.
+    /// Returns the kind of element at which `relation` starts.
     pub const fn asked(relation: Relation) -> Self {
         Self::ALL[relation as usize / 3]
     }
 
-    /// What one is called: `vertex`.
+    /// Returns its singular name: `vertex`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Vertex => "vertex",
@@ -46,35 +46,36 @@ impl Kind {
     }
 }
 
-/// Something that a study times.
+/// An operation that a study times.
 ///
-/// Each visits its elements in the order of the structure, and every handle it comes upon goes into
-/// a sink, so that no structure can count elements without naming them.
+/// Each operation visits its elements in the order of the structure. Every handle that it yields
+/// goes into a sink, so that no structure can count elements without computing their handles.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, DeserializeFromStr, SerializeDisplay,
 )]
 pub enum Operation {
-    /// Flat arrays to the structure.
+    /// Builds the structure from flat arrays.
     Build,
-    /// Every element of a kind asked one relation.
+    /// Queries one relation of every element of its kind.
     Relation(Relation),
-    /// The incident faces of every vertex and the vertices of every face.
+    /// Queries the faces of every vertex and the vertices of every face.
     Circulate,
-    /// The mean of each face's vertices, stored.
+    /// Stores for each face the mean of its vertices.
     FaceBarycenter,
-    /// Face normals stored; then for each vertex the normalised sum over its faces, stored.
+    /// Stores face normals, then for each vertex the normalised sum over its faces.
     VertexNormal,
-    /// For each vertex the mean of its neighbours, stored and then swapped in.
+    /// Stores for each vertex the mean of its neighbours, then sets all positions to these means.
     VvSmooth,
-    /// The sum of all edge lengths.
+    /// Sums the lengths of all edges.
     EdgeLength,
-    /// The number of edges with one face.
+    /// Counts the edges with one face.
     Boundary,
-    /// Breadth-first over faces from face 0, then from the lowest unseen; the sum of the depths.
+    /// Traverses faces breadth first from face 0, then from the lowest unvisited face; sums the
+    /// depths.
     FfBfs,
-    /// Every element asked its three relations.
+    /// Queries the three relations of every element.
     AllQueries,
-    /// One step of Catmull–Clark by one method; its scheme and way are [`Operation::refining`].
+    /// One step of Catmull–Clark by one method. [`Operation::refining`] gives its scheme and way.
     CatmullClark(Method),
     /// One step of Loop by one method.
     Loop(Method),
@@ -83,13 +84,15 @@ pub enum Operation {
 }
 
 const RELATIONS: &[Relation; 9] = &Relation::ALL;
-/// What a step of Catmull–Clark asks of a vertex, and any step of a face.
+/// The relations that a step of Catmull–Clark queries of a vertex.
 const AROUND_VERTEX: &[Relation] = &[Relation::VertexVertices, Relation::VertexFaces];
+/// The relations that a step by gathering or a native step queries of an edge.
 const AROUND_EDGE: &[Relation] = &[Relation::EdgeVertices, Relation::EdgeFaces];
+/// The relations that any step queries of a face.
 const AROUND_FACE: &[Relation] = &[Relation::FaceVertices, Relation::FaceEdges];
 
 impl Operation {
-    /// All of them, in the order in which tables show them.
+    /// All operations, in the order in which tables show them.
     pub const ALL: [Self; 28] = [
         Self::Build,
         Self::Relation(Relation::VertexVertices),
@@ -121,7 +124,7 @@ impl Operation {
         Self::Editing(Editing::DecimateTenth),
     ];
 
-    /// What users call it: `vv_smooth`.
+    /// Returns its name, as users write it: `vv_smooth`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Build => "build",
@@ -144,7 +147,7 @@ impl Operation {
         }
     }
 
-    /// The subdivision that it is, if it is one: a single step.
+    /// Returns the subdivision of one level that it runs; `None` if it is not a subdivision.
     pub fn refining(self) -> Option<Refining> {
         let (scheme, method) = match self {
             Self::CatmullClark(method) => (Scheme::CatmullClark, method),
@@ -159,18 +162,19 @@ impl Operation {
         Some(Refining::new(scheme, way, 1))
     }
 
-    /// Whether it is a subdivision.
+    /// Returns whether it is a subdivision.
     pub const fn subdivides(self) -> bool {
         matches!(self, Self::CatmullClark(_) | Self::Loop(_))
     }
 
-    /// Whether it makes another mesh, by subdivision or by edits, rather than ask one: it is long, and
-    /// a patch of the mesh tells what it takes.
+    /// Returns whether it makes another mesh, by subdivision or by edits. Such an operation takes
+    /// long, and its time can be estimated from a patch of the mesh.
     pub const fn makes_a_mesh(self) -> bool {
         self.subdivides() || matches!(self, Self::Editing(_))
     }
 
-    /// Whether a run makes tables larger that the next run uses again: its first run takes longer.
+    /// Returns whether a run grows tables that the next run reuses, so that the first run takes
+    /// longer.
     pub const fn grows_tables(self) -> bool {
         matches!(
             self,
@@ -180,17 +184,20 @@ impl Operation {
         )
     }
 
-    /// Whether the clock stops between its runs: what they changed is put back, or what they made dropped.
+    /// Returns whether the clock stops between runs, to restore what a run changed or drop what it
+    /// made.
     pub const fn stops_the_clock(self) -> bool {
         matches!(self, Self::Build | Self::VvSmooth | Self::Editing(_))
     }
 
-    /// Whether it allocates while the clock runs: what it takes depends on where the pages come from.
+    /// Returns whether it allocates memory within the timing, so that its time depends on the
+    /// source of the pages.
     pub const fn allocates(self) -> bool {
         matches!(self, Self::Build | Self::FfBfs) || self.makes_a_mesh()
     }
 
-    /// How many elements it visits on `polygons` where no run has told: the faces, or the new ones.
+    /// Estimates the number of elements that it visits on `polygons`: the faces, or the new faces.
+    /// Used if no run has counted them.
     pub fn expected(self, polygons: &PolygonMesh) -> usize {
         match self {
             Self::CatmullClark(_) => polygons.corner_count(),
@@ -199,7 +206,8 @@ impl Operation {
         }
     }
 
-    /// What one element of its count is: `vertex`, `visit` where neighbours are counted, or `new face`.
+    /// Returns the unit of its element count: `vertex`, `edge`, `face`, `visit` (neighbours are
+    /// counted) or `new face`.
     pub const fn per(self) -> &'static str {
         match self {
             Self::Relation(relation) => Kind::asked(relation).name(),
@@ -213,7 +221,7 @@ impl Operation {
         }
     }
 
-    /// The kinds of elements that it goes through, in the order of running.
+    /// Returns the kinds of elements that it visits, in the order of its steps.
     pub const fn kinds(self) -> &'static [Kind] {
         const V: &[Kind] = &[Kind::Vertex];
         const E: &[Kind] = &[Kind::Edge];
@@ -238,7 +246,7 @@ impl Operation {
         }
     }
 
-    /// The relations that it asks of elements of `kind`.
+    /// Returns the relations that it queries of elements of `kind`.
     pub fn relations(self, kind: Kind) -> &'static [Relation] {
         let one = |relation: Relation| std::slice::from_ref(&RELATIONS[relation as usize]);
         match (self, kind) {
@@ -256,7 +264,7 @@ impl Operation {
             (Self::CatmullClark(_), Kind::Vertex) => AROUND_VERTEX,
             (Self::Loop(_), Kind::Vertex) => one(Relation::VertexVertices),
             (Self::CatmullClark(_) | Self::Loop(_), Kind::Edge) => AROUND_EDGE,
-            // What an edit has to find, at the least.
+            // The minimum that an edit has to query.
             (Self::Editing(Editing::FlipAll), Kind::Edge) => one(Relation::EdgeFaces),
             (Self::Editing(Editing::FlipAll), _) => &[],
             (Self::Editing(_), Kind::Vertex) => one(Relation::VertexFaces),
@@ -265,7 +273,7 @@ impl Operation {
         }
     }
 
-    /// By kind: whether a structure with these costs scans all faces for each element of it.
+    /// Returns for each kind whether a structure with these costs scans all faces for each element.
     pub fn scans(self, costs: &[QueryCost; 9]) -> [bool; 3] {
         Kind::ALL.map(|kind| {
             let relations = self.relations(kind);
@@ -275,22 +283,23 @@ impl Operation {
         })
     }
 
-    /// By kind: whether its cost grows with the square of the valences or degrees on some structure.
+    /// Returns for each kind whether the cost grows with the square of the valences or degrees on
+    /// some structure.
     ///
-    /// All relations but the two that yield the corners of an element: an edge has two, and the
-    /// faces have together no more than the mesh stores. The others meet a vertex of valence n from
-    /// each of its n edges, or look for a side in a face of n sides n times.
+    /// This is true for all relations except EV and FV. An edge has two ends, and the corners of
+    /// all faces together are the corners of the mesh. The other relations visit a vertex of
+    /// valence n from each of its n edges, or search a face of n sides n times for a side.
     pub fn walks_around(self) -> [bool; 3] {
         let corners = [Relation::EdgeVertices, Relation::FaceVertices];
         Kind::ALL.map(|kind| self.relations(kind).iter().any(|r| !corners.contains(r)))
     }
 
-    /// Whether some of its elements can stand for all.
+    /// Returns whether it can be run on a sample of elements.
     pub const fn can_be_sampled(self) -> bool {
         !matches!(self, Self::Build | Self::FfBfs) && !self.makes_a_mesh()
     }
 
-    /// Whether its checksum is a count, equal to the last digit for all structures.
+    /// Returns whether its checksum is a count, which is exactly equal for all structures.
     pub const fn counts(self) -> bool {
         !matches!(
             self,
@@ -311,11 +320,11 @@ impl fmt::Display for Operation {
     }
 }
 
-/// A name that no operation has.
+/// The error for an unknown name of an operation.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", unknown("operation", .name, &Operation::ALL.map(Operation::name)))]
 pub struct UnknownOperation {
-    /// The name.
+    /// The unknown name.
     pub name: String,
 }
 
@@ -334,7 +343,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_found_again() {
+    fn names_parse_to_their_operations() {
         for operation in Operation::ALL {
             assert_eq!(operation.name().parse(), Ok(operation));
         }
@@ -346,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn relations_are_asked_of_their_own_kind() {
+    fn relations_start_at_their_own_kind() {
         for operation in Operation::ALL {
             for kind in Kind::ALL {
                 let relations = operation.relations(kind);
@@ -363,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scan_is_seen_where_it_happens() {
+    fn scans_are_reported_for_the_kinds_that_scan() {
         let mut costs = [QueryCost::Local; 9];
         costs[Relation::VertexFaces as usize] = QueryCost::Scan;
         assert_eq!(Operation::VertexNormal.scans(&costs), [true, false, false]);
@@ -371,7 +380,8 @@ mod tests {
         assert_eq!(Operation::VertexNormal.walks_around(), [true, false, false]);
         assert_eq!(Operation::EdgeLength.walks_around(), [false; 3]);
         assert_eq!(Operation::AllQueries.walks_around(), [true; 3]);
-        // Of the subdivisions those that ask around vertices; Loop's rules do without their faces.
+        // Subdivisions scan if they query the faces of vertices. The rules of Loop do not need
+        // them.
         let scans = |operation: Operation| operation.scans(&costs)[0];
         assert!(scans(Operation::CatmullClark(Method::Gather)));
         assert!(!scans(Operation::CatmullClark(Method::Scatter)));

@@ -1,18 +1,18 @@
-//! What the program's allocator does with freed pages while times are measured.
+//! Controls what the program's allocator does with freed pages while times are measured.
 //!
-//! An allocator returns large freed blocks to the kernel, or keeps them, depending on what ran before.
-//! Each page that was returned costs a page fault and is cleared again when it is next used, which can
-//! take longer than the operation that is measured. So the policy is a part of the experiment:
-//! [`Policy::Kept`] makes freed pages stay with the process, so that after a warm-up no sample pays for
-//! one; [`give_back`] returns them on purpose, for the cost of a first time.
+//! An allocator returns large freed blocks to the kernel, or keeps them, depending on what ran
+//! before. When a returned page is used again, it costs a page fault and is cleared. This can take
+//! longer than the measured operation, so the policy is a part of the experiment. [`Policy::Kept`]
+//! keeps freed pages in the process, so that no sample pays for page faults after a warm-up.
+//! [`give_back`] returns them on purpose, to measure the cost of a first run.
 //!
-//! `Kept` is implemented for the GNU C library, by `mallopt`: no block is mapped by itself, the heap is
-//! never trimmed, and all threads share one heap, so that a block that one thread freed serves another.
-//! The last holds only if the policy is put in force before the program starts its first thread: glibc
-//! reads the number of heaps once. Threads that have a heap of their own keep its pages, too, but
-//! [`give_back`] returns only a part of them.
-//! Elsewhere, and in programs whose allocator is another one, the policy in force is
-//! [`Policy::System`], and [`put_in_force`] says so.
+//! `Kept` is implemented for the GNU C library with `mallopt`: no block is mapped separately, the
+//! heap is never trimmed, and all threads share one heap, so that one thread can reuse a block that
+//! another thread freed. Sharing works only if the policy is set before the program starts its
+//! first thread, because glibc reads the number of heaps once. Threads with their own heap also
+//! keep its pages, but [`give_back`] returns only some of them. On other platforms, and in programs
+//! with another allocator, the active policy is [`Policy::System`], and [`put_in_force`] reports
+//! this.
 
 use std::fmt;
 use std::str::FromStr;
@@ -20,22 +20,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 
-/// What happens to freed pages.
+/// The treatment of freed pages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Policy {
-    /// They stay with the process: what allocates again finds them, already touched.
+    /// Freed pages stay in the process, and later allocations reuse them without page faults.
     #[default]
     Kept,
-    /// Whatever the platform's allocator does.
+    /// The allocator of the platform decides.
     System,
 }
 
 impl Policy {
-    /// Both.
+    /// Both policies.
     pub const ALL: [Self; 2] = [Self::Kept, Self::System];
 
-    /// What users call it: `kept`.
+    /// Returns its name, as users write it: `kept`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Kept => "kept",
@@ -50,11 +50,11 @@ impl fmt::Display for Policy {
     }
 }
 
-/// A name that no policy has.
+/// The error for an unknown name of a policy.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no heap policy `{name}`: choose `kept` or `system`")]
 pub struct UnknownPolicy {
-    /// The name.
+    /// The unknown name.
     pub name: String,
 }
 
@@ -68,26 +68,26 @@ impl FromStr for Policy {
     }
 }
 
-/// The heap that a program measures on.
+/// The heap on which a program measures.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct HeapReport {
-    /// The policy in force.
+    /// The active policy.
     pub policy: Policy,
-    /// Why it is not the one that was asked for.
+    /// The reason why it is not the requested policy.
     #[serde(default)]
     pub reason: Option<String>,
-    /// The allocator with its version, where the platform tells: `glibc 2.36`.
+    /// The allocator, with its version if the platform reports it: `glibc 2.36`.
     pub allocator: String,
-    /// Bytes of a page, where the platform tells.
+    /// Bytes of a page, if the platform reports it.
     pub page_bytes: Option<u64>,
-    /// The mode of transparent huge pages, where the platform has them: `madvise`.
+    /// The mode of transparent huge pages, if the platform has them: `madvise`.
     pub transparent_huge_pages: Option<String>,
     /// Whether page faults are counted.
     pub counts_faults: bool,
 }
 
-/// Puts `asked` into force for the whole program, and says what is in force: `Kept` only where the
-/// allocator of the program can be told, and a probe shows that it obeys.
+/// Applies the policy `asked` to the whole program and reports the active policy. `Kept` becomes
+/// active only if the allocator of the program supports it, and a probe shows that pages are kept.
 pub fn put_in_force(asked: Policy) -> HeapReport {
     let reason = match asked {
         Policy::System => {
@@ -109,17 +109,17 @@ pub fn put_in_force(asked: Policy) -> HeapReport {
     }
 }
 
-/// Makes freed pages stay with the process.
+/// Makes the allocator keep freed pages in the process.
 fn keep() -> Result<(), String> {
     if !platform::is_ours() {
-        return Err("this program has an allocator of its own, or the platform's cannot be told to keep pages".into());
+        return Err("keeping pages needs the glibc allocator; this program uses another".into());
     }
     KEEPING.store(true, Ordering::Relaxed);
     if !platform::keep() {
         stop_keeping();
         return Err("the allocator refused to keep pages".into());
     }
-    // A block that would be returned otherwise: used, freed, and used again.
+    // Allocates and frees a block twice. By default, its pages would be returned in between.
     let block = || drop(touched_block(PROBE_BYTES));
     block();
     let before = faults();
@@ -127,16 +127,16 @@ fn keep() -> Result<(), String> {
     match (before, faults()) {
         (Some(before), Some(after)) if after - before > MOST_PROBE_FAULTS => {
             stop_keeping();
-            Err("the allocator was told to keep pages, and returned them".into())
+            Err("the allocator accepted the option to keep pages, but returned them".into())
         }
         _ => Ok(()),
     }
 }
 
-/// Whether pages were kept at some time: only then there is something to undo.
+/// Whether pages are kept; only then [`stop_keeping`] has something to undo.
 static KEEPING: AtomicBool = AtomicBool::new(false);
 
-/// Undoes [`keep`], and returns what was kept.
+/// Undoes [`keep`] and returns the kept pages to the kernel.
 fn stop_keeping() {
     if KEEPING.swap(false, Ordering::Relaxed) {
         platform::restore();
@@ -144,22 +144,23 @@ fn stop_keeping() {
     }
 }
 
-/// The block that shows whether pages are kept.
+/// Size of the block that shows whether pages are kept.
 const PROBE_BYTES: usize = 16 << 20;
-/// It has thousands of pages; a few others may fault meanwhile.
+/// Maximum number of page faults of the probe if pages are kept. The block has thousands of pages.
 const MOST_PROBE_FAULTS: u64 = 64;
-/// No platform has smaller pages.
+/// The smallest page size of all platforms, in bytes.
 const LEAST_PAGE: usize = 4096;
-/// Freed blocks are looked for in steps of this size, halved until none is left.
+/// Size of the first blocks that are allocated to find freed blocks, in bytes. It is then halved.
 const LARGEST_FREED: usize = 1 << 20;
 
-/// Touches `bytes` in one block and the pages of all freed blocks, so that what is allocated later finds
-/// its pages there: those that [`give_back`] returned are taken from the kernel again. Of no use unless
-/// pages are kept. O(`bytes` + bytes of freed blocks), and a walk over the list of freed blocks for each
-/// MiB of them.
+/// Touches `bytes` in one block and the pages of all freed blocks, so that later allocations find
+/// their pages present. Pages that [`give_back`] returned are taken from the kernel again. Useful
+/// only if pages are kept. O(`bytes` + bytes of freed blocks), plus one walk over the list of freed
+/// blocks for each MiB of them.
 pub fn reserve(bytes: usize) {
     let block = touched_block(bytes);
-    // All at once, so that no two are the same; larger ones first, for the small ones fit anywhere.
+    // All blocks are held at the same time, so that each is a different one. Large blocks come
+    // first, because small ones fit anywhere.
     let mut blocks = Vec::new();
     let mut size = LARGEST_FREED;
     let mut heap = platform::heap_bytes();
@@ -175,7 +176,7 @@ pub fn reserve(bytes: usize) {
     drop((block, blocks));
 }
 
-/// Allocates `bytes` and writes to each page; `None` where there is too little memory.
+/// Allocates `bytes` and writes to each page; `None` if there is too little memory.
 fn touched_block(bytes: usize) -> Option<Vec<u8>> {
     let mut block: Vec<u8> = Vec::new();
     block.try_reserve_exact(bytes).ok()?;
@@ -185,25 +186,25 @@ fn touched_block(bytes: usize) -> Option<Vec<u8>> {
     Some(std::hint::black_box(block))
 }
 
-/// Returns the pages of all freed blocks to the kernel, so that what allocates next pays for fresh
-/// ones. Nothing where the allocator cannot be asked to.
+/// Returns the pages of all freed blocks to the kernel, so that the next allocations pay for new
+/// ones. Does nothing if the allocator does not support it.
 pub fn give_back() {
     platform::give_back();
 }
 
-/// Whether [`give_back`] can: whether the allocator is one that it knows.
+/// Returns whether the allocator supports [`give_back`].
 pub fn can_give_back() -> bool {
     platform::is_ours()
 }
 
-/// Bytes of this process that are in memory, where the platform tells.
+/// Returns the bytes of this process that are in memory, if the platform reports them.
 pub fn resident_bytes() -> Option<u64> {
     let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
     let pages: u64 = pages.split_ascii_whitespace().nth(1)?.parse().ok()?;
     Some(pages * page_bytes()?)
 }
 
-/// Bytes that the address space of this process may still grow by, where it has a limit.
+/// Returns the bytes by which the address space of this process may still grow, if it has a limit.
 #[cfg(unix)]
 pub fn address_space_left() -> Option<u64> {
     use nix::sys::resource::{RLIM_INFINITY, Resource, getrlimit};
@@ -214,13 +215,14 @@ pub fn address_space_left() -> Option<u64> {
     (limit != RLIM_INFINITY).then(|| limit.saturating_sub(used))
 }
 
-/// Bytes that the address space of this process may still grow by, where it has a limit.
+/// Returns the bytes by which the address space of this process may still grow, if it has a limit.
 #[cfg(not(unix))]
 pub fn address_space_left() -> Option<u64> {
     None
 }
 
-/// Page faults of this thread so far that needed no disk; `None` where the platform does not count them.
+/// Returns the page faults of this thread so far, without those that read from disk; `None` if the
+/// platform does not count them.
 #[cfg(any(target_os = "linux", target_os = "android"))]
 pub fn faults() -> Option<u64> {
     use nix::sys::resource::{UsageWho, getrusage};
@@ -228,19 +230,20 @@ pub fn faults() -> Option<u64> {
     u64::try_from(usage.minor_page_faults()).ok()
 }
 
-/// Page faults of this thread so far that needed no disk; `None` where the platform does not count them.
+/// Returns the page faults of this thread so far, without those that read from disk; `None` if the
+/// platform does not count them.
 #[cfg(not(any(target_os = "linux", target_os = "android")))]
 pub fn faults() -> Option<u64> {
     None
 }
 
-/// Whether page faults are counted: some sandboxes answer, and always with the same number.
+/// Returns whether page faults are counted. Some sandboxes always report the same number.
 pub fn counts_faults() -> bool {
     use std::sync::OnceLock;
     static COUNTS: OnceLock<bool> = OnceLock::new();
     *COUNTS.get_or_init(|| {
         let before = faults();
-        // A new thread has a new stack, whatever the heap keeps.
+        // A new thread has a new stack, so it has page faults even if the heap keeps its pages.
         let after = std::thread::spawn(|| {
             std::hint::black_box([1_u8; 1 << 16]);
             faults()
@@ -261,7 +264,7 @@ fn page_bytes() -> Option<u64> {
     None
 }
 
-/// The mode in force, which Linux marks by brackets.
+/// Returns the active mode, which Linux marks with brackets.
 fn transparent_huge_pages() -> Option<String> {
     let modes = std::fs::read_to_string("/sys/kernel/mm/transparent_hugepage/enabled").ok()?;
     bracketed(&modes).map(str::to_owned)
@@ -272,34 +275,35 @@ fn bracketed(modes: &str) -> Option<&str> {
     Some(from.split_once(']')?.0)
 }
 
-/// The GNU C library. The only file of the workspace with unsafe code: calls to options of the
-/// allocator, which take and return plain numbers.
+/// Calls to the GNU C library. This is the only file of the workspace with unsafe code: calls that
+/// set options of the allocator; they take and return plain numbers.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 #[allow(unsafe_code)]
 mod platform {
     use std::ffi::CStr;
 
-    /// A block that no other thread allocates by chance between two looks.
+    /// Size of a test block, in bytes: unusual, so that another thread hardly allocates the same
+    /// size.
     const WITNESS: usize = (1 << 20) + 4096 * 3;
-    /// How often the allocator is looked at before it is taken for another one.
+    /// Number of attempts to see the test block in the counts of the allocator.
     const LOOKS: usize = 16;
-    /// The heap grows by at least this much at a time.
+    /// The heap grows by at least this many bytes at a time.
     const STEP: libc::c_int = 1 << 20;
 
-    /// Tells the allocator to map no block by itself, never to trim its heap, and to have one heap for
-    /// all threads.
+    /// Sets the allocator to map no block separately, never to trim its heap, and to use one heap
+    /// for all threads. Returns whether it accepts.
     pub(super) fn keep() -> bool {
         let options = [
             (libc::M_ARENA_MAX, 1),
             (libc::M_MMAP_MAX, 0),
-            (libc::M_TRIM_THRESHOLD, -1), // as unsigned: the largest number there is
+            (libc::M_TRIM_THRESHOLD, -1), // as unsigned: the largest number
             (libc::M_TOP_PAD, STEP),
         ];
         set(&options)
     }
 
-    /// The values that glibc comes to in a program that has freed large blocks: its thresholds, once set, no
-    /// longer adapt themselves. All threads still share one heap.
+    /// Sets the values that glibc reaches by itself in a program that has freed large blocks. Once
+    /// its thresholds are set, they no longer adapt. All threads still share one heap.
     pub(super) fn restore() {
         let options = [
             (libc::M_MMAP_MAX, 65536),
@@ -313,36 +317,37 @@ mod platform {
     fn set(options: &[(libc::c_int, libc::c_int)]) -> bool {
         options.iter().all(|&(option, value)| {
             // SAFETY: `mallopt` may be called at any time from any thread (it takes the lock of the
-            // main heap) and reads nothing but its two numbers.
+            // main heap) and reads only its two numbers.
             unsafe { libc::mallopt(option, value) == 1 }
         })
     }
 
     pub(super) fn give_back() {
-        // SAFETY: `malloc_trim` may be called at any time from any thread; it takes the locks of all
-        // heaps, and returns only pages that lie within freed blocks.
+        // SAFETY: `malloc_trim` may be called at any time from any thread; it takes the locks of
+        // all heaps, and returns only pages that lie within freed blocks.
         unsafe { libc::malloc_trim(0) };
     }
 
-    /// The figures are modulo 2³²: `mallinfo2` counts further, and older systems lack it.
+    /// Returns the counts of the allocator modulo 2³². `mallinfo2` has larger counts, but older
+    /// systems do not have it.
     fn info() -> libc::mallinfo {
         // SAFETY: `mallinfo` may be called at any time from any thread, and returns plain numbers.
         unsafe { libc::mallinfo() }
     }
 
-    /// Bytes that the heap has grown to.
+    /// Returns the size of the heap in bytes, modulo 2³².
     pub(super) fn heap_bytes() -> Option<u32> {
         Some(info().arena.cast_unsigned())
     }
 
-    /// Bytes that are allocated.
+    /// Returns the number of allocated bytes, modulo 2³².
     fn used() -> u32 {
         let info = info();
         info.uordblks.wrapping_add(info.hblkhd).cast_unsigned()
     }
 
-    /// Whether what Rust allocates comes from the GNU C library: its own count shows it. Other threads may
-    /// allocate meanwhile, so that one look out of a few has to show it.
+    /// Returns whether Rust allocates from the GNU C library: its counts then include a test block.
+    /// Because other threads may allocate at the same time, one of several attempts has to succeed.
     pub(super) fn is_ours() -> bool {
         let shows = || {
             let before = used();
@@ -392,7 +397,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn policies_are_found_by_name() {
+    fn names_parse_to_their_policies() {
         for policy in Policy::ALL {
             assert_eq!(policy.name().parse(), Ok(policy));
         }
@@ -401,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mode_in_force_is_in_brackets() {
+    fn the_active_mode_is_in_brackets() {
         assert_eq!(bracketed("always [madvise] never\n"), Some("madvise"));
         assert_eq!(bracketed("never"), None);
     }

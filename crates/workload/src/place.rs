@@ -1,15 +1,16 @@
-//! Places of a mesh of triangles where edits can be done without touching one another.
+//! Places of a triangle mesh where edits can be done without affecting each other.
 
 use sixfold::{
     Edit, FaceId, FaceVertexMesh, MeshEdit, MeshQuery, Point, PolygonMesh, Refusal, Representation,
 };
 
-/// Faces none of whose one-rings touch, at most `most`, spread over the mesh, in no order.
+/// Returns at most `most` faces, spread over the mesh, in no particular order. Their surroundings
+/// (all faces that touch a corner of the face) share no vertices.
 pub(crate) fn places(polygons: &PolygonMesh, most: usize) -> Result<Vec<FaceId>, String> {
     let mesh = FaceVertexMesh::from_polygons(polygons).map_err(|refusal| refusal.to_string())?;
     let mut taken = vec![false; polygons.vertex_count()];
     let faces = polygons.face_count();
-    // A stride that shares no divisor with the number of faces comes by all of them, far apart.
+    // A stride coprime to the number of faces visits all faces, and consecutive ones are far apart.
     let mut stride = (faces as f64 * 0.618) as usize | 1;
     while gcd(stride, faces) != 1 {
         stride += 2;
@@ -43,18 +44,18 @@ const fn gcd(mut a: usize, mut b: usize) -> usize {
     a
 }
 
-/// What an edit needs to know of its place.
+/// The arguments of an edit at its place.
 pub(crate) struct Place<M: MeshQuery> {
     pub(crate) face: M::Face,
     corners: [M::Vertex; 3],
     edge: Option<M::Edge>,
-    /// A neighbour of the first corner, far from the second.
+    /// A neighbour of the first corner that is not a corner of the face.
     far: Option<M::Vertex>,
     at: Point,
 }
 
 impl<M: Representation> Place<M> {
-    /// Looks up what `edit` takes at face `f`: some structures search for these handles.
+    /// Looks up the arguments of `edit` at face `f`; some structures search for these handles.
     pub(crate) fn of(mesh: &M, polygons: &PolygonMesh, edit: Edit, f: FaceId) -> Self {
         let takes_edge = matches!(
             edit,
@@ -86,7 +87,7 @@ impl<M: Representation> Place<M> {
     }
 }
 
-/// Brings one place into the state in which the edit finds something to do.
+/// Prepares one place so that the edit can be done there.
 pub(crate) fn prepare<M: MeshEdit>(
     mesh: &mut M,
     edit: Edit,
@@ -96,7 +97,7 @@ pub(crate) fn prepare<M: MeshEdit>(
         Edit::AddFace | Edit::Compact => mesh.remove_face(place.face, &mut ()),
         Edit::SplitFace => {
             let edge = place.edge.take();
-            let edge = edge.expect("looked up for all edits at edges");
+            let edge = edge.expect("`Place::of` looked up the edge");
             place.face = mesh.dissolve_edge(edge, &mut ())?;
             Ok(())
         }
@@ -112,7 +113,7 @@ pub(crate) fn perform<M: MeshEdit>(
     place: &Place<M>,
 ) -> Result<(), Refusal<M>> {
     let [a, b, c] = place.corners;
-    let edge = || place.edge.expect("looked up for all edits at edges");
+    let edge = || place.edge.expect("`Place::of` looked up the edge");
     let log = &mut ();
     match edit {
         Edit::SetPosition => mesh.set_position(a, place.at, log).map(drop),
@@ -130,7 +131,7 @@ pub(crate) fn perform<M: MeshEdit>(
         Edit::SplitVertex => mesh
             .split_vertex(a, Some(b), place.far, place.at, log)
             .map(drop),
-        // Passes over the whole mesh, and edits to come.
+        // Passes over the whole mesh, and edits added later.
         _ => Ok(()),
     }
 }
@@ -144,7 +145,7 @@ mod tests {
     #[test]
     fn places_do_not_touch() {
         let torus = shapes::triangle_torus(30, 30).expect("small");
-        let places = places(&torus, usize::MAX).expect("held by all");
+        let places = places(&torus, usize::MAX).expect("any structure holds it");
         assert!(places.len() > 20, "{}", places.len());
         let mut corners: Vec<VertexId> = places
             .iter()

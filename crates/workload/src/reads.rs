@@ -1,82 +1,84 @@
-//! How much of its tables a structure reads to answer a relation: counted, so free of noise.
+//! Counts how much of its tables a structure reads to answer a relation. Counts are free of noise.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
-use sixfold::{MeshQuery, QueryCost, Relation, Representation};
+use sixfold::{Measured, MeshQuery, QueryCost, Relation};
 
 use crate::ledger::{LINE_BYTES, Ledger, Step, Sum};
 
-/// How many elements stand for all where a structure scans: evenly spaced, the first among them.
+/// Number of sampled elements if a structure scans: evenly spaced, including the first element.
 pub const SAMPLE: usize = 16;
-/// Where elements read more rows than this on average, a sample stands for all, too: at a vertex of
-/// very many faces a walk is as bad as a scan.
+/// If a query reads more rows than this on average, a sample is used too: at a vertex with very
+/// many faces, a walk is as slow as a scan.
 pub const MOST_READS: u64 = 256;
 
-/// What one relation reads, asked of every element in the order of the structure, or of a sample.
+/// The reads of one relation, queried of every element in the order of the structure, or of a
+/// sample.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Reads {
     /// The relation.
     pub relation: Relation,
-    /// How many elements there are to ask.
+    /// Number of elements of the queried kind.
     pub elements: u64,
-    /// How many were asked.
+    /// Number of elements that were queried.
     pub asked: u64,
-    /// A sample was asked; the figures for a query are its means.
+    /// Whether only a sample was queried; the values per query are then means over the sample.
     pub sampled: bool,
-    /// Answers to a query.
+    /// Results per query.
     pub answers: f64,
-    /// Rows that a query reads, one as often as it is read.
+    /// Row reads per query; a row counts each time it is read.
     pub reads: f64,
-    /// Bytes that a query reads, each once.
+    /// Bytes read per query, each once.
     pub bytes: f64,
-    /// Cache lines that a query touches, each once.
+    /// Cache lines touched per query, each once.
     pub lines: f64,
-    /// Rows read by listing the elements, for each of them.
+    /// Row reads for listing the elements, per element.
     pub listing_reads: f64,
-    /// Lines that a small cache has to fetch, listing included, for each element.
+    /// Lines that a small cache has to fetch, per element, including listing.
     pub fetched: f64,
-    /// Those of them that lie near none it has.
+    /// Fetched lines that are not near a cached line, per element.
     pub jumps: f64,
-    /// Lines that the whole sweep touches, listing included, each once; of the sample if there is one.
+    /// Lines that the whole sweep touches, each once, including listing. Of the sample if there is
+    /// one.
     pub sweep_lines: u64,
-    /// Bytes that have to move for each element: the lines of the sweep, each once; where a sample was
-    /// asked, all the lines of a query, for each goes through them anew.
+    /// Bytes to move per element: the lines of the sweep, each once. If a sample was queried: all
+    /// lines of a query, because each query reads them again.
     pub moved_bytes: f64,
-    /// By table: the rows that a query reads.
+    /// By table: the row reads per query.
     pub tables: Vec<TableReads>,
 }
 
 impl Reads {
-    /// The bytes of all lines that a sweep touches.
+    /// Returns the bytes of all lines that a sweep touches.
     pub fn sweep_bytes(&self) -> usize {
         usize::try_from(self.sweep_lines).map_or(usize::MAX, |lines| lines * LINE_BYTES)
     }
 }
 
-/// What a query reads of one table.
+/// The reads of one table by a query.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct TableReads {
-    /// The table.
+    /// The name of the table.
     pub table: String,
     /// Bytes of a row.
     pub row_bytes: usize,
-    /// Rows that a query reads, one as often as it is read.
+    /// Row reads per query; a row counts each time it is read.
     pub reads: f64,
 }
 
-/// Where a count is kept as it goes: hears of each relation before, and of what was found after.
+/// A receiver of the counts: called before and after each relation.
 pub trait Counted {
-    /// `relation` is asked now.
+    /// Called before `relation` is queried.
     fn begins(&mut self, relation: Relation);
-    /// What it read.
+    /// Called with the counts of a relation.
     fn ends(&mut self, reads: Reads);
 }
 
-/// Asks `relations` of `mesh` and counts, until told to stop.
+/// Queries `relations` of `mesh` and counts the reads, until `stop` is true.
 ///
-/// Time and memory: what the queries take several times over, and a third of the mesh beside it.
-pub(crate) fn count<M: Representation>(
+/// Takes several times the time of the queries, and a third of the memory of the mesh in addition.
+pub(crate) fn count<M: Measured>(
     mesh: M,
     relations: &[Relation],
     stop: &AtomicBool,
@@ -109,7 +111,7 @@ pub(crate) fn count<M: Representation>(
     }
 }
 
-/// A watched mesh, and who watches.
+/// A mesh with a probe, and the ledger of that probe.
 struct Counting<'a, M> {
     mesh: &'a M,
     ledger: &'a Ledger,
@@ -117,8 +119,8 @@ struct Counting<'a, M> {
 }
 
 impl<M: MeshQuery> Counting<'_, M> {
-    /// Asks `asked` of the `elements`; `None` if told to stop, or if that is all of them and they
-    /// read too much.
+    /// Queries `asked` of the `elements`. Returns `None` if `stop` is true, or if all elements are
+    /// queried and read too much.
     fn ask(&self, relation: Relation, elements: usize, asked: usize) -> Option<Reads> {
         let mesh = self.mesh;
         let sweep = Sweep {
@@ -140,7 +142,7 @@ impl<M: MeshQuery> Counting<'_, M> {
         }
     }
 
-    /// Lists the elements one by one, as the timed sweep does, and asks those that are to be asked.
+    /// Lists the elements one by one, as the timed sweep does, and queries the selected ones.
     fn go<I: Iterator>(
         &self,
         sweep: Sweep,
@@ -170,7 +172,7 @@ impl<M: MeshQuery> Counting<'_, M> {
     }
 }
 
-/// How many of how many elements are asked what.
+/// The relation to query, the number of elements, and the number of them to query.
 #[derive(Clone, Copy)]
 struct Sweep {
     relation: Relation,
@@ -179,9 +181,9 @@ struct Sweep {
 }
 
 impl Sweep {
-    /// The place in the list of the next to ask, when so many have been asked.
+    /// Returns the list index of the next element to query after `asked` queries.
     fn next(self, asked: usize) -> usize {
-        // Wide enough for any number of elements.
+        // `u128` cannot overflow here.
         (asked as u128 * self.elements as u128 / self.asked.max(1) as u128) as usize
     }
 
@@ -227,7 +229,7 @@ impl Sweep {
     }
 }
 
-/// How many answers there are. Folded, as the timed sweep does: a walk may read otherwise step by step.
+/// Counts the results with `fold`, as the timed sweep does: calling `next` may read other rows.
 fn number(answers: impl IntoIterator) -> u64 {
     answers.into_iter().fold(0, |number, _| number + 1)
 }

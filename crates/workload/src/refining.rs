@@ -1,4 +1,4 @@
-//! Subdivision as a workload: one scheme, one way to run it, so many levels, on one structure.
+//! Subdivision as a workload: one scheme, one way to run it, a number of levels, on one structure.
 
 use std::fmt;
 
@@ -9,24 +9,25 @@ use sixfold::{
     visit_refinable,
 };
 
-/// How the levels are made, and where they are put.
+/// The method that computes the levels, and the memory that stores them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Way {
-    /// By queries for each new point; the structure is built anew from each level.
+    /// Queries the mesh for each new point, and rebuilds the structure from each level.
     Gather,
-    /// By a pass over the faces; the structure is built anew from each level.
+    /// Makes one pass over the faces, and rebuilds the structure from each level.
     Scatter,
-    /// In the structure's own tables, into meshes that are allocated for it.
+    /// Refines the structure's own tables into newly allocated meshes.
     NativeFresh,
-    /// In the structure's own tables, into those of the run before: what an animation does.
+    /// Refines the structure's own tables into the meshes of the previous run, as an animation
+    /// does.
     Native,
 }
 
 impl Way {
-    /// All four.
+    /// All four ways.
     pub const ALL: [Self; 4] = [Self::Gather, Self::Scatter, Self::NativeFresh, Self::Native];
 
-    /// What users call it: `native_fresh`.
+    /// Returns its name, as users write it: `native_fresh`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Gather => "gather",
@@ -36,7 +37,7 @@ impl Way {
         }
     }
 
-    /// The method that it is of.
+    /// Returns its method.
     pub const fn method(self) -> Method {
         match self {
             Self::Gather => Method::Gather,
@@ -58,33 +59,33 @@ impl Serialize for Way {
     }
 }
 
-/// What to refine and how.
+/// A subdivision to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Refining {
     /// The scheme with its options.
     pub subdivision: Subdivision,
-    /// How.
+    /// The way to run it.
     pub way: Way,
-    /// How often; at least once.
+    /// The number of levels; at least 1.
     pub levels: u32,
 }
 
-/// A subdivision that is set up to be run again and again: the control mesh stands built.
+/// A subdivision that is ready to be run repeatedly: the control mesh is built.
 pub trait Refiner: Send {
-    /// Makes all levels.
+    /// Computes all levels.
     ///
     /// # Errors
     ///
-    /// What the scheme or the structure refuses.
+    /// Returns an error if the scheme or the structure refuses a level.
     fn run(&mut self) -> Result<(), SubdivisionError>;
 
-    /// The faces of the last level that was made, and a number made of all its positions:
+    /// Returns the number of faces of the last level, and a checksum of its positions:
     /// Σ |x| + 2|y| + 3|z|.
     fn result(&self) -> (usize, f64);
 }
 
 impl Refining {
-    /// `scheme` with its usual options.
+    /// Makes a subdivision by `scheme` with its default options.
     pub fn new(scheme: Scheme, way: Way, levels: u32) -> Self {
         Self {
             subdivision: Subdivision::new(scheme),
@@ -93,12 +94,12 @@ impl Refining {
         }
     }
 
-    /// Sets it up on the structure called `backend`; `None` where there is none, or none that does it
-    /// this way.
+    /// Sets it up on the structure called `backend`. Returns `None` if there is no such structure,
+    /// or it does not support this way.
     ///
     /// # Errors
     ///
-    /// Why the structure cannot hold `polygons`, or the scheme does not take `creases`.
+    /// Returns the reason if the structure cannot hold `polygons`, or the scheme refuses `creases`.
     pub fn on(
         self,
         backend: &str,
@@ -112,8 +113,8 @@ impl Refining {
         }
     }
 
-    /// As [`on`](Self::on), on a structure of type `M`, which need not be of the roster where it is
-    /// built anew from each level.
+    /// Sets it up like [`on`](Self::on), on a structure of type `M`. If the way rebuilds the
+    /// structure from each level, `M` need not be in the roster.
     pub(crate) fn of<M: Representation + 'static>(
         self,
         polygons: &PolygonMesh,
@@ -181,12 +182,12 @@ impl RefineVisitor for Start<'_> {
     }
 }
 
-/// Each level as polygons, and built from them.
+/// A subdivision that computes each level as polygons and builds the structure from them.
 struct Rebuilt<M> {
     job: Refining,
     mesh: M,
     creases: Creases,
-    /// The last level as it was made. Its structure may have merged vertices that have met.
+    /// The polygons of the last level. The structure may have merged vertices with equal positions.
     last: PolygonMesh,
 }
 
@@ -194,7 +195,7 @@ impl<M: Representation + 'static> Refiner for Rebuilt<M> {
     fn run(&mut self) -> Result<(), SubdivisionError> {
         let subdivision = &self.job.subdivision;
         let mut creases = self.creases.clone();
-        // Let go of what the run before has made, as every run must be the same.
+        // Drops the result of the previous run, so that all runs do the same.
         self.last = PolygonMesh::default();
         let mut at: Option<M> = None;
         for level in 0..self.job.levels {
@@ -217,7 +218,7 @@ impl<M: Representation + 'static> Refiner for Rebuilt<M> {
     }
 }
 
-/// Each level in tables of its own.
+/// A subdivision that refines the tables of the structure, with one mesh for each level.
 struct InPlace<M: Refine> {
     job: Refining,
     mesh: M,
@@ -279,7 +280,7 @@ mod tests {
                     };
                     match refiner.run() {
                         Ok(()) => results.push(refiner.result()),
-                        // Quads do not fit a corner table.
+                        // A corner table cannot hold quads.
                         Err(_) => assert_eq!(backend.name, "corner-table"),
                     }
                     if refiner.run().is_ok() {

@@ -1,11 +1,12 @@
-//! A seeded choice of elements, made on the input so that it is the same for every structure.
+//! A seeded random choice of elements. It is made on the input, so it is the same for every
+//! structure.
 
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sixfold::{FaceId, PolygonMesh, VertexId};
 
-/// One side of a face, standing for its edge.
+/// One side of a face, which identifies its edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Side {
     /// The face.
@@ -14,19 +15,19 @@ pub struct Side {
     pub ends: [VertexId; 2],
 }
 
-/// All elements of a mesh in an order that the seed decides; every prefix is a fair sample.
+/// All elements of a mesh in a seeded random order; every prefix is a uniform sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
     /// Every vertex.
     pub vertices: Vec<VertexId>,
-    /// Every edge once, by one of its sides.
+    /// Every edge once, as one of its sides.
     pub edges: Vec<Side>,
     /// Every face.
     pub faces: Vec<FaceId>,
 }
 
 impl Draw {
-    /// The order that `seed` gives to the elements of `polygons`; O(n log n) in the corners.
+    /// Shuffles the elements of `polygons` with `seed`; O(n log n), n the number of corners.
     pub fn of(polygons: &PolygonMesh, seed: u64) -> Self {
         let mut draw = Self {
             vertices: polygons.vertices().collect(),
@@ -40,7 +41,7 @@ impl Draw {
         draw
     }
 
-    /// How many elements there are, by kind.
+    /// Returns the number of elements by kind.
     pub fn population(&self) -> [usize; 3] {
         [self.vertices.len(), self.edges.len(), self.faces.len()]
     }
@@ -66,7 +67,7 @@ mod tests {
     use sixfold::shapes;
 
     #[test]
-    fn every_edge_is_drawn_once_and_by_a_face_that_has_it() {
+    fn every_edge_is_drawn_once_as_a_side_of_one_of_its_faces() {
         let mesh = shapes::default_study();
         let draw = Draw::of(&mesh, 7);
         assert_eq!(draw.edges.len() * 2, mesh.corner_count(), "closed");
@@ -81,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn the_seed_decides() {
+    fn the_seed_determines_the_order() {
         let mesh = shapes::default_study();
         assert_eq!(Draw::of(&mesh, 7), Draw::of(&mesh, 7));
         assert_ne!(Draw::of(&mesh, 7), Draw::of(&mesh, 8));

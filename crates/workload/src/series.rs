@@ -1,4 +1,4 @@
-//! How often a job is run for one sample, and what is done before the clock starts.
+//! The runs of a job for one sample, and the preparation before the clock starts.
 
 use std::hint::black_box;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
@@ -7,18 +7,18 @@ use crate::caches::{caches, last_level, level_bytes};
 use crate::clock::{Clock, Time, timed};
 use crate::pages;
 
-/// The clock is stopped after work of at least about this length, where copies that fit the caches allow
-/// it.
+/// Target for the minimum length of timed work, in nanoseconds. Short runs are timed together up to
+/// about this length, if their copies fit the cache.
 pub const LONG_ENOUGH_NS: f64 = 60_000.0;
-/// The second-level cache where the platform does not tell its size.
+/// Assumed size of the second-level cache in bytes, if the platform does not report it.
 const USUAL_SECOND_LEVEL: usize = 512 << 10;
-/// The last-level cache where the platform does not tell its size.
+/// Assumed size of the last-level cache in bytes, if the platform does not report it.
 const USUAL_LAST_LEVEL: u64 = 32 << 20;
 
-/// What a timed stretch of work finds.
+/// The state of caches and heap at the start of timed work.
 #[derive(Clone, Copy, Default)]
 pub enum Start<'c> {
-    /// Whatever the runs before have left: warm caches, and pages that stay with the process.
+    /// The state after the previous runs: warm caches, and pages that stay in the process.
     #[default]
     Warm,
     /// Caches that hold other data.
@@ -27,14 +27,14 @@ pub enum Start<'c> {
     FreshPages,
 }
 
-/// Data to fill the caches with.
+/// Data that fills the caches.
 pub struct Scrubber {
     words: Mutex<Vec<u64>>,
     level: Option<u8>,
 }
 
 impl Scrubber {
-    /// Twice the size of the last-level cache.
+    /// Allocates data of twice the size of the last-level cache.
     pub fn new() -> Self {
         let caches = caches();
         let bytes = last_level(&caches).unwrap_or(USUAL_LAST_LEVEL);
@@ -45,12 +45,13 @@ impl Scrubber {
         }
     }
 
-    /// How many bytes are written before each sample.
+    /// Returns the number of bytes that are written before each sample.
     pub fn bytes(&self) -> usize {
         size_of_val(&**self.words())
     }
 
-    /// The last cache level, whose content is replaced; `None` where the platform does not tell.
+    /// Returns the last cache level whose content is replaced; `None` if the platform does not
+    /// report it.
     pub fn level(&self) -> Option<u8> {
         self.level
     }
@@ -59,7 +60,7 @@ impl Scrubber {
         self.words.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Writes to all words, so that the caches hold them and nothing else.
+    /// Writes to all words, so that the caches hold only them.
     fn scrub(&self) {
         let words = &mut *self.words();
         words
@@ -75,23 +76,24 @@ impl Default for Scrubber {
     }
 }
 
-/// How a job is run for one sample.
+/// The runs of a job for one sample.
 #[derive(Clone, Copy)]
 pub struct Series<'c> {
-    /// How often before the timed runs, so that caches, tables and pages are as in the timed ones.
+    /// Number of untimed runs before the timed ones. They bring caches, tables and pages into the
+    /// same state as in the timed runs.
     pub untimed: u32,
-    /// How often while the clock runs; at least once.
+    /// Number of timed runs; at least 1.
     pub runs: u32,
-    /// What the timed runs find.
+    /// The state of caches and heap before the timed runs.
     pub start: Start<'c>,
-    /// Whether the outcome is asked for.
+    /// Whether the result is computed.
     pub check: bool,
-    /// What the time is taken from.
+    /// The clock that times the runs.
     pub clock: &'c dyn Clock,
 }
 
 impl<'c> Series<'c> {
-    /// One timed run, with nothing before it.
+    /// Makes a series of one timed run, without untimed runs.
     pub fn once(clock: &'c dyn Clock) -> Self {
         Self {
             untimed: 0,
@@ -102,7 +104,7 @@ impl<'c> Series<'c> {
         }
     }
 
-    /// `runs` timed runs, with none before them.
+    /// Makes a series of `runs` timed runs, without untimed runs.
     pub fn of_runs(runs: u32, clock: &'c dyn Clock) -> Self {
         Self {
             runs,
@@ -110,7 +112,7 @@ impl<'c> Series<'c> {
         }
     }
 
-    /// The same, and the outcome is asked for.
+    /// Returns the same series, with the result computed.
     pub fn checked(self) -> Self {
         Self {
             check: true,
@@ -118,12 +120,12 @@ impl<'c> Series<'c> {
         }
     }
 
-    /// The same after `untimed` runs.
+    /// Returns the same series with `untimed` untimed runs.
     pub fn after(self, untimed: u32) -> Self {
         Self { untimed, ..self }
     }
 
-    /// Does what [`Start`] asks for.
+    /// Brings caches and heap into the state of [`Start`].
     pub fn begin(&self) {
         match self.start {
             Start::Warm => {}
@@ -132,14 +134,14 @@ impl<'c> Series<'c> {
         }
     }
 
-    /// The time of `work`, after what [`Start`] asks for.
+    /// Returns the time of `work`, which starts in the state of [`Start`].
     pub(crate) fn timed(&self, work: impl FnOnce()) -> Time {
         self.begin();
         timed(self.clock, work)
     }
 
-    /// Runs `work` as often as the series says, all timed runs in one stretch: for work that leaves
-    /// everything as it was. The time is that of all timed runs together.
+    /// Runs `work` as often as the series describes, without stopping the clock between the timed
+    /// runs. The work must not change its input. Returns the total time of the timed runs.
     pub(crate) fn time_together(&self, mut work: impl FnMut()) -> Time {
         for _ in 0..self.untimed {
             work();
@@ -152,16 +154,16 @@ impl<'c> Series<'c> {
     }
 }
 
-/// Copies that runs change, put back in the state before while the clock stands still.
+/// Copies that runs change, and that are reset to their initial state outside the timing.
 ///
-/// One copy is used unless a run is too short for the clock; then as many in turn as make a stretch of
-/// 60 µs and fit half of the second-level cache together, so that a run finds its copy as warm as if it
-/// were alone. The copies stay from one series to the next, and with them the capacity that their tables
-/// have grown to.
+/// Normally one copy is used. If a run is too short for the clock, several copies are used in turn,
+/// for about 60 µs of timed work. Together they fit half of the second-level cache, so that each
+/// copy is as warm in the cache as a single one would be. The copies, with the grown capacity of
+/// their tables, are kept from one series to the next.
 #[derive(Debug)]
 pub(crate) struct KeptCopies<T> {
     copies: Vec<T>,
-    /// What the last run took, in nanoseconds; 0 before the first.
+    /// The time of the last run, in nanoseconds; 0 before the first.
     last_ns: f64,
 }
 
@@ -175,9 +177,9 @@ impl<T> Default for KeptCopies<T> {
 }
 
 impl<T> KeptCopies<T> {
-    /// Runs `run` as often as `series` says, each time on a copy that `put_back` has put back while the
-    /// clock stood still; `new` makes a copy where one is missing, and `bytes` is what one holds. The
-    /// time is that of all timed runs together.
+    /// Runs `run` as often as `series` describes, each time on a copy that `put_back` has reset
+    /// outside the timing. `new` makes a copy if one is missing; `bytes` is the size of a copy.
+    /// Returns the total time of the timed runs.
     pub(crate) fn time(
         &mut self,
         series: &Series<'_>,
@@ -195,7 +197,7 @@ impl<T> KeptCopies<T> {
         self.run_all(series, bytes, &new, &mut put_back, &mut run)
     }
 
-    /// The time of the timed runs of `series`, on as many copies in turn as [`in_turn`] allows.
+    /// Returns the time of the timed runs of `series`, on as many copies as [`in_turn`] allows.
     fn run_all(
         &mut self,
         series: &Series<'_>,
@@ -209,13 +211,13 @@ impl<T> KeptCopies<T> {
         let mut left = series.runs as usize;
         while left > 0 {
             let count = in_turn(self.last_ns, bytes).min(left);
-            // Those that are made now need not be put back.
+            // Copies that are made below need no reset.
             let used = self.copies.len().min(count);
             self.copies[..used].iter_mut().for_each(&mut *put_back);
             while self.copies.len() < count {
                 let mut copy = new();
                 if !self.copies.is_empty() && !fresh {
-                    // Its tables grow to what a run needs, as those of the first copy have.
+                    // An untimed run, so that its tables have grown like those of the first copy.
                     run(&mut copy);
                     put_back(&mut copy);
                 }
@@ -234,14 +236,14 @@ impl<T> KeptCopies<T> {
         total
     }
 
-    /// A copy as a run has left it, if there was one: all runs do the same.
+    /// Returns a copy in its state after a run, if there was a run. All runs do the same.
     pub(crate) fn changed(&self) -> Option<&T> {
         self.copies.first()
     }
 }
 
-/// Makes results of `bytes` as often as `series` says, each dropped while the clock stands still. The time
-/// is that of all timed runs together; with it comes one of the results, if there was a run.
+/// Runs `make` as often as `series` describes; the results, of `bytes` each, are dropped outside
+/// the timing. Returns the total time of the timed runs, and one of the results if there was a run.
 pub(crate) fn time_making<T>(
     series: &Series<'_>,
     bytes: usize,
@@ -258,18 +260,22 @@ pub(crate) fn time_making<T>(
     (time, places.copies.pop().flatten())
 }
 
-/// How many copies of `bytes` each are used in turn, for runs of `ns`.
+/// Returns the number of copies of `bytes` each to use in turn, for runs of `ns` nanoseconds.
 fn in_turn(ns: f64, bytes: usize) -> usize {
-    static FITTING: OnceLock<usize> = OnceLock::new();
-    let cache = *FITTING.get_or_init(|| {
-        let known = level_bytes(&caches(), 2).and_then(|bytes| usize::try_from(bytes).ok());
-        known.unwrap_or(USUAL_SECOND_LEVEL) / 2
-    });
     if ns <= 0.0 || ns >= LONG_ENOUGH_NS {
         return 1;
     }
-    let fit = (cache / bytes.max(64)).max(1);
+    let fit = (second_level_bytes() / 2 / bytes.max(64)).max(1);
     ((LONG_ENOUGH_NS / ns).ceil() as usize).min(fit)
+}
+
+/// Returns the size of the second-level cache in bytes.
+pub(crate) fn second_level_bytes() -> usize {
+    static BYTES: OnceLock<usize> = OnceLock::new();
+    *BYTES.get_or_init(|| {
+        let known = level_bytes(&caches(), 2).and_then(|bytes| usize::try_from(bytes).ok());
+        known.unwrap_or(USUAL_SECOND_LEVEL)
+    })
 }
 
 #[cfg(test)]
@@ -278,7 +284,7 @@ mod tests {
 
     use super::*;
 
-    /// A clock that shows what it is told.
+    /// A clock that the test advances.
     #[derive(Default)]
     struct Told(Mutex<f64>);
 
@@ -295,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn each_run_finds_its_copy_put_back_and_only_runs_are_timed() {
+    fn each_run_gets_a_reset_copy_and_only_runs_are_timed() {
         for ns in [100_000.0, 20_000.0, 1_000.0] {
             let clock = Told::default();
             let mut copies = KeptCopies::default();
@@ -305,13 +311,13 @@ mod tests {
                 let time = copies.time(
                     &series,
                     bytes,
-                    || 0, // made as it has to be
+                    || 0, // the initial state
                     |copy| {
-                        clock.work(1e9); // putting back takes long, and is not counted
+                        clock.work(1e9); // the reset takes long and must not be counted
                         *copy = 0;
                     },
                     |copy| {
-                        assert_eq!(*copy, 0, "put back");
+                        assert_eq!(*copy, 0, "reset");
                         *copy = 1;
                         clock.work(ns);
                     },
@@ -324,15 +330,15 @@ mod tests {
     }
 
     #[test]
-    fn short_runs_share_a_stretch_as_far_as_copies_fit_the_cache() {
-        assert_eq!(in_turn(0.0, 100), 1, "nothing is known yet");
+    fn short_runs_are_timed_together_if_copies_fit_the_cache() {
+        assert_eq!(in_turn(0.0, 100), 1, "no time is known yet");
         assert_eq!(in_turn(70_000.0, 100), 1);
         assert_eq!(in_turn(20_000.0, 100), 3);
-        assert_eq!(in_turn(20_000.0, 1 << 30), 1, "one at least");
+        assert_eq!(in_turn(20_000.0, 1 << 30), 1, "at least one");
     }
 
     #[test]
-    fn scrubbing_replaces_the_last_cache() {
+    fn scrubbing_writes_twice_the_last_level_cache_once() {
         let scrubber = Scrubber::new();
         let known = last_level(&caches());
         assert_eq!(

@@ -1,4 +1,4 @@
-//! One edit by itself, at places that do not touch each other.
+//! One edit alone, at places that do not affect each other.
 
 use sixfold::{Edit, EditVisitor, MeshEdit, PolygonMesh, Representation, visit_editable};
 
@@ -7,24 +7,25 @@ use crate::editing::{Editor, Edits};
 use crate::place::{Place, perform, places, prepare};
 use crate::series::{KeptCopies, Series};
 
-/// An edit to be done at some places of a closed mesh of triangles.
+/// An edit to be done at some places of a closed triangle mesh.
 ///
-/// The places are spread over the mesh, in no order, and no edit at one touches the surroundings of
-/// another: so handles that were looked up beforehand keep their names.
+/// The places are spread over the mesh, in no particular order. An edit at one place does not
+/// affect the surroundings of another, so handles that were looked up before the edits stay valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SingleEdit {
-    /// Which.
+    /// The edit.
     pub edit: Edit,
-    /// At how many places at most.
+    /// The maximum number of places.
     pub places: usize,
 }
 
 impl SingleEdit {
-    /// Sets it up on the structure called `backend`; `None` where there is none, or none with this edit.
+    /// Sets it up on the structure called `backend`. Returns `None` if there is no such structure,
+    /// or it does not support the edit.
     ///
     /// # Errors
     ///
-    /// Why the structure cannot hold `polygons`, or the edit cannot be done on them.
+    /// Returns the reason if the structure cannot hold `polygons`, or the edit is refused there.
     pub fn on(
         self,
         backend: &str,
@@ -45,13 +46,13 @@ impl SingleEdit {
         visit_editable(backend, &mut Start(self, polygons)).flatten()
     }
 
-    /// Whether it is one pass over the whole mesh, whatever the places.
+    /// Returns whether it is one pass over the whole mesh, independent of places.
     pub const fn is_a_pass(self) -> bool {
         matches!(self.edit, Edit::Compact | Edit::RemoveIsolatedVertices)
     }
 }
 
-/// An edit at places of a mesh that has been made ready for it.
+/// An edit at places of a mesh that is prepared for it.
 struct AtPlaces<M: MeshEdit> {
     edit: Edit,
     mesh: M,
@@ -63,7 +64,7 @@ impl<M: Representation + MeshEdit + 'static> AtPlaces<M> {
     fn of(job: SingleEdit, polygons: &PolygonMesh) -> Result<Self, String> {
         let mut mesh = M::from_polygons(polygons).map_err(|refusal| refusal.to_string())?;
         if let Some((f, _)) = polygons.first_polygon() {
-            return Err(format!("face {f} is no triangle"));
+            return Err(format!("face {f} is not a triangle"));
         }
         let places = places(polygons, job.places)?;
         let look_up = |f| Place::of(&mesh, polygons, job.edit, f);
@@ -109,7 +110,7 @@ impl<M: Representation + MeshEdit + 'static> Editor for AtPlaces<M> {
     }
 }
 
-/// Does the edit at all places, or the one pass over the mesh that it is.
+/// Does the edit at all places, or once if it is a pass over the whole mesh.
 fn everywhere<M: MeshEdit + Representation>(
     edit: Edit,
     mesh: &mut M,

@@ -1,4 +1,4 @@
-//! One subdivision run for a study: set up, run by one thread, and looked at.
+//! One subdivision of a study: sets it up, runs it on one thread, and returns its time and result.
 
 use std::collections::BTreeSet;
 use std::hint::black_box;
@@ -13,27 +13,28 @@ use crate::clock::Time;
 use crate::refining::Refining;
 use crate::series::Series;
 
-/// The thread that all subdivisions run on: one, so that processor time is that of all the work, and the
-/// same for all structures, so that they share its heap.
+/// Returns the pool of the one thread that runs all subdivisions. With one thread, its processor
+/// time is that of all the work. All structures use the same thread, so that they share its heap.
 fn thread() -> Result<&'static ThreadPool, String> {
     static THREAD: OnceLock<Result<ThreadPool, String>> = OnceLock::new();
     let start = || {
         let pool = ThreadPoolBuilder::new().num_threads(1).build();
-        pool.map_err(|error| format!("no thread could be started: {error}"))
+        pool.map_err(|error| format!("cannot start a thread: {error}"))
     };
     THREAD.get_or_init(start).as_ref().map_err(Clone::clone)
 }
 
-/// Sets `job` up on a structure of type `M` built from `polygons`, and runs it as `series` says.
+/// Sets `job` up on a structure of type `M` built from `polygons`, and runs it as `series`
+/// describes.
 ///
-/// Setting up is outside the timing. The runs that are not timed make the tables that all later runs
-/// of a native one use again. What the others build anew they build inside.
+/// Set-up is outside the timing. In native subdivisions, the untimed runs make the tables that all
+/// later runs reuse. The other methods build their structures within the timing.
 pub(crate) fn subdivide<M: Representation + 'static>(
     job: Refining,
     polygons: &PolygonMesh,
     series: &Series<'_>,
 ) -> Run {
-    // The clock, the caches and the page faults are those of that thread.
+    // Everything runs on that thread, so clock, caches and page faults are those of the thread.
     let on_thread =
         |thread: &ThreadPool| thread.install(|| set_up_and_run::<M>(job, polygons, series));
     thread().and_then(on_thread).unwrap_or_else(|refusal| Run {
@@ -69,8 +70,8 @@ fn set_up_and_run<M: Representation + 'static>(
     Ok(Run::done(time, outcome))
 }
 
-/// That the scheme takes the faces: asked here, so that the answer is the same for all structures and
-/// names a face of the whole mesh; O(faces) at most.
+/// Checks that the scheme accepts the degrees of the faces. It is checked here, so that the error
+/// is the same for all structures and names a face of the whole mesh. O(faces) at most.
 fn check_degrees(job: Refining, polygons: &PolygonMesh) -> Result<(), SubdivisionError> {
     let scheme = job.subdivision.scheme;
     if scheme.kind().takes != "triangles" {
@@ -86,8 +87,9 @@ fn check_degrees(job: Refining, polygons: &PolygonMesh) -> Result<(), Subdivisio
     }
 }
 
-/// About the first `size` faces of `polygons`, as a mesh that is held by whatever holds `polygons`:
-/// without those that touch others in a mere point. O(size · log size), a few times.
+/// Returns a mesh of about the first `size` faces of `polygons`, without faces that touch others
+/// only at a vertex. So every structure that holds `polygons` also holds it. O(size · log size) for
+/// each of a few passes.
 pub(crate) fn patch(polygons: &PolygonMesh, size: usize) -> PolygonMesh {
     let faces = polygons.faces().iter().take(size.max(1));
     let mut faces: Vec<&[VertexId]> = faces.map(|(_, corners)| corners).collect();
@@ -98,7 +100,8 @@ pub(crate) fn patch(polygons: &PolygonMesh, size: usize) -> PolygonMesh {
         if touching.is_empty() {
             return mesh;
         }
-        // Of the faces at such a vertex the first stays. Fewer each time, and one face touches none.
+        // Keeps the first face at each such vertex. The number of faces decreases in each pass, and
+        // a single face has no such vertex, so the loop ends.
         let corners = mesh.faces().iter().map(|(_, corners)| corners);
         let keep: Vec<bool> = corners
             .map(|corners| {
@@ -114,7 +117,7 @@ pub(crate) fn patch(polygons: &PolygonMesh, size: usize) -> PolygonMesh {
     }
 }
 
-/// The mesh of some faces of `polygons`, and of their vertices alone.
+/// Builds the mesh of some faces of `polygons`, with only their vertices.
 fn of_faces(polygons: &PolygonMesh, faces: &[&[VertexId]]) -> PolygonMesh {
     let mut used: Vec<VertexId> = faces.iter().copied().flatten().copied().collect();
     used.sort_unstable();
@@ -133,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_patch_is_held_by_whatever_holds_the_mesh() {
+    fn a_structure_that_holds_the_mesh_holds_a_patch() {
         let ordered = shapes::geodesic(12).expect("small");
         for mesh in [shapes::shuffled(&ordered, 3), ordered] {
             for size in [1, 7, 100, 900] {
@@ -144,7 +147,7 @@ mod tests {
             assert_eq!(
                 patch(&mesh, usize::MAX),
                 mesh,
-                "all of it, and in its order"
+                "the whole mesh, in its order"
             );
         }
     }

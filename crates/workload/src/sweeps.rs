@@ -1,24 +1,26 @@
-//! The operations themselves, generic over the structure.
+//! The loops of the operations, generic over the structure.
 //!
-//! Every loop is compiled for each structure, and nothing inside one is chosen at run time. Inner
-//! loops are `for_each`: circulators run 5 to 20 % faster so than under `for` (`vertex_normal`,
-//! `face_barycenter`, `edge_edges` on icosphere6, in order and shuffled). What an
-//! operation stores goes into [`Outputs`], made once per structure: the definition of the workloads
-//! keeps outputs outside the timing, but the queue and the depths of `ff_bfs` inside.
+//! Every loop is compiled for each structure and makes no choice at run time. Inner loops use
+//! `for_each`: circulators are 5 to 20 % faster with it than with `for` (`vertex_normal`,
+//! `face_barycenter`, `edge_edges` on icosphere6, in order and shuffled). Operations store their
+//! results in [`Outputs`], which are made once per structure. By definition of the operations,
+//! allocating outputs is outside the timing, but allocating the queue and the depths of `ff_bfs` is
+//! inside.
 
+use std::hash::Hasher;
 use std::hint::black_box;
 
 use sixfold::{FaceMap, Handle, MeshQuery, Point, Relation, VertexMap};
 
 use crate::operation::{Kind, Operation};
 
-/// Which elements an operation goes through.
+/// The elements that an operation visits.
 pub(crate) trait Elements<M: MeshQuery> {
-    /// The vertices.
+    /// Lists the vertices.
     fn vertices<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Vertex> + 'a;
-    /// The edges.
+    /// Lists the edges.
     fn edges<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Edge> + 'a;
-    /// The faces.
+    /// Lists the faces.
     fn faces<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Face> + 'a;
 }
 
@@ -37,16 +39,16 @@ impl<M: MeshQuery> Elements<M> for All {
     }
 }
 
-/// Where operations store what they find.
+/// The storage for the results of operations.
 pub(crate) struct Outputs<M: MeshQuery> {
-    /// By face: barycentres, or normals.
+    /// By face: barycentres or normals.
     pub(crate) faces: FaceMap<M, Point>,
-    /// By vertex: normals, or positions.
+    /// By vertex: normals or positions.
     pub(crate) vertices: VertexMap<M, Point>,
 }
 
 impl<M: MeshQuery> Outputs<M> {
-    /// Room for what is found on `mesh`, with a place for every element already made.
+    /// Makes outputs for `mesh`, with an entry for every element.
     pub(crate) fn for_mesh(mesh: &M) -> Self {
         let mut outputs = Self {
             faces: mesh.face_map(Point::ZERO),
@@ -62,14 +64,14 @@ impl<M: MeshQuery> Outputs<M> {
     }
 }
 
-/// What a loop counted, or added up.
+/// The counts and sums of a loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Tally {
-    /// Elements gone through.
+    /// Visited elements.
     pub(crate) elements: u64,
-    /// Handles that relations yielded, or what else the operation counts.
+    /// Handles that relations yielded, or the count that the operation defines.
     pub(crate) count: u64,
-    /// What the operation sums up.
+    /// The sum that the operation defines.
     pub(crate) sum: f64,
 }
 
@@ -81,14 +83,14 @@ impl Tally {
     }
 }
 
-/// The checksum of a field of vectors: Σ |x| + 2|y| + 3|z|.
+/// Returns the checksum of a field of vectors: Σ |x| + 2|y| + 3|z|.
 pub fn field_sum(points: impl Iterator<Item = Point>) -> f64 {
     let weigh =
         |p: Point| f64::from(p.x).abs() + 2.0 * f64::from(p.y).abs() + 3.0 * f64::from(p.z).abs();
     points.map(weigh).sum()
 }
 
-/// The part of `operation` that goes through elements of `kind`.
+/// Runs the part of `operation` that visits elements of `kind`.
 #[inline]
 pub(crate) fn share<M: MeshQuery, E: Elements<M>>(
     operation: Operation,
@@ -113,7 +115,7 @@ pub(crate) fn share<M: MeshQuery, E: Elements<M>>(
         (Operation::AllQueries, Kind::Vertex) => ask_vertices(mesh, elements),
         (Operation::AllQueries, Kind::Edge) => ask_edges(mesh, elements),
         (Operation::AllQueries, Kind::Face) => ask_faces(mesh, elements),
-        // Made by the candidate, not found by queries alone.
+        // `Candidate` runs these; they need more than queries.
         (Operation::Build, _) => Tally::default(),
         (Operation::CatmullClark(_) | Operation::Loop(_) | Operation::Editing(_), _) => {
             Tally::default()
@@ -121,7 +123,46 @@ pub(crate) fn share<M: MeshQuery, E: Elements<M>>(
     }
 }
 
-/// Counts handles, and adds their tokens up for the sink.
+/// Computes a number from a handle in a few instructions. Equal handles have equal numbers.
+#[inline(always)]
+fn token<H: Handle>(handle: H) -> u64 {
+    /// A hasher that adds the words of a handle, with a rotation before each.
+    struct Words(u64);
+
+    impl Hasher for Words {
+        #[inline(always)]
+        fn write_u32(&mut self, word: u32) {
+            self.write_u64(u64::from(word));
+        }
+
+        #[inline(always)]
+        fn write_u64(&mut self, word: u64) {
+            self.0 = self.0.rotate_left(8).wrapping_add(word);
+        }
+
+        #[inline(always)]
+        fn write_usize(&mut self, word: usize) {
+            self.write_u64(word as u64);
+        }
+
+        fn write(&mut self, bytes: &[u8]) {
+            for &byte in bytes {
+                self.write_u64(u64::from(byte));
+            }
+        }
+
+        #[inline(always)]
+        fn finish(&self) -> u64 {
+            self.0
+        }
+    }
+
+    let mut words = Words(0);
+    handle.hash(&mut words);
+    words.finish()
+}
+
+/// A sink that counts handles and adds their tokens, so that the compiler cannot omit them.
 #[derive(Default)]
 pub(crate) struct Sink {
     count: u64,
@@ -131,16 +172,17 @@ pub(crate) struct Sink {
 impl Sink {
     #[inline(always)]
     pub(crate) fn take<H: Handle>(&mut self, handles: impl IntoIterator<Item = H>) {
-        // Added up in registers: a sum behind a reference would be stored for every handle.
+        // Added in registers: a sum behind a reference would be stored for every handle.
         let add = |(count, tokens): (u64, u64), handle: H| {
-            (count + 1, tokens.wrapping_add(handle.token()))
+            (count + 1, tokens.wrapping_add(token(handle)))
         };
         let (count, tokens) = handles.into_iter().fold((0, 0), add);
         self.count += count;
         self.tokens = self.tokens.wrapping_add(tokens);
     }
 
-    /// How many handles it was given; what they are is needed, the compiler has to believe.
+    /// Returns the number of handles. `black_box` makes the compiler compute the handles
+    /// themselves.
     #[inline(always)]
     pub(crate) fn swallow(self) -> u64 {
         black_box(self.tokens);
@@ -148,7 +190,7 @@ impl Sink {
     }
 }
 
-/// Asks every element, and gives the sink all that it yields.
+/// Queries every element, and passes all results to the sink.
 #[inline(always)]
 fn sweep<I: Iterator>(elements: I, mut ask: impl FnMut(&mut Sink, I::Item)) -> Tally {
     let (mut sink, mut asked) = (Sink::default(), 0);
@@ -211,7 +253,7 @@ fn ask_faces<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> Tally {
     })
 }
 
-/// Does `work` for each element and counts them.
+/// Calls `work` for each element and counts the elements.
 #[inline(always)]
 fn each<I: Iterator>(elements: I, mut work: impl FnMut(I::Item)) -> Tally {
     let mut count = 0;
@@ -242,13 +284,15 @@ fn face_barycenters<M: MeshQuery, E: Elements<M>>(
     })
 }
 
-/// The normal of a face, unnormalised: the cross products of the fan from its first corner.
+/// Returns the unnormalised normal of a face: the sum of cross products of the triangles at its
+/// first corner.
 #[inline(always)]
 fn face_normal<M: MeshQuery>(mesh: &M, f: M::Face) -> Point {
-    // No `map` to positions first: its `fold` is not inlined everywhere, and a call per face shows.
+    // Does not use `map` to get positions: its `fold` is not always inlined, and a call per face is
+    // measurable.
     let mut corners = mesh.face_vertices(f);
     let (Some(first), Some(second)) = (corners.next(), corners.next()) else {
-        return Point::ZERO; // a face has three corners: never, and no panic to compile in
+        return Point::ZERO; // unreachable, as a face has three corners; avoids the code of a panic
     };
     let first = mesh.position(first);
     let (mut spoke, mut normal) = (mesh.position(second) - first, Point::ZERO);
@@ -288,7 +332,7 @@ fn vertex_normals<M: MeshQuery, E: Elements<M>>(
     })
 }
 
-/// The mean of each vertex's neighbours; an isolated vertex stays.
+/// Computes for each vertex the mean of its neighbours; an isolated vertex keeps its position.
 #[inline(never)]
 fn neighbour_means<M: MeshQuery, E: Elements<M>>(
     mesh: &M,
@@ -328,12 +372,13 @@ fn boundary_edges<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> Tally
     Tally { count, ..tally }
 }
 
-/// The sum of all depths; the queue and the depths are made here, once.
+/// Returns the sum of all depths. The queue and the depths are allocated here, once.
 ///
-/// A neighbour is written behind the queue whether it is new or not, and the queue grows by it only
-/// if it is: two of three neighbours are known already, in an order that no processor foresees.
-/// Measured on half-edge, ns per face with that branch / without it / and with `for_each`: icosphere6
-/// 23 / 24 / 19, bunny 21 / 18 / 11, nefertiti 30 / 28 / 20.
+/// Every neighbour is written to the end of the queue, but the queue grows only if the neighbour is
+/// new. This avoids a branch: two of three neighbours are already visited, in an order that a
+/// processor cannot predict. Measured on half-edge, ns per face with that branch / without it /
+/// without it and with `for_each`: icosphere6 23 / 24 / 19, bunny 21 / 18 / 11, nefertiti 30 / 28 /
+/// 20.
 #[inline(never)]
 fn breadth_first<M: MeshQuery>(mesh: &M) -> Tally {
     const UNSEEN: u32 = u32::MAX;

@@ -1,11 +1,12 @@
-//! What to say of a name that nothing has.
+//! The error message for an unknown name.
 
 use strsim::jaro_winkler;
 
-/// Names less alike than this are no slip of the keyboard.
+/// Minimum Jaro–Winkler similarity of a known name to be suggested.
 const ALIKE: f64 = 0.8;
 
-/// `no operation is called `boundry` (did you mean `boundary`?): choose from …`.
+/// Builds a message such as: no operation is called `boundry` (did you mean `boundary`?): choose
+/// from …
 pub fn unknown(kind: &str, name: &str, known: &[&str]) -> String {
     let alike = |other: &&&str| jaro_winkler(name, other);
     let nearest = known.iter().max_by(|a, b| alike(a).total_cmp(&alike(b)));
@@ -22,7 +23,7 @@ mod tests {
     use super::unknown;
 
     #[test]
-    fn slips_are_seen_and_other_words_are_not() {
+    fn similar_names_are_suggested_and_other_names_are_not() {
         let known = ["vertex_faces", "boundary", "build"];
         let said = |name: &str| unknown("operation", name, &known);
         assert_eq!(

@@ -1,4 +1,5 @@
-//! What a program does to a mesh, as data: which operations, how often, in which order of elements.
+//! A workload as data: the operations of a program on a mesh, their weights, and their access
+//! order.
 
 use std::fmt;
 use std::str::FromStr;
@@ -11,81 +12,83 @@ use sixfold::{Counts, Edit, Relation};
 use crate::operation::{Kind, Operation};
 use crate::unknown::unknown;
 
-/// What a program does to a mesh.
+/// The operations that a program does on a mesh.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Workload {
-    /// What users call it: `smoothing`.
+    /// The name, as users write it: `smoothing`.
     pub name: String,
-    /// Who does this, in a sentence.
+    /// One sentence that describes the program.
     pub summary: String,
-    /// In which order elements are visited.
+    /// The order in which elements are visited.
     pub access: Access,
-    /// How many operations one use of a mesh comes to.
+    /// The number of operations in one use of a mesh.
     pub operations: Amount,
-    /// How often the structure is built anew in the course of them, besides the first time.
+    /// The number of times that the structure is rebuilt during these operations, without the first
+    /// build.
     pub rebuilds: u64,
-    /// The operations, each with its weight; at least one weight is more than 0.
+    /// The operations with their weights; at least one weight is more than 0.
     pub mix: Vec<Part>,
 }
 
 /// One operation of a mix.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Part {
-    /// What is done.
+    /// The operation.
     pub action: Action,
-    /// How often, beside the weights of the others.
+    /// Its frequency relative to the weights of the other parts.
     pub weight: Amount,
 }
 
-/// Something that a program does to a mesh.
+/// An operation of a program on a mesh.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, DeserializeFromStr, SerializeDisplay,
 )]
 pub enum Action {
-    /// One element asked one relation.
+    /// Queries one relation of one element.
     Relation(Relation),
-    /// The position of a vertex read.
+    /// Reads the position of a vertex.
     Position,
-    /// The positions of the neighbours of a vertex read.
+    /// Reads the positions of the neighbours of a vertex.
     NeighbourPositions,
-    /// The positions of the corners of a face read.
+    /// Reads the positions of the corners of a face.
     CornerPositions,
-    /// The positions of the two ends of an edge read.
+    /// Reads the positions of the two ends of an edge.
     EndPositions,
-    /// The position of a vertex written.
+    /// Writes the position of a vertex.
     SetPosition,
-    /// An edit at one place, with all checks.
+    /// Does an edit at one place, with all checks.
     Edit(Edit),
-    /// A pass over the whole mesh.
+    /// Runs a pass over the whole mesh.
     Pass(Operation),
-    /// One step of subdivision, by the fastest method of the structure: Loop's scheme on triangles,
-    /// Catmull–Clark elsewhere.
+    /// Runs one subdivision step by the fastest method of the structure: Loop on triangle meshes,
+    /// Catmull–Clark on other meshes.
     Subdivide,
 }
 
-/// In which order elements are visited.
+/// The order in which elements are visited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Access {
-    /// In the order of the structure, round and round.
+    /// In the order of the structure, repeatedly.
     Sequential,
-    /// In no order: each element of the mesh once, then again.
+    /// In random order: each element of the mesh once, then again in the same order.
     Random,
-    /// Patch by patch: the faces around a random one, breadth first, with their vertices and edges.
+    /// Patch by patch: the faces around a random face, breadth first, with their vertices and
+    /// edges.
     Patches,
 }
 
-/// How many: a number, or so many for each element of a kind.
+/// An amount: a number, or a number for each element of a kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Amount {
-    /// So many.
+    /// A fixed number.
     Number(f64),
-    /// So many for each element of the mesh.
+    /// A number for each element of this kind in the mesh.
     Per(f64, Kind),
 }
 
 impl Amount {
-    /// How many that is on a mesh with such counts.
+    /// Returns the amount on a mesh with these counts.
     pub fn on(self, counts: &Counts) -> f64 {
         match self {
             Self::Number(number) => number,
@@ -95,7 +98,7 @@ impl Amount {
         }
     }
 
-    /// The number, whatever it is for.
+    /// Returns the number, without multiplying it by a count.
     pub const fn number(self) -> f64 {
         match self {
             Self::Number(number) | Self::Per(number, _) => number,
@@ -137,9 +140,9 @@ impl<'de> Deserialize<'de> for Amount {
     }
 }
 
-/// A text that is no amount.
+/// The error for a text that is not an amount.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{text}` is no amount: write a number, or as in `2 per face` (vertex, edge, face)")]
+#[error("`{text}` is not an amount: write a number, or as in `2 per face` (vertex, edge, face)")]
 pub struct NoAmount {
     /// The text.
     pub text: String,
@@ -160,10 +163,10 @@ impl FromStr for Amount {
 }
 
 impl Access {
-    /// All three.
+    /// All three orders.
     pub const ALL: [Self; 3] = [Self::Sequential, Self::Random, Self::Patches];
 
-    /// What users call it: `patches`.
+    /// Returns its name, as users write it: `patches`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Sequential => "sequential",
@@ -179,7 +182,7 @@ impl fmt::Display for Access {
     }
 }
 
-/// The edits that a mix may have: each at a place of its own.
+/// The edits that a mix may contain, each at its own place.
 const EDITS: [Edit; 10] = [
     Edit::AddFace,
     Edit::RemoveFace,
@@ -194,7 +197,7 @@ const EDITS: [Edit; 10] = [
 ];
 
 impl Action {
-    /// All of them, in the order in which they are listed.
+    /// Returns all actions, in listing order.
     pub fn all() -> Vec<Self> {
         let relations = Relation::ALL.into_iter().map(Self::Relation);
         let positions = [
@@ -214,7 +217,7 @@ impl Action {
             .collect()
     }
 
-    /// What users call it: `vertex_faces`.
+    /// Returns its name, as users write it: `vertex_faces`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Relation(relation) => relation.name(),
@@ -229,7 +232,8 @@ impl Action {
         }
     }
 
-    /// The kind of element that it is done to; `None` for passes, and for edits, which have places.
+    /// Returns the kind of element that it works on; `None` for passes and for edits, which have
+    /// places.
     pub const fn kind(self) -> Option<Kind> {
         match self {
             Self::Relation(relation) => Some(Kind::asked(relation)),
@@ -240,7 +244,7 @@ impl Action {
         }
     }
 
-    /// The relations that it asks, if it only asks.
+    /// Returns the relations that it queries; empty for [`Self::Edit`] and [`Self::Subdivide`].
     pub fn relations(self) -> Vec<Relation> {
         match self {
             Self::Relation(relation) => vec![relation],
@@ -255,12 +259,12 @@ impl Action {
         }
     }
 
-    /// Whether it goes through the whole mesh.
+    /// Returns whether it visits the whole mesh.
     pub const fn is_a_pass(self) -> bool {
         matches!(self, Self::Pass(_) | Self::Subdivide)
     }
 
-    /// Whether it changes what is connected with what, in the mesh or in a copy of it.
+    /// Returns whether it changes connectivity, in the mesh or in a copy of it.
     pub const fn changes_connectivity(self) -> bool {
         match self {
             Self::Edit(_) | Self::Subdivide => true,
@@ -269,7 +273,7 @@ impl Action {
         }
     }
 
-    /// Whether it needs a mesh that can be edited.
+    /// Returns whether it needs an editable mesh.
     pub const fn edits(self) -> bool {
         matches!(
             self,
@@ -278,11 +282,11 @@ impl Action {
     }
 }
 
-/// A name of nothing that a workload may do.
+/// The error for an unknown name of an action.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", unknown("operation", .name, &Action::all().iter().map(|a| a.name()).collect::<Vec<_>>()))]
 pub struct UnknownAction {
-    /// The name.
+    /// The unknown name.
     pub name: String,
 }
 
@@ -303,13 +307,14 @@ impl fmt::Display for Action {
 }
 
 impl Workload {
-    /// How many operations one use of a mesh with such counts comes to; at least 1.
+    /// Returns the number of operations in one use of a mesh with these counts; at least 1.
     pub fn operations_on(&self, counts: &Counts) -> f64 {
         self.operations.on(counts).max(1.0)
     }
 
-    /// What part of all operations each member of the mix is, on a mesh with such counts; they add up
-    /// to 1. All equal where the mesh has none of the elements that the weights count.
+    /// Returns the share of each part of the mix in all operations, on a mesh with these counts.
+    /// The shares add up to 1. They are equal if the mesh has no elements of the kinds in the
+    /// weights.
     pub fn shares(&self, counts: &Counts) -> Vec<f64> {
         let weights: Vec<f64> = { self.mix.iter() }.map(|p| p.weight.on(counts)).collect();
         let sum: f64 = weights.iter().sum();
@@ -319,12 +324,12 @@ impl Workload {
         }
     }
 
-    /// How many times the structure is built anew for each operation.
+    /// Returns the number of rebuilds of the structure per operation.
     pub fn rebuilds_per_operation(&self, counts: &Counts) -> f64 {
         self.rebuilds as f64 / self.operations_on(counts)
     }
 
-    /// Whether it leaves alone what is connected with what.
+    /// Returns whether it does not change connectivity. It may change positions.
     pub fn is_read_only(&self) -> bool {
         !self
             .mix
@@ -332,7 +337,7 @@ impl Workload {
             .any(|part| part.action.changes_connectivity())
     }
 
-    /// The relations that its operations ask, each once.
+    /// Returns the relations that its operations query, each once.
     pub fn relations(&self) -> Vec<Relation> {
         let asked = self.mix.iter().flat_map(|part| part.action.relations());
         let mut asked: Vec<Relation> = asked.collect();

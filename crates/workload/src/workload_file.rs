@@ -1,4 +1,4 @@
-//! Workloads as files: TOML in, a workload or the line at fault out.
+//! Reads workload files: TOML text in, a workload or an error with its line out.
 
 use std::fmt;
 use std::ops::Range;
@@ -9,20 +9,20 @@ use toml::Spanned;
 use crate::unknown::unknown;
 use crate::workload::{Access, Action, Amount, Part, Workload};
 
-/// What is wrong with a workload file, and where.
+/// An error in a workload file, with its position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}: {message}")]
 #[non_exhaustive]
 pub struct WorkloadError {
     /// The name of the file.
     pub file: String,
-    /// The line, from 1.
+    /// The line number, from 1.
     pub line: usize,
-    /// What is wrong there, and what is allowed.
+    /// The error, and the allowed values.
     pub message: String,
 }
 
-/// The file as it is written.
+/// The content of the file, before checks.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
@@ -42,7 +42,7 @@ enum Loose {
     Text(String),
 }
 
-/// The table of the mix, in the order of the file.
+/// The table of the mix, in file order.
 struct Mix(Vec<(Spanned<String>, Spanned<Loose>)>);
 
 impl<'de> Deserialize<'de> for Mix {
@@ -61,7 +61,7 @@ impl<'de> Deserialize<'de> for Mix {
                 while let Some(key) = map.next_key()? {
                     entries.push((key, map.next_value()?));
                 }
-                // The parser sorts keys by name; a mix is shown as it is written.
+                // The parser sorts keys by name; a mix is shown in file order.
                 entries.sort_by_key(|(key, _): &(Spanned<String>, _)| key.span().start);
                 Ok(Mix(entries))
             }
@@ -72,19 +72,19 @@ impl<'de> Deserialize<'de> for Mix {
 }
 
 impl Workload {
-    /// Reads the text of a workload file called `file`; the name of the workload is `name`.
+    /// Parses the text of a workload file called `file` into a workload called `name`.
     ///
     /// ```
     /// let text = "operations = '20 per vertex'\n[mix]\nvertex_faces = 1\nneighbour_positions = 0.5";
-    /// let workload = workload::Workload::parse("mine", "mine.toml", text)?;
+    /// let workload = sixfold_workload::Workload::parse("mine", "mine.toml", text)?;
     /// assert_eq!(workload.mix.len(), 2);
-    /// # Ok::<(), workload::WorkloadError>(())
+    /// # Ok::<(), sixfold_workload::WorkloadError>(())
     /// ```
     ///
     /// # Errors
     ///
-    /// [`WorkloadError`]: what is no TOML, a key or a name that there is not, a number out of range,
-    /// each with its line and what is allowed.
+    /// Returns [`WorkloadError`], with the line and the allowed values, if the text is not TOML, a
+    /// key or name is unknown, or a number is out of range.
     pub fn parse(name: &str, file: &str, text: &str) -> Result<Self, WorkloadError> {
         let at = |span: Range<usize>, message: String| WorkloadError {
             file: file.into(),
@@ -109,14 +109,14 @@ impl Workload {
         let operations = operations.and_then(|amount| match positive(amount) {
             true => Ok(amount),
             false => Err(format!(
-                "operations are more than 0 and at most {MOST:e}, not {amount}"
+                "operations must be more than 0 and at most {MOST:e}, not {amount}"
             )),
         });
         let operations = operations.map_err(|message| at(parsed.operations.span(), message))?;
         let rebuilds = match &parsed.rebuilds {
             None => 0,
             Some(number) => u64::try_from(*number.get_ref()).map_err(|_| {
-                let message = format!("rebuilds are 0 or more, not {}", number.get_ref());
+                let message = format!("rebuilds must be 0 or more, not {}", number.get_ref());
                 at(number.span(), message)
             })?,
         };
@@ -127,7 +127,7 @@ impl Workload {
             let action = action.map_err(|error| at(key.span(), error.to_string()))?;
             let weight = amount(value.get_ref()).and_then(|weight| {
                 let fine = weight.number() == 0.0 || positive(weight);
-                let wrong = || format!("a weight is from 0 to {MOST:e}, not {weight}");
+                let wrong = || format!("a weight must be from 0 to {MOST:e}, not {weight}");
                 fine.then_some(weight).ok_or_else(wrong)
             });
             let weight = weight.map_err(|message| at(value.span(), message))?;
@@ -149,7 +149,7 @@ impl Workload {
     }
 }
 
-/// More than this no program does, and less than this no arithmetic loses.
+/// Maximum amount: more than any program needs, and small enough that `f64` arithmetic stays exact.
 const MOST: f64 = 1e15;
 
 fn amount(loose: &Loose) -> Result<Amount, String> {
@@ -160,7 +160,7 @@ fn amount(loose: &Loose) -> Result<Amount, String> {
     }
 }
 
-/// What the parser says, in our words where it speaks of Rust's types.
+/// Returns the parser's message, reworded if it mentions Rust types.
 fn explained(message: &str) -> String {
     let message = message.lines().collect::<Vec<_>>().join("; ");
     match message.contains("untagged enum") {
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_says_it_all() {
+    fn a_file_with_all_keys_is_parsed() {
         let text = "summary = 'who'\naccess = 'patches'\noperations = '20 per face'\nrebuilds = 3\n\
             [mix]\nflip_edge = 1\nvertex_faces = '2 per edge'\nboundary = 0.5\nposition = 0";
         let workload = parse(text).expect("fine");
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_are_told_with_their_line_and_what_is_allowed() {
+    fn errors_have_their_line_and_the_allowed_values() {
         let cases = [
             (
                 "operations = 5\n[mix]\nvertex_face = 1",
@@ -254,12 +254,12 @@ mod tests {
             (
                 "operations = 5\n\n[mix]\nposition = 1\nedge_faces = -1",
                 5,
-                "a weight is from 0",
+                "a weight must be from 0",
             ),
             (
                 "operations = 5\n\n[mix]\nposition = inf",
                 4,
-                "a weight is from 0",
+                "a weight must be from 0",
             ),
             ("operations = 5\n[mix]\nposition = 0", 2, "at least one"),
             (
@@ -285,10 +285,10 @@ mod tests {
     }
 
     #[test]
-    fn what_we_ship_is_read_and_says_who_does_this() {
+    fn built_in_files_are_parsed_and_have_a_summary() {
         assert!(built_ins().count() >= 12);
         for (name, _) in built_ins() {
-            let workload = built_in(name).expect("it has this name");
+            let workload = built_in(name).expect("it is built in");
             assert!(workload.summary.ends_with('.'), "{name}");
             assert!(workload.summary.len() > 40, "{name}");
         }
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn every_action_is_found_by_its_name_alone() {
+    fn every_name_parses_to_its_action() {
         for each in Action::all() {
             assert_eq!(each.name().parse(), Ok(each));
         }

@@ -1,12 +1,12 @@
-//! A mix does the same work on every structure, whatever its route, its edits and its names.
+//! Checks that a mix does the same work on every structure, for all routes, edits and handle types.
 
 use sixfold::{PolygonMesh, roster, shapes};
-use workload::{
+use sixfold_workload::{
     Access, Action, Draw, MachineClock, MixRefusal, MixRun, Mixer, Operation, Route, Script,
     Series, Workload, built_in, built_ins, set_up, tabulate,
 };
 
-/// A mesh with what a mix needs to know of it.
+/// A mesh with the inputs of a mix on it.
 struct Setting {
     polygons: PolygonMesh,
     draw: Draw,
@@ -25,7 +25,7 @@ impl Setting {
         }
     }
 
-    /// Everybody who takes part, on places that all accept.
+    /// Returns all backends that can run the mix, with only the places that all of them accept.
     fn mixers(&self) -> Vec<Box<dyn Mixer + '_>> {
         let start =
             |name: &str| set_up(name, &self.polygons, &self.draw, &self.script, &self.route);
@@ -50,10 +50,10 @@ impl Setting {
 }
 
 fn parsed(text: &str) -> Workload {
-    Workload::parse("test", "test.toml", text).expect("a sound file")
+    Workload::parse("test", "test.toml", text).expect("a valid file")
 }
 
-/// What a run came to, but for its time.
+/// Returns the counts of a run, without its time.
 fn found(run: MixRun) -> [u64; 3] {
     [run.operations, run.yielded, run.refused]
 }
@@ -115,7 +115,7 @@ fn all_structures_yield_the_same_on_all_elements_in_their_own_order() {
 }
 
 #[test]
-fn edits_are_accepted_at_the_places_that_all_accept_again_and_again() {
+fn edits_are_accepted_repeatedly_at_the_places_that_all_accept() {
     let clock = MachineClock::start();
     let workload = parsed(
         "operations = 5\naccess = 'patches'\n[mix]\nbisect_edge = 1\ncollapse_edge = 1\n\
@@ -146,7 +146,7 @@ fn edits_are_accepted_at_the_places_that_all_accept_again_and_again() {
 }
 
 #[test]
-fn tables_pass_over_the_mesh_as_structures_do() {
+fn passes_over_tables_give_the_results_of_structures() {
     let clock = MachineClock::start();
     let workload = parsed(
         "operations = 5\n[mix]\ncirculate = 1\nface_barycenter = 1\nvertex_normal = 1\n\
@@ -175,7 +175,7 @@ fn tables_pass_over_the_mesh_as_structures_do() {
 }
 
 #[test]
-fn nobody_tabulates_what_changes() {
+fn workloads_that_change_connectivity_have_no_tables() {
     for (name, changes) in [
         ("decimation", true),
         ("remeshing", true),
@@ -221,7 +221,7 @@ fn every_built_in_runs() {
 }
 
 #[test]
-fn who_cannot_take_part_says_why() {
+fn backends_that_cannot_run_the_mix_give_the_reason() {
     let splits = parsed("operations = 5\n[mix]\nsplit_edge = 1\nvertex_faces = 9");
     let torus = shapes::triangle_torus(30, 20).expect("small");
     let setting = Setting::of(&splits, torus);

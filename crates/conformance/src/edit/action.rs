@@ -1,13 +1,13 @@
-//! One edit, in the model's numbers.
+//! One edit, with the element numbers of the model.
 
-use mesh_core::{Edit, Point};
+use sixfold_core::{Edit, Point};
 
-/// An edit of given elements; vertices and faces by the numbers of the [`Model`](super::Model), edges
-/// by their ends.
+/// An edit with its elements: vertices and faces by their number in the [`Model`](super::Model),
+/// edges by their ends.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(
     missing_docs,
-    reason = "the names are those of MeshEdit and its arguments"
+    reason = "the names are those of the methods and arguments of MeshEdit"
 )]
 pub enum Action {
     SetPosition {
@@ -49,7 +49,7 @@ pub enum Action {
     FlipEdge {
         ends: [usize; 2],
     },
-    /// The first of the ends is kept.
+    /// The first end is kept.
     CollapseEdge {
         ends: [usize; 2],
         to: Point,
@@ -64,7 +64,7 @@ pub enum Action {
 }
 
 impl Action {
-    /// Which edit it is.
+    /// Returns the kind of the edit.
     pub fn edit(&self) -> Edit {
         match self {
             Self::SetPosition { .. } => Edit::SetPosition,
@@ -85,7 +85,7 @@ impl Action {
         }
     }
 
-    /// Where it puts a vertex.
+    /// Returns the position at which the edit puts a vertex.
     pub(crate) fn place(&self) -> Option<Point> {
         match self {
             Self::SetPosition { to: at, .. }

@@ -1,23 +1,23 @@
-//! A mesh as plain lists, and every edit on it by brute force.
+//! A mesh as plain lists, with every edit by brute force.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use mesh_core::{Capabilities, Edit, MeshEdit, Point, PolygonMesh, Representation};
+use sixfold_core::{Capabilities, Edit, MeshEdit, Point, PolygonMesh, Representation};
 
 use super::action::Action;
 use crate::weld::place;
 
-/// What a structure may do: its rows of the two tables.
+/// The meshes that a structure can hold, and the edits that it offers.
 #[derive(Clone, Copy, Debug)]
 pub struct Rules {
-    /// What it holds.
+    /// Meshes that the structure can hold.
     pub capabilities: Capabilities,
-    /// Which edits it offers, in the order of [`Edit::ALL`].
+    /// Whether it offers each edit, in the order of [`Edit::ALL`].
     pub offers: [bool; Edit::ALL.len()],
 }
 
 impl Rules {
-    /// The rules of `M`.
+    /// Returns the rules of `M`.
     pub fn of<M: Representation + MeshEdit>() -> Self {
         Self {
             capabilities: M::CAPABILITIES,
@@ -26,7 +26,7 @@ impl Rules {
     }
 }
 
-/// Positions and faces by number; a number that was removed is not given again.
+/// Positions and faces by number; the numbers of removed elements are not reused.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     positions: Vec<Option<Point>>,
@@ -34,7 +34,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// The model of `polygons`.
+    /// Builds the model of `polygons`.
     pub fn of(polygons: &PolygonMesh) -> Self {
         let faces = polygons.faces().iter();
         let faces = faces.map(|(_, face)| Some(face.iter().map(|v| v.index()).collect()));
@@ -44,28 +44,29 @@ impl Model {
         }
     }
 
-    /// The vertices that are there.
+    /// Iterates over the existing vertices.
     pub fn vertices(&self) -> impl Iterator<Item = usize> {
         (0..self.positions.len()).filter(|&v| self.positions[v].is_some())
     }
 
-    /// The faces that are there, with their corners.
+    /// Iterates over the existing faces, with their corners.
     pub fn faces(&self) -> impl Iterator<Item = (usize, &[usize])> {
         let faces = self.faces.iter().enumerate();
         faces.filter_map(|(f, face)| Some((f, face.as_deref()?)))
     }
 
-    /// The corners of `f`, if it is there.
+    /// Returns the corners of `f`, if it exists.
     pub fn face(&self, f: usize) -> Option<&[usize]> {
         self.faces.get(f)?.as_deref()
     }
 
-    /// Where `v` is, if it is there.
+    /// Returns the position of `v`, if it exists.
     pub fn position(&self, v: usize) -> Option<Point> {
         *self.positions.get(v)?
     }
 
-    /// Each edge with its faces, and whether they run it upwards.
+    /// Returns each edge with its faces, and whether each face runs along it from the lower end to
+    /// the higher.
     pub fn edges(&self) -> BTreeMap<[usize; 2], Vec<(usize, bool)>> {
         let mut edges: BTreeMap<_, Vec<_>> = BTreeMap::new();
         for (f, face) in self.faces() {
@@ -79,7 +80,7 @@ impl Model {
         edges
     }
 
-    /// The other ends of the edges at `v`.
+    /// Returns the other ends of the edges at `v`.
     pub fn neighbours(&self, v: usize) -> BTreeSet<usize> {
         let faces = self.faces().filter(|(_, face)| face.contains(&v));
         let sides = faces.flat_map(|(_, face)| sides(face).collect::<Vec<_>>());
@@ -87,17 +88,17 @@ impl Model {
         ends.map(|(a, b)| if a == v { b } else { a }).collect()
     }
 
-    /// V − E + F.
+    /// Returns χ = V − E + F.
     pub fn euler(&self) -> isize {
         let count = |n: usize| n as isize;
         count(self.vertices().count()) - count(self.edges().len()) + count(self.faces().count())
     }
 
-    /// The mesh as polygons, without its gaps.
+    /// Converts the model to polygons, without unused numbers.
     ///
     /// # Panics
     ///
-    /// If a face names what is not there: the model itself is broken.
+    /// Panics if a face uses a removed vertex: then the model itself has a bug.
     pub fn to_polygons(&self) -> PolygonMesh {
         let number: BTreeMap<usize, u32> = self.vertices().zip(0..).collect();
         let positions: Vec<Point> = self.positions.iter().copied().flatten().collect();
@@ -105,10 +106,11 @@ impl Model {
             let corners = face.iter().map(|v| number[v]);
             corners.collect::<Vec<u32>>()
         });
-        PolygonMesh::new(positions, faces).expect("the model names what is there, and once a face")
+        PolygonMesh::new(positions, faces)
+            .expect("faces of the model use existing, distinct vertices")
     }
 
-    /// The mesh after `action`, or `None` where it is refused.
+    /// Returns the model after `action`, or `None` if the action is illegal.
     pub fn after(&self, action: &Action, rules: &Rules) -> Option<Self> {
         if !rules.offers[action.edit() as usize] {
             return None;
@@ -125,7 +127,7 @@ impl Model {
         Some(after)
     }
 
-    /// Whether another vertex is where `action` would put one.
+    /// Returns whether another vertex is at the position where `action` puts a vertex.
     fn is_taken(&self, action: &Action) -> bool {
         let own = match action {
             Action::SetPosition { v, .. } => [*v; 2],
@@ -152,7 +154,8 @@ impl Model {
         self.positions.len() - 1
     }
 
-    /// The two faces of an edge that run it in opposite directions, the one from `a` to `b` first.
+    /// Returns the two faces of an edge if they run along it in opposite directions; the one from
+    /// `a` to `b` is first.
     fn opposed(&self, [a, b]: [usize; 2]) -> Option<[usize; 2]> {
         let edges = self.edges();
         match *edges.get(&[a.min(b), a.max(b)])?.as_slice() {
@@ -241,7 +244,7 @@ impl Model {
                 if common != 2 {
                     return None;
                 }
-                // One ends with a, b; the other starts with b, a.
+                // Rotates `one` so that it ends with a, b, and `other` so that it starts with b, a.
                 let i = position_of_side(&one, *ends)?;
                 let degree = one.len();
                 one.rotate_left((i + 2) % degree);
@@ -348,8 +351,9 @@ impl Model {
         Some(())
     }
 
-    /// The faces at `v` counter-clockwise, each as neighbour after `v`, face, neighbour before `v`;
-    /// from the boundary if there is one. `None` if they are not one oriented fan.
+    /// Returns the faces at `v` counter-clockwise, from the boundary if there is one. Each entry
+    /// has the corner after `v`, the face, and the corner before `v`. `None` if the faces are not
+    /// one oriented fan.
     fn fan(&self, v: usize) -> Option<Vec<(usize, usize, usize)>> {
         let mut left: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
         for (f, face) in self.faces() {
@@ -383,7 +387,8 @@ impl Model {
         let fan = self.fan(v)?;
         let (first, last) = (fan[0].0, fan[fan.len() - 1].2);
         let closed = first == last;
-        // The sectors between consecutive neighbours; on a boundary the gap is one of them.
+        // The sectors between consecutive adjacent vertices; at a boundary, the gap is a sector
+        // too.
         let mut ring: Vec<usize> = fan.iter().map(|&(after, ..)| after).collect();
         let mut sectors: Vec<Option<usize>> = fan.iter().map(|&(_, f, _)| Some(f)).collect();
         if !closed {
@@ -391,7 +396,8 @@ impl Model {
             sectors.push(None);
         }
         let place_of = |u: usize| ring.iter().position(|&w| w == u);
-        // Without a left the part ends where the gap begins, without a right it starts where it ends.
+        // Without `left`, the part ends at the start of the gap. Without `right`, it starts at the
+        // end of the gap.
         let (from, to) = match (left, right) {
             (Some(l), Some(r)) if l != r => (place_of(r)?, place_of(l)?),
             (None, Some(r)) if !closed => (place_of(r)?, ring.len() - 1),
@@ -418,7 +424,7 @@ impl Model {
     }
 }
 
-/// The sides of a face: side `i` joins corners `i` and `i + 1`.
+/// Iterates over the sides of a face: side `i` joins corners `i` and `i + 1`.
 pub(crate) fn sides(face: &[usize]) -> impl Iterator<Item = (usize, usize)> {
     (0..face.len()).map(|i| (face[i], face[(i + 1) % face.len()]))
 }
@@ -427,7 +433,7 @@ fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Which side of `face` joins `a` and `b`, in either direction.
+/// Returns the index of the side of `face` that joins `a` and `b`, in either direction.
 fn position_of_side(face: &[usize], [a, b]: [usize; 2]) -> Option<usize> {
     sides(face).position(|side| side == (a, b) || side == (b, a))
 }

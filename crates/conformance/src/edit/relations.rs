@@ -1,15 +1,15 @@
-//! The nine relations of an edited mesh, holes and all, against what its faces say.
+//! Compares the nine relations of an edited mesh, which may have holes, with its faces.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
 
-use mesh_core::{IteratorExt, MeshQuery};
+use sixfold_core::{IteratorExt, MeshQuery};
 
-/// Asks every relation of every element, and works the answer out from FV alone.
+/// Queries every relation of every element, and compares the answer with one computed from FV only.
 ///
 /// # Panics
 ///
-/// If an answer differs, an item comes twice, or counts and lists disagree.
+/// Panics if an answer differs, if an item occurs twice, or if a count differs from the list.
 pub(crate) fn relations_hold<M: MeshQuery>(mesh: &M, name: &str) {
     let faces: Vec<M::Face> = mesh.faces().collect();
     let vertices: Vec<M::Vertex> = mesh.vertices().collect();
@@ -18,7 +18,7 @@ pub(crate) fn relations_hold<M: MeshQuery>(mesh: &M, name: &str) {
     assert_eq!(
         counts,
         [vertices.len(), edges.len(), faces.len()],
-        "{name}: counts and lists"
+        "{name}: counts (left) and lengths of the lists (right)"
     );
 
     let corners: BTreeMap<M::Face, Vec<M::Vertex>> = faces

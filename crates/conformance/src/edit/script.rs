@@ -1,26 +1,27 @@
-//! Random scripts of edits that find their elements in whatever mesh they meet.
+//! Random scripts of edits whose steps select their elements from the current mesh.
 
-use mesh_core::{Edit, Point};
 use proptest::prelude::*;
 use proptest::{collection, sample};
+use sixfold_core::{Edit, Point};
 
 use super::action::Action;
 use super::model::Model;
 
-/// Above this many faces edits that add some are turned into those that take some away.
+/// Above this number of faces, an edit that adds faces is replaced by one that removes faces.
 const MANY_FACES: usize = 48;
 
-/// One step: which edit, and what to choose its elements by.
+/// One step: the kind of edit, and numbers that select its elements.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    /// The edit.
+    /// Kind of the edit.
     pub edit: Edit,
-    /// What chooses the elements.
+    /// Numbers that select the elements.
     pub picks: [u16; 4],
 }
 
-/// Up to `most` steps of edits among `edits`, each as likely as the others but for removals and
-/// compaction, which are rarer: they leave little to work on.
+/// Generates up to `most` steps with kinds from `edits`. Removals and compaction are rarer, because
+/// they leave few elements to edit; `AddVertex` and `SetPosition` are rarer too. The other edits
+/// are equally likely.
 pub fn script(edits: &[Edit], most: usize) -> impl Strategy<Value = Vec<Step>> + use<> {
     let weight = |edit: &Edit| match edit {
         Edit::RemoveVertex | Edit::RemoveIsolatedVertices | Edit::Compact => 1,
@@ -39,12 +40,12 @@ pub fn script(edits: &[Edit], most: usize) -> impl Strategy<Value = Vec<Step>> +
 }
 
 impl Step {
-    /// The action that the step is on `model`; `number` makes the place of a new vertex. `None` where
-    /// there is nothing to do it to.
+    /// Returns the action of this step on `model`; `number` gives the position of a new vertex.
+    /// `None` if `model` has no element for the action.
     pub fn action(&self, model: &Model, number: usize) -> Option<Action> {
         let [p, q, r, s] = self.picks.map(usize::from);
         let at = if s % 64 == 63 {
-            // Now and then where a vertex is already.
+            // Sometimes the position of an existing vertex.
             model.position(pick(&model.vertices().collect::<Vec<_>>(), r)?)?
         } else {
             Point::new(1000.0 + number as f32, (p % 97) as f32, (q % 89) as f32)
@@ -92,7 +93,7 @@ impl Step {
                 at,
             },
             Edit::SplitFace => {
-                // Polygons first: a triangle has nothing to cut.
+                // Polygons are preferred, because a triangle cannot be split.
                 let polygons = model.faces().filter(|(_, face)| face.len() > 3);
                 let polygons: Vec<usize> = polygons.map(|(f, _)| f).collect();
                 let f = pick(&polygons, p).or_else(|| pick(&faces, p))?;
@@ -131,12 +132,12 @@ impl Step {
         Some(action)
     }
 
-    /// Corners of a face that may well be legal: any three, a triangle outside a boundary edge or in a
-    /// boundary's corner, or a hole's whole boundary.
+    /// Returns corners of a new face that is often legal: any three vertices, a triangle at a
+    /// boundary edge or between two successive boundary edges, or the whole boundary of a hole.
     fn new_face(&self, model: &Model) -> Option<Vec<usize>> {
         let [p, q, r, s] = self.picks.map(usize::from);
         let vertices: Vec<usize> = model.vertices().collect();
-        // The boundary as it is run from outside.
+        // The sides of the boundary, in the direction of a face outside it.
         let boundary: Vec<[usize; 2]> = model
             .edges()
             .into_iter()

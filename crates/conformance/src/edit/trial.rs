@@ -1,10 +1,10 @@
-//! A structure and the model, edited side by side.
+//! A structure and the model, which execute the same edits.
 
 use std::any::TypeId;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
 
-use mesh_core::{
+use sixfold_core::{
     Changes, EdgeId, Edit, EditRecord, FaceId, Handle, MeshEdit, MeshQuery, Point, PolygonMesh,
     Refusal, Representation, VertexId,
 };
@@ -16,17 +16,17 @@ use crate::caught::caught;
 use crate::subject::held;
 use crate::weld::place;
 
-/// A mesh under edit, the model beside it, and what the structure calls the model's elements.
+/// A mesh, its model, and a map from the elements of the model to the handles of the structure.
 #[derive(Clone)]
 pub struct Trial<M: MeshEdit> {
-    /// The mesh.
+    /// Mesh under test.
     pub mesh: M,
-    /// What it should be.
+    /// Expected mesh.
     pub model: Model,
     rules: Rules,
     vertices: BTreeMap<usize, M::Vertex>,
     faces: BTreeMap<usize, M::Face>,
-    /// Rows of removed elements, which must never name anything again.
+    /// Handles of removed elements, which must not be valid again.
     removed: Vec<Removed<M::Vertex, M::Edge, M::Face>>,
 }
 
@@ -38,16 +38,16 @@ enum Removed<V, E, F> {
 }
 
 impl<M: Representation + MeshEdit + Debug> Trial<M> {
-    /// Builds `M` from `polygons`; `None` where its capabilities exclude them.
+    /// Builds `M` from `polygons`; `None` if its capabilities exclude them.
     ///
     /// # Panics
     ///
-    /// If the structure refuses what it declares to hold.
+    /// Panics if the structure returns an error for a mesh that its capabilities include.
     pub fn of(polygons: &PolygonMesh) -> Option<Self> {
         M::CAPABILITIES.check(polygons).ok()?;
         let input = held::<M>(polygons);
         let mesh = M::from_polygons(&input);
-        let mesh = mesh.unwrap_or_else(|e| panic!("{} refuses what it holds: {e}", M::NAME));
+        let mesh = mesh.unwrap_or_else(|e| panic!("{} refuses a supported mesh: {e}", M::NAME));
         let vertices = input
             .vertices()
             .map(|v| (v.index(), M::vertex_name(&input, v)));
@@ -65,16 +65,17 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
         })
     }
 
-    /// Whether the model says that `action` is legal for this structure.
+    /// Returns whether `action` is legal for this structure, according to the model.
     pub fn is_legal(&self, action: &Action) -> bool {
         self.model.after(action, &self.rules).is_some()
     }
 
-    /// Does `action` on the mesh and on the model; whether it was accepted.
+    /// Executes `action` on the mesh and on the model, and returns whether it was accepted.
     ///
     /// # Panics
     ///
-    /// If the two depart from each other in anything: verdict, mesh, names, record, invariants.
+    /// Panics if the mesh and the model differ: in acceptance, faces, positions, handles or record.
+    /// Also panics if an invariant of the mesh is broken.
     pub fn take(&mut self, action: &Action) -> bool {
         let name = M::NAME;
         let expected = self.model.after(action, &self.rules);
@@ -88,21 +89,21 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
                 let unchanged = format!("{:?}", self.mesh) == before;
                 assert!(
                     unchanged,
-                    "{name}: refused {action:?}, but changed its tables"
+                    "{name}: refused {action:?} but changed its tables"
                 );
                 let silent = record.vertices.is_empty()
                     && record.edges.is_empty()
                     && record.faces.is_empty();
-                assert!(silent, "{name}: refused {action:?}, but told {record:?}");
+                assert!(silent, "{name}: refused {action:?} but recorded {record:?}");
                 return false;
             }
             (Some(_), Err(refusal)) => {
-                panic!("{name}: refuses {action:?}, which is legal: {refusal}")
+                panic!("{name}: refuses the legal {action:?}: {refusal}")
             }
-            (None, Ok(_)) => panic!("{name}: accepts {action:?}, which is not legal"),
+            (None, Ok(_)) => panic!("{name}: accepts the illegal {action:?}"),
         };
         if let Err(broken) = self.mesh.validate() {
-            panic!("{name}: after {action:?} {broken}");
+            panic!("{name}: after {action:?}: {broken}");
         }
         names.check(&record, &Names::of(&self.mesh), name, action);
         let before = std::mem::replace(&mut self.model, after);
@@ -111,22 +112,23 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
         let manifold = !self.rules.capabilities.non_manifold_edges;
         if let Some(step) = euler_step(action).filter(|_| manifold) {
             let moved = self.model.euler() - before.euler();
-            assert_eq!(moved, step, "{name}: χ moves with {action:?}");
+            assert_eq!(moved, step, "{name}: change of χ by {action:?}");
         }
         true
     }
 
-    /// Whether both hold the same mesh: the same vertices in the same places, and the same faces.
+    /// Returns whether both hold the same mesh: equal positions and equal faces.
     pub fn is_same_mesh(&self, other: &Self) -> bool {
         let [one, two] = [self, other].map(|trial| trial.mesh.to_polygons());
         faces_by_place(&one) == faces_by_place(&two) && places(&one) == places(&two)
     }
 
-    /// Holds the whole mesh, with its holes, to what its faces say.
+    /// Compares all relations of the mesh, which may have holes, with its faces. Checks that
+    /// removed handles are invalid.
     ///
     /// # Panics
     ///
-    /// If a relation is wrong, or a removed element still answers.
+    /// Panics if a relation is wrong, or if the handle of a removed element is accepted.
     pub fn inspect(&mut self) {
         relations_hold(&self.mesh, M::NAME);
         self.move_all();
@@ -154,20 +156,21 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
             }
             let name = M::NAME;
             match asked {
-                // What is not there has no neighbours, where its name is made of other things.
+                // If the handle is not a row, a removed element has empty relations.
                 Ok(0) if Self::is_made_of_others(removed) => {}
-                Ok(found) => panic!("{name}: {shown} was removed, and has {found} neighbours"),
+                Ok(found) => panic!("{name}: {shown} was removed but has {found} faces or corners"),
                 Err(caught) => assert!(
                     caught.message.contains(&shown) || self.names_an_end(&caught.message, removed),
-                    "{name}: {shown} was removed, and is not named: {}",
+                    "{name}: {shown} was removed, but the message does not name it: {}",
                     caught.message
                 ),
             }
-            assert!(!edited, "{name}: {shown} was removed, and is edited");
+            assert!(!edited, "{name}: {shown} was removed but can be edited");
         }
     }
 
-    /// Whether the name of a removed element is no row of its own: a pair, coordinates, a corner.
+    /// Returns whether the handle of a removed element is not a row of its own, but a pair,
+    /// coordinates or a corner.
     fn is_made_of_others(removed: Removed<M::Vertex, M::Edge, M::Face>) -> bool {
         match removed {
             Removed::Vertex(_) => !M::CAPABILITIES.coincident_vertices,
@@ -176,7 +179,7 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
         }
     }
 
-    /// Whether a message names an end of a removed edge that was the pair of its ends.
+    /// Returns whether a message contains an end of a removed edge.
     fn names_an_end(&self, message: &str, removed: Removed<M::Vertex, M::Edge, M::Face>) -> bool {
         let Removed::Edge(e) = removed else {
             return false;
@@ -185,12 +188,13 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
         ends.is_ok_and(|ends| ends.iter().any(|end| message.contains(&format!("{end:?}"))))
     }
 
-    /// Whether such a name has come to name another element.
+    /// Returns whether such a handle now belongs to another element.
     fn is_used_again(&self, removed: Removed<M::Vertex, M::Edge, M::Face>) -> bool {
         Self::is_made_of_others(removed)
             && match removed {
                 Removed::Vertex(v) => self.mesh.vertices().any(|known| known == v),
-                // A corner names the edge that it faces, if not by the name in use.
+                // Any corner that faces an edge may stand for it, not only the one used as its
+                // handle.
                 Removed::Edge(e) => caught(|| self.mesh.edge_vertices(e)).is_ok_and(|[a, b]| {
                     caught(|| self.mesh.edge_between(a, b)).is_ok_and(|known| known.is_some())
                 }),
@@ -198,46 +202,51 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
             }
     }
 
-    /// Without its holes it is the same mesh, and can be edited again.
+    /// Checks that the mesh without its holes is the same mesh, and can be made editable again.
     fn make_whole(&self) {
         let whole = self.mesh.clone().into_whole();
         assert_eq!(whole.face_rows(), whole.face_count(), "{}: holes", M::NAME);
         let mesh: M = whole.into();
         if let Err(broken) = mesh.validate() {
-            panic!("{}: made whole and editable again {broken}", M::NAME);
+            panic!("{}: made whole and editable again: {broken}", M::NAME);
         }
         let (made, known) = (mesh.to_polygons(), self.mesh.to_polygons());
         let same =
             made.positions() == known.positions() && made.faces().iter().eq(known.faces().iter());
-        assert!(same, "{}: made whole it is another mesh", M::NAME);
+        assert!(same, "{}: into_whole changes the mesh", M::NAME);
     }
 
-    /// All vertices moved at once come to their places, holes or not, and what was removed stays so.
+    /// Checks that `set_positions` moves all vertices of a mesh with holes, and that removed
+    /// vertices stay removed.
     fn move_all(&self) {
         let mut mesh = self.mesh.clone();
-        // Twice as far out: no two come to one place that were not at one.
+        // Twice the coordinates, so that different positions stay different.
         let mut places = mesh.vertex_map(Point::ZERO);
         for v in mesh.vertices() {
             places[v] = 2.0 * mesh.position(v);
         }
         if let Err(refusal) = mesh.set_positions(&places) {
-            panic!("{}: its own vertices cannot be moved: {refusal}", M::NAME);
+            panic!("{}: set_positions of its own vertices: {refusal}", M::NAME);
         }
         if let Err(broken) = mesh.validate() {
-            panic!("{}: after all vertices moved {broken}", M::NAME);
+            panic!("{}: after all vertices moved: {broken}", M::NAME);
         }
         let moved = self.mesh.to_polygons();
         let moved = moved.positions().iter().map(|&p| 2.0 * p);
         assert!(
             mesh.to_polygons().positions().iter().copied().eq(moved),
-            "{}: places after all vertices moved",
+            "{}: positions after all vertices moved",
             M::NAME
         );
         for removed in &self.removed {
             if let Removed::Vertex(v) = *removed {
                 let answers = caught(|| mesh.position(v)).is_ok();
                 let rows = M::CAPABILITIES.coincident_vertices;
-                assert!(!(answers && rows), "{}: {v:?} is back", M::NAME);
+                assert!(
+                    !(answers && rows),
+                    "{}: removed {v:?} has a position",
+                    M::NAME
+                );
             }
         }
     }
@@ -252,7 +261,7 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
         edge.unwrap_or_else(|| panic!("{}: no edge between {a:?} and {b:?}", M::NAME))
     }
 
-    /// Does `action` on the mesh; the vertex that it made or moved.
+    /// Executes `action` on the mesh, and returns the vertex that it made or moved.
     fn perform(
         &mut self,
         action: &Action,
@@ -309,7 +318,11 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
                 let e = self.edge(ends);
                 let faces: Vec<_> = self.mesh.edge_faces(e).collect();
                 let f = self.mesh.dissolve_edge(e, log)?;
-                assert!(faces.contains(&f), "{}: {f:?} is no face of {e:?}", M::NAME);
+                assert!(
+                    faces.contains(&f),
+                    "{}: {f:?} is not a face of {e:?}",
+                    M::NAME
+                );
             }
             &Action::FlipEdge { ends } => {
                 let e = self.edge(ends);
@@ -336,7 +349,7 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
         Ok(None)
     }
 
-    /// What the structure calls the model's elements after an edit.
+    /// Updates the map from the elements of the model to the handles after an edit.
     fn rename(&mut self, record: &EditRecord<M>, made: Option<M::Vertex>, action: &Action) {
         let moved: BTreeMap<M::Vertex, M::Vertex> = record
             .vertices
@@ -371,7 +384,8 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
                 "{name}: {action:?} returned {made:?}"
             );
         }
-        // Faces go by their corners: which part of a cut face keeps the name is the structure's choice.
+        // Faces are matched by their corners, because a structure may choose which part of a split
+        // face keeps the handle.
         let mut by_corners: BTreeMap<Vec<M::Vertex>, Vec<M::Face>> = BTreeMap::new();
         let faces: BTreeSet<M::Face> = self.mesh.faces().collect();
         for &f in &faces {
@@ -388,7 +402,7 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
             let found = by_corners.get_mut(&corners).and_then(Vec::pop);
             let name = M::NAME;
             let found =
-                found.unwrap_or_else(|| panic!("{name}: after {action:?} no face {corners:?}"));
+                found.unwrap_or_else(|| panic!("{name}: no face {corners:?} after {action:?}"));
             self.faces.insert(f, found);
         }
         if let Action::Compact = action {
@@ -396,7 +410,7 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
         }
     }
 
-    /// Mesh and model have the same vertices in the same places, and the same faces.
+    /// Checks that mesh and model have equal vertices, positions and faces.
     fn compare(&self, action: &Action) {
         let name = M::NAME;
         let listed: BTreeSet<M::Vertex> = self.mesh.vertices().collect();
@@ -407,7 +421,7 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
             assert_eq!(
                 Some(place(self.mesh.position(known))),
                 at,
-                "{name}: where {known:?} is"
+                "{name}: position of {known:?}"
             );
         }
         assert_eq!(
@@ -415,22 +429,22 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
             self.faces.len(),
             "{name}: faces after {action:?}"
         );
-        // Out as polygons: the same mesh, without the gaps.
+        // The mesh as polygons, without the holes.
         let (out, model) = (self.mesh.to_polygons(), self.model.to_polygons());
         assert_eq!(
             faces_by_place(&out),
             faces_by_place(&model),
-            "{name}: out after {action:?}"
+            "{name}: faces of to_polygons after {action:?}"
         );
         assert_eq!(
             places(&out),
             places(&model),
-            "{name}: places out after {action:?}"
+            "{name}: positions of to_polygons after {action:?}"
         );
     }
 }
 
-/// How far an edit moves χ on a manifold, where that does not depend on the mesh.
+/// Returns the change of χ by an edit on a manifold, if it does not depend on the mesh.
 fn euler_step(action: &Action) -> Option<isize> {
     match action.edit() {
         Edit::AddVertex => Some(1),
@@ -441,7 +455,8 @@ fn euler_step(action: &Action) -> Option<isize> {
     }
 }
 
-/// Of all starts of a face, the least list: its corners may be several times at one place.
+/// Rotates a face to the lexicographically least list of its corners. Comparing only the first
+/// corner is not enough, because corners may have equal positions.
 fn turned<T: Ord>(mut corners: Vec<T>) -> Vec<T> {
     let from = |i: usize| corners[i..].iter().chain(&corners[..i]);
     let least = (0..corners.len()).min_by(|&i, &j| from(i).cmp(from(j)));
@@ -449,14 +464,14 @@ fn turned<T: Ord>(mut corners: Vec<T>) -> Vec<T> {
     corners
 }
 
-/// The places of all vertices, in order.
+/// Returns the sorted positions of all vertices.
 fn places(polygons: &PolygonMesh) -> Vec<[u32; 3]> {
     let mut places: Vec<_> = polygons.positions().iter().copied().map(place).collect();
     places.sort_unstable();
     places
 }
 
-/// The faces as the places of their corners, in order.
+/// Returns the sorted faces, each as the positions of its corners.
 fn faces_by_place(polygons: &PolygonMesh) -> Vec<Vec<[u32; 3]>> {
     let at = |v: &VertexId| place(polygons.position(*v));
     let faces = polygons.faces().iter();
@@ -466,7 +481,7 @@ fn faces_by_place(polygons: &PolygonMesh) -> Vec<Vec<[u32; 3]>> {
     faces
 }
 
-/// All names in use.
+/// All handles of a mesh.
 struct Names<M: MeshEdit> {
     vertices: BTreeSet<M::Vertex>,
     edges: BTreeSet<M::Edge>,
@@ -482,9 +497,9 @@ impl<M: MeshEdit> Names<M> {
         }
     }
 
-    /// The record leads from these names to those `after`.
+    /// Checks that `record` describes the change from these handles to those of `after`.
     fn check(&self, record: &EditRecord<M>, after: &Self, name: &str, action: &Action) {
-        let told = |what: &str| format!("{name}: {what} after {action:?}, by {record:?}");
+        let told = |what: &str| format!("{name}: {what} after {action:?}, with record {record:?}");
         follows(
             &self.vertices,
             &record.vertices,
@@ -506,19 +521,22 @@ fn follows<H: Handle>(
     for old in &changes.removed {
         assert!(
             names.remove(old),
-            "{context}: {old:?} was not there to be removed"
+            "{context}: removes {old:?}, which does not exist"
         );
     }
     for [old, new] in &changes.renamed {
         assert!(
             names.remove(old),
-            "{context}: {old:?} was not there to be renamed"
+            "{context}: renames {old:?}, which does not exist"
         );
-        assert_ne!(old, new, "{context}: renamed to what it was called");
+        assert_ne!(old, new, "{context}: renamed to the same handle");
     }
     let new_names = changes.renamed.iter().map(|[_, new]| new);
     for new in new_names.chain(&changes.created) {
-        assert!(names.insert(*new), "{context}: {new:?} names two elements");
+        assert!(
+            names.insert(*new),
+            "{context}: {new:?} is the handle of two elements"
+        );
     }
     assert_eq!(&names, after, "{context}");
 }

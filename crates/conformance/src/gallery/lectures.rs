@@ -1,10 +1,10 @@
-//! The tables of the lectures, faults included.
+//! The meshes of the lectures, including their faults.
 
-use mesh_core::{Point, PolygonMesh};
+use sixfold_core::{Point, PolygonMesh};
 
 use super::Named;
 
-/// Each fixture, and beside the faulty ones what mends them.
+/// Returns all meshes of the lectures, and a corrected version of the face-vertex box.
 pub(super) fn fixtures() -> Vec<Named> {
     let with_lids = |lids: [[u32; 3]; 4]| {
         let faces = [&BOX_SIDES[..], &lids].concat();
@@ -17,12 +17,12 @@ pub(super) fn fixtures() -> Vec<Named> {
                 .expect("the lecture's cube"),
         ),
         (
-            "lecture: indexed cube, run the wrong way in places",
+            "lecture: indexed cube, some faces reversed",
             PolygonMesh::new(CUBE_POINTS.map(Point::from_array), INDEXED_CUBE)
                 .expect("the lecture's cube"),
         ),
         (
-            "lecture: indexed tetrahedron, run the wrong way in places",
+            "lecture: indexed tetrahedron, some faces reversed",
             PolygonMesh::new(TETRAHEDRON_POINTS.map(Point::from_array), TETRAHEDRON)
                 .expect("the lecture's tetrahedron"),
         ),
@@ -31,11 +31,11 @@ pub(super) fn fixtures() -> Vec<Named> {
             with_lids(FAULTY_LID),
         ),
         (
-            "lecture: face-vertex box as its lists have it, a lid run the wrong way",
+            "lecture: face-vertex box as in its lists, a lid reversed",
             with_lids(LISTED_LID),
         ),
         (
-            "lecture: face-vertex box, mended",
+            "lecture: face-vertex box, corrected",
             with_lids(LISTED_LID.map(|[a, b, c]| [a, c, b])),
         ),
     ]
@@ -52,7 +52,7 @@ const CUBE_POINTS: [[f32; 3]; 8] = [
     [0.0, 1.0, 1.0],
 ];
 
-/// By half-edge: the vertex where it starts, and the next one along its face.
+/// For each half-edge: its origin, and the next half-edge along its face.
 const HALF_EDGES: [(u32, usize); 24] = [
     (0, 1),
     (1, 2),
@@ -80,7 +80,7 @@ const HALF_EDGES: [(u32, usize); 24] = [
     (6, 20),
 ];
 
-/// The faces of the half-edge table: each is walked from its first half-edge.
+/// Returns the faces of the half-edge table; each starts at its first half-edge.
 fn half_edge_cube() -> [[u32; 4]; 6] {
     [0, 8, 4, 16, 12, 20].map(|first| {
         let mut at = first;
@@ -110,7 +110,7 @@ const TETRAHEDRON_POINTS: [[f32; 3]; 4] = [
 
 const TETRAHEDRON: [[u32; 3]; 4] = [[0, 1, 2], [0, 2, 3], [0, 1, 3], [1, 2, 3]];
 
-/// The cube's corners, and the centres of bottom and top.
+/// Returns the corners of the cube, and the centres of top and bottom.
 fn box_points() -> Vec<Point> {
     let centres = [[0.5, 0.5, 1.0], [0.5, 0.5, 0.0]];
     CUBE_POINTS
@@ -136,8 +136,8 @@ const BOX_SIDES: [[u32; 3]; 12] = [
     [8, 4, 7],
 ];
 
-/// f12 to f15 as printed: a second lid on the edges that have one already.
+/// f12 to f15 as printed: a second lid on edges that already have a lid.
 const FAULTY_LID: [[u32; 3]; 4] = [[9, 5, 4], [9, 6, 5], [9, 7, 6], [9, 4, 7]];
 
-/// f12 to f15 as the printed vertex lists have them; they still run against the walls.
+/// f12 to f15 as in the printed vertex lists; they are still oriented against the walls.
 const LISTED_LID: [[u32; 3]; 4] = [[9, 1, 0], [9, 2, 1], [9, 3, 2], [9, 0, 3]];

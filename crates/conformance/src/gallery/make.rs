@@ -1,15 +1,15 @@
-//! What specimens are made with.
+//! Functions that build the meshes of the gallery.
 
-use mesh_core::{Point, PolygonMesh};
+use sixfold_core::{Point, PolygonMesh};
 
-/// Two tetrahedra that meet in vertex 0.
+/// Builds two tetrahedra that share vertex 0.
 pub(super) fn closed_bow_tie() -> PolygonMesh {
     let one = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
     let other = one.map(|face| face.map(|v| if v == 0 { 0 } else { v + 3 }));
     mesh(7, &[one, other].concat())
 }
 
-/// A quad grid whose left and right columns are joined the wrong way round.
+/// Builds a quad grid whose left and right columns are joined in opposite directions.
 pub(super) fn klein_bottle(m: u32, n: u32) -> PolygonMesh {
     let at = |i: u32, j: u32| match i == m {
         true => (n - j % n) % n,
@@ -20,14 +20,14 @@ pub(super) fn klein_bottle(m: u32, n: u32) -> PolygonMesh {
     mesh(m * n, &faces.collect::<Vec<_>>())
 }
 
-/// Triangles around a rim of `n` vertices, to an apex above (the first vertex) and one below.
+/// Builds triangles from a ring of `n` vertices to an apex above (the first vertex) and one below.
 pub(crate) fn double_cone(n: u32) -> PolygonMesh {
     let sides = (0..n).map(|i| (1 + i, 1 + (i + 1) % n));
     let faces = sides.flat_map(|(a, b)| [[0, a, b], [n + 1, b, a]]);
     mesh(n + 2, &faces.collect::<Vec<_>>())
 }
 
-/// A strip of `n` triangles, from `x` on to the right.
+/// Builds a strip of `n` triangles, from `x` to the right.
 pub(crate) fn strip(n: u32, x: f32) -> PolygonMesh {
     let faces = (0..n).map(|i| match i % 2 {
         0 => [i, i + 1, i + 2],
@@ -35,10 +35,10 @@ pub(crate) fn strip(n: u32, x: f32) -> PolygonMesh {
     });
     let points = (0..n + 2).map(|i| Point::new(x + i as f32, (i % 2) as f32, 0.0));
     let points: Vec<Point> = points.collect();
-    PolygonMesh::new(points, faces).expect("three vertices that follow each other differ")
+    PolygonMesh::new(points, faces).expect("three successive vertices are distinct")
 }
 
-/// The surface of a slab of cubes, one for each dot.
+/// Builds the surface of a slab of cubes, one for each dot.
 pub(super) fn voxels(rows: &[&str]) -> PolygonMesh {
     let filled = |x: i32, y: i32, z: i32| {
         let row = usize::try_from(y).ok().and_then(|y| rows.get(y));
@@ -79,7 +79,7 @@ pub(super) fn voxels(rows: &[&str]) -> PolygonMesh {
     PolygonMesh::new(points.collect::<Vec<_>>(), faces).expect("a square has four corners")
 }
 
-/// Every face with vertices of its own, which still share their coordinates.
+/// Separates the faces: each face gets its own vertices, with unchanged positions.
 pub(super) fn loose(polygons: &PolygonMesh) -> PolygonMesh {
     let mut points = Vec::new();
     let mut faces = Vec::new();
@@ -88,10 +88,10 @@ pub(super) fn loose(polygons: &PolygonMesh) -> PolygonMesh {
         points.extend(corners.iter().map(|&v| polygons.position(v)));
         faces.push((first..points.len() as u32).collect::<Vec<_>>());
     }
-    PolygonMesh::new(points, faces).expect("as many corners as before")
+    PolygonMesh::new(points, faces).expect("each corner has its own vertex")
 }
 
-/// Two triangles that share an edge, if −0 is 0.
+/// Builds two triangles that share an edge if −0 equals 0.
 pub(super) fn minus_nought() -> PolygonMesh {
     let points = [
         Point::new(0.0, 0.0, 0.0),
@@ -111,14 +111,14 @@ pub(super) fn coincident_corners() -> PolygonMesh {
     )
 }
 
-/// The mesh with vertex `v` at point number `places[v]`.
+/// Returns the mesh with vertex `v` at the position `spot(places[v])`.
 pub(super) fn place_at(polygons: &PolygonMesh, places: &[u32]) -> PolygonMesh {
     let points: Vec<Point> = places.iter().map(|&place| spot(place)).collect();
     let faces = polygons.faces().clone();
-    PolygonMesh::from_faces(points, faces).expect("as many vertices as before")
+    PolygonMesh::from_faces(points, faces).expect("the number of vertices is unchanged")
 }
 
-/// The meshes side by side, as components of one.
+/// Places the meshes side by side, as components of one mesh.
 pub(super) fn union(parts: &[PolygonMesh]) -> PolygonMesh {
     let mut points: Vec<Point> = Vec::new();
     let mut faces: Vec<Vec<u32>> = Vec::new();
@@ -132,22 +132,22 @@ pub(super) fn union(parts: &[PolygonMesh]) -> PolygonMesh {
     PolygonMesh::new(points, faces).expect("the parts are meshes")
 }
 
-/// `vertices` vertices, each at its own place, and `faces`.
+/// Builds a mesh of `faces` and `vertices` vertices with distinct positions.
 pub(super) fn mesh<F: AsRef<[u32]>>(vertices: u32, faces: &[F]) -> PolygonMesh {
     let points: Vec<Point> = (0..vertices).map(spot).collect();
     PolygonMesh::new(points, faces).expect("a mesh made by hand is valid")
 }
 
-/// A place for each number, no two alike and no three in line for long.
+/// Returns a position for each number: all positions differ, and long collinear runs do not occur.
 pub(crate) fn spot(number: u32) -> Point {
     let x = number as f32;
     Point::new(x, (number * number % 7) as f32, (number % 3) as f32)
 }
 
-pub(super) fn numbers(corners: &[mesh_core::VertexId]) -> Vec<u32> {
+pub(super) fn numbers(corners: &[sixfold_core::VertexId]) -> Vec<u32> {
     corners.iter().map(|v| v.index() as u32).collect()
 }
 
-pub(super) fn sized(shape: Result<PolygonMesh, shapes::ShapeError>) -> PolygonMesh {
-    shape.expect("a shape of this size can be made")
+pub(super) fn sized(shape: Result<PolygonMesh, sixfold_shapes::ShapeError>) -> PolygonMesh {
+    shape.expect("a shape of this size can be built")
 }

@@ -1,6 +1,6 @@
-//! The contract's answers where one might ask, written down by hand.
+//! The answers that the contract requires in corner cases, written by hand.
 
-use mesh_core::Representation;
+use sixfold_core::Representation;
 
 use crate::answers::answers;
 use crate::element::Element;
@@ -8,14 +8,14 @@ use crate::gallery::gallery;
 use crate::print::compact;
 use crate::weld::welded;
 
-/// What [`answers`] must say of a mesh of the gallery; "none" where there is no ring.
+/// Expected [`answers`] for a mesh of the gallery; "none" means that the vertex has no ring.
 struct Case {
     mesh: &'static str,
     answers: &'static [(&'static str, &'static str)],
 }
 
-/// Neighbours that meet twice are one neighbour; nothing is its own; where faces do not form one
-/// fan there is no ring.
+/// The cases show three rules: an element that is adjacent twice is listed once, no element is
+/// adjacent to itself, and a vertex has no ring if its faces do not form one fan.
 const CASES: &[Case] = &[
     Case {
         mesh: "pillow of two triangles",
@@ -135,7 +135,7 @@ const CASES: &[Case] = &[
         ],
     },
     Case {
-        mesh: "two triangles that run one way",
+        mesh: "two triangles with the same side",
         answers: &[
             ("face_faces f0", "f1"),
             ("edge_faces v0–v1", "f0 f1"),
@@ -145,14 +145,15 @@ const CASES: &[Case] = &[
     },
 ];
 
-/// The corner cases of the contract are answered as it says, by a table made by hand.
+/// The answers in the corner cases of the contract are those of a table made by hand.
 pub fn corner_cases<M: Representation>() {
     let gallery = gallery();
     let mut held = 0;
     for case in CASES {
         let specimen = gallery.iter().find(|specimen| specimen.name == case.mesh);
         let polygons = &specimen.expect("the gallery has it").polygons;
-        // Where a vertex is its coordinates, only meshes that keep their numbers can be looked up.
+        // If a vertex is identified by its coordinates, only meshes that keep their numbering under
+        // welding can be compared.
         if !M::CAPABILITIES.coincident_vertices && welded(polygons).as_ref() != Ok(polygons) {
             continue;
         }
@@ -174,7 +175,11 @@ pub fn corner_cases<M: Representation>() {
             );
         }
     }
-    assert!(held > 0, "{}: holds none of the corner cases", M::NAME);
+    assert!(
+        held > 0,
+        "{}: can hold no mesh of the corner cases",
+        M::NAME
+    );
 }
 
 fn words(items: &[Element]) -> String {

@@ -1,20 +1,20 @@
-//! What a structure reads and weighs, against what it declares.
+//! Compares the reads and the memory of a structure with what it declares.
 
-use mesh_core::{Counts, MeshQuery, PolygonMesh, QueryCost, Relation, Representation, Traced};
+use sixfold_core::{Counts, Measured, MeshQuery, PolygonMesh, QueryCost, Relation, Traced};
 
 use crate::gallery::double_cone;
 use crate::oracle::Oracle;
 
-/// `COSTS` hold, in table reads.
+/// `COSTS` are correct, measured in table reads.
 ///
-/// - Constant: a bounded number of reads for each item, however large the mesh or the neighbourhood.
-/// - Local: a bounded number of reads at a bounded valence, however large the mesh.
-/// - Scan: a number of reads that grows with the mesh; to declare less than a scan is wrong, and
-///   to declare a scan where there is none sells the structure short.
+/// - Constant: the number of reads per item is bounded, for any size of mesh and any valence.
+/// - Local: the number of reads is bounded at a bounded valence, for any size of mesh.
+/// - Scan: the number of reads grows with the mesh. Declaring a lower cost for a scan is wrong, and
+///   declaring a scan for a cheaper query is wrong too.
 ///
-/// Two tori of valence six, one nine times the other, and two double cones, whose apexes have
-/// valence 24 and 240.
-pub fn costs<M: Representation>() {
+/// The meshes are two tori of valence six, one nine times the size of the other, and two double
+/// cones whose apexes have valence 24 and 240.
+pub fn costs<M: Measured>() {
     let small = reads::<M>(&torus(6));
     let large = reads::<M>(&torus(18));
     let low = reads::<M>(&double_cone(24));
@@ -30,7 +30,7 @@ pub fn costs<M: Representation>() {
             } else {
                 bounded
             },
-            "{}: {relation} is declared {cost:?}; its most reads are {few} on 72 faces and {many} on 648",
+            "{}: {relation} is declared {cost:?}; its maximum reads are {few} on 72 faces and {many} on 648",
             M::NAME
         );
         let (few, many) = (low[i].most_per_item, high[i].most_per_item);
@@ -42,9 +42,9 @@ pub fn costs<M: Representation>() {
     }
 }
 
-/// `memory()` is what `layout_bytes` says within 2 %, on uniform and on mixed degrees.
-pub fn memory<M: Representation>() {
-    let mixed = shapes::mixed_grid(40, 40).expect("a grid has this size");
+/// `memory()` equals `layout_bytes` within 2 %, for uniform and for mixed degrees.
+pub fn memory<M: Measured>() {
+    let mixed = sixfold_shapes::mixed_grid(40, 40).expect("a grid of this size can be built");
     let mut held = 0;
     for polygons in [torus(40), double_cone(1500), mixed] {
         let Ok(mesh) = M::from_polygons(&polygons) else {
@@ -61,22 +61,22 @@ pub fn memory<M: Representation>() {
         let (bytes, layout) = (mesh.memory().total(), M::layout_bytes(&counts));
         assert!(
             bytes.abs_diff(layout) <= layout / 50,
-            "{}: holds {bytes} bytes, and its layout says {layout}, for {counts:?}",
+            "{}: memory() is {bytes} bytes, but layout_bytes is {layout}, for {counts:?}",
             M::NAME
         );
     }
-    assert!(held >= 2, "{}: refuses closed triangle meshes", M::NAME);
+    assert!(held >= 2, "{}: refuses a closed triangle mesh", M::NAME);
 }
 
 fn torus(side: usize) -> PolygonMesh {
-    shapes::triangle_torus(side, side).expect("a torus has this size")
+    sixfold_shapes::triangle_torus(side, side).expect("a torus of this size can be built")
 }
 
-/// What one relation reads, at worst over all elements.
+/// Maximum numbers of reads of one relation, over the elements tested.
 #[derive(Clone, Copy, Default)]
 struct Reads {
     most: usize,
-    /// Reads for each item, and one item more for finding the list, rounded up.
+    /// Reads per item, rounded up; finding the list counts as one more item.
     most_per_item: usize,
 }
 
@@ -87,8 +87,8 @@ impl Reads {
     }
 }
 
-/// The reads of all nine relations, in the order of [`Relation::ALL`].
-fn reads<M: Representation>(polygons: &PolygonMesh) -> [Reads; 9] {
+/// Counts the reads of all nine relations, in the order of [`Relation::ALL`].
+fn reads<M: Measured>(polygons: &PolygonMesh) -> [Reads; 9] {
     let mesh = M::from_polygons(polygons);
     let mesh = mesh.unwrap_or_else(|e| panic!("{} refuses a closed triangle mesh: {e}", M::NAME));
     let probe = Traced::default();
@@ -97,8 +97,8 @@ fn reads<M: Representation>(polygons: &PolygonMesh) -> [Reads; 9] {
     let mut note = |relation: Relation, items: usize| {
         worst[relation as usize].note(items, probe.take().len());
     };
-    // A few elements stand for all: the shapes are as regular as can be. The first and the last are
-    // among them, for these are the apexes.
+    // A few elements are enough, because the shapes are regular. The first and the last are among
+    // them, because these are the apexes.
     probe.take();
     for v in few(mesh.vertices().collect()) {
         note(Relation::VertexVertices, watched.vertex_vertices(v).count());
@@ -118,7 +118,7 @@ fn reads<M: Representation>(polygons: &PolygonMesh) -> [Reads; 9] {
     worst
 }
 
-/// Some forty of `handles`, the first and the last among them.
+/// Returns about forty of `handles`, including the first and the last.
 fn few<H: Copy>(handles: Vec<H>) -> Vec<H> {
     let step = handles.len().div_ceil(40).max(1);
     let last = handles.last().copied();

@@ -1,26 +1,30 @@
-//! Editing, held to the model of [`edit`](crate::edit).
+//! Laws about edits, which are compared with the model of [`edit`](crate::edit).
 
 use std::cell::{Cell, RefCell};
 use std::fmt::{Debug, Write};
 
-use mesh_core::{Edit, MeshEdit, Point, PolygonMesh, QueryCost, Representation, Traced};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestCaseError, TestError, TestRunner};
+use sixfold_core::{
+    Edit, Measured, MeshEdit, Point, PolygonMesh, QueryCost, Representation, Traced,
+};
 
 use crate::caught::caught;
 use crate::edit::{Action, Step, Trial, script};
 use crate::print::compact;
 use crate::strategy::{any_mesh, manifold_mesh};
 
-/// How many scripts, and how many steps each has at most, where the environment does not say.
+/// Number of scripts if `PROPTEST_CASES` is not set, and maximum number of steps of a script.
 const SCRIPTS: u32 = 64;
 const STEPS: usize = 160;
 
-/// Of the steps of each edit at least one in this many is accepted: scripts of refusals prove nothing.
+/// At least one in this number of steps of each edit must be accepted, because scripts of refused
+/// steps do not test much.
 const ONE_IN: usize = 12;
 
-/// Random scripts: after every step mesh and model are the same, names and records agree, the
-/// invariants hold, and a refused edit has changed nothing; every so often all relations are right.
+/// Random scripts: after every step, mesh and model are equal, handles and records agree, and the
+/// invariants hold. A refused edit changes nothing. After every 16 steps, all relations are
+/// checked.
 ///
 /// `PROPTEST_CASES` sets the number of scripts.
 pub fn edits<M: Representation + MeshEdit + Debug>() {
@@ -66,12 +70,12 @@ pub fn edits<M: Representation + MeshEdit + Debug>() {
             }
             let fault = fault.map_or_else(String::new, |fault| fault.to_string());
             panic!(
-                "{} departs on {}{script}\n{fault}",
+                "{} differs from the model on {}{script}\n{fault}",
                 M::NAME,
                 compact(&start)
             )
         }
-        Err(TestError::Abort(reason)) => panic!("{}: no verdict: {reason}", M::NAME),
+        Err(TestError::Abort(reason)) => panic!("{}: the test was aborted: {reason}", M::NAME),
     }
 }
 
@@ -105,7 +109,8 @@ fn run<M: Representation + MeshEdit + Debug>(
     shares.set(counts);
 }
 
-/// Steps on meshes that the structure holds: by chance some 1,800 to 3,400 on a soup, more on the others.
+/// Minimum number of steps on meshes that the structure can hold. There are about 1,800 to 3,400
+/// steps on a polygon soup, and more on the other structures.
 const FEWEST_STEPS: usize = 1000;
 
 fn accepted_enough<M: MeshEdit + Representation>(shares: &[[usize; 2]; Edit::ALL.len()]) {
@@ -113,7 +118,7 @@ fn accepted_enough<M: MeshEdit + Representation>(shares: &[[usize; 2]; Edit::ALL
     let by_default = std::env::var_os("PROPTEST_CASES").is_none();
     assert!(
         tried > FEWEST_STEPS || !by_default,
-        "{}: {tried} steps on meshes that it holds prove little",
+        "{}: only {tried} steps on meshes that it can hold",
         M::NAME
     );
     for (edit, [accepted, refused]) in Edit::ALL.into_iter().zip(shares) {
@@ -123,29 +128,34 @@ fn accepted_enough<M: MeshEdit + Representation>(shares: &[[usize; 2]; Edit::ALL
             M::NAME,
             accepted + refused
         );
-        // Few scripts may miss an edit.
+        // A small number of scripts may not contain every edit.
         if M::offers(edit) && tried > 2000 {
             assert!(
                 accepted * ONE_IN >= accepted + refused && *accepted > 0,
-                "{}: {edit} is accepted {accepted} times, and refused {refused} times",
+                "{}: {edit} is accepted only {accepted} times, and refused {refused} times",
                 M::NAME
             );
         }
         if !M::offers(edit) {
-            assert_eq!(*accepted, 0, "{} does not offer {edit}", M::NAME);
+            assert_eq!(
+                *accepted,
+                0,
+                "{} does not offer {edit}, but accepts it",
+                M::NAME
+            );
         }
     }
 }
 
-/// Edits that undo each other lead back to the same mesh.
+/// Edits that undo each other give the same mesh again.
 pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
-    let sized = "a shape of this size can be made";
+    let sized = "a shape of this size can be built";
     let starts = [
-        shapes::icosahedron(),
-        shapes::triangle_torus(5, 4).expect(sized),
-        shapes::triangle_grid(4, 4).expect(sized),
-        shapes::mixed_grid(4, 4).expect(sized),
-        shapes::dodecahedron(),
+        sixfold_shapes::icosahedron(),
+        sixfold_shapes::triangle_torus(5, 4).expect(sized),
+        sixfold_shapes::triangle_grid(4, 4).expect(sized),
+        sixfold_shapes::mixed_grid(4, 4).expect(sized),
+        sixfold_shapes::dodecahedron(),
     ];
     let mut undone = [0_usize; 6];
     for start in starts {
@@ -155,7 +165,7 @@ pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
         let at = Point::new(50.0, 60.0, 70.0);
         for (ends, _) in trial.model.edges() {
             let fresh = trial.model.vertices().last().map_or(0, |v| v + 1);
-            let keep = trial.model.position(ends[0]).expect("an end is there");
+            let keep = trial.model.position(ends[0]).expect("the end exists");
             let back = Action::CollapseEdge {
                 ends: [ends[0], fresh],
                 to: keep,
@@ -171,7 +181,7 @@ pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
             }
             let mut flipped = trial.clone();
             if flipped.take(&Action::FlipEdge { ends }) {
-                let along = trial.model.edges().remove(&ends).expect("it is there");
+                let along = trial.model.edges().remove(&ends).expect("the edge exists");
                 let apexes = along.iter().map(|&(f, _)| {
                     let face = trial.model.face(f).into_iter().flatten();
                     let mut apex = face.copied().filter(|v| !ends.contains(v));
@@ -184,12 +194,12 @@ pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
                 assert_same(&flipped, &trial, "flip_edge twice");
                 undone[2] += 1;
             }
-            // The neighbours that both ends share are the sides to split at again.
+            // `split_vertex` needs the vertices that are adjacent to both ends.
             let [one, other] = ends.map(|v| trial.model.neighbours(v));
             let common: Vec<usize> = (&one & &other).into_iter().collect();
             if let [left, right] = common[..] {
                 let collapse = Action::CollapseEdge { ends, to: keep };
-                let gone = trial.model.position(ends[1]).expect("an end is there");
+                let gone = trial.model.position(ends[1]).expect("the end exists");
                 let back = |left, right| Action::SplitVertex {
                     v: ends[0],
                     left: Some(left),
@@ -213,7 +223,8 @@ pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
             let mut poked = trial.clone();
             if poked.take(&Action::PokeFace { f, at })
                 && poked.take(&Action::RemoveVertex { v: fresh })
-                // Where a vertex is its coordinates, corners without another face went along.
+                // If a vertex is identified by its coordinates, corners without another face are
+                // removed.
                 && face.iter().all(|&v| poked.model.position(v).is_some())
                 && poked.take(&Action::AddFace {
                     corners: face.to_vec(),
@@ -241,13 +252,14 @@ pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
         let offered = edits.iter().all(|&edit| M::offers(edit));
         assert!(
             !offered || count >= 10,
-            "{}: {edits:?} undone {count} times",
+            "{}: {edits:?} undone only {count} times",
             M::NAME
         );
     }
 }
 
-/// Whether all of `actions` are accepted; then the mesh is what it was.
+/// Executes `actions` and returns whether all are accepted. If so, checks that the mesh is
+/// unchanged.
 fn there_and_back<M: Representation + MeshEdit + Debug>(
     trial: &Trial<M>,
     actions: &[Action],
@@ -263,27 +275,28 @@ fn there_and_back<M: Representation + MeshEdit + Debug>(
 fn assert_same<M: Representation + MeshEdit + Debug>(got: &Trial<M>, from: &Trial<M>, did: &str) {
     assert!(
         got.is_same_mesh(from),
-        "{}: {did} do not lead back",
+        "{}: {did} do not restore the mesh",
         M::NAME
     );
 }
 
-/// `EDITS` hold, in rows read and written.
+/// `EDITS` are correct, measured in rows read and written.
 ///
-/// - Constant and Local: a number of accesses that does not depend on the size of the mesh.
-/// - Scan: one that grows with the mesh; to declare a scan where there is none sells it short.
+/// - Constant and Local: the number of accesses does not depend on the size of the mesh.
+/// - Scan: the number of accesses grows with the mesh. Declaring a scan for a cheaper edit is
+///   wrong.
 ///
-/// Two tori of valence six, one sixteen times the other. Tables that grow by doubling are not charged:
-/// only rows are counted.
+/// The meshes are two tori of valence six, one sixteen times the size of the other. The cost of
+/// growing a table is not counted, only accesses to rows.
 pub fn edit_costs<M>()
 where
-    M: Representation + MeshEdit,
+    M: Measured + MeshEdit,
     M::Probed<Traced>: MeshEdit<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face>,
 {
-    let sizes = [6, 24].map(|side| shapes::triangle_torus(side, side).expect("a torus"));
+    let sizes = [6, 24].map(|side| sixfold_shapes::triangle_torus(side, side).expect("a torus"));
     for (i, edit) in Edit::ALL.into_iter().enumerate() {
         let Some(cost) = M::EDITS[i] else { continue };
-        // What these do they do to the whole mesh, unwatched.
+        // Compaction changes the whole mesh, and its accesses are not recorded.
         if matches!(edit, Edit::Compact) {
             continue;
         }
@@ -301,24 +314,28 @@ where
     }
 }
 
-/// The most rows that `edit` touches, over a few places of the mesh.
+/// Returns the maximum number of rows that `edit` accesses, over a few places of the mesh.
 fn accesses<M>(polygons: &PolygonMesh, edit: Edit) -> usize
 where
-    M: Representation + MeshEdit,
+    M: Measured + MeshEdit,
     M::Probed<Traced>: MeshEdit<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face>,
 {
-    let mut mesh = M::from_polygons(polygons).expect("a closed triangle mesh is held by all");
-    // The first hole brings the bits for all rows before it: let that have happened.
+    let mut mesh =
+        M::from_polygons(polygons).expect("every structure holds closed triangle meshes");
+    // The first hole allocates one bit for every row. Make a hole now, so that this is not counted.
     let last = mesh.faces().last().expect("a face");
     let n = mesh
         .poke_face(last, Point::splat(500.0), &mut ())
-        .expect("always legal");
-    let spoke = mesh.vertex_edges(n).next().expect("three edges");
+        .expect("poke_face is always legal");
+    let spoke = mesh
+        .vertex_edges(n)
+        .next()
+        .expect("the vertex has three edges");
     let [a, b] = mesh.edge_vertices(spoke);
     let keep = if a == n { b } else { a };
     let at = mesh.position(keep);
     let undone = mesh.collapse_edge(spoke, keep, at, &mut ());
-    undone.expect("an inner vertex of valence three is collapsed");
+    undone.expect("an inner vertex of valence three can be collapsed");
     let at = Point::new(300.0, 301.0, 302.0);
     let mut most = 0;
     for place in [0, 1, 2, 3] {
@@ -371,7 +388,7 @@ where
             Edit::Compact => None,
         };
         if let Some(refusal) = refusal {
-            panic!("{}: {edit} is refused on a torus: {refusal}", M::NAME);
+            panic!("{}: {edit} refused on a torus: {refusal}", M::NAME);
         }
         most = most.max(probe.take().len());
     }
@@ -383,7 +400,7 @@ fn three<V: Copy>(corners: impl Iterator<Item = V>) -> [V; 3] {
     <[V; 3]>::try_from(corners.as_slice()).expect("a triangle")
 }
 
-/// A start and a script that proptest prints on a few lines.
+/// A start mesh and a script, with a short debug output.
 struct Case {
     start: PolygonMesh,
     steps: Vec<Step>,

@@ -1,10 +1,10 @@
-//! Elements, their names and what is kept for them.
+//! Laws about elements, their handles and maps.
 
 use std::collections::BTreeSet;
 use std::fmt::Debug;
 use std::ops::{Index, IndexMut};
 
-use mesh_core::{PolygonMesh, Representation};
+use sixfold_core::{PolygonMesh, Representation};
 
 use super::relations::is_rotation;
 use crate::caught::caught;
@@ -12,7 +12,8 @@ use crate::element::Element;
 use crate::subject::{Subject, held};
 use crate::weld::place;
 
-/// Each element is iterated once, faces and vertices in the promised order, and counts agree.
+/// Each element is iterated once, faces and vertices in the order of the contract, and counts
+/// agree.
 pub fn elements<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::of(polygons) else {
         return;
@@ -27,13 +28,13 @@ pub fn elements<M: Representation>(polygons: &PolygonMesh) {
     let faces: Vec<_> = oracle.faces().map(|f| names.face(f)).collect();
     assert!(
         mesh.vertices().eq(vertices.iter().copied()),
-        "{}: vertices() is {:?}, not {vertices:?}",
+        "{}: vertices() is {:?}, expected {vertices:?}",
         M::NAME,
         mesh.vertices().collect::<Vec<_>>()
     );
     assert!(
         mesh.faces().eq(faces.iter().copied()),
-        "{}: faces() is {:?}, not {faces:?}",
+        "{}: faces() is {:?}, expected {faces:?}",
         M::NAME,
         mesh.faces().collect::<Vec<_>>()
     );
@@ -53,7 +54,8 @@ pub fn elements<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// `vertex_name` and `face_name` are the names that the mesh itself uses, one for each element.
+/// `vertex_name` and `face_name` return the handles that the mesh itself uses, one for each
+/// element.
 pub fn names<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::of(polygons) else {
         return;
@@ -67,7 +69,7 @@ pub fn names<M: Representation>(polygons: &PolygonMesh) {
         let got: Vec<_> = mesh.face_vertices(f).collect();
         assert!(
             is_rotation(&got, &named),
-            "{}: face_vertices of {f:?} is {got:?}, and vertex_name says {named:?}",
+            "{}: face_vertices of {f:?} is {got:?}, but vertex_name gives {named:?}",
             M::NAME
         );
     }
@@ -78,7 +80,7 @@ pub fn names<M: Representation>(polygons: &PolygonMesh) {
     assert_eq!(
         vertices.len(),
         held::<M>(polygons).vertex_count(),
-        "{}: different vertices have different vertex_names",
+        "{}: number of different vertex_names (left) and of vertices (right)",
         M::NAME
     );
     for (f, name) in polygons.faces().iter().map(|(f, _)| f).zip(mesh.faces()) {
@@ -91,7 +93,7 @@ pub fn names<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// `position` is where the input has the vertex, to the bit, but that −0 may be 0.
+/// `position` is the position in the input, bit for bit, except that −0 may be 0.
 pub fn positions<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::of(polygons) else {
         return;
@@ -103,7 +105,7 @@ pub fn positions<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// Maps read what they were filled with until written, and then what was written, by handle.
+/// Maps contain the initial value for every handle, and after a write the value written.
 pub fn maps<M: Representation>(polygons: &PolygonMesh) {
     let Some(Subject { mesh, .. }) = Subject::<M>::of(polygons) else {
         return;
@@ -129,10 +131,11 @@ where
     }
 }
 
-/// A handle that is a row beyond the mesh panics by name; a handle that is coordinates, or a pair
-/// of them, and names nothing has empty relations.
+/// For a handle that is a row beyond the mesh, queries panic with a message that contains the
+/// handle. For a handle that is coordinates, or a pair of them, and that is not in the mesh,
+/// relations are empty.
 ///
-/// The missing handles are those of a prism too large for the mesh, set far away from it.
+/// The missing handles are those of a strip of triangles that is larger than the mesh and far away.
 pub fn missing_handles<M: Representation>(polygons: &PolygonMesh) {
     let Some(Subject { mesh, .. }) = Subject::<M>::of(polygons) else {
         return;
@@ -198,6 +201,21 @@ pub fn missing_handles<M: Representation>(polygons: &PolygonMesh) {
             items(|| mesh.face_faces(f).count()),
         ),
     ];
+    assert!(
+        !mesh.contains_vertex(v),
+        "{}: contains_vertex of {v:?}",
+        M::NAME
+    );
+    assert!(
+        !mesh.contains_edge(e),
+        "{}: contains_edge of {e:?}",
+        M::NAME
+    );
+    assert!(
+        !mesh.contains_face(f),
+        "{}: contains_face of {f:?}",
+        M::NAME
+    );
     for (query, missing, answer) in asked {
         missing.judge(M::NAME, query, &answer);
     }
@@ -211,7 +229,7 @@ pub fn missing_handles<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// Which handles are rows: a map panics on those it has no row for.
+/// Whether the handles of each kind are rows; a map panics if it has no row for a handle.
 struct Rows {
     vertex: bool,
     edge: bool,
@@ -230,7 +248,7 @@ impl Rows {
     fn of_edge(&self) -> Missing {
         match (self.edge, self.vertex) {
             (true, _) => Missing::Panics,
-            // A pair of rows: its ends are out of range, and the pair names nothing.
+            // A pair of rows: its ends are out of range, and the mesh does not have the pair.
             (false, true) => Missing::Either,
             (false, false) => Missing::Empty,
         }
@@ -245,7 +263,7 @@ impl Rows {
     }
 }
 
-/// What a query must do with a handle that names nothing.
+/// Required behaviour of a query for a missing handle.
 #[derive(Clone, Copy, Debug)]
 enum Missing {
     Panics,
@@ -263,14 +281,14 @@ impl Missing {
         };
         assert!(
             right,
-            "{structure}: {query} of an element that is not there must be {self:?}, and is “{answer}”"
+            "{structure}: {query} of a missing element must be {self:?}, but is “{answer}”"
         );
     }
 }
 
 const EMPTY: &str = "0 items";
 
-/// The number of items in words, or the message of the panic.
+/// Formats the number of items, or returns the message of the panic.
 fn items(query: impl FnOnce() -> usize) -> String {
     match caught(query) {
         Ok(count) => format!("{count} items"),
@@ -278,7 +296,8 @@ fn items(query: impl FnOnce() -> usize) -> String {
     }
 }
 
-/// Triangles in a strip, with more of everything than `polygons` has and at other places.
+/// Builds a strip of triangles with more elements of every kind than `polygons`, at other
+/// positions.
 fn far_away(polygons: &PolygonMesh) -> PolygonMesh {
     let far = polygons.positions().iter().filter(|p| p.is_finite());
     let x = far.map(|p| p.x.abs()).fold(1.0, f32::max) * 4.0;

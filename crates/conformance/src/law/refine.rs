@@ -1,12 +1,12 @@
-//! Structures that split every face in their own tables.
+//! Laws about structures that refine their own tables.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use mesh_core::{Counts, FaceId, Point, PolygonMesh, Refine, RefineError, Split, VertexId};
+use sixfold_core::{Counts, FaceId, Point, PolygonMesh, Refine, RefineError, Split, VertexId};
 
 use crate::subject::Subject;
 
-/// Every split of the structure, both kinds of √3 among them.
+/// Returns all splits of the structure, including both kinds of √3.
 fn splits<M: Refine>() -> Vec<Split> {
     let mut splits = Vec::new();
     for &split in M::SPLITS {
@@ -20,8 +20,8 @@ fn splits<M: Refine>() -> Vec<Split> {
     splits
 }
 
-/// The child of every split is the mesh that the split draws, sound, with the parents told; a child
-/// that cannot be is refused by name. Edges have the numbers of their places in `edges()`.
+/// The child of every split is valid, and has the expected faces, edges and parents. If a child is
+/// impossible, the split returns the matching error. Edges are numbered in the order of `edges()`.
 pub fn refine<M: Refine>(polygons: &PolygonMesh) {
     let Some(Subject { mesh, input, .. }) = Subject::<M>::of(polygons) else {
         return;
@@ -29,7 +29,8 @@ pub fn refine<M: Refine>(polygons: &PolygonMesh) {
     let mut numbers = M::EdgeNumbers::default();
     mesh.number_edges(&mut numbers);
     edges_are_numbered(&mesh, &numbers);
-    // Filled once with something else, so that what is overwritten is not blank.
+    // This mesh is reused for all splits, so that a split also overwrites tables that are not
+    // empty.
     let mut used = M::empty();
     assert_eq!(used.to_polygons(), PolygonMesh::default());
     for split in splits::<M>() {
@@ -39,13 +40,17 @@ pub fn refine<M: Refine>(polygons: &PolygonMesh) {
         if let (true, Some((face, corners))) = (split.needs_triangles(), odd) {
             let degree = corners.len();
             assert_eq!(done, Err(RefineError::NotATriangle { face, degree }));
-            assert_eq!(before, format!("{:?}", Shown(&used)), "a refused {split}");
+            assert_eq!(
+                before,
+                format!("{:?}", Shown(&used)),
+                "mesh after a refused {split}"
+            );
             continue;
         }
         let expected = Child::of(&mesh, &input, split);
         if expected.double_edge && !M::CAPABILITIES.non_manifold_edges {
             let Err(RefineError::DoubleEdge { first, second }) = done else {
-                panic!("{}: {split} would make a double edge: {done:?}", M::NAME);
+                panic!("{}: expected DoubleEdge from {split}: {done:?}", M::NAME);
             };
             let [one, other] = [first, second].map(|f| {
                 let mut corners = input.faces().face(f).to_vec();
@@ -53,41 +58,45 @@ pub fn refine<M: Refine>(polygons: &PolygonMesh) {
                 corners
             });
             assert!(first != second && one == other, "{first} and {second}");
-            assert_eq!(before, format!("{:?}", Shown(&used)), "a refused {split}");
+            assert_eq!(
+                before,
+                format!("{:?}", Shown(&used)),
+                "mesh after a refused {split}"
+            );
             continue;
         }
         done.unwrap_or_else(|e| panic!("{}: {split} refused: {e}", M::NAME));
         expected.check(&mesh, &numbers, &mut used, split);
         let mut fresh = M::empty();
         let done = mesh.split_into(split, &numbers, &mut fresh);
-        done.expect("done a moment ago");
+        done.expect("the same split succeeded before");
         expected.check(&mesh, &numbers, &mut fresh, split);
         assert_eq!(
             format!("{:?}", Shown(&fresh)),
             format!("{:?}", Shown(&used)),
-            "{}: {split} into a fresh mesh, and into a used one",
+            "{}: {split} into an empty mesh (left) and into a used one (right)",
             M::NAME
         );
     }
 }
 
-/// Meshes of many parts come out the same, byte for byte, on one thread and on three.
+/// Refined meshes of many parts are equal on one thread and on three.
 pub fn refine_in_parallel<M: Refine>() {
     let pool = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.expect("threads can be had")
+        pool.expect("threads can be started")
     };
-    let small = "shapes of this size can be made";
+    let small = "shapes of this size can be built";
     let mut specimens = vec![
-        shapes::geodesic(24).expect(small),
-        shapes::triangle_grid(70, 81).expect(small),
+        sixfold_shapes::geodesic(24).expect(small),
+        sixfold_shapes::triangle_grid(70, 81).expect(small),
     ];
     if M::CAPABILITIES.polygons {
-        specimens.push(shapes::mixed_grid(60, 77).expect(small));
+        specimens.push(sixfold_shapes::mixed_grid(60, 77).expect(small));
     }
     for polygons in &specimens {
         let Some(Subject { mesh, input, .. }) = Subject::<M>::of(polygons) else {
-            panic!("{} holds manifolds", M::NAME);
+            panic!("{} refuses a manifold", M::NAME);
         };
         let mut numbers = M::EdgeNumbers::default();
         mesh.number_edges(&mut numbers);
@@ -109,14 +118,18 @@ pub fn refine_in_parallel<M: Refine>() {
                 continue;
             };
             let same = format!("{one:?}", one = Shown(&one)) == format!("{:?}", Shown(&three));
-            assert!(same, "{}: {split} on one thread and on three", M::NAME);
+            assert!(
+                same,
+                "{}: {split} differs on one thread and on three",
+                M::NAME
+            );
             let expected = Child::of(&mesh, &input, split);
             expected.check(&mesh, &numbers, &mut one, split);
         }
     }
 }
 
-/// A mesh with all it holds, as text, positions included.
+/// A mesh whose debug output is its polygons, positions and edges.
 struct Shown<'a, M>(&'a M);
 
 impl<M: Refine> std::fmt::Debug for Shown<'_, M> {
@@ -137,26 +150,41 @@ impl<M: Refine> std::fmt::Debug for Shown<'_, M> {
 fn edges_are_numbered<M: Refine>(mesh: &M, numbers: &M::EdgeNumbers) {
     let edges: Vec<M::Edge> = mesh.edges().collect();
     let parts = mesh.edge_parts(numbers);
-    assert_eq!(parts.first(), Some(&0), "{}: the first part", M::NAME);
-    assert_eq!(parts.last(), Some(&edges.len()), "{}: the last", M::NAME);
+    assert_eq!(
+        parts.first(),
+        Some(&0),
+        "{}: start of the first part",
+        M::NAME
+    );
+    assert_eq!(
+        parts.last(),
+        Some(&edges.len()),
+        "{}: end of the parts",
+        M::NAME
+    );
     let mut again = Vec::with_capacity(edges.len());
     for (part, &start) in parts.iter().enumerate().take(parts.len() - 1) {
-        assert_eq!(start, again.len(), "{}: part {part}", M::NAME);
+        assert_eq!(start, again.len(), "{}: start of part {part}", M::NAME);
         again.extend(mesh.edges_of_part(numbers, part));
     }
     assert_eq!(again, edges, "{}: the edges of all parts", M::NAME);
     for (number, &e) in edges.iter().enumerate() {
-        assert_eq!(mesh.edge_number(numbers, e), number, "{}: {e:?}", M::NAME);
+        assert_eq!(
+            mesh.edge_number(numbers, e),
+            number,
+            "{}: number of {e:?}",
+            M::NAME
+        );
     }
 }
 
-/// What a split must make, worked out from the faces of the input.
+/// The expected result of a split, computed from the faces of the input.
 struct Child {
-    /// Every face from its lowest vertex on, and the face that it is a part of; sorted.
+    /// Faces of the child, each from its lowest vertex on, with the parent face; sorted.
     faces: Vec<(Vec<usize>, FaceId)>,
     vertices: usize,
     edges: usize,
-    /// Whether two of the edges that the split makes have the same ends.
+    /// Whether the split makes two edges with the same ends.
     double_edge: bool,
 }
 
@@ -234,7 +262,11 @@ impl Child {
             uniform: true,
         };
         let grown = split.grown(&counts, boundary.len());
-        assert_eq!(grown.faces, made.len(), "the closed form of {split}");
+        assert_eq!(
+            grown.faces,
+            made.len(),
+            "faces by the closed form of {split}"
+        );
         let mut ends = BTreeSet::new();
         for (face, _) in &mut made {
             from_the_lowest(face);
@@ -242,7 +274,10 @@ impl Child {
             ends.extend(face.iter().zip(after).map(|(&a, &b)| [a.min(b), a.max(b)]));
         }
         made.sort();
-        assert!(ends.len() <= grown.edges, "the closed form of {split}");
+        assert!(
+            ends.len() <= grown.edges,
+            "edges by the closed form of {split}"
+        );
         Self {
             faces: made,
             vertices: grown.vertices,
@@ -251,7 +286,7 @@ impl Child {
         }
     }
 
-    /// Holds `child` to it.
+    /// Compares `child` with the expected result.
     fn check<M: Refine>(&self, mesh: &M, numbers: &M::EdgeNumbers, child: &mut M, split: Split) {
         let name = M::NAME;
         child.positions_mut().fill(Point::ZERO);
@@ -261,7 +296,7 @@ impl Child {
             "{name}: {split}"
         );
         if let Err(fault) = child.validate() {
-            panic!("{name}: after {split} {fault}");
+            panic!("{name}: after {split}: {fault}");
         }
         assert_eq!(
             child.edge_count(),
@@ -279,7 +314,7 @@ impl Child {
         for (got, expected) in faces.iter().zip(&self.faces) {
             assert_eq!(
                 got, expected,
-                "{name}: a face after {split}, and its parent"
+                "{name}: a face after {split}, with its parent"
             );
         }
         assert_eq!(faces.len(), self.faces.len(), "{name}: faces after {split}");

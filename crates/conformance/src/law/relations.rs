@@ -1,48 +1,48 @@
-//! The nine relations, their symmetry, and the ring.
+//! Laws about the nine relations, their symmetry, and the one-ring.
 
 use std::collections::BTreeSet;
 
-use mesh_core::{PolygonMesh, Relation, Representation};
+use sixfold_core::{FaceId, PolygonMesh, Relation, Representation};
 
 use crate::element::Element;
 use crate::subject::Subject;
 
-/// VV(v) holds the other end of each edge at `v`, once, and not `v`.
+/// VV(v) contains the other end of each edge at `v` once, and not `v` itself.
 pub fn vertex_vertices<M: Representation>(polygons: &PolygonMesh) {
     is_the_set::<M>(polygons, Relation::VertexVertices);
 }
 
-/// VE(v) holds each edge that ends at `v`, once.
+/// VE(v) contains each edge that ends at `v` once.
 pub fn vertex_edges<M: Representation>(polygons: &PolygonMesh) {
     is_the_set::<M>(polygons, Relation::VertexEdges);
 }
 
-/// VF(v) holds each face with a corner at `v`, once.
+/// VF(v) contains each face with a corner at `v` once.
 pub fn vertex_faces<M: Representation>(polygons: &PolygonMesh) {
     is_the_set::<M>(polygons, Relation::VertexFaces);
 }
 
-/// EV(e) is the two ends of `e`.
+/// EV(e) contains the two ends of `e`.
 pub fn edge_vertices<M: Representation>(polygons: &PolygonMesh) {
     is_the_set::<M>(polygons, Relation::EdgeVertices);
 }
 
-/// EE(e) holds each edge that shares an end with `e`, once, and not `e`.
+/// EE(e) contains each edge that shares an end with `e` once, and not `e` itself.
 pub fn edge_edges<M: Representation>(polygons: &PolygonMesh) {
     is_the_set::<M>(polygons, Relation::EdgeEdges);
 }
 
-/// EF(e) holds each face along `e`, once.
+/// EF(e) contains each face on `e` once.
 pub fn edge_faces<M: Representation>(polygons: &PolygonMesh) {
     is_the_set::<M>(polygons, Relation::EdgeFaces);
 }
 
-/// FF(f) holds each face that shares an edge with `f`, once, and not `f`.
+/// FF(f) contains each face that shares an edge with `f` once, and not `f` itself.
 pub fn face_faces<M: Representation>(polygons: &PolygonMesh) {
     is_the_set::<M>(polygons, Relation::FaceFaces);
 }
 
-/// FV(f) runs around `f` as the input gives it, from any start.
+/// FV(f) contains the corners of `f` in the cyclic order of the input, from any start.
 pub fn face_vertices<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::of(polygons) else {
         return;
@@ -52,13 +52,13 @@ pub fn face_vertices<M: Representation>(polygons: &PolygonMesh) {
         let expected = subject.oracle.answer(Relation::FaceVertices, f);
         assert!(
             is_rotation(&got, expected),
-            "{}: face_vertices of {f} is {got:?}, not a rotation of {expected:?}",
+            "{}: face_vertices of {f} is {got:?}, expected a rotation of {expected:?}",
             M::NAME
         );
     }
 }
 
-/// FE(f) runs along with FV(f): side `i` joins corners `i` and `i + 1`.
+/// FE(f) has the order of FV(f): side `i` joins corners `i` and `i + 1`.
 pub fn face_edges<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::of(polygons) else {
         return;
@@ -81,7 +81,7 @@ pub fn face_edges<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// Incidence is mutual, and so is adjacency: `f ∈ VF(v)` exactly when `v ∈ FV(f)`, and so on.
+/// Incidence and adjacency are symmetric: `f ∈ VF(v)` if and only if `v ∈ FV(f)`, and so on.
 pub fn symmetry<M: Representation>(polygons: &PolygonMesh) {
     use Relation::*;
     let Some(subject) = Subject::<M>::of(polygons) else {
@@ -107,22 +107,22 @@ pub fn symmetry<M: Representation>(polygons: &PolygonMesh) {
         for &(of, item) in &there_pairs {
             assert!(
                 back_pairs.contains(&(item, of)),
-                "{}: {there} of {of} has {item}, but {back} of {item} lacks {of}",
+                "{}: {there} of {of} has {item}, but {back} of {item} does not have {of}",
                 M::NAME
             );
         }
         for &(of, item) in &back_pairs {
             assert!(
                 there_pairs.contains(&(item, of)),
-                "{}: {back} of {of} has {item}, but {there} of {item} lacks {of}",
+                "{}: {back} of {of} has {item}, but {there} of {item} does not have {of}",
                 M::NAME
             );
         }
     }
 }
 
-/// `one_ring` runs counter-clockwise, from boundary to boundary where there is one, and is there
-/// exactly where the faces form one consistently oriented fan.
+/// `one_ring` runs counter-clockwise, and from boundary to boundary at a boundary vertex. It exists
+/// if and only if the faces form one consistently oriented fan.
 pub fn one_ring<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::of(polygons) else {
         return;
@@ -137,9 +137,77 @@ pub fn one_ring<M: Representation>(polygons: &PolygonMesh) {
         };
         assert!(
             agree,
-            "{}: one_ring of {v} is {got:?}, not {expected:?} (ring, closed)",
+            "{}: one_ring of {v} is {got:?}, expected {expected:?} (ring, closed)",
             M::NAME
         );
+    }
+}
+
+/// Counts, boundary predicates, membership and shared elements agree with the relations.
+pub fn predicates<M: Representation>(polygons: &PolygonMesh) {
+    let Some(Subject {
+        mesh,
+        oracle,
+        names,
+        ..
+    }) = Subject::<M>::of(polygons)
+    else {
+        return;
+    };
+    let name = M::NAME;
+    let size = |relation, element| oracle.answer(relation, element).len();
+    let is_boundary = |edge: &Element| size(Relation::EdgeFaces, *edge) == 1;
+    for v in oracle.vertices() {
+        let (handle, element) = (names.vertex(v), Element::Vertex(v));
+        let edges = oracle.answer(Relation::VertexEdges, element);
+        assert_eq!(mesh.valence(handle), edges.len(), "{name}: valence of {v}");
+        let expected = edges.iter().any(is_boundary);
+        let got = mesh.is_boundary_vertex(handle);
+        assert_eq!(got, expected, "{name}: is_boundary_vertex of {v}");
+        assert!(
+            mesh.contains_vertex(handle),
+            "{name}: contains_vertex of {v}"
+        );
+    }
+    for edge in oracle.edges() {
+        let handle = names.edge(edge);
+        let got = mesh.is_boundary_edge(handle);
+        assert_eq!(
+            got,
+            is_boundary(&edge),
+            "{name}: is_boundary_edge of {edge}"
+        );
+        assert!(
+            mesh.contains_edge(handle),
+            "{name}: contains_edge of {edge}"
+        );
+    }
+    for f in oracle.faces() {
+        let (handle, corners) = (names.face(f), oracle.corners(f));
+        assert_eq!(mesh.degree(handle), corners.len(), "{name}: degree of {f}");
+        assert!(mesh.contains_face(handle), "{name}: contains_face of {f}");
+        for (i, &a) in corners.iter().enumerate() {
+            let [b, c] = [1, 2].map(|step| corners[(i + step) % corners.len()]);
+            let [va, vb, vc] = [a, b, c].map(|v| names.vertex(v));
+            let shared = mesh.common_face(va, vc).map(|face| names.face_id(face));
+            let holds = |face: FaceId| [a, c].iter().all(|v| oracle.corners(face).contains(v));
+            assert!(
+                shared.is_some_and(holds),
+                "{name}: common_face of {a} and {c} is {shared:?}"
+            );
+            let side = mesh.edge_between(va, vb).map(|e| names.edge_id(e));
+            assert_eq!(
+                side,
+                Some(Element::edge(a, b)),
+                "{name}: edge_between of {a} and {b}"
+            );
+            let opposite = mesh.opposite_vertex(handle, names.edge(Element::edge(a, b)));
+            let expected = (corners.len() == 3).then_some(vc);
+            assert_eq!(
+                opposite, expected,
+                "{name}: opposite_vertex of {f} and {a}–{b}"
+            );
+        }
     }
 }
 
@@ -152,7 +220,7 @@ fn is_the_set<M: Representation>(polygons: &PolygonMesh, relation: Relation) {
     }
 }
 
-/// `relation` of `element` is the set that the oracle gives, each item once.
+/// Checks that `relation` of `element` is the set of the oracle, each item once.
 pub(crate) fn agree<M: Representation>(subject: &Subject<M>, relation: Relation, element: Element) {
     let name = M::NAME;
     let mut got = subject.ask(relation, element);
@@ -168,7 +236,7 @@ pub(crate) fn agree<M: Representation>(subject: &Subject<M>, relation: Relation,
     assert_eq!(got, expected, "{name}: {relation} of {element}");
 }
 
-/// The edge between two vertices.
+/// Returns the edge between two vertices.
 fn joining(a: Element, b: Element) -> Element {
     match (a, b) {
         (Element::Vertex(a), Element::Vertex(b)) => Element::edge(a, b),
@@ -176,7 +244,7 @@ fn joining(a: Element, b: Element) -> Element {
     }
 }
 
-/// Whether `a` is `b` from another start.
+/// Returns whether `a` is a rotation of `b`.
 pub(crate) fn is_rotation<T: PartialEq>(a: &[T], b: &[T]) -> bool {
     let turned = |start: usize| b[start..].iter().chain(&b[..start]);
     a.len() == b.len() && (a.is_empty() || (0..b.len()).any(|start| turned(start).eq(a)))

@@ -1,34 +1,35 @@
-//! In, out, moved, checked and watched.
+//! Laws about construction, export, moved vertices, validation and probes.
 
-use mesh_core::{
-    FaceId, MeshQuery, Point, PolygonMesh, Relation, Representation, Traced, VertexId,
+use sixfold_core::{
+    FaceId, Measured, MeshQuery, Point, PolygonMesh, Relation, Representation, Traced, VertexId,
 };
 
 use super::relations::{agree, is_rotation};
 use crate::subject::{Subject, held};
 use crate::weld::place;
 
-/// `from_polygons` takes exactly what `CAPABILITIES` include, and refuses the rest with the very
-/// error that `CAPABILITIES.check` gives and that brute force finds.
+/// `from_polygons` accepts exactly the meshes that `CAPABILITIES` include. For all others, it
+/// returns the error of `CAPABILITIES.check`, which is also the error found by brute force.
 pub fn verdict<M: Representation>(polygons: &PolygonMesh) {
     let built = M::from_polygons(polygons).map(|_| ());
     let declared = M::CAPABILITIES.check(polygons);
     assert_eq!(
         built,
         declared,
-        "{}: from_polygons, and then CAPABILITIES.check",
+        "{}: from_polygons (left) and CAPABILITIES.check (right)",
         M::NAME
     );
     let expected = crate::verdict(&M::CAPABILITIES, polygons);
     assert_eq!(
         declared,
         expected,
-        "{}: CAPABILITIES.check, and then brute force",
+        "{}: CAPABILITIES.check (left) and brute force (right)",
         M::NAME
     );
 }
 
-/// What comes out is what went in, up to the start of each face, and goes in again.
+/// `to_polygons` returns the mesh from which the structure was built, up to the start of each face.
+/// The result can be used to build the structure again.
 pub fn round_trip<M: Representation>(polygons: &PolygonMesh) {
     let Some(Subject { mesh, input, .. }) = Subject::<M>::of(polygons) else {
         return;
@@ -37,13 +38,13 @@ pub fn round_trip<M: Representation>(polygons: &PolygonMesh) {
     is_same::<M>("to_polygons", &out, &input);
     match M::from_polygons(&out) {
         Ok(again) => is_same::<M>("a second to_polygons", &again.to_polygons(), &input),
-        Err(e) => panic!("{}: refuses its own to_polygons: {e}", M::NAME),
+        Err(e) => panic!("{}: from_polygons of its own to_polygons: {e}", M::NAME),
     }
 }
 
-/// `set_positions` moves every vertex and leaves the connectivity, and every answer, as it was.
+/// `set_positions` moves every vertex, and does not change the connectivity or any answer.
 ///
-/// Where a vertex is its coordinates, vertices moved to one place become one.
+/// If vertices are identified by their coordinates, vertices with equal new positions are merged.
 pub fn set_positions<M: Representation>(polygons: &PolygonMesh) {
     let Some(mut subject) = Subject::<M>::of(polygons) else {
         return;
@@ -61,7 +62,7 @@ pub fn set_positions<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// `subject` with its vertices moved to `places`, after every answer has been checked.
+/// Moves the vertices of `subject` to `places`, and checks every answer.
 fn moved<M: Representation>(subject: Subject<M>, places: Vec<Point>) -> Subject<M> {
     let Subject {
         mut mesh,
@@ -98,13 +99,13 @@ fn moved<M: Representation>(subject: Subject<M>, places: Vec<Point>) -> Subject<
     subject
 }
 
-/// A place of its own for each vertex, far from those of the shapes.
+/// Returns a different position for each vertex, far from the positions of the shapes.
 fn elsewhere(v: VertexId) -> Point {
     let i = v.index() as f32;
     Point::new(1000.0 + i, -i, (v.index() % 7) as f32)
 }
 
-/// Two vertices with no face in common.
+/// Returns two vertices with no face in common.
 fn strangers<M: Representation>(subject: &Subject<M>) -> Option<[VertexId; 2]> {
     let oracle = &subject.oracle;
     let meet = |a, b| {
@@ -125,7 +126,7 @@ fn all_relations<M: Representation>(subject: &Subject<M>) {
                     let expected = subject.oracle.answer(relation, element);
                     assert!(
                         is_rotation(&got, expected),
-                        "{}: {relation} of {element} is {got:?}, not {expected:?}",
+                        "{}: {relation} of {element} is {got:?}, expected {expected:?}",
                         M::NAME
                     );
                 }
@@ -135,7 +136,7 @@ fn all_relations<M: Representation>(subject: &Subject<M>) {
     }
 }
 
-/// `validate()` finds every invariant kept.
+/// `validate()` returns no error.
 pub fn invariants<M: Representation>(polygons: &PolygonMesh) {
     if let Some(subject) = Subject::<M>::of(polygons) {
         valid(&subject.mesh);
@@ -148,8 +149,8 @@ fn valid<M: Representation>(mesh: &M) {
     }
 }
 
-/// A watched copy gives the same answers in the same order, and its reads are seen.
-pub fn probed<M: Representation>(polygons: &PolygonMesh) {
+/// A probed copy gives the same answers in the same order, and its reads are recorded.
+pub fn probed<M: Measured>(polygons: &PolygonMesh) {
     let Some(Subject {
         mesh,
         input,
@@ -170,7 +171,7 @@ pub fn probed<M: Representation>(polygons: &PolygonMesh) {
             assert_eq!(
                 watched,
                 plain,
-                "{}: {relation} of {element}, watched and then not",
+                "{}: {relation} of {element}, probed (left) and not probed (right)",
                 M::NAME
             );
         }
@@ -180,34 +181,34 @@ pub fn probed<M: Representation>(polygons: &PolygonMesh) {
         assert_eq!(
             watched,
             plain,
-            "{}: one_ring of {v}, watched and then not",
+            "{}: one_ring of {v}, probed (left) and not probed (right)",
             M::NAME
         );
     }
     assert!(
         watched.vertices().eq(mesh.vertices()),
-        "{}: vertices(), watched",
+        "{}: vertices() of the probed copy",
         M::NAME
     );
     assert!(
         watched.edges().eq(mesh.edges()),
-        "{}: edges(), watched",
+        "{}: edges() of the probed copy",
         M::NAME
     );
     assert!(
         watched.faces().eq(mesh.faces()),
-        "{}: faces(), watched",
+        "{}: faces() of the probed copy",
         M::NAME
     );
     let reads = probe.take();
     assert!(
         input.face_count() == 0 || !reads.is_empty(),
-        "{}: no query reads any table",
+        "{}: no table reads were recorded",
         M::NAME
     );
 }
 
-/// Positions are the same to the bit (−0 is 0), and faces up to their start.
+/// Checks that positions are equal bit for bit (−0 equals 0), and faces up to their start.
 fn is_same<M: Representation>(what: &str, got: &PolygonMesh, expected: &PolygonMesh) {
     let places = |mesh: &PolygonMesh| {
         mesh.positions()
@@ -232,7 +233,7 @@ fn is_same<M: Representation>(what: &str, got: &PolygonMesh, expected: &PolygonM
         let (got, expected) = (corners(got, f), corners(expected, f));
         assert!(
             is_rotation(&got, &expected),
-            "{}: {f} of {what} is {got:?}, not {expected:?}",
+            "{}: {f} of {what} is {got:?}, expected {expected:?}",
             M::NAME
         );
     }

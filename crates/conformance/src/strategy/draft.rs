@@ -1,25 +1,25 @@
-//! Faces under the knife.
+//! A mesh as lists of faces while operations change it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use mesh_core::{Point, PolygonMesh};
+use sixfold_core::{Point, PolygonMesh};
 
 use crate::gallery::spot;
 
-/// An oriented mesh that is being worked on; positions come at the end.
+/// An oriented mesh that operations change; positions are added at the end.
 #[derive(Clone, Debug)]
 pub(super) struct Draft {
-    /// Every vertex named by a face is below.
+    /// Exclusive upper bound of the vertex numbers in faces.
     pub(super) vertices: u32,
     pub(super) faces: Vec<Vec<u32>>,
-    /// How many vertices to add that no face names.
+    /// Number of isolated vertices to add.
     pub(super) isolated: u32,
-    /// Vertices that are put where another is.
+    /// A vertex and another vertex whose position it gets.
     pub(super) coincident: Option<[u32; 2]>,
 }
 
 impl Draft {
-    /// The faces of all `pieces`, side by side.
+    /// Collects the faces of all `pieces`, side by side.
     pub(super) fn of(pieces: &[PolygonMesh]) -> Self {
         let mut draft = Self {
             vertices: 0,
@@ -37,20 +37,20 @@ impl Draft {
         draft
     }
 
-    /// A new vertex.
+    /// Adds a vertex and returns its number.
     pub(super) fn vertex(&mut self) -> u32 {
         self.vertices += 1;
         self.vertices - 1
     }
 
-    /// Every face seen from behind.
+    /// Reverses every face.
     pub(super) fn mirror(&mut self) {
         for face in &mut self.faces {
             face.reverse();
         }
     }
 
-    /// The sides in order: where each starts and ends, and its face.
+    /// Returns the sides in order: start, end and face of each.
     pub(super) fn sides(&self) -> Vec<(u32, u32, usize)> {
         let faces = self.faces.iter().enumerate();
         let sides = faces.flat_map(|(f, face)| {
@@ -60,28 +60,29 @@ impl Draft {
         sides.collect()
     }
 
-    /// By the two ends of each side, its face; of an oriented manifold.
+    /// Returns a map from the start and end of each side to its face; the draft must be an oriented
+    /// manifold.
     pub(super) fn face_of_side(&self) -> BTreeMap<(u32, u32), usize> {
         let sides = self.sides().into_iter();
         sides.map(|(a, b, f)| ((a, b), f)).collect()
     }
 
-    /// The vertices adjacent to `v`.
+    /// Returns the vertices adjacent to `v`.
     pub(super) fn ring(&self, v: u32) -> BTreeSet<u32> {
         let sides = self.sides().into_iter();
         let ends = sides.filter(|&(a, b, _)| a == v || b == v);
         ends.map(|(a, b, _)| if a == v { b } else { a }).collect()
     }
 
-    /// The vertices that faces name, ascending.
+    /// Returns the vertices that faces use, in ascending order.
     pub(super) fn used(&self) -> Vec<u32> {
         let used: BTreeSet<u32> = self.faces.iter().flatten().copied().collect();
         used.into_iter().collect()
     }
 
-    /// Gives each fan of a vertex but the first a vertex of its own.
+    /// Gives each fan of a vertex, except the first, a separate vertex.
     ///
-    /// The faces of one fan share edges at the vertex; no edge is in two fans, so none is cut.
+    /// The faces of one fan share edges at the vertex. No edge is in two fans, so no edge is cut.
     pub(super) fn separate_fans(&mut self) {
         for v in self.used() {
             let mut rest: Vec<usize> = (0..self.faces.len())
@@ -98,7 +99,7 @@ impl Draft {
         }
     }
 
-    /// Takes the faces of one fan at `v` out of `rest`.
+    /// Removes the faces of one fan at `v` from `rest`, and returns them.
     fn take_fan(&self, v: u32, rest: &mut Vec<usize>) -> Vec<usize> {
         let mut fan: Vec<usize> = rest.pop().into_iter().collect();
         let mut reached: BTreeSet<u32> = fan.iter().flat_map(|&f| self.spokes(f, v)).collect();
@@ -113,7 +114,7 @@ impl Draft {
         fan
     }
 
-    /// The corners before and after `v` in face `f`.
+    /// Returns the corners before and after `v` in face `f`.
     fn spokes(&self, f: usize, v: u32) -> [u32; 2] {
         let face = &self.faces[f];
         let at = face.iter().position(|&corner| corner == v);
@@ -124,7 +125,7 @@ impl Draft {
         ]
     }
 
-    /// The mesh, without the vertices that surgery left over, and with names drawn from `seed`.
+    /// Builds the mesh without unused vertices, and renumbers it at random by `seed`.
     pub(super) fn finish(self, seed: u64) -> PolygonMesh {
         let used = self.used();
         let place = |v: u32| {
@@ -147,8 +148,8 @@ impl Draft {
                 face.rotate_left(start);
             }
         }
-        let mesh =
-            PolygonMesh::new(points, faces).expect("surgery keeps the corners of a face apart");
+        let mesh = PolygonMesh::new(points, faces)
+            .expect("operations keep the corners of a face distinct");
         let mut names: Vec<u32> = (0..mesh.vertex_count() as u32).collect();
         if seed != 0 {
             draw.shuffle(&mut names);
@@ -157,7 +158,7 @@ impl Draft {
     }
 }
 
-/// Numbers drawn from a seed (SplitMix64, Steele et al. 2014).
+/// A generator of pseudo-random numbers (SplitMix64, Steele et al. 2014).
 struct Draw(u64);
 
 impl Draw {

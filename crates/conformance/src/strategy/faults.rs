@@ -1,26 +1,26 @@
-//! What can be wrong with a mesh, put there on purpose.
+//! Faults that are added to a mesh on purpose.
 
 use super::draft::Draft;
 
 /// A fault of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// One face runs against its neighbours.
+    /// One face is oriented against the adjacent faces.
     TurnedFace,
     /// An edge has three faces or more.
     ThirdFace,
-    /// The faces at a vertex are two fans.
+    /// The faces at a vertex form two fans.
     BowTie,
-    /// A face is there twice.
+    /// A face occurs twice.
     DuplicateFace,
-    /// A vertex is in no face.
+    /// A vertex has no face.
     IsolatedVertex,
-    /// Two vertices are at one place.
+    /// Two vertices share a position.
     CoincidentVertices,
 }
 
 impl Fault {
-    /// All of them, in the order in which they can be put into one mesh.
+    /// All faults, in the order in which they can be added to one mesh.
     pub const ALL: [Self; 6] = [
         Self::TurnedFace,
         Self::ThirdFace,
@@ -30,13 +30,13 @@ impl Fault {
         Self::CoincidentVertices,
     ];
 
-    /// Puts the fault at some place that `at` picks.
+    /// Adds the fault to `draft`; `at` selects the place.
     pub(super) fn put_into(self, draft: &mut Draft, at: usize) {
         let sides = draft.sides();
         let (a, b, f) = sides[at % sides.len()];
         match self {
             Self::TurnedFace => {
-                // With a neighbour across that side, there is something to run against.
+                // The fault needs an adjacent face across that side.
                 if !sides.iter().any(|side| (side.0, side.1) == (b, a)) {
                     let tip = draft.vertex();
                     draft.faces.push(vec![b, a, tip]);
@@ -62,7 +62,8 @@ impl Fault {
     }
 }
 
-/// Merges `v` with a vertex that has no neighbour in common with it, or hangs a triangle onto it.
+/// Merges `v` with a vertex that has no adjacent vertex in common with it, or attaches a triangle
+/// to `v`.
 fn bow_tie(draft: &mut Draft, v: u32) {
     let ring = draft.ring(v);
     let apart = |&u: &u32| draft.ring(u).is_disjoint(&ring);
@@ -84,7 +85,7 @@ fn bow_tie(draft: &mut Draft, v: u32) {
     }
 }
 
-/// The vertices with no face in common with `v`.
+/// Returns the vertices that have no face in common with `v`.
 fn strangers(draft: &Draft, v: u32) -> Vec<u32> {
     let meet = |u: u32| {
         draft

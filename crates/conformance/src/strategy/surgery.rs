@@ -1,4 +1,4 @@
-//! Operations after which an oriented manifold is one still.
+//! Operations that keep an oriented manifold an oriented manifold.
 
 use std::collections::BTreeMap;
 
@@ -6,30 +6,30 @@ use proptest::prelude::*;
 
 use super::draft::Draft;
 
-/// One operation. Its numbers pick what it is done to, counted around; where it cannot be done
-/// there, it is not done.
+/// One operation. Its numbers, taken modulo the number of elements, select the elements. If the
+/// operation is impossible there, nothing happens.
 #[derive(Clone, Debug)]
 pub(super) enum Surgery {
-    /// Takes a face away, unless it is the last; where a vertex then has two fans, it is doubled.
+    /// Removes a face, unless it is the last one; a vertex that then has two fans is duplicated.
     RemoveFace(usize),
-    /// Puts a vertex on an edge, in every face there.
+    /// Inserts a vertex into an edge, in each of its faces.
     SplitEdge(usize),
-    /// Fans a face out from a vertex in its middle.
+    /// Replaces a face by triangles around a new vertex in its middle.
     PokeFace(usize),
     /// Cuts a face in two along a diagonal.
     SplitFace(usize, usize, usize),
     /// Merges the two faces at an edge.
     DissolveEdge(usize),
-    /// Hangs a triangle onto a boundary edge.
+    /// Attaches a triangle to a boundary edge.
     AddEar(usize),
     /// Closes a boundary loop with one face.
     FillHole(usize),
-    /// Takes two faces of one degree away and joins their rims by a tube of quads: one handle more,
-    /// or one component less.
+    /// Removes two faces of equal degree and joins their boundaries with a tube of quads. This
+    /// raises the genus by one, or reduces the number of components by one.
     Tube(usize, usize),
 }
 
-/// Any of them.
+/// Generates any operation.
 pub(super) fn surgery() -> impl Strategy<Value = Surgery> {
     let at = || (0..1000_usize).boxed();
     prop_oneof![
@@ -45,7 +45,7 @@ pub(super) fn surgery() -> impl Strategy<Value = Surgery> {
 }
 
 impl Surgery {
-    /// Does it to `draft`, which has a face before and after.
+    /// Applies the operation to `draft`, which has at least one face before and after.
     pub(super) fn operate(self, draft: &mut Draft) {
         match self {
             Self::RemoveFace(f) => remove_face(draft, f),
@@ -60,7 +60,7 @@ impl Surgery {
     }
 }
 
-/// The item that `number` picks, counted around.
+/// Returns the item at `number` modulo the number of items.
 fn pick<T: Clone>(items: &[T], number: usize) -> Option<T> {
     items.get(number.checked_rem(items.len())?).cloned()
 }
@@ -98,7 +98,7 @@ fn poke_face(draft: &mut Draft, f: usize) {
     draft.faces.extend(fan);
 }
 
-/// Pokes every face that is no triangle.
+/// Pokes every face that is not a triangle.
 pub(super) fn triangulate(draft: &mut Draft) {
     while let Some(f) = draft.faces.iter().position(|face| face.len() > 3) {
         poke_face(draft, f);
@@ -106,8 +106,8 @@ pub(super) fn triangulate(draft: &mut Draft) {
 }
 
 /// ```text
-///   j ─── ·      two faces out of one of four corners or more,
-///   │  ╲  │      unless i–j is an edge elsewhere
+///   j ─── ·      splits a face of four or more corners into two,
+///   │  ╲  │      unless i–j is an edge already
 ///   · ─── i
 /// ```
 fn split_face(draft: &mut Draft, f: usize, i: usize, j: usize) {
@@ -129,7 +129,7 @@ fn split_face(draft: &mut Draft, f: usize, i: usize, j: usize) {
     draft.faces.push(second);
 }
 
-/// Only where the faces have nothing but the edge in common, or the merged face would name a
+/// Merges two faces only if the edge is all that they share. Otherwise the merged face would use a
 /// vertex twice.
 fn dissolve_edge(draft: &mut Draft, side: usize) {
     let owner = draft.face_of_side();
@@ -173,8 +173,8 @@ fn fill_hole(draft: &mut Draft, side: usize) {
     draft.faces.push(around.collect());
 }
 
-/// The sides that a face in each hole would have, by where they start: the boundary, run the other
-/// way. A vertex of a manifold starts one at most.
+/// Returns the sides that a face in each hole would have, by their start: the boundary in opposite
+/// direction. At most one of them starts at each vertex, because the mesh is manifold.
 fn holes(draft: &Draft) -> BTreeMap<u32, u32> {
     let owner = draft.face_of_side();
     let open = owner.keys().filter(|&&(a, b)| !owner.contains_key(&(b, a)));
@@ -182,8 +182,8 @@ fn holes(draft: &Draft) -> BTreeMap<u32, u32> {
 }
 
 /// ```text
-///   a1 ── c1 ── b1     a rim c of new vertices in the middle, so that no edge of the tube can be
-///   │     │     │      there already; b runs the other way round, as seen from here
+///   a1 ── c1 ── b1     a ring c of new vertices in the middle, so that no edge of the tube can
+///   │     │     │      exist already; b runs in the opposite direction, as seen from here
 ///   a0 ── c0 ── b0
 /// ```
 fn tube(draft: &mut Draft, f: usize, g: usize) {
@@ -196,7 +196,7 @@ fn tube(draft: &mut Draft, f: usize, g: usize) {
     let a = draft.faces[f].clone();
     let mut b = draft.faces[g].clone();
     b.reverse();
-    // A vertex of both faces must not be joined to itself: a–c and c–b would be one edge.
+    // A vertex of both faces must not be joined to itself: a–c and c–b would be the same edge.
     let meets = |b: &[u32]| a.iter().zip(b).any(|(a, b)| a == b);
     for _ in 0..degree {
         if meets(&b) {
@@ -218,18 +218,18 @@ fn tube(draft: &mut Draft, f: usize, g: usize) {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::Capabilities;
     use proptest::collection;
+    use sixfold_core::Capabilities;
 
     use super::*;
 
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// The first operation to break the mesh is the one that is shown.
+        /// The first operation that breaks the mesh is shown.
         #[test]
         fn every_step_keeps_an_oriented_manifold(steps in collection::vec(surgery(), 0..20)) {
-            let mut draft = Draft::of(&[shapes::tetrahedron(), shapes::cube()]);
+            let mut draft = Draft::of(&[sixfold_shapes::tetrahedron(), sixfold_shapes::cube()]);
             for step in steps {
                 step.clone().operate(&mut draft);
                 let verdict = crate::verdict(&Capabilities::ORIENTED_MANIFOLDS, &draft.clone().finish(0));

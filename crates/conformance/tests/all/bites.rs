@@ -1,18 +1,20 @@
-//! Every law fails some flawed structure, and says which structure and what.
+//! Every law fails for at least one flawed structure, with a message about the structure and the
+//! fault.
 
 use std::panic::catch_unwind;
 
-use conformance::{hold, law};
+use sixfold_conformance::{hold, law};
 
 use crate::flawed::{Flaw, Flawed, Kind};
 
-/// `Kind => law, "words of the message"` makes a test that the law fails the flaw in those words.
+/// `Kind => law, "words of the message"` makes a test: the law must fail for the structure with
+/// this flaw, and its message must contain these words.
 macro_rules! bites {
     (meshes { $($flaw:ident => $law:ident, $words:literal;)+ }
      structures { $($whole:ident => $structural:ident, $whole_words:literal;)+ }) => {
         bites!(@flaws $($flaw)+ $($whole)+);
 
-        #[expect(non_snake_case, reason = "each test is called by its flaw")]
+        #[expect(non_snake_case, reason = "each test has the name of its flaw")]
         mod meshes {
             use super::*;
             $(
@@ -24,7 +26,7 @@ macro_rules! bites {
             )+
         }
 
-        #[expect(non_snake_case, reason = "each test is called by its flaw")]
+        #[expect(non_snake_case, reason = "each test has the name of its flaw")]
         mod structures {
             use super::*;
             $(
@@ -35,7 +37,7 @@ macro_rules! bites {
             )+
         }
 
-        /// The laws that are shown to bite.
+        /// The laws that are shown to detect a flaw.
         const BITTEN: &[&str] = &[$(stringify!($law),)+ $(stringify!($structural)),+];
     };
     (@flaws $($flaw:ident)+) => {
@@ -67,36 +69,48 @@ bites! {
         HigherEdgesOnly => symmetry, "edge_edges of";
         RingReversed => one_ring, "one_ring of v0";
         RingFromTheMiddle => one_ring, "one_ring of v0";
-        RingOfABowTie => one_ring, "not None";
+        RingOfABowTie => one_ring, "expected None";
         NoRingOfAnIsolatedVertex => one_ring, "is None";
+        ValenceOff => predicates, "valence of v0";
+        DegreeOff => predicates, "degree of f0";
+        NoBoundaryVertex => predicates, "is_boundary_vertex of v";
+        NoBoundaryEdge => predicates, "is_boundary_edge of v";
+        LastVertexNotContained => predicates, "contains_vertex of v";
+        LastEdgeNotContained => predicates, "contains_edge of v";
+        LastFaceNotContained => predicates, "contains_face of f";
+        NoCommonFace => predicates, "common_face of v0 and v";
+        OppositeVertexOfAnyFace => predicates, "opposite_vertex of f";
+        ContainsMissingVertex => missing_handles, "contains_vertex of v";
+        ContainsMissingEdge => missing_handles, "contains_edge of e";
+        ContainsMissingFace => missing_handles, "contains_face of f";
         EdgeIteratedTwice => elements, "twice";
         FacesOutOfOrder => elements, "faces() is";
         VertexCountOff => elements, "vertex_count()";
         FaceNameOff => names, "f";
-        VertexNameOff => names, "vertex_name says";
+        VertexNameOff => names, "vertex_name gives";
         PositionOff => positions, "position of v";
         TooFewRows => maps, "no e";
-        EmptyForMissingRow => missing_handles, "vertex_vertices of an element that is not there";
-        BareIndex => missing_handles, "vertex_vertices of an element that is not there";
-        NeverRefuses => verdict, "from_polygons, and then CAPABILITIES.check";
+        EmptyForMissingRow => missing_handles, "vertex_vertices of a missing element";
+        BareIndex => missing_handles, "vertex_vertices of a missing element";
+        NeverRefuses => verdict, "from_polygons (left) and CAPABILITIES.check (right)";
         RefusesIsolated => verdict, "IsolatedVertex";
         AnotherError => verdict, "NonManifoldVertex";
         FaceTurnedOnTheWayOut => round_trip, "of to_polygons is";
         LastVertexNeverMoves => set_positions, "after set_positions";
         LaterPositionsForgotten => set_positions, "after set_positions";
         NeverValid => invariants, "validate: I9 fails";
-        OtherWhenWatched => probed, "watched and then not";
+        OtherWhenWatched => probed, "probed (left) and not probed (right)";
     }
     structures {
         DuplicateFaceLeftOut => corner_cases, "face_faces f0";
         AllConstant => costs, "vertex_vertices is declared Constant";
         NothingScans => costs, "vertex_vertices is declared Local";
         AllScan => costs, "edge_vertices is declared Scan";
-        RowsToSpare => memory, "holds";
+        RowsToSpare => memory, "layout_bytes is";
     }
 }
 
-/// What is said of the structure that fails.
+/// Returns the message of the law that fails.
 fn fault(trial: impl FnOnce() + std::panic::UnwindSafe) -> String {
     let outcome = catch_unwind(trial);
     let payload = outcome.expect_err("the suite passes a flawed structure");
@@ -108,18 +122,21 @@ fn speaks(fault: &str, words: &str) {
     assert!(fault.contains(words), "“{words}” is not in:\n{fault}");
     assert!(
         fault.contains("flawed"),
-        "the structure has no name in:\n{fault}"
+        "the name of the structure is not in:\n{fault}"
     );
 }
 
 #[test]
-fn every_law_bites() {
+fn every_law_detects_a_flaw() {
     for law in law::NAMES {
-        assert!(BITTEN.contains(law), "nothing shows that {law} bites");
+        assert!(
+            BITTEN.contains(law),
+            "no test shows that {law} detects a flaw"
+        );
     }
 }
 
-/// A flaw that no mesh of the gallery shows is brought down from a large mesh to a small one.
+/// If only a large random mesh shows a flaw, it is shrunk to a small mesh.
 #[test]
 fn a_failing_mesh_shrinks_and_is_shown() {
     type Lists = crate::face_and_edge_lists::FaceAndEdgeLists;

@@ -1,14 +1,15 @@
-//! A seventh structure in one file: faces and edges as lists, and a scan for every question.
+//! A seventh structure in one file: faces and edges as lists, and a scan for most queries.
 
-use mesh_core::{
+use sixfold_core::{
     BuildError, Capabilities, Counts, EdgeId, FaceId, FaceList, FaceSpans, InvariantError,
-    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
-    Table, Untraced, VertexId, VertexMap, row,
+    Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost,
+    Representation, Table, Untraced, VertexId, VertexMap, row,
 };
 
 /// The corners of every face and the ends of every edge.
 ///
-/// I1  every corner names a vertex; I2  the ends of edges ascend, and so do the edges.
+/// I1: every corner is an existing vertex. I2: the two ends of each edge ascend, and the list of
+/// edges ascends.
 #[derive(Clone, Debug)]
 pub(crate) struct FaceAndEdgeLists<P: Probe = Untraced> {
     positions: Table<Point, P>,
@@ -33,7 +34,7 @@ impl<P: Probe> FaceAndEdgeLists<P> {
     }
 }
 
-/// The sides of a face, the lower end of each first.
+/// Iterates over the sides of a face, each with its lower end first.
 fn sides(corners: &[VertexId]) -> impl Iterator<Item = [VertexId; 2]> + Clone {
     let next = corners.iter().cycle().skip(1);
     let pairs = corners.iter().zip(next);
@@ -138,8 +139,6 @@ impl Representation for FaceAndEdgeLists {
         [Scan, Scan, Scan, Constant, Scan, Scan, Constant, Scan, Scan]
     };
 
-    type Probed<P: Probe> = FaceAndEdgeLists<P>;
-
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let faces = polygons.faces();
         let mut ends: Vec<_> = faces.iter().flat_map(|(_, face)| sides(face)).collect();
@@ -158,7 +157,9 @@ impl Representation for FaceAndEdgeLists {
     fn to_polygons(&self) -> PolygonMesh {
         let mut faces = FaceList::default();
         for f in self.faces() {
-            faces.push(self.corners(f)).expect("as many as went in");
+            faces
+                .push(self.corners(f))
+                .expect("the number of corners is unchanged");
         }
         PolygonMesh::from_faces(self.positions.rows().to_vec(), faces).expect("I1")
     }
@@ -184,10 +185,6 @@ impl Representation for FaceAndEdgeLists {
         tables.into_iter().chain(self.spans.bytes()).collect()
     }
 
-    fn layout_bytes(counts: &Counts) -> usize {
-        12 * counts.vertices + 4 * counts.corners + 8 * counts.edges + counts.offset_bytes()
-    }
-
     fn validate(&self) -> Result<(), InvariantError> {
         let vertices = self.positions.len();
         if let Some(v) = self.corners.rows().iter().find(|v| v.index() >= vertices) {
@@ -197,6 +194,14 @@ impl Representation for FaceAndEdgeLists {
         let ascend = ends.iter().all(|[a, b]| a < b) && ends.windows(2).all(|e| e[0] < e[1]);
         let fault = || InvariantError::new("I2", "edges out of order");
         ascend.then_some(()).ok_or_else(fault)
+    }
+}
+
+impl Measured for FaceAndEdgeLists {
+    type Probed<P: Probe> = FaceAndEdgeLists<P>;
+
+    fn layout_bytes(counts: &Counts) -> usize {
+        12 * counts.vertices + 4 * counts.corners + 8 * counts.edges + counts.offset_bytes()
     }
 
     fn probed<P: Probe>(self, probe: P) -> FaceAndEdgeLists<P> {

@@ -1,15 +1,16 @@
-//! The sound structure with one flaw at a time.
+//! The correct structure with one flaw at a time.
 
 use std::marker::PhantomData;
 
-use mesh_core::{
-    BuildError, Capabilities, Counts, EdgeId, FaceId, InvariantError, MemoryFootprint, MeshQuery,
-    MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, Untraced, VertexId, VertexMap,
+use sixfold_core::{
+    BuildError, Capabilities, Counts, EdgeId, FaceId, InvariantError, Measured, MemoryFootprint,
+    MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, Untraced, VertexId,
+    VertexMap,
 };
 
 use crate::face_and_edge_lists::FaceAndEdgeLists;
 
-/// What is wrong.
+/// The kind of flaw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     NeighbourTwice,
@@ -28,6 +29,18 @@ pub(crate) enum Kind {
     RingFromTheMiddle,
     RingOfABowTie,
     NoRingOfAnIsolatedVertex,
+    ValenceOff,
+    DegreeOff,
+    NoBoundaryVertex,
+    NoBoundaryEdge,
+    LastVertexNotContained,
+    LastEdgeNotContained,
+    LastFaceNotContained,
+    ContainsMissingVertex,
+    ContainsMissingEdge,
+    ContainsMissingFace,
+    NoCommonFace,
+    OppositeVertexOfAnyFace,
     EdgeIteratedTwice,
     FacesOutOfOrder,
     VertexCountOff,
@@ -70,7 +83,7 @@ impl<F: Flaw, P: Probe> Flawed<F, P> {
         F::KIND == kind
     }
 
-    /// `items`, with the first of them once more if the flaw is `kind`.
+    /// Returns `items`, with a second copy of the first one if the flaw is `kind`.
     fn twice<T: Copy>(&self, kind: Kind, mut items: Vec<T>) -> std::vec::IntoIter<T> {
         if self.is(kind) {
             items.extend(items.first().copied());
@@ -78,7 +91,7 @@ impl<F: Flaw, P: Probe> Flawed<F, P> {
         items.into_iter()
     }
 
-    /// `items`, without the last of them if the flaw is `kind`.
+    /// Returns `items`, without the last one if the flaw is `kind`.
     fn fewer<T>(&self, kind: Kind, mut items: Vec<T>) -> Vec<T> {
         if self.is(kind) {
             items.pop();
@@ -223,6 +236,64 @@ impl<F: Flaw, P: Probe> MeshQuery for Flawed<F, P> {
         faces.into_iter()
     }
 
+    fn valence(&self, v: VertexId) -> usize {
+        self.inner.valence(v) + usize::from(self.is(Kind::ValenceOff))
+    }
+
+    fn degree(&self, f: FaceId) -> usize {
+        self.inner.degree(f) + usize::from(self.is(Kind::DegreeOff))
+    }
+
+    fn is_boundary_vertex(&self, v: VertexId) -> bool {
+        self.inner.is_boundary_vertex(v) && !self.is(Kind::NoBoundaryVertex)
+    }
+
+    fn is_boundary_edge(&self, e: EdgeId) -> bool {
+        self.inner.is_boundary_edge(e) && !self.is(Kind::NoBoundaryEdge)
+    }
+
+    fn contains_vertex(&self, v: VertexId) -> bool {
+        let rows = self.inner.vertex_rows();
+        match F::KIND {
+            Kind::LastVertexNotContained => v.index() + 1 < rows,
+            Kind::ContainsMissingVertex => true,
+            _ => self.inner.contains_vertex(v),
+        }
+    }
+
+    fn contains_edge(&self, e: EdgeId) -> bool {
+        let rows = self.inner.edge_rows();
+        match F::KIND {
+            Kind::LastEdgeNotContained => e.index() + 1 < rows,
+            Kind::ContainsMissingEdge => true,
+            _ => self.inner.contains_edge(e),
+        }
+    }
+
+    fn contains_face(&self, f: FaceId) -> bool {
+        let rows = self.inner.face_rows();
+        match F::KIND {
+            Kind::LastFaceNotContained => f.index() + 1 < rows,
+            Kind::ContainsMissingFace => true,
+            _ => self.inner.contains_face(f),
+        }
+    }
+
+    fn common_face(&self, a: VertexId, b: VertexId) -> Option<FaceId> {
+        let sound = self.inner.common_face(a, b);
+        sound.filter(|_| !self.is(Kind::NoCommonFace))
+    }
+
+    fn opposite_vertex(&self, f: FaceId, e: EdgeId) -> Option<VertexId> {
+        let ends = self.inner.edge_vertices(e);
+        match F::KIND {
+            Kind::OppositeVertexOfAnyFace => {
+                self.inner.face_vertices(f).find(|v| !ends.contains(v))
+            }
+            _ => self.inner.opposite_vertex(f, e),
+        }
+    }
+
     fn vertex_rows(&self) -> usize {
         self.inner.vertex_rows()
     }
@@ -272,8 +343,6 @@ impl<F: Flaw> Representation for Flawed<F> {
         _ => FaceAndEdgeLists::COSTS,
     };
 
-    type Probed<P: Probe> = Flawed<F, P>;
-
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         match F::KIND {
             Kind::NeverRefuses => {}
@@ -284,7 +353,7 @@ impl<F: Flaw> Representation for Flawed<F> {
                 };
                 strict.check(polygons)?;
             }
-            // Looks at vertices before edges.
+            // Checks vertices before edges.
             Kind::AnotherError => {
                 let vertices = Capabilities {
                     non_manifold_vertices: false,
@@ -356,15 +425,19 @@ impl<F: Flaw> Representation for Flawed<F> {
         memory
     }
 
-    fn layout_bytes(counts: &Counts) -> usize {
-        FaceAndEdgeLists::layout_bytes(counts)
-    }
-
     fn validate(&self) -> Result<(), InvariantError> {
         if self.is(Kind::NeverValid) {
-            return Err(InvariantError::new("I9", "no mesh is good enough"));
+            return Err(InvariantError::new("I9", "always fails"));
         }
         self.inner.validate()
+    }
+}
+
+impl<F: Flaw> Measured for Flawed<F> {
+    type Probed<P: Probe> = Flawed<F, P>;
+
+    fn layout_bytes(counts: &Counts) -> usize {
+        FaceAndEdgeLists::layout_bytes(counts)
     }
 
     fn probed<P: Probe>(self, probe: P) -> Flawed<F, P> {

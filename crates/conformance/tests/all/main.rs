@@ -1,12 +1,12 @@
-//! The proof, proved: the suite passes a sound structure, fails every flawed one, and its random
-//! meshes are what they claim to be.
+//! Tests of the suite itself: it passes for a correct structure and fails for every flawed one, and
+//! its random meshes have the documented properties.
 
 mod bites;
 mod face_and_edge_lists;
 mod flawed;
 mod strategies;
 
-/// A structure of one file, sound and slow.
+/// The suite for a correct and slow structure.
 mod sound {
-    conformance::suite!(crate::face_and_edge_lists::FaceAndEdgeLists);
+    sixfold_conformance::suite!(crate::face_and_edge_lists::FaceAndEdgeLists);
 }

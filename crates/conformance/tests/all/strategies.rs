@@ -1,14 +1,14 @@
-//! The random meshes are what they claim to be, and as varied.
+//! The random meshes have the documented properties and are varied enough.
 
-use conformance::compact;
-use conformance::strategy::{Fault, any_mesh, faulty_mesh, manifold_mesh};
-use mesh_core::{BuildError, Capabilities, Facts, PolygonMesh};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use sixfold_conformance::compact;
+use sixfold_conformance::strategy::{Fault, any_mesh, faulty_mesh, manifold_mesh};
+use sixfold_core::{BuildError, Capabilities, Facts, PolygonMesh};
 
 const SAMPLES: usize = 1000;
 
-/// The same meshes on every run.
+/// Generates the same meshes on every run.
 fn samples<S: Strategy>(strategy: S) -> Vec<S::Value> {
     let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
     let mut runner = TestRunner::new_with_rng(Config::default(), rng);
@@ -21,12 +21,12 @@ fn samples<S: Strategy>(strategy: S) -> Vec<S::Value> {
     (0..SAMPLES).map(sample).collect()
 }
 
-/// The percentage of `items` of which `question` is true.
+/// Returns the percentage of `items` for which `question` is true.
 fn share<T>(items: &[T], question: impl Fn(&T) -> bool) -> usize {
     100 * items.iter().filter(|item| question(item)).count() / items.len()
 }
 
-/// Each kind of mesh has its share: `(kind, floor, share)` in percent.
+/// Checks that each kind of mesh is frequent enough: `(kind, floor, share)` in percent.
 fn above(floors: &[(&str, usize, usize)]) {
     let below = floors.iter().filter(|(_, floor, share)| share < floor);
     let below: Vec<_> = below.collect();
@@ -44,10 +44,10 @@ fn distinct_places(polygons: &PolygonMesh) -> bool {
 }
 
 #[test]
-fn manifolds_are_manifolds_of_every_kind() {
+fn random_manifolds_are_manifolds_of_every_kind() {
     let meshes = samples(manifold_mesh());
     for mesh in &meshes {
-        let verdict = conformance::verdict(&Capabilities::ORIENTED_MANIFOLDS, mesh);
+        let verdict = sixfold_conformance::verdict(&Capabilities::ORIENTED_MANIFOLDS, mesh);
         assert_eq!(verdict, Ok(()), "{}", compact(mesh));
         assert!(distinct_places(mesh), "{}", compact(mesh));
     }
@@ -123,9 +123,9 @@ fn spread(facts: &Facts) -> usize {
         .map_or(0, |degree| degree.max - degree.min)
 }
 
-/// Whether two faces share two edges that meet in a vertex of valence 2.
+/// Returns whether two faces share two edges at a vertex of valence 2.
 fn has_digon_neighbours(mesh: &PolygonMesh) -> bool {
-    let oracle = conformance::Oracle::of(mesh);
+    let oracle = sixfold_conformance::Oracle::of(mesh);
     oracle.vertices().any(|v| {
         let ring = oracle.one_ring(v);
         ring.is_some_and(|(ring, closed)| closed && ring.len() == 2)
@@ -133,11 +133,12 @@ fn has_digon_neighbours(mesh: &PolygonMesh) -> bool {
 }
 
 #[test]
-fn faults_are_there_and_nothing_else() {
+fn faulty_meshes_have_exactly_their_faults() {
     let meshes = samples(faulty_mesh());
     for faulty in &meshes {
         let shown = || format!("{:?}: {}", faulty.faults, compact(&faulty.polygons));
-        let verdict = conformance::verdict(&Capabilities::ORIENTED_MANIFOLDS, &faulty.polygons);
+        let verdict =
+            sixfold_conformance::verdict(&Capabilities::ORIENTED_MANIFOLDS, &faulty.polygons);
         let harmless = [Fault::IsolatedVertex, Fault::CoincidentVertices];
         let harmful = faulty.faults.iter().any(|fault| !harmless.contains(fault));
         assert_eq!(verdict.is_err(), harmful, "{}", shown());
@@ -154,7 +155,8 @@ fn faults_are_there_and_nothing_else() {
                 (Fault::TurnedFace, Err(BuildError::RepeatedSide { .. }))
                 | (Fault::ThirdFace, Err(BuildError::NonManifoldEdge { .. }))
                 | (Fault::BowTie, Err(BuildError::NonManifoldVertex { .. })) => true,
-                // A second face on an open edge runs the same way; on a closed one it is the third.
+                // The duplicate repeats sides of a face. It is the third face at an edge that
+                // already has two.
                 (Fault::DuplicateFace, Err(_)) => facts.duplicate_faces > 0,
                 (Fault::IsolatedVertex, Ok(())) => facts.isolated_vertices == 1,
                 (Fault::CoincidentVertices, Ok(())) => true,
@@ -170,7 +172,7 @@ fn faults_are_there_and_nothing_else() {
 }
 
 #[test]
-fn chaos_is_chaotic() {
+fn random_faces_have_faults_of_every_kind() {
     let meshes = samples(any_mesh());
     let refusal = |mesh: &PolygonMesh| Capabilities::ORIENTED_MANIFOLDS.check(mesh).err();
     let floors = [

@@ -1,23 +1,23 @@
-//! Two vertices made one.
+//! Collapse of an edge: its two ends become one vertex.
 
-use mesh_core::{EditError, EditLog, Few, Lookup, Point, Probe, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, Few, Lookup, Point, Probe, Slot, VertexId};
 
 use super::{Refusal, faced_by, tell_renamed};
 use crate::mesh::{CornerId, EdgeCorner, EditableCornerTable, NOWHERE, edge_between};
 
-/// The fan of an end of an edge, without the triangles along the edge.
+/// The fan of one end of the edge, without the triangles at the edge.
 #[derive(Clone, Copy)]
 struct Rest {
-    /// Across the last of them, counter-clockwise.
+    /// The corner across the last triangle at the edge, counter-clockwise around this end.
     after: Slot<CornerId>,
-    /// Across the first of them.
+    /// The corner across the first of these triangles.
     before: Slot<CornerId>,
-    /// What a walk from `after` comes to where the fan is closed: a corner of the first of them.
+    /// The corner of the first triangle at which a walk from `after` stops if the fan is closed.
     stop: Slot<CornerId>,
 }
 
 impl Rest {
-    /// Whether a single triangle, a closed fan's, is all of it.
+    /// Returns whether the fan is closed and a single triangle remains.
     #[inline]
     fn is_one_triangle(self) -> bool {
         let [after, before] = [self.after, self.before].map(|c| c.get().map(CornerId::triangle));
@@ -26,16 +26,16 @@ impl Rest {
 }
 
 impl<P: Probe> EditableCornerTable<P> {
-    /// Makes one vertex of the ends of `e`, where the link condition holds (Dey, Edelsbrunner, Guha &
-    /// Nekhayev 1999): the only neighbours of both are C and D, no triangle of one end comes to lie on
-    /// a triangle of the other, and two boundaries do not meet.
+    /// Merges the ends of `e`, if the link condition holds (Dey, Edelsbrunner, Guha & Nekhayev
+    /// 1999): only C and D are adjacent to both ends, no triangle of one end would coincide with a
+    /// triangle of the other, and the collapse does not join two boundaries.
     ///
     /// ```text
-    ///         C                 C          T and R are deleted, on and op become opposite, and or
-    ///       / | \               |          and oq. The corners at the end that goes are moved.
+    ///         C                 C          T and R are deleted. on and op become opposite, as do
+    ///       / | \               |          or and oq. The corners at the removed end are moved.
     ///   op / T T \ on      op   |   on
-    ///     A───────B     →       A          Around the one that stays, counter-clockwise: the fan of B
-    ///   oq \ R R / or      oq   |   or     up to C, that of A from C to D, that of B from D.
+    ///     A───────B     →     A          Around the end that stays, counter-clockwise: the fan of B
+    ///   oq \ R R / or      oq   |   or     up to C, the fan of A from C to D, the fan of B from D.
     ///       \ | /               |
     ///         D                 D
     /// ```
@@ -58,7 +58,7 @@ impl<P: Probe> EditableCornerTable<P> {
             });
         }
         let [on, op] = [n, p].map(|c| *self.opposite.read(c.index()));
-        // Of a boundary edge the other side is blank.
+        // For a boundary edge, the values of the other side stay empty.
         let (mut q, mut r, mut vd) = (c, c, NOWHERE);
         let (mut oq, mut or) = (Slot::NONE, Slot::NONE);
         if let Some(o) = across {
@@ -101,7 +101,7 @@ impl<P: Probe> EditableCornerTable<P> {
             true
         });
         if beyond.as_slice().is_empty() {
-            // Nothing but C and D: the fan is open, or one triangle C–D is left of it.
+            // Only C and D: the fan is open, or closed with one remaining triangle C–D.
             if closed && of_keep.is_one_triangle() {
                 return Err(EditError::Pillow { edge: e });
             }
@@ -112,7 +112,7 @@ impl<P: Probe> EditableCornerTable<P> {
             return Err(EditError::AcrossBoundary { edge: e });
         }
 
-        // The boundary of the two fans, if there is one, begins the fan that they become.
+        // If one of the two fans is at a boundary, the boundary is where the merged fan begins.
         let entered = match across {
             None => vb,
             Some(_) if !closed => gone,
@@ -123,7 +123,7 @@ impl<P: Probe> EditableCornerTable<P> {
             let beside = if entered == vb { op } else { or };
             first = beside
                 .get()
-                .expect("a fan goes on, or the edge is refused")
+                .expect("a fan with no further triangle was refused")
                 .next();
         }
         for &corner in moved.as_slice() {
@@ -143,8 +143,9 @@ impl<P: Probe> EditableCornerTable<P> {
         Ok(keep)
     }
 
-    /// Visits the corners of `rest`, each with the vertex beyond it: counter-clockwise the one before
-    /// the corner, clockwise the one after it. Whether the fan is closed, or `visitor` has had enough.
+    /// Calls `visitor` with each corner of `rest` and a neighbour in its triangle: the vertex
+    /// before the corner while walking counter-clockwise, the vertex after it while walking
+    /// clockwise. Returns true if the fan is closed or `visitor` returned false.
     #[inline]
     fn visit(&self, rest: Rest, mut visitor: impl FnMut(CornerId, VertexId) -> bool) -> bool {
         let mut at = rest.after;
@@ -164,7 +165,7 @@ impl<P: Probe> EditableCornerTable<P> {
         false
     }
 
-    /// A vertex in the fan `rest` that is among those `beyond` another.
+    /// Returns a vertex of the fan `rest` that is in `beyond`, the neighbours of the other end.
     #[inline]
     fn common(&self, rest: Rest, mut beyond: Few<VertexId>) -> Option<VertexId> {
         beyond.order();
@@ -178,8 +179,8 @@ impl<P: Probe> EditableCornerTable<P> {
         common
     }
 
-    /// Deletes the triangle of `apex`, which is at `v`, and joins what lies across its two other
-    /// sides: that at the vertex that stays, and that at the one that goes.
+    /// Deletes the triangle of `apex`, which is at `v`, and links the corners across its two other
+    /// sides: the side at the end that stays, and the side at the removed end.
     #[inline]
     fn close_seam(
         &mut self,
@@ -209,13 +210,13 @@ impl<P: Probe> EditableCornerTable<P> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{MeshEdit, MeshQuery, Representation};
+    use sixfold_core::{MeshEdit, MeshQuery, Representation};
 
     use super::super::tests::table;
     use super::*;
 
-    /// A wheel of `n` triangles around v0, and beyond each rim edge the apex v(n + 1), so that both
-    /// have valence `n`.
+    /// Returns a wheel of `n` triangles around v0 and a second wheel around v(n + 1) with the same
+    /// rim, so that both hubs have valence `n`.
     fn double_wheel(n: u32) -> EditableCornerTable {
         let rim = |i: u32| 1 + i % n;
         let triangles = (0..n).flat_map(|i| [[0, rim(i), rim(i + 1)], [n + 1, rim(i + 1), rim(i)]]);
@@ -223,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_of_any_valence_are_compared() {
+    fn collapse_works_for_ends_of_any_valence() {
         for n in [4, 15, 16, 17, 18, 19, 20, 40] {
             let [hub, rim] = [0, 1].map(VertexId::new);
             for keep in [hub, rim] {
@@ -233,12 +234,12 @@ mod tests {
                 assert_eq!(done, Ok(keep), "{n}");
                 assert_eq!(mesh.validate(), Ok(()), "{n}");
                 assert_eq!(mesh.face_count(), 2 * n as usize - 2);
-                // Now the hubs are neighbours, and have all the rim in common.
+                // Now the two hubs are adjacent, and have the whole rim in common.
                 let far = VertexId::new(n + 1);
-                let e = mesh.edge_between(keep, far).expect("they came together");
+                let e = mesh.edge_between(keep, far).expect("adjacent hubs");
                 let before = format!("{mesh:?}");
                 let refused = mesh.collapse_edge(e, keep, Point::ONE, &mut ());
-                let refused = refused.expect_err("a vertex of the rim is beside both");
+                let refused = refused.expect_err("a rim vertex is adjacent to both");
                 let named = matches!(refused, EditError::CommonNeighbour { .. });
                 assert!(named || n == 4, "{n}: {refused}");
                 assert_eq!(format!("{mesh:?}"), before);

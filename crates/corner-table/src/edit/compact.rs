@@ -1,13 +1,13 @@
-//! Holes closed.
+//! Compaction: removal of the deleted rows.
 
-use mesh_core::{EditLog, FaceId, HoleSet, MeshQuery, Probe, RowId, Slot, VertexId};
+use sixfold_core::{EditLog, FaceId, HoleSet, MeshQuery, Probe, RowId, Slot, VertexId};
 
 use super::faced_by;
 use crate::mesh::{CornerId, EditableCornerTable};
 
 impl<P: Probe> EditableCornerTable<P> {
-    /// Moves all rows down over the holes, once through each table. Triangles keep their order, so of
-    /// two corners that face an edge the lower stays the lower.
+    /// Moves all rows down over the holes, in one pass over each table. Triangles keep their order,
+    /// so the lower of two corners that face an edge stays the lower.
     pub(super) fn close_holes(&mut self, log: &mut impl EditLog<Self>) {
         if !self.vertex_holes.is_empty() || !self.face_holes.is_empty() {
             let new_vertices = self.vertex_holes.new_rows(self.positions.len());
@@ -64,7 +64,7 @@ impl<P: Probe> EditableCornerTable<P> {
     }
 }
 
-/// What the corner `c` is called once its triangle is in its new row.
+/// Returns the handle of corner `c` after its triangle moved to its new row.
 #[inline]
 fn moved(c: CornerId, faces: &[u32]) -> CornerId {
     let t = c.triangle();
@@ -76,24 +76,24 @@ fn moved_slot(c: Slot<CornerId>, faces: &[u32]) -> Slot<CornerId> {
     c.get().map_or(Slot::NONE, |c| Slot::some(moved(c, faces)))
 }
 
-/// Whether anybody wants to be told.
+/// Returns whether the log records events.
 fn listens<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
     L::LISTENS
 }
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{MeshEdit, Point, Representation};
+    use sixfold_core::{MeshEdit, Point, Representation};
 
     use super::super::tests::table;
     use super::*;
 
     #[test]
-    fn closed_holes_give_their_memory_back() {
+    fn compaction_releases_the_memory_of_holes() {
         let mut mesh = table(4, &[[0, 1, 2], [0, 2, 3]]);
         for _ in 0..200 {
             let m = mesh.poke_face(FaceId::new(1), Point::ONE, &mut ());
-            m.expect("it is there");
+            m.expect("the face exists");
         }
         let grown = mesh.memory().total();
         for m in (4..204).rev().map(VertexId::new) {

@@ -1,17 +1,18 @@
-//! Triangles added and removed.
+//! Adding and removing triangles.
 
-use mesh_core::{EditError, EditLog, FaceId, Few, Probe, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, FaceId, Few, Probe, Slot, VertexId};
 
 use super::{Refusal, faced_by, tell_renamed};
 use crate::mesh::{CornerId, EditableCornerTable, edge_between};
 
 impl<P: Probe> EditableCornerTable<P> {
-    /// Adds the triangle over three vertices, beside the triangles that run its sides the other way.
+    /// Adds a triangle with the given vertices, beside the triangles that run its sides the other
+    /// way.
     ///
     /// ```text
-    ///     s           l        At a vertex v of an open fan, from the edge v–s to the edge v–l, the
-    ///      \  fan at /         new triangle comes before the first or after the last triangle, or it
-    ///       \   v   /          closes the gap: of its sides v–u and w–v, u is l or w is s.
+    ///     s           l        The fan of v is open, from the edge v–s to the edge v–l. The new
+    ///      \  fan at /         triangle has the sides v–u and w–v. It comes before the first
+    ///       \   v   /          triangle (w = s), after the last (u = l), or closes the gap (both).
     /// ```
     pub(super) fn add_triangle(
         &mut self,
@@ -35,7 +36,7 @@ impl<P: Probe> EditableCornerTable<P> {
         self.check_room(0, 1)?;
         let places = [self.gap(a, b, c)?, self.gap(b, c, a)?, self.gap(c, a, b)?];
 
-        // What lies across the side from each vertex on is opposite to the corner before it.
+        // The corner across a side is opposite to the corner of the third vertex.
         let new = self.new_corners(0);
         let [ab, bc, ca] = places.map(|gap| gap.across);
         self.push_triangle([a, b, c], [bc, ca, ab]);
@@ -55,7 +56,7 @@ impl<P: Probe> EditableCornerTable<P> {
         Ok(at_a.triangle())
     }
 
-    /// Where a triangle with the sides w–v and v–u comes into the fan of `v`.
+    /// Finds where a triangle with the sides w–v and v–u fits into the fan of `v`.
     fn gap(&self, v: VertexId, u: VertexId, w: VertexId) -> Result<Gap, Refusal> {
         let Some(first) = self.corner.read(v.index()).get() else {
             return Ok(Gap {
@@ -64,7 +65,7 @@ impl<P: Probe> EditableCornerTable<P> {
             });
         };
         let (mut last, mut end) = (first.next(), Slot::NONE);
-        // The triangle in which v is followed by u, and that in which it is followed by w.
+        // The corners after v in the triangles in which v is followed by u, and by w.
         let (mut at_u, mut at_w) = (None, None);
         for (after, across) in self.fan(v) {
             let beyond = *self.vertex.read(after.index());
@@ -79,7 +80,8 @@ impl<P: Probe> EditableCornerTable<P> {
         let beyond_last = *self.vertex.read(last.next().index());
         let (joins_last, joins_first) =
             (open && beyond_last == u, open && at_w == Some(first.next()));
-        // The boundary edges where the triangle does not fit are run already, the other edges are full.
+        // If the triangle does not fit, a boundary edge is run in this direction already, or an
+        // edge is full.
         if let Some(at_u) = at_u {
             return Err(if open && at_u == first.next() {
                 self.runs(v, u, at_u)
@@ -106,6 +108,7 @@ impl<P: Probe> EditableCornerTable<P> {
         })
     }
 
+    /// Returns the error that `corner`'s triangle already runs the side `from`–`to`.
     fn runs(&self, from: VertexId, to: VertexId, corner: CornerId) -> Refusal {
         EditError::RepeatedSide {
             from,
@@ -114,14 +117,15 @@ impl<P: Probe> EditableCornerTable<P> {
         }
     }
 
-    /// The edge between the vertex that is followed by `after`, and that of `after`, has two faces.
+    /// Returns the error for an edge with two faces: from the vertex before `after` to that of
+    /// `after`.
     fn full(&self, after: CornerId) -> Refusal {
         EditError::FullEdge {
             edge: self.edge(after.next()),
         }
     }
 
-    /// Removes `f`. The edges it shared are those of its neighbours alone.
+    /// Removes `f`. The edges that it shared become boundary edges of its neighbours.
     pub(super) fn remove_triangle(
         &mut self,
         f: FaceId,
@@ -144,8 +148,8 @@ impl<P: Probe> EditableCornerTable<P> {
         Ok(())
     }
 
-    /// Removes `v` and all triangles at it. Each vertex around loses one of its triangles, or two that
-    /// are beside each other.
+    /// Removes `v` and all triangles at it. Each adjacent vertex loses one triangle, or two
+    /// adjacent ones.
     pub(super) fn remove_star(
         &mut self,
         v: VertexId,
@@ -154,7 +158,8 @@ impl<P: Probe> EditableCornerTable<P> {
         if self.check_vertex(v)?.get().is_some() {
             let (star, closed) = self.star(v);
             let star = star.as_slice();
-            // Between the corners of the star, counter-clockwise; outside of an open one there is none.
+            // One gap between each two consecutive corners of the star, counter-clockwise. At an
+            // end of an open star, one of the two is `None`.
             let gaps = (0..star.len() + usize::from(!closed)).map(|i| {
                 let before = match i {
                     0 if closed => star.last(),
@@ -177,7 +182,7 @@ impl<P: Probe> EditableCornerTable<P> {
         Ok(())
     }
 
-    /// The corners at `v`, counter-clockwise, and whether its fan is closed.
+    /// Returns the corners at `v`, counter-clockwise, and whether its fan is closed.
     pub(super) fn star(&self, v: VertexId) -> (Few<CornerId>, bool) {
         let mut star = Few::new();
         let mut closed = false;
@@ -188,8 +193,8 @@ impl<P: Probe> EditableCornerTable<P> {
         (star, closed)
     }
 
-    /// The vertex between two corners at `v` that follow each other, and what lies across the outer
-    /// sides of their triangles: before both, around that vertex, and after both.
+    /// Returns the vertex between two consecutive corners at `v`, and the corners across the outer
+    /// sides of their triangles: before both in the fan of that vertex, and after both.
     fn rim(
         &self,
         v: VertexId,
@@ -197,8 +202,8 @@ impl<P: Probe> EditableCornerTable<P> {
         next: Option<CornerId>,
     ) -> (VertexId, [Slot<CornerId>; 2]) {
         let at = next.map_or_else(|| before.map(CornerId::prev), |c| Some(c.next()));
-        let at = at.expect("a triangle on one side at least");
-        // Of two triangles with the same corners each lies across all sides of the other.
+        let at = at.expect("there is a triangle on at least one side");
+        // If two triangles have the same corners, each lies across all sides of the other.
         let outer = |c: Option<CornerId>| {
             let across = c.and_then(|c| self.opposite(c));
             Slot::from(across.filter(|&o| self.vertex(o) != v))
@@ -209,11 +214,11 @@ impl<P: Probe> EditableCornerTable<P> {
     fn delete_star(&mut self, star: &[CornerId], closed: bool, log: &mut impl EditLog<Self>) {
         for &c in star {
             let [next, prev] = [c.next(), c.prev()];
-            // Each inner spoke is told by the first of its triangles.
+            // Each inner spoke is reported by the first of its triangles.
             log.removed_edge(self.edge(next));
             let across = *self.opposite.read(c.index());
             match across.get() {
-                // Two triangles with the same corners: the edge is told by one of them.
+                // Two triangles with the same corners: only one of them reports the edge.
                 Some(o) if closed && star.len() == 2 && star.contains(&o) => {
                     if c < o {
                         log.removed_edge(faced_by(c));
@@ -232,17 +237,17 @@ impl<P: Probe> EditableCornerTable<P> {
     }
 }
 
-/// Where a new triangle comes into a fan.
+/// The place of a new triangle in a fan.
 #[derive(Clone, Copy)]
 struct Gap {
-    /// What lies across the side that leaves the vertex.
+    /// The corner across the side that leaves the vertex.
     across: Slot<CornerId>,
-    /// Whether the fan begins with the new triangle.
+    /// Whether the new triangle becomes the first of the fan.
     is_first: bool,
 }
 
-/// Triangles beside each other are taken out of the fan of a vertex: `before` lies across the first
-/// of them, `after` across the last, counter-clockwise.
+/// Removal of adjacent triangles from the fan of a vertex. `before` is the corner across the first
+/// of them, `after` the corner across the last, counter-clockwise.
 impl<P: Probe> EditableCornerTable<P> {
     fn check_block(
         &self,
@@ -256,7 +261,8 @@ impl<P: Probe> EditableCornerTable<P> {
         Ok(())
     }
 
-    /// The fan begins after what is taken out, or, if nothing comes after, where it did.
+    /// Updates `corner(v)`: the fan begins after the removed triangles; if nothing follows, as
+    /// before.
     fn cut_block(&mut self, v: VertexId, before: Slot<CornerId>, after: Slot<CornerId>) {
         match after.get() {
             Some(after) => *self.corner.write(v.index()) = Slot::some(after.next()),
@@ -265,7 +271,7 @@ impl<P: Probe> EditableCornerTable<P> {
         }
     }
 
-    /// Leaves the edge that `c` faces to the triangle across, or removes it.
+    /// Makes the edge that `c` faces a boundary edge of the triangle across, or removes it.
     fn open_side(&mut self, c: CornerId, across: Slot<CornerId>, log: &mut impl EditLog<Self>) {
         match across.get() {
             Some(o) => {

@@ -1,6 +1,6 @@
-//! An edge turned within its quad.
+//! Edge flip: an edge turned within its quad.
 
-use mesh_core::{EditError, EditLog, Probe, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, Probe, Slot, VertexId};
 
 use super::{Refusal, tell_renamed};
 use crate::mesh::{CornerId, EdgeCorner, EditableCornerTable, edge_between};
@@ -9,11 +9,11 @@ impl<P: Probe> EditableCornerTable<P> {
     /// Turns `e` from A–B to D–C.
     ///
     /// ```text
-    ///        C                 C         T: p moves to D. c comes to face A–D, and n the edge.
-    ///       /c\               /c|r       R: r moves to C. o comes to face B–C, and q the edge.
+    ///        C                 C         T: p moves to D. c now faces A–D, n the new edge.
+    ///       /c\               /c|r       R: r moves to C. o now faces B–C, q the new edge.
     ///      /n p\             /  |  \
-    ///     A─────B     →     A n | q B    p faces C–A as before, and r faces D–B: three edges are
-    ///      \r q/             \  |  /     faced by another corner than before, two are not.
+    ///     A─────B     →     A n | q B    p still faces C–A, and r still faces D–B. The other
+    ///      \r q/             \  |  /     three edges are now faced by another corner.
     ///       \o/               p|o/
     ///        D                 D
     /// ```
@@ -38,7 +38,7 @@ impl<P: Probe> EditableCornerTable<P> {
         }
         let met = self.walk_around_both([vc, vd], [va, vb], [on, oq]);
         if met.unwrap_or_else(|| self.are_neighbours([on, op], va, vd)) {
-            // At an end with three edges and faces, too, C and D are neighbours: no other refusal.
+            // This check covers ends of valence three as well: C and D are adjacent there.
             return Err(EditError::EdgeExists { ends: [vc, vd] });
         }
 
@@ -50,7 +50,7 @@ impl<P: Probe> EditableCornerTable<P> {
         }
         *self.opposite.write(n.index()) = Slot::some(q);
         *self.opposite.write(q.index()) = Slot::some(n);
-        // A keeps n and B keeps q, each in the place of two corners.
+        // n is the corner at A in place of two, and q the corner at B.
         self.reenter(va, r, n);
         self.reenter(vb, p, q);
 
@@ -61,8 +61,8 @@ impl<P: Probe> EditableCornerTable<P> {
         Ok(turned)
     }
 
-    /// Whether C and D are neighbours, by walks around both at once: neither waits for the other, and
-    /// whichever is over first tells. `None` where one comes to a boundary.
+    /// Returns whether C and D are adjacent. Walks around both at once, because the two walks are
+    /// independent, and the one that ends first decides. Returns `None` if one reaches a boundary.
     #[inline]
     fn walk_around_both(
         &self,
@@ -85,7 +85,8 @@ impl<P: Probe> EditableCornerTable<P> {
         }
     }
 
-    /// The same by the whole fan of C, which goes on across `on` and across `op` on its other side.
+    /// Returns the same by a walk around the whole fan of C: from `on` one way, from `op` the
+    /// other.
     #[cold]
     #[inline(never)]
     fn are_neighbours(&self, [on, op]: [Slot<CornerId>; 2], va: VertexId, vd: VertexId) -> bool {
@@ -109,29 +110,29 @@ impl<P: Probe> EditableCornerTable<P> {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::{EditRecord, MeshEdit, MeshQuery, Representation, RowId};
+    use sixfold_core::{EditRecord, MeshEdit, MeshQuery, Representation, RowId};
 
     use super::super::tests::table;
     use super::*;
 
     #[test]
-    fn a_flip_keeps_the_rows_of_four_corners() {
+    fn a_flip_writes_the_expected_rows() {
         // C, A, B, D are v0, v1, v2, v3; a triangle lies across A–D, and one across B–C.
         let mut mesh = table(6, &[[0, 1, 2], [3, 2, 1], [3, 1, 4], [0, 2, 5]]);
         let mut record = EditRecord::new();
         let e = mesh.flip_edge(EdgeCorner::new(0), &mut record);
         assert_eq!(e, Ok(EdgeCorner::new(1)));
         assert_eq!(mesh.validate(), Ok(()));
-        let vertices: Vec<u32> = mesh.vertex_rows().iter().map(|v| v.row()).collect();
+        let vertices: Vec<u32> = mesh.corner_vertices().iter().map(|v| v.row()).collect();
         assert_eq!(vertices[..6], [0, 1, 3, 3, 2, 0]);
         let none = u32::MAX;
-        let opposite = mesh.opposite_rows().iter();
+        let opposite = mesh.opposite_corners().iter();
         let opposite: Vec<u32> = opposite.map(|c| c.get().map_or(none, RowId::row)).collect();
         assert_eq!(
             opposite,
             [8, 4, none, 11, 1, none, none, none, 0, none, none, 3]
         );
-        // All three at once: e1 was B–C, which c3 faces now, and e4 was A–D, which c0 faces now.
+        // Three renamings at once: e1 was B–C, which c3 now faces; e4 was A–D, which c0 now faces.
         let mut renamed = record.edges.renamed.clone();
         renamed.sort_unstable();
         assert_eq!(
@@ -142,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_that_would_come_twice_is_named() {
+    fn a_flip_to_an_existing_edge_is_refused() {
         let mut mesh = table(4, &[[0, 1, 2], [0, 2, 3], [0, 3, 1]]);
         let refused = mesh.flip_edge(EdgeCorner::new(0), &mut ());
         assert!(matches!(

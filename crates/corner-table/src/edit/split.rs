@@ -1,12 +1,12 @@
-//! Triangles cut in two or three, and a vertex split in two.
+//! Bisecting an edge, poking a face, splitting a vertex.
 
-use mesh_core::{EditError, EditLog, FaceId, Point, Probe, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, FaceId, Point, Probe, Slot, VertexId};
 
 use super::{Refusal, faced_by, tell_renamed};
 use crate::mesh::{CornerId, EdgeCorner, EditableCornerTable, edge_between};
 
 impl<P: Probe> EditableCornerTable<P> {
-    /// Puts m into `e`: T keeps A and R does, two new triangles have B.
+    /// Puts m into `e`: T and R keep A, two new triangles have B.
     ///
     /// ```text
     ///         C              T  p moves to m        new (C, m, B) has the corners t, u, w
@@ -68,7 +68,7 @@ impl<P: Probe> EditableCornerTable<P> {
         Ok(m)
     }
 
-    /// Puts m into the triangle (A, B, C), which keeps the side A–B.
+    /// Puts m into the triangle (A, B, C), which keeps its side A–B.
     ///
     /// ```text
     ///           C
@@ -99,7 +99,7 @@ impl<P: Probe> EditableCornerTable<P> {
         *self.opposite.write(j.index()) = Slot::some(u);
         self.answer(bc, Slot::some(z));
         self.answer(ca, Slot::some(w));
-        // At B the triangle (B, C, m) comes before the old one; C has the two new ones alone.
+        // At B, the triangle (B, C, m) comes before the old one. C has only the two new triangles.
         self.reenter(b, j, x);
         self.reenter(c, k, u);
 
@@ -112,8 +112,8 @@ impl<P: Probe> EditableCornerTable<P> {
         Ok(m)
     }
 
-    /// Splits `v` between two of its sides: n, the new vertex, gets the corners from the edge to
-    /// `right` to the edge to `left`.
+    /// Splits `v` between two of its sides: the new vertex n gets the corners from `right` to
+    /// `left`.
     ///
     /// ```text
     ///         left
@@ -125,7 +125,7 @@ impl<P: Probe> EditableCornerTable<P> {
     ///         right
     /// ```
     ///
-    /// Where a side is missing, its triangle is, and the new edge is on the boundary.
+    /// If `left` or `right` is `None`, its triangle is missing and the new edge is a boundary edge.
     pub(super) fn split_fan(
         &mut self,
         v: VertexId,
@@ -148,7 +148,7 @@ impl<P: Probe> EditableCornerTable<P> {
         if closed && (left.is_none() || right.is_none()) {
             return Err(EditError::NotOnBoundary { vertex: v });
         }
-        // The neighbours are numbered as the corners they come before; of an open fan there is one more.
+        // Each neighbour has the number of the corner after it; an open fan has one more neighbour.
         let place = |side: VertexId| {
             let mut before = star.iter().map(|c| *self.vertex.read(c.next().index()));
             let place = before.position(|u| u == side);
@@ -160,7 +160,7 @@ impl<P: Probe> EditableCornerTable<P> {
         let to = left.map_or(Ok(count), place)?;
         self.check_room(1, 2)?;
 
-        // n is given the corners from `from` to `to`, around the end of the list if need be.
+        // n gets the corners from `from` to `to`, past the end of the list if `from > to`.
         let around = from > to;
         let given = |i: usize| {
             if around {
@@ -178,7 +178,8 @@ impl<P: Probe> EditableCornerTable<P> {
         for (_, &c) in star.iter().enumerate().filter(|&(i, _)| given(i)) {
             *self.vertex.write(c.index()) = n;
         }
-        // What faces the edge to neighbour `i`: in the triangle that ends there, and in the next one.
+        // The corners that face the edge to neighbour `i`: in the triangle before it, and in the
+        // next.
         let ends = |i: usize| match i {
             0 if closed => Slot::some(star[count - 1].next()),
             0 => Slot::NONE,
@@ -214,7 +215,7 @@ impl<P: Probe> EditableCornerTable<P> {
             log.created_face(x.triangle());
         }
         let (first_of_v, first_of_n) = match (left, right) {
-            // The gap of an open fan stays with one of the two, and so does its beginning.
+            // An open fan has a gap: one of the two vertices keeps it, with the start of the fan.
             (Some(_), Some(_)) if closed => (upper[0], lower[2]),
             (Some(_), Some(_)) if around => (upper[0], if to > 0 { star[0] } else { upper[1] }),
             (_, Some(_)) => (if from > 0 { star[0] } else { lower[0] }, lower[2]),
@@ -227,8 +228,8 @@ impl<P: Probe> EditableCornerTable<P> {
         Ok(n)
     }
 
-    /// Between the two corners that faced an edge comes a triangle: `begins` now faces one of its
-    /// sides with `over_begins`, and `ends` the other with `over_ends`.
+    /// Inserts a triangle between the two corners that faced an edge: `begins` and `ends` now face
+    /// two of its sides, whose corners in the triangle are `over_begins` and `over_ends`.
     fn slit(
         &mut self,
         begins: Slot<CornerId>,
@@ -239,14 +240,14 @@ impl<P: Probe> EditableCornerTable<P> {
     ) {
         self.answer(begins, Slot::some(over_begins));
         self.answer(ends, Slot::some(over_ends));
-        // The lower name stays; of the two edges, the other is new.
+        // The lower corner keeps its handle; the other edge is new.
         let [one, other] =
             [(begins, over_begins), (ends, over_ends)].map(|(old, new)| old.get().unwrap_or(new));
         log.created_edge(faced_by(one.max(other)));
     }
 }
 
-/// Tells that `old` faces a new edge: the one that it faced with `across` is faced by `new` instead.
+/// Reports that `old` faces a new edge, and that `new` faces the edge it faced with `across`.
 #[inline]
 fn tell_cut<P: Probe>(
     log: &mut impl EditLog<EditableCornerTable<P>>,

@@ -1,6 +1,6 @@
-//! An edge collapsed into one of its ends.
+//! Collapse of an edge into one of its ends.
 
-use mesh_core::{EditError, EditLog, FaceId, Few, Lookup, Pair, Point, Probe, VertexId};
+use sixfold_core::{EditError, EditLog, FaceId, Few, Lookup, Pair, Point, Probe, VertexId};
 
 use super::corners::third;
 use super::find::Refused;
@@ -8,7 +8,7 @@ use super::{Edge, listens};
 use crate::mesh::{BLANK_CORNER, EditableFaceVertexMesh};
 
 impl<P: Probe> EditableFaceVertexMesh<P> {
-    /// [`collapse_edge`](mesh_core::MeshEdit::collapse_edge).
+    /// Implements [`collapse_edge`](sixfold_core::MeshEdit::collapse_edge).
     pub(super) fn collapse(
         &mut self,
         e: Edge,
@@ -71,7 +71,8 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         Ok(keep)
     }
 
-    /// Whether the end that stays, and the third corners of the triangles `dying`, keep a face.
+    /// Checks that the end `keep` and the third corners of the removed triangles `dying` keep a
+    /// face.
     fn check_last_faces(
         &self,
         e: Edge,
@@ -99,13 +100,13 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         }
     }
 
-    /// How many corners the polygons among `faces` have.
+    /// Returns the total number of corners of the polygons among `faces`.
     fn corners_of_polygons(&self, faces: &[FaceId]) -> usize {
         let degrees = faces.iter().map(|&f| self.known_face(f).len());
         degrees.filter(|&degree| degree > 3).sum()
     }
 
-    /// Takes the corner `gone` from those of `faces` that are there still.
+    /// Removes the corner `gone` from those of `faces` that still exist.
     fn shorten(&mut self, faces: &[FaceId], gone: VertexId) {
         for &f in faces {
             let face = self.known_face(f);
@@ -118,7 +119,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         }
     }
 
-    /// The neighbours of `gone` but for `keep`, and whether they are neighbours of `keep` already.
+    /// Returns the neighbours of `gone` except `keep`, each with whether it is adjacent to `keep`.
     fn edges_met(&self, gone: VertexId, keep: VertexId) -> Vec<(VertexId, bool)> {
         let ring = self.ring(gone).into_vertices();
         let others = ring.filter(|&v| v != keep);
@@ -127,7 +128,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
             .collect()
     }
 
-    /// Tells what became of the edges at `gone`, and of those at `keep` that came together with them.
+    /// Reports the changes of the edges at `gone`, and of those at `keep` with which they merge.
     fn tell_met(
         &self,
         met: &[(VertexId, bool)],

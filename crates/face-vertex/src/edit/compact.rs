@@ -1,11 +1,11 @@
-//! All holes and blanks closed up.
+//! Compaction: removal of the deleted rows and of the blanks.
 
-use mesh_core::{EditLog, FaceId, HoleSet, Holes, MeshQuery, Pair, Probe, RowId, row};
+use sixfold_core::{EditLog, FaceId, HoleSet, Holes, MeshQuery, Pair, Probe, RowId, row};
 
 use super::listens;
 use crate::mesh::{EditableFaceVertexMesh, Fan};
 
-/// What the rows of one kind are called once their holes are closed.
+/// The new rows of vertices or faces after compaction; `None` if there are no holes.
 struct NewNames(Option<Vec<u32>>);
 
 impl NewNames {
@@ -21,7 +21,7 @@ impl NewNames {
 }
 
 impl<P: Probe> EditableFaceVertexMesh<P> {
-    /// [`compact`](mesh_core::MeshEdit::compact).
+    /// Implements [`compact`](sixfold_core::MeshEdit::compact).
     pub(super) fn close_up(&mut self, log: &mut impl EditLog<Self>) {
         let vertices = NewNames::of(&self.vertex_holes, self.fans.len());
         let faces = NewNames::of(&self.face_holes, self.spans.len());
@@ -41,7 +41,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         self.face_holes.fill();
     }
 
-    /// Puts the fans one behind another, in the order of their vertices, and each in that of its faces.
+    /// Stores the fans without gaps, in vertex order, each in the order of its faces.
     fn close_pool(&mut self, faces: &NewNames) {
         let old = self.pool.rows();
         let mut pool: Vec<FaceId> = Vec::with_capacity(self.corners.len());

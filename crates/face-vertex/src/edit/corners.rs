@@ -1,23 +1,23 @@
-//! Faces as lists of corners.
+//! Functions on the corner list of a face.
 
-use mesh_core::{Pair, VertexId};
+use sixfold_core::{Pair, VertexId};
 
 use super::Edge;
 use crate::circulate::beside;
 
-/// The sides of a face.
+/// Returns the sides of a face.
 pub(super) fn sides(face: &[VertexId]) -> impl Iterator<Item = Edge> {
     Pair::sides(face.len(), |i| face[i])
 }
 
-/// The corners of a face that has `v`, from there on.
+/// Returns the corners of a face that contains `v`, starting at `v`.
 pub(super) fn from_corner(face: &[VertexId], v: VertexId) -> impl Iterator<Item = VertexId> {
     let at = face.iter().position(|&corner| corner == v);
-    let (before, after) = face.split_at(at.expect("I3: a face in the fan of a vertex names it"));
+    let (before, after) = face.split_at(at.expect("I3: a face in the fan of a vertex contains it"));
     after.iter().chain(before).copied()
 }
 
-/// Of a triangle along `e`, the end to which it runs `e`, and its third corner.
+/// Returns the end of the side `e` in the direction of a triangle at `e`, and the third corner.
 #[inline]
 pub(super) fn third(face: [VertexId; 3], e: Edge) -> (VertexId, VertexId) {
     let [a, b, c] = face;
@@ -31,7 +31,7 @@ pub(super) fn third(face: [VertexId; 3], e: Edge) -> (VertexId, VertexId) {
     (beside(&face, apex)[0], apex)
 }
 
-/// A vertex that comes twice.
+/// Returns a vertex that occurs twice.
 pub(super) fn repeated(corners: &[VertexId]) -> Option<VertexId> {
     const FEW: usize = 16;
     if corners.len() <= FEW {

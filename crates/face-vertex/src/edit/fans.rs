@@ -1,4 +1,4 @@
-//! The incidence lists under repair: each fan lies in the pool where there is room for it.
+//! Changes of fans: each fan is in the pool where it has room.
 //!
 //! ```text
 //!            v's fan      behind it          v's fan
@@ -6,21 +6,22 @@
 //!                                                              start, length      room
 //! ```
 //!
-//! A place that no fan has is blank, so that the one behind a fan tells by itself whether it is free: no
-//! table of capacities is needed. A fan that moves takes room for twice its faces, and eight at least
-//! (doubling: Cormen et al., Introduction to Algorithms, 17.4). So each face that joins costs O(1)
-//! time and places, amortised, once each fan of the input has moved.
+//! Places outside all fans are blank. The place behind a fan therefore shows whether it is free,
+//! and no table of capacities is needed. A fan that moves gets room for twice its faces, at least
+//! eight (doubling: Cormen et al., Introduction to Algorithms, 17.4). After each fan of the input
+//! has moved once, adding a face thus costs O(1) amortised time and places.
 
 use std::ops::Range;
 
-use mesh_core::{FaceId, Few, Lookup, MAX_ROWS, Point, Probe, VertexId, row};
+use sixfold_core::{FaceId, Few, Lookup, MAX_ROWS, Point, Probe, VertexId, row};
 
 use super::find::mask;
 use crate::mesh::{BLANK_PLACE, EditableFaceVertexMesh, Fan};
 
 impl<P: Probe> EditableFaceVertexMesh<P> {
-    /// How many blanks follow a fan of `len` faces, one of them new, that has moved to the end of the
-    /// pool: none where places run short, so that what [`check_room`](Self::check_room) finds is enough.
+    /// Returns the blanks that follow a fan of `len` faces, one of them new, after its move to the
+    /// end of the pool. Returns no blanks if places are short, so that
+    /// [`check_room`](Self::check_room) is sufficient.
     fn spare(&self, len: u32) -> impl Iterator<Item = FaceId> + use<P> {
         let room = if self.pool.len() < MAX_ROWS / 2 {
             (2 * (len - 1)).max(8)
@@ -30,7 +31,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         (len..room).map(|_| BLANK_PLACE)
     }
 
-    /// Puts `f` into the fan of `v`; O(1) amortised.
+    /// Adds `f` to the fan of `v`; O(1) amortised.
     #[inline]
     pub(super) fn join(&mut self, v: VertexId, f: FaceId) {
         let fan = *self.fans.read(v.index());
@@ -46,7 +47,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         self.fans.write(v.index()).len = fan.len + 1;
     }
 
-    /// Moves the fan of `v` to the end of the pool, with `f` at its end and room for more.
+    /// Moves the fan of `v` to the end of the pool, with `f` as its last face and room for more.
     #[inline(never)]
     fn move_and_join(&mut self, v: VertexId, fan: Fan, f: FaceId) {
         let moved = Fan {
@@ -62,7 +63,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         *self.fans.write(v.index()) = moved;
     }
 
-    /// Takes `f` out of the fan of `v`; O(length).
+    /// Removes `f` from the fan of `v`; O(length).
     #[inline]
     pub(super) fn leave(&mut self, v: VertexId, f: FaceId) {
         let fan = *self.fans.read(v.index());
@@ -74,18 +75,19 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         self.fans.write(v.index()).len = fan.len - 1;
     }
 
-    /// Puts `new` into the fan of `v` in the place of `old`; O(length).
+    /// Replaces `old` by `new` in the fan of `v`; O(length).
     #[inline]
     pub(super) fn swap(&mut self, v: VertexId, old: FaceId, new: FaceId) {
         let place = self.place_of(*self.fans.read(v.index()), old);
         *self.pool.write(place) = new;
     }
 
-    /// Where `f` is in `fan`, which has it.
+    /// Returns the place of `f` in `fan`, which contains it.
     #[inline]
     fn place_of(&self, fan: Fan, f: FaceId) -> usize {
         let start = fan.range().start;
-        // Without a branch, for where it is follows no pattern. Another fan may have it behind.
+        // Without a branch, because its place is unpredictable. Another fan behind may contain it
+        // too.
         let hits = if let Some(faces) = self.lanes::<8>(fan) {
             mask(faces.map(|face| u32::from(face == f)))
         } else if let Some(faces) = self.lanes::<16>(fan) {
@@ -98,10 +100,10 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         }
         let faces = self.pool.read_range(fan.range());
         let place = faces.iter().position(|&face| face == f);
-        start + place.expect("I3: the fan of a corner names its face")
+        start + place.expect("I3: the fan of a corner contains its face")
     }
 
-    /// Takes the faces `old` out of the fan of `v`, sorted if they are many, and puts `new` in.
+    /// Replaces the faces `old` in the fan of `v` by `new`; more than four old ones must be sorted.
     pub(super) fn exchange(&mut self, v: VertexId, old: &[FaceId], new: &[FaceId]) {
         const FEW: usize = 4;
         if old.len() > FEW {
@@ -120,7 +122,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         new.for_each(|&g| self.join(v, g));
     }
 
-    /// Gives `v` the fan `faces`; O(faces + length) amortised.
+    /// Sets the fan of `v` to `faces`; O(faces + length) amortised.
     pub(super) fn refill(&mut self, v: VertexId, faces: &[FaceId]) {
         let old = self.fans.read(v.index()).range();
         let end = old.start + faces.len();
@@ -148,14 +150,14 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         self.fans.write(v.index()).len = len;
     }
 
-    /// Makes these places free.
+    /// Makes these places blank.
     pub(super) fn clear_places(&mut self, places: Range<usize>) {
         for place in places {
             *self.pool.write(place) = BLANK_PLACE;
         }
     }
 
-    /// Adds a vertex at `at` whose fan is `faces`; O(faces) amortised.
+    /// Adds a vertex at `at` with the fan `faces`; O(faces) amortised.
     pub(super) fn push_vertex(&mut self, at: Point, faces: &[FaceId]) -> VertexId {
         let v = VertexId::new(row(self.fans.len()));
         self.positions.push(at);

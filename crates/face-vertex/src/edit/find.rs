@@ -1,25 +1,25 @@
-//! What an edit looks up before it changes anything: names, faces along an edge, room for more.
+//! Lookups before an edit changes anything: handles, faces at an edge, room for new elements.
 
-use mesh_core::{EditError, FaceId, Few, IteratorExt, MAX_ROWS, Pair, Probe, VertexId};
+use sixfold_core::{EditError, FaceId, Few, IteratorExt, MAX_ROWS, Pair, Probe, VertexId};
 
 use crate::circulate::{beside, runs_between};
 use crate::mesh::{BLANK_CORNER, BLANK_PLACE, EditableFaceVertexMesh, Fan};
 
-/// Why an edit is refused here, whatever watches the tables.
+/// The error of an edit; the same type for every probe.
 pub(super) type Refused = EditError<VertexId, Pair<VertexId>, FaceId>;
 
-/// How many places an edit may fill, those that are there included: then even if all fans move at
-/// once, and leave blanks, the pool stays below [`MAX_ROWS`].
+/// Maximum number of places in the pool that an edit may fill, including those in use. Even if all
+/// fans then move and leave blanks, the pool stays below [`MAX_ROWS`].
 const MAX_PLACES: usize = MAX_ROWS / 4;
 
-/// Bit `i` for each `i` with a 1.
+/// Returns a number with bit `i` set for each `i` with `hits[i] == 1`.
 #[inline]
 pub(super) fn mask<const N: usize>(hits: [u32; N]) -> u32 {
     (0..N).fold(0, |mask, i| mask | hits[i] << i)
 }
 
 impl<P: Probe> EditableFaceVertexMesh<P> {
-    /// The fan of `v`.
+    /// Returns the fan of `v`, or an error if `v` does not exist.
     #[inline]
     pub(super) fn fan_of(&self, v: VertexId) -> Result<Fan, Refused> {
         if v.index() < self.fans.len() {
@@ -31,7 +31,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         Err(EditError::NoSuchVertex { vertex: v })
     }
 
-    /// The corners of `f`.
+    /// Returns the corners of `f`, or an error if `f` does not exist.
     #[inline]
     pub(super) fn corners_of_face(&self, f: FaceId) -> Result<&[VertexId], Refused> {
         if f.index() < self.spans.len() {
@@ -43,10 +43,10 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         Err(EditError::NoSuchFace { face: f })
     }
 
-    /// Visits the faces with corners at both ends of `e`, side by side or not; none if an end is no
-    /// vertex.
+    /// Visits the faces with corners at both ends of `e`, adjacent or not; none if an end is
+    /// missing.
     ///
-    /// Short fans are compared with each other, which costs no jump to the corners of a face.
+    /// Compares short fans with each other, which needs no jump to the corners of a face.
     #[inline]
     fn visit_both(&self, e: Pair<VertexId>, mut visit: impl FnMut(FaceId)) {
         let [a, b] = e.ends();
@@ -61,10 +61,10 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         }
     }
 
-    /// Visits what two fans of up to `N` faces have in common; false if one of them is so near the end
-    /// of the pool that there are no `N` places.
+    /// Visits the faces that two fans of up to `N` faces have in common. Returns false if a fan is
+    /// longer, or so near the end of the pool that fewer than `N` places follow.
     ///
-    /// All are compared with all, without a branch: which are the same follows no pattern.
+    /// Compares all faces with all, without a branch, because the matches are unpredictable.
     #[inline]
     fn compare<const N: usize>(&self, fans: [Fan; 2], visit: &mut impl FnMut(FaceId)) -> bool {
         let [Some(some), Some(others)] = fans.map(|fan| self.lanes::<N>(fan)) else {
@@ -78,7 +78,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
                 *hit |= u32::from(face == other);
             }
         }
-        // Behind the second fan blanks may be, or what the first has, too.
+        // The places behind the second fan can contain blanks or faces of the first fan: mask them.
         let mut hits = mask(hits) & ((1 << other_len) - 1);
         while hits != 0 {
             visit(others[hits.trailing_zeros() as usize]);
@@ -87,7 +87,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         true
     }
 
-    /// The same for long fans: visits the faces of the shorter that have the other vertex.
+    /// Does the same for long fans: visits faces of the shorter fan that contain the other vertex.
     #[cold]
     #[inline(never)]
     fn search(&self, ends: [(VertexId, Fan); 2], visit: &mut impl FnMut(FaceId)) {
@@ -102,7 +102,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         }
     }
 
-    /// The faces with corners at both ends of `e`, side by side or not.
+    /// Returns the faces with corners at both ends of `e`, adjacent or not.
     #[inline]
     pub(super) fn faces_at_both(&self, e: Pair<VertexId>) -> Few<FaceId> {
         let mut both = Few::new();
@@ -110,8 +110,8 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         both
     }
 
-    /// `N` places of the pool from the start of a fan on, one load where `N` is small; `None` if the
-    /// fan is longer, or so near the end of the pool that there are fewer.
+    /// Returns `N` places of the pool from the start of a fan, with one load if `N` is small.
+    /// Returns `None` if the fan is longer, or if fewer than `N` places follow.
     #[inline]
     pub(super) fn lanes<const N: usize>(&self, fan: Fan) -> Option<[FaceId; N]> {
         let start = fan.range().start;
@@ -122,14 +122,14 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         places.first_chunk().copied()
     }
 
-    /// Whether `f`, which has both ends of `e`, has them side by side.
+    /// Returns whether `f`, which has both ends of `e`, has them as adjacent corners.
     #[inline]
     pub(super) fn runs(&self, f: FaceId, e: Pair<VertexId>) -> bool {
         let [a, b] = e.ends();
         runs_between(self.known_face(f), a, b)
     }
 
-    /// The faces along `e`, of which there is one at least.
+    /// Returns the faces at `e`, at least one, or an error if `e` is not an edge.
     #[inline]
     pub(super) fn faces_of_edge(&self, e: Pair<VertexId>) -> Result<Few<FaceId>, Refused> {
         let mut along = Few::new();
@@ -144,7 +144,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         Ok(along)
     }
 
-    /// Whether `e` is an edge.
+    /// Returns whether `e` is an edge.
     #[inline]
     pub(super) fn has_edge(&self, e: Pair<VertexId>) -> bool {
         let mut has = false;
@@ -152,12 +152,12 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         has
     }
 
-    /// The two faces of `e`, that first which runs it from its lower end.
+    /// Returns the two faces of `e`; the first of them runs `e` from its lower end.
     #[inline]
     pub(super) fn two_faces(&self, e: Pair<VertexId>) -> Result<[FaceId; 2], Refused> {
         let [low, high] = e.ends();
         let mut found = 0;
-        // One of each direction: the last that runs up, and the last that runs down.
+        // One face for each direction: the last that runs up, and the last that runs down.
         let mut along = [BLANK_PLACE; 2];
         self.visit_both(e, |f| {
             let [before, after] = beside(self.known_face(f), low);
@@ -174,7 +174,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         }
     }
 
-    /// The corners of `f`, which is there, if they are three.
+    /// Returns the corners of `f`, which exists, or an error if it is not a triangle.
     #[inline]
     pub(super) fn triangle(&self, f: FaceId) -> Result<[VertexId; 3], Refused> {
         let face = self.known_face(f);
@@ -187,7 +187,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         }
     }
 
-    /// How many edges `v` has.
+    /// Returns the valence of `v`.
     pub(super) fn valence(&self, v: VertexId) -> usize {
         let ends = self
             .fan(v)
@@ -196,7 +196,8 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         ends.distinct().count()
     }
 
-    /// Whether handles can name so many more vertices and faces, and corners and places of the pool.
+    /// Checks that handles can name these numbers of additional vertices, faces and corners; each
+    /// corner also takes a place in the pool.
     #[inline]
     pub(super) fn check_room(
         &self,
@@ -222,7 +223,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
             ("faces", self.spans.len() + faces, MAX_ROWS),
             ("corners", self.corners.len() + corners, MAX_ROWS),
             (
-                "places around vertices",
+                "places in the fan pool",
                 self.pool.len() + corners,
                 MAX_PLACES,
             ),

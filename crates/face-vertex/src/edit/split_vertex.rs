@@ -1,13 +1,13 @@
-//! A vertex split in two, with a triangle on each side of the new edge.
+//! Splitting a vertex, with a triangle on each side of the new edge.
 
-use mesh_core::{EditError, EditLog, FaceId, Few, Pair, Point, Probe, VertexId, row};
+use sixfold_core::{EditError, EditLog, FaceId, Few, Pair, Point, Probe, VertexId, row};
 
 use super::find::Refused;
 use super::listens;
 use crate::circulate::beside;
 use crate::mesh::EditableFaceVertexMesh;
 
-/// A face around a vertex, between the neighbours that it names after and before the vertex.
+/// A face at a vertex, with the vertices after and before that vertex in the face.
 #[derive(Clone, Copy)]
 struct Spoke {
     after: VertexId,
@@ -15,19 +15,19 @@ struct Spoke {
     before: VertexId,
 }
 
-/// The faces around a vertex counter-clockwise; from the boundary, if it is on one.
+/// The faces around a vertex, counter-clockwise; from the boundary if the vertex is on one.
 struct Umbrella {
     spokes: Few<Spoke>,
     is_closed: bool,
 }
 
 impl Umbrella {
-    /// How many neighbours there are, each with the face after it, or on a boundary a gap.
+    /// Returns the number of neighbours. Each has the face after it or, on a boundary, a gap.
     fn len(&self) -> usize {
         self.spokes.len() + usize::from(!self.is_closed)
     }
 
-    /// Neighbour `i`.
+    /// Returns neighbour `i`.
     fn neighbour(&self, i: usize) -> VertexId {
         match self.spokes.get(i) {
             Some(spoke) => spoke.after,
@@ -35,14 +35,14 @@ impl Umbrella {
         }
     }
 
-    /// The faces from neighbour `from` on up to neighbour `to`.
+    /// Returns the faces from neighbour `from` up to neighbour `to`.
     fn faces(&self, from: usize, to: usize) -> Few<FaceId> {
         let all = self.between(from, to);
         let faces = all.filter_map(|i| self.spokes.get(i).map(|spoke| spoke.face));
         Few::from_iter(faces)
     }
 
-    /// The numbers of neighbours from `from` on and before `to`.
+    /// Returns the numbers of the neighbours from `from` up to but excluding `to`.
     fn between(&self, from: usize, to: usize) -> impl Iterator<Item = usize> + use<> {
         let len = self.len();
         let steps = (to + len - from) % len;
@@ -51,7 +51,7 @@ impl Umbrella {
 }
 
 impl<P: Probe> EditableFaceVertexMesh<P> {
-    /// [`split_vertex`](mesh_core::MeshEdit::split_vertex); `sides` are left and right.
+    /// Implements [`split_vertex`](sixfold_core::MeshEdit::split_vertex); `sides`: left, right.
     pub(super) fn split_fan(
         &mut self,
         v: VertexId,
@@ -65,7 +65,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         let moving = umbrella.faces(from, to);
         let mut staying = umbrella.faces(to, from);
         if from == to {
-            // All the way around, from the boundary to the boundary: no face moves.
+            // From the boundary all the way around to the boundary: no face moves.
             staying = Few::from_iter(self.fan(v).iter().copied());
         }
         self.check_room(1, 2, 6 + moving.len())?;
@@ -97,7 +97,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         if listens(log) {
             log.created_vertex(n);
             log.created_edge(Pair::new(v, n));
-            // Those between the sides, and the one on the boundary where there is no side.
+            // The neighbours between the sides, and the one on the boundary if a side is missing.
             let passed = umbrella.between(from, to).map(|i| umbrella.neighbour(i));
             let all = passed.chain([umbrella.neighbour(to)]);
             for other in all.filter(|&u| !sides.contains(&Some(u))) {
@@ -107,8 +107,8 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         Ok(n)
     }
 
-    /// Where left and right are among the neighbours of `v`: the part between them, counter-clockwise
-    /// from right to left, moves.
+    /// Returns the numbers of left and right among the neighbours of `v`. The part between them
+    /// moves, counter-clockwise from right to left.
     fn places_of_sides(
         &self,
         v: VertexId,
@@ -128,8 +128,8 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         }
     }
 
-    /// The faces around `v` in order; `None` where they are no single oriented fan, or there is none.
-    /// O(length · log length + corners of polygons).
+    /// Returns the faces around `v` in order, or `None` if they are not a single oriented fan or
+    /// `v` is isolated. O(length · log length + corners of polygons).
     fn umbrella(&self, v: VertexId) -> Option<Umbrella> {
         let spokes = self.fan(v).iter().map(|&face| {
             let [before, after] = beside(self.known_face(face), v);
@@ -145,7 +145,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
             return None;
         }
         let next = |spoke: &Spoke| sorted.binary_search_by_key(&spoke.before, |other| other.after);
-        // The first of an open fan comes after none.
+        // The first spoke of an open fan follows no other.
         let mut follow = Few::from_iter(sorted.iter().map(|_| false));
         for i in sorted.iter().filter_map(|spoke| next(spoke).ok()) {
             if std::mem::replace(&mut follow[i], true) {

@@ -1,14 +1,14 @@
-//! What the laws do not see: the tables after an edit, what they cost, and who panics.
+//! Tests beyond the conformance suite: the tables after an edit, their size, and panics.
 
 use crate::mesh::{BLANK_PLACE, EditableFaceVertexMesh};
-use mesh_core::{EditRecord, FaceSpans, MeshQuery, PolygonMesh, Representation};
+use sixfold_core::{EditRecord, FaceSpans, MeshQuery, PolygonMesh, Representation};
 
 use super::*;
 
 fn build(faces: &[&[u32]], vertices: u16) -> EditableFaceVertexMesh {
     let positions = (0..vertices).map(|i| Point::splat(f32::from(i)));
     let polygons = PolygonMesh::new(positions.collect::<Vec<_>>(), faces).expect("valid");
-    EditableFaceVertexMesh::from_polygons(&polygons).expect("holds everything")
+    EditableFaceVertexMesh::from_polygons(&polygons).expect("holds every mesh")
 }
 
 fn v(row: u32) -> VertexId {
@@ -23,7 +23,7 @@ fn edge(a: u32, b: u32) -> Edge {
     Pair::new(v(a), v(b))
 }
 
-/// The fan of each vertex, as it lies in the pool.
+/// Returns the start in the pool and the faces of the fan of each vertex.
 fn fans(mesh: &EditableFaceVertexMesh) -> Vec<(u32, Vec<usize>)> {
     let fan = |v: VertexId| {
         let faces = mesh.fan(v).iter().map(|f| f.index());
@@ -33,16 +33,16 @@ fn fans(mesh: &EditableFaceVertexMesh) -> Vec<(u32, Vec<usize>)> {
 }
 
 #[test]
-fn a_flip_changes_a_corner_of_each_face_and_four_fans() {
-    // v0 v1 v2 v3 around a square cut from v0 to v2.
+fn a_flip_changes_one_corner_per_face_and_four_fans() {
+    // A square v0 v1 v2 v3, cut from v0 to v2.
     let mut mesh = build(&[&[0, 1, 2], &[0, 2, 3]], 4);
     let mut record = EditRecord::new();
     assert_eq!(mesh.flip_edge(edge(0, 2), &mut record), Ok(edge(1, 3)));
     assert_eq!(mesh.validate(), Ok(()));
-    // f1 ran from v0 to v2 and keeps v0.
+    // f1 runs the edge from v0 to v2 and keeps v0.
     let corners: Vec<usize> = mesh.corners().iter().map(|v| v.index()).collect();
     assert_eq!(corners, [3, 1, 2, 0, 1, 3]);
-    // Those of v0 and v2 shrank where they were; v1 had no room, and v3 was the last.
+    // The fans of v0 and v2 shrank in place, that of v1 had no room and moved, that of v3 is last.
     let expected = [(0, vec![1]), (6, vec![0, 1]), (3, vec![0]), (5, vec![1])];
     assert_eq!(fans(&mesh)[..3], expected[..3]);
     assert_eq!(record.edges.renamed, [[edge(0, 2), edge(1, 3)]]);
@@ -50,18 +50,18 @@ fn a_flip_changes_a_corner_of_each_face_and_four_fans() {
 }
 
 #[test]
-fn a_fan_takes_the_blank_behind_it_before_it_moves() {
+fn a_fan_uses_the_blank_behind_it_before_it_moves() {
     let mut mesh = build(&[&[0, 1, 2], &[0, 2, 3], &[0, 3, 4]], 5);
     assert_eq!(mesh.fans()[0], Fan { start: 0, len: 3 });
-    mesh.remove_face(f(1), &mut ()).expect("it is there");
+    mesh.remove_face(f(1), &mut ()).expect("the face exists");
     assert_eq!(mesh.fan(v(0)), [f(0), f(2)]);
     assert_eq!(mesh.pool()[2], BLANK_PLACE);
     let again = mesh.add_face(&[v(0), v(2), v(3)], &mut ());
-    assert_eq!(again, Ok(f(3)), "no row is used again");
+    assert_eq!(again, Ok(f(3)), "rows are not reused");
     assert_eq!(mesh.fans()[0], Fan { start: 0, len: 3 });
     let places = mesh.pool().len();
     let more = mesh.add_face(&[v(0), v(4), v(1)], &mut ());
-    more.expect("three vertices that are there");
+    more.expect("three existing vertices");
     let moved = mesh.fans()[0];
     assert_eq!((moved.start as usize, moved.len), (places, 4));
     assert_eq!(mesh.pool()[..3], [BLANK_PLACE; 3]);
@@ -81,7 +81,7 @@ fn a_fan_that_grows_face_by_face_leaves_few_blanks() {
     }
     assert_eq!(mesh.validate(), Ok(()));
     assert_eq!(mesh.fan(v(0)).len(), 1001);
-    // The hub has moved to twice its length at each power of two, the rim once to eight places.
+    // The hub moved at each power of two, to twice its length; each rim vertex once, to 8 places.
     let hub = 4 * 1001;
     assert!(mesh.pool().len() <= hub + 9 * 1002 + 3);
     let one_by_one = mesh.pool().len();
@@ -91,28 +91,28 @@ fn a_fan_that_grows_face_by_face_leaves_few_blanks() {
 }
 
 #[test]
-fn compacting_is_building_anew() {
+fn compacting_gives_the_tables_of_a_new_build() {
     let mut mesh =
-        EditableFaceVertexMesh::from_polygons(&shapes::icosahedron()).expect("triangles");
+        EditableFaceVertexMesh::from_polygons(&sixfold_shapes::icosahedron()).expect("triangles");
     let faces: Vec<FaceId> = mesh.faces().collect();
     for &f in &faces {
         let at = Point::splat(f.index() as f32);
         mesh.poke_face(f, at, &mut ()).expect("always legal");
     }
-    mesh.remove_vertex(v(3), &mut ()).expect("it is there");
+    mesh.remove_vertex(v(3), &mut ()).expect("v3 exists");
     mesh.split_edge(edge(0, 12), Point::ONE, &mut ())
         .expect("it is an edge");
     let e = mesh.edges().find(|e| e.has(v(5))).expect("it has faces");
     mesh.collapse_edge(e, v(5), Point::ZERO, &mut ())
-        .expect("many faces are left");
+        .expect("many faces remain");
     assert!(matches!(mesh.spans(), FaceSpans::Scattered(_)));
     let polygons = mesh.to_polygons();
     let names = mesh.compact_with_names();
-    let anew = EditableFaceVertexMesh::from_polygons(&polygons).expect("holds everything");
+    let anew = EditableFaceVertexMesh::from_polygons(&polygons).expect("holds every mesh");
     assert_eq!(format!("{mesh:?}"), format!("{anew:?}"));
     assert!(
         mesh.memory().total() <= 2 * anew.memory().total(),
-        "given back"
+        "memory was released"
     );
     assert_eq!(mesh.vertex_rows(), mesh.vertex_count());
     // The first edge of v5 leads to v0.
@@ -121,9 +121,9 @@ fn compacting_is_building_anew() {
 }
 
 #[test]
-fn handles_that_name_nothing_are_refused() {
+fn handles_of_missing_elements_are_refused() {
     let mut mesh = build(&[&[0, 1, 2], &[0, 2, 3]], 4);
-    mesh.remove_vertex(v(3), &mut ()).expect("it is there");
+    mesh.remove_vertex(v(3), &mut ()).expect("v3 exists");
     let log = &mut ();
     for vertex in [v(3), v(4)] {
         let refused = Err(EditError::NoSuchVertex { vertex });
@@ -154,27 +154,27 @@ fn handles_that_name_nothing_are_refused() {
     assert_eq!(diagonal, Err(EditError::NoSuchEdge { edge: edge(0, 2) }));
 }
 
-/// The square without its corner v3 and the face there.
+/// Returns the square after removal of vertex v3 with its face.
 fn without_a_corner() -> EditableFaceVertexMesh {
     let mut mesh = build(&[&[0, 1, 2], &[0, 2, 3]], 4);
-    mesh.remove_vertex(v(3), &mut ()).expect("it is there");
+    mesh.remove_vertex(v(3), &mut ()).expect("v3 exists");
     mesh
 }
 
 #[test]
 #[should_panic(expected = "no vertex v3: it was deleted")]
-fn the_fan_of_a_deleted_vertex_panics_by_name() {
+fn the_fan_of_a_deleted_vertex_panics() {
     let _ = without_a_corner().vertex_vertices(v(3));
 }
 
 #[test]
 #[should_panic(expected = "no vertex v3: it was deleted")]
-fn the_position_of_a_deleted_vertex_panics_by_name() {
+fn the_position_of_a_deleted_vertex_panics() {
     let _ = without_a_corner().position(v(3));
 }
 
 #[test]
 #[should_panic(expected = "no face f1: it was deleted")]
-fn the_corners_of_a_deleted_face_panic_by_name() {
+fn the_corners_of_a_deleted_face_panic() {
     let _ = without_a_corner().face_vertices(f(1));
 }

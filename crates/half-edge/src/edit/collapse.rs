@@ -1,38 +1,40 @@
-//! Making one vertex of the two ends of an edge.
+//! Edge collapse: merges the two ends of an edge into one vertex.
 
-use mesh_core::{EdgeId, EditError, EditLog, FaceId, Point, Probe, Slot, VertexId};
+use sixfold_core::{EdgeId, EditError, EditLog, FaceId, Point, Probe, Slot, VertexId};
 
 use super::Refusal;
 use super::names::Names;
 use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
-/// An edge to be collapsed, from the end that goes: what was read to decide whether it may.
+/// The data of an edge collapse that the check has read.
 struct Collapse {
-    /// From the end that goes to the end that stays.
+    /// The half-edge from the removed end to the kept end.
     h: HalfEdgeId,
     into: Half,
     back: Half,
-    /// The third side and the third corner of the triangle on the left, and on the right.
+    /// The third side, with its record, of the triangle on the left and on the right. The origin of
+    /// the third side is the third corner.
     left: Option<(HalfEdgeId, Half)>,
     right: Option<(HalfEdgeId, Half)>,
     gone: Turn,
     kept: Turn,
 }
 
-/// What a walk around one end, from the edge back to it, came by.
+/// The result of a walk around one end, from the edge back to the edge.
 struct Turn {
-    /// How many spokes there are; where it matters, which is up to three.
+    /// The number of spokes. `glance` reports any valence other than 3 as 4.
     valence: usize,
     /// Whether the end is on a boundary.
     open: bool,
-    /// The spoke before the edge, and the one before that.
+    /// The last spoke before the edge, and the spoke before that.
     last: HalfEdgeId,
     last_but_one: HalfEdgeId,
 }
 
 impl<P: Probe> EditableHalfEdgeMesh<P> {
-    /// O(valence) of both ends, beyond 16 O(valence log valence); of a vertex in the middle of a
-    /// triangle, or of an edge, only what is around itself is read.
+    /// Collapses `e` into `keep`. O(valence) of both ends; O(valence log valence) above 16
+    /// neighbours. If the removed end has no neighbours except `keep` and the third corners, only
+    /// the rows around the removed end are read.
     ///
     /// ```text
     ///          c                      c
@@ -57,7 +59,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         Ok(keep)
     }
 
-    /// The link condition (Dey et al. 1999), and that no face has an end twice.
+    /// Checks the link condition (Dey et al. 1999), and that no face would contain `keep` twice.
     #[inline]
     fn check_collapse(&self, e: EdgeId, keep: VertexId) -> Result<Collapse, Refusal> {
         let pair = self.existing_edge(e)?;
@@ -73,7 +75,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         let t = h.twin();
         let left = self.third_side(h, &into);
         let right = self.third_side(t, &back);
-        // No neighbour is `keep` but along the edge, so it may stand for the corner that is not there.
+        // `keep` stands for a missing third corner: only the edge itself leads to `keep`.
         let apexes = [left, right].map(|side| side.map_or(keep, |(_, third)| third.origin));
         if apexes[0] == apexes[1] && apexes[0] != keep {
             let vertex = apexes[0];
@@ -97,7 +99,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         neighbours.sort();
         faces.sort();
         let kept = match right {
-            // None of its neighbours can be a common one: no need to walk around the end that stays.
+            // No common neighbour is possible, so a walk around the kept end is not needed.
             Some((last, _)) if neighbours.is_empty() => {
                 let found = |f: &FaceId| self.sides(*f).any(|(_, half)| half.origin == keep);
                 if faces.iter().any(found) {
@@ -134,8 +136,8 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         Ok(checked)
     }
 
-    /// Walks clockwise around the origin of `h` once, whose twin has the record `twin`, and visits the
-    /// record of each half that arrives there but `twin`.
+    /// Walks clockwise around the origin of `h` once. `twin` is the record of the twin of `h`;
+    /// `visit` gets the record of every other half-edge that arrives at the origin.
     #[inline]
     fn turn(
         &self,
@@ -162,8 +164,8 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         Ok(turn)
     }
 
-    /// What there is to know of `v` without a turn: its first spoke after an edge and its last one
-    /// before tell whether its valence is three; if not, it is given as four.
+    /// Describes `v` without a walk around it. The first spoke after the edge and the last one
+    /// before it show whether the valence is 3; any other valence is reported as 4.
     #[inline]
     fn glance(&self, v: VertexId, first: HalfEdgeId, last: HalfEdgeId) -> Turn {
         let leaving = self.leaving.read(v.index()).get().expect("I5");
@@ -179,7 +181,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         }
     }
 
-    /// What a boundary forbids: an inner edge across, and a third corner with no other face.
+    /// Refuses an inner edge between two boundaries, and a third corner without another face.
     #[cold]
     #[inline(never)]
     fn check_at_boundary(&self, e: EdgeId, checked: &Collapse) -> Result<(), Refusal> {
@@ -206,7 +208,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         Ok(())
     }
 
-    /// Whether all faces that are left are triangles, of which there are two.
+    /// Returns whether the two faces that remain at the merged vertex would both be triangles.
     #[cold]
     #[inline(never)]
     fn would_be_pillow(&self, checked: &Collapse) -> bool {
@@ -232,7 +234,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         } = *checked;
         let (t, next) = (h.twin(), into.next);
         let [v, keep] = [into.origin, back.origin];
-        // The sides of the triangles that go need no new origin.
+        // The half-edges of the removed triangles need no new origin.
         let mut spoke = match right {
             Some(_) => self.follow(back.next.twin()),
             None => back.next,
@@ -243,8 +245,9 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
             spoke = self.follow(spoke.twin());
         }
 
-        // On the left the spoke from `gone` goes, and the side from `keep` takes its place; a polygon
-        // or a boundary loop is closed where `h` was. The right may then be what the left has made it.
+        // On the left, the side from `keep` replaces the spoke of the removed end. A polygon or a
+        // boundary loop is closed where `h` was. After that, the right side may read rows that the
+        // left side has written.
         if let Some((last, at_last)) = left {
             self.replace(gone.last_but_one.twin(), last.twin(), next);
             self.pass_on_leaving(at_last.origin, last, next.twin());
@@ -265,7 +268,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
             after
         };
 
-        // The boundary half of either end; on the left a side has taken the place of a spoke.
+        // The boundary half-edge of either end. On the left, a side has replaced a spoke.
         let from = if gone.open && !kept.open { v } else { keep };
         let leaving = self.leaving.read(from.index()).get().expect("I5");
         let leaving = match left {
@@ -296,7 +299,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
 }
 
 impl Collapse {
-    /// The valence of the vertex that is left.
+    /// Returns the valence of the merged vertex.
     fn valence_after(&self) -> usize {
         let triangles = usize::from(self.left.is_some()) + usize::from(self.right.is_some());
         self.gone.valence + self.kept.valence - 2 - triangles

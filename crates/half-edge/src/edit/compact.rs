@@ -1,11 +1,11 @@
-//! Closing the holes.
+//! Compaction: closes the holes.
 
-use mesh_core::{EditLog, FaceId, HoleSet, Holes, MeshQuery, Probe, RowId, VertexId};
+use sixfold_core::{EditLog, FaceId, HoleSet, Holes, MeshQuery, Probe, RowId, VertexId};
 
 use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
 impl<P: Probe> EditableHalfEdgeMesh<P> {
-    /// O(mesh): all rows move down in order, under names that are counted once.
+    /// Moves all rows down over the holes, in order, and replaces the handles in them; O(mesh).
     pub(super) fn close_holes<L: EditLog<Self>>(&mut self, log: &mut L) {
         if self.hole_count() > 0 {
             self.rename_rows(log);
@@ -19,7 +19,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         self.face_holes.fill();
     }
 
-    /// Every name in the tables becomes the new one, and the halves, two rows an edge, move there.
+    /// Replaces every handle in the tables, and moves the half-edges, which have two rows per edge.
     fn rename_rows<L: EditLog<Self>>(&mut self, log: &mut L) {
         let vertices = self.vertex_holes.new_rows(self.vertex_rows());
         let edges = self.edge_holes.new_rows(self.edge_rows());
@@ -59,7 +59,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     }
 }
 
-/// Tells of each row that moves.
+/// Calls `renamed` for each row that moves.
 fn tell<H: RowId, P: Probe>(holes: &Holes<P>, new_rows: &[u32], mut renamed: impl FnMut(H, H)) {
     for old in holes.rows(new_rows.len()) {
         let new = new_rows[old as usize];

@@ -1,16 +1,17 @@
-//! Faces that come, and faces that go.
+//! Adding and removing faces.
 
-use mesh_core::{EditError, EditLog, FaceId, IteratorExt, Probe, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, FaceId, IteratorExt, Probe, Slot, VertexId};
 
 use super::Refusal;
 use super::names::Names;
 use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
 impl<P: Probe> EditableHalfEdgeMesh<P> {
-    /// O(valence) of the corners.
+    /// Adds a face over `corners`; O(valence) of the corners.
     ///
-    /// A side of the new face fills a boundary half, or is new. All faces at a vertex being one fan,
-    /// the only half that can be filled from there is `leaving`, and no edge may lead there otherwise.
+    /// Each side of the new face uses a boundary half-edge or a new edge. All faces at a vertex
+    /// form one fan, so the only boundary half-edge that leaves a vertex is `leaving`. If any other
+    /// edge leads to the next corner, the face is refused.
     pub(super) fn add(
         &mut self,
         corners: &[VertexId],
@@ -37,7 +38,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
             });
             (side, filled.is_none())
         };
-        // What comes in at the first corner is the last side.
+        // The last side arrives at the first corner.
         let closing = side(self, last);
         let mut arriving = closing;
         for (i, &v) in corners.iter().enumerate() {
@@ -56,7 +57,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         Ok(f)
     }
 
-    /// How many new edges a face over `corners` has, if it may be.
+    /// Checks a new face over `corners`; returns the number of edges that it adds.
     fn check_new_face(&self, corners: &[VertexId]) -> Result<usize, Refusal> {
         let degree = corners.len();
         if degree < 3 {
@@ -90,14 +91,15 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         Ok(new_edges)
     }
 
-    /// The half from one vertex to another, if there is one without a face.
+    /// Returns the boundary half-edge from one vertex to the other, if there is one.
     fn gap_towards(&self, from: VertexId, to: VertexId) -> Option<HalfEdgeId> {
         let h = self.leaving.read(from.index()).get()?;
         let [half, twin] = self.both(h);
         (half.face == Slot::NONE && twin.origin == to).then_some(h)
     }
 
-    /// Refuses an edge between two vertices whose half between them, if there is one, has a face.
+    /// Refuses if an edge joins the two vertices; it is known that no boundary half-edge runs from
+    /// `from` to `to`.
     fn check_no_edge(&self, from: VertexId, to: VertexId) -> Result<(), Refusal> {
         let mut spokes = self.spokes(from);
         let Some((h, arriving)) = spokes.find(|(_, arriving)| arriving.origin == to) else {
@@ -111,13 +113,14 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         }
     }
 
-    /// Joins two sides of a new face at `v`, each with whether it is new, and the boundary beside them.
+    /// Joins two sides of a new face at `v`, and the boundary beside them. The flag of a side is
+    /// true if its edge is new; otherwise the side has filled a boundary half-edge.
     ///
     /// ```text
-    /// arriving  leaving     on the boundary
-    /// new       new         the twin of one leads on to that of the other: v was isolated
-    /// filled    new         the twin of `leaving` leads on to what `arriving` led to
-    /// new       filled      what led to `leaving` leads on to the twin of `arriving`
+    /// arriving  leaving     boundary
+    /// new       new         next(twin(leaving)) = twin(arriving): v was isolated
+    /// filled    new         next(twin(leaving)) = the old next(arriving)
+    /// new       filled      next(the half-edge before leaving) = twin(arriving)
     /// filled    filled      the gap at v is closed
     /// ```
     fn join(
@@ -145,7 +148,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         self.link(arriving, leaving);
     }
 
-    /// The half before `h`, found around the vertex.
+    /// Returns the half-edge before `h`, found by a walk around its origin.
     fn before_in_turn(&self, h: HalfEdgeId) -> HalfEdgeId {
         let mut spoke = h;
         loop {
@@ -157,8 +160,8 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         }
     }
 
-    /// Whether the faces left at each corner of a face would be one fan: a corner on a boundary needs
-    /// a side there that lies on it.
+    /// Checks that the remaining faces at each corner of a face would form one fan: at a corner on
+    /// a boundary, a side of the face must be on the boundary too.
     pub(super) fn check_removable(&self, first: HalfEdgeId) -> Result<(), Refusal> {
         let mut h = first;
         let [mut half, mut twin] = self.both(h);
@@ -180,7 +183,8 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         }
     }
 
-    /// Whether the faces left at each neighbour of `v`, without those of `v`, would be one fan.
+    /// Checks that without the faces of `v`, the faces at each other corner of them would form one
+    /// fan.
     ///
     /// O(valence) for each corner of each face of `v`.
     pub(super) fn check_star_removable(&self, v: VertexId) -> Result<(), Refusal> {
@@ -201,7 +205,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
                 .map(|(_, half)| half.origin)
                 .filter(|&u| u != v)
             {
-                // Each fan that stays ends once on the way around.
+                // Each remaining fan ends once during the walk around the vertex.
                 let leaving = self.leaving.read(vertex.index()).get().expect("I5");
                 let (mut fans, mut before) = (0, stays(&self.row_of(leaving)));
                 for (_, arriving) in self.spokes(vertex) {
@@ -217,8 +221,8 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         Ok(())
     }
 
-    /// Unlinks the faces of `v`, counter-clockwise, from the boundary if there is one: then a side of
-    /// each lies on the boundary that the one before it has left.
+    /// Unlinks the faces of `v` counter-clockwise, starting at the boundary if there is one. Each
+    /// next face then has a side on the boundary that the face before it left.
     pub(super) fn unlink_star(&mut self, v: VertexId, log: &mut impl EditLog<Self>) {
         let Some(mut out) = self.leaving.read(v.index()).get() else {
             return;
@@ -237,14 +241,14 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         }
     }
 
-    /// Takes `f`, which `first` runs along, off the mesh, with the edges that only it had.
+    /// Removes `f` and the edges that only `f` has; O(valence) of the corners. `first` is a side of
+    /// `f`.
     ///
-    /// At each corner one half now leads on to another: the side that arrives there, or the boundary
-    /// half that came before its twin if the side goes; and the side that leaves, or what came after
-    /// its twin. A corner may be between fans meanwhile, where several faces go one after the other:
-    /// each gap then has its own two halves, and the way around the vertex still meets all.
-    ///
-    /// O(valence) of the corners.
+    /// At each corner, the `next` of `before` becomes `after`. `before` is the arriving side or, if
+    /// that side is removed, the half-edge before its twin. `after` is the leaving side or, if that
+    /// side is removed, the half-edge after its twin. While several faces are removed in turn, a
+    /// corner may have several fans. Each gap then has its own two half-edges, and the walk around
+    /// the vertex still visits all.
     pub(super) fn unlink_face(
         &mut self,
         f: FaceId,
@@ -274,7 +278,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
                 self.link(before, after);
                 self.set_leaving(v, after);
             }
-            // The first side is needed once more, at the last corner.
+            // The first side is needed again, at the last corner.
             if !goes {
                 self.halves.write(arriving.index()).face = Slot::NONE;
             } else if arriving != first {

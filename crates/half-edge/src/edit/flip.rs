@@ -1,13 +1,13 @@
-//! Turning an edge within the quad of its two triangles.
+//! Edge flip: turns an edge within the quad of its two triangles.
 
-use mesh_core::{EdgeId, EditError, FaceId, Probe};
+use sixfold_core::{EdgeId, EditError, FaceId, Probe};
 
 use super::Refusal;
 use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
 impl<P: Probe> EditableHalfEdgeMesh<P> {
-    /// O(valence) of `c` or of `d`, whichever is less: reads eight halves, and for each further edge
-    /// there one around either.
+    /// Flips `e`. O(valence) of `c` or `d`, whichever is smaller: reads the records of five edges,
+    /// then one half-edge around each of `c` and `d` per step.
     ///
     /// ```text
     ///        c                    c
@@ -41,7 +41,8 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         if c == d {
             return Err(EditError::SameApex { edge: e, vertex: c });
         }
-        // Of three edges at an end, the one that is neither turned nor the first after it is the last.
+        // An end has three edges if the spoke after `e` is directly followed by the spoke before
+        // `e`.
         let inner = |half: &Half| half.face.get().is_some();
         if at_da.next == ca.twin() && inner(&at_da) {
             return Err(EditError::LowValence { vertex: a });
@@ -49,8 +50,8 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         if at_cb.next == db.twin() && inner(&at_cb) {
             return Err(EditError::LowValence { vertex: b });
         }
-        // Around both apexes at once, from one side of the triangle to the other: neither walk waits
-        // for the other, and whichever is over first has seen all that may lead across.
+        // Walks around both third corners at once, so that neither walk waits for the other. The
+        // walk that ends first has visited every edge that could join them.
         let (mut x, mut y) = (at_ac.next, at_bd.next);
         while x != bc.twin() && y != ad.twin() {
             let [to_c, to_d] = [x, y].map(|spoke| self.row_of(spoke.twin()));
@@ -98,8 +99,8 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         }
     }
 
-    /// The third side of the triangle that `h`, with its record, runs along; none along a polygon or
-    /// a boundary loop.
+    /// Returns the third side of the triangle along `h`, with its record, or `None` if `h` is along
+    /// a polygon or a boundary loop. `half` is the record of `h`.
     #[inline]
     pub(super) fn third_side(&self, h: HalfEdgeId, half: &Half) -> Option<(HalfEdgeId, Half)> {
         half.face.get()?;

@@ -1,11 +1,12 @@
-//! Names to look others up in.
+//! A set of handles for lookups.
 
-use mesh_core::{Few, Lookup, RowId};
+use sixfold_core::{Few, Lookup, RowId};
 
-/// A few names, kept in place, which answer whether another is one of them.
+/// A set of handles, stored in place while it is small.
 ///
-/// 64 bits say no for most that are not; only what they let pass is compared. From the 17th name on
-/// they go to a sorted list, so that a vertex of valence 100,000 costs O(valence log valence).
+/// A filter of 64 bits rejects most handles that are not in the set; only the others are compared.
+/// From the 17th handle on, the handles are in a sorted list, so that a vertex of valence 100,000
+/// costs O(valence log valence).
 pub(super) struct Names<H> {
     filter: u64,
     names: Few<H>,
@@ -20,7 +21,8 @@ impl<H: RowId> Names<H> {
         }
     }
 
-    /// Adds `name`; before the first question all must be there, and [`sort`](Self::sort) called.
+    /// Adds `name`. After the last one, call [`sort`](Self::sort) before the first
+    /// [`has`](Self::has).
     #[inline]
     pub(super) fn push(&mut self, name: H) {
         self.filter |= bit(name);
@@ -32,7 +34,7 @@ impl<H: RowId> Names<H> {
         self.names.is_empty()
     }
 
-    /// All of them, in no order.
+    /// Iterates over the handles, in no particular order.
     pub(super) fn iter(&self) -> impl Iterator<Item = &H> {
         self.names.iter()
     }
@@ -48,7 +50,7 @@ impl<H: RowId> Names<H> {
     }
 }
 
-/// The bit of a name: names that follow each other have different ones.
+/// Returns the filter bit of a handle; consecutive handles have different bits.
 #[inline]
 fn bit<H: RowId>(name: H) -> u64 {
     1 << (name.row().wrapping_mul(0x9e37_79b9) >> 26)
@@ -56,12 +58,12 @@ fn bit<H: RowId>(name: H) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use mesh_core::VertexId;
+    use sixfold_core::VertexId;
 
     use super::*;
 
     #[test]
-    fn what_was_pushed_is_found_however_many() {
+    fn pushed_handles_are_found_at_every_length() {
         for len in [0, 1, 15, 16, 17, 40, 300] {
             let mut names = Names::none();
             for i in (0..len).rev() {

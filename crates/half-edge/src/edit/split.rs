@@ -1,13 +1,13 @@
-//! Cutting edges and faces, and joining faces.
+//! Splitting edges and faces, and merging faces.
 
-use mesh_core::{EdgeId, EditError, EditLog, FaceId, Point, Probe, Slot, VertexId, row};
+use sixfold_core::{EdgeId, EditError, EditLog, FaceId, Point, Probe, Slot, VertexId, row};
 
 use super::Refusal;
 use super::names::Names;
 use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
 impl<P: Probe> EditableHalfEdgeMesh<P> {
-    /// O(degree) of one face of `e`.
+    /// Splits `e` at a new vertex; O(degree) of one face of `e`.
     pub(super) fn split(
         &mut self,
         e: EdgeId,
@@ -21,7 +21,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         Ok(self.row_of(n).origin)
     }
 
-    /// O(1): both faces are triangles.
+    /// Splits `e` and its triangles at a new vertex; O(1).
     pub(super) fn bisect(
         &mut self,
         e: EdgeId,
@@ -56,15 +56,16 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         Ok(self.row_of(n).origin)
     }
 
-    /// A half of `e` whose twin has a face, along which the half before it is near.
+    /// Returns a half-edge of `e` whose twin has a face, so that the half-edge before the twin is
+    /// near.
     fn half_beside_a_face(&self, e: EdgeId) -> Result<HalfEdgeId, Refusal> {
         let [_, other] = self.existing_edge(e)?;
         let [h, t] = self.halves_of(e);
         Ok(if other.face == Slot::NONE { t } else { h })
     }
 
-    /// Puts a vertex into the edge of `h`, whose twin has a face and comes after `before` there; the
-    /// new half that comes after `h`.
+    /// Inserts a vertex into the edge of `h`; returns the new half-edge after `h`. The twin of `h`
+    /// has a face, and follows `before` along it.
     ///
     /// ```text
     ///        h                    h       n
@@ -82,7 +83,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         let t = h.twin();
         let [half, twin] = self.both(h);
         let n = self.next_half();
-        // On a boundary it is `n` that runs along it.
+        // If the edge is on a boundary, `n` is the boundary half-edge at m.
         let m = self.push_vertex(at, Slot::some(n));
         self.push_edge([Half { origin: m, ..half }, Half { next: t, ..twin }]);
         self.link(h, n);
@@ -94,8 +95,8 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         n
     }
 
-    /// Cuts a face by an edge from where `q` ends to where `p` ends, two halves along it; the part
-    /// from `p` to `q` is new. The half of the new edge in the new face.
+    /// Cuts a face by an edge from the target of `q` to the target of `p`. The part after `p` up to
+    /// `q` becomes a new face. Returns the half-edge of the new edge that has the new face.
     ///
     /// ```text
     ///    ───► u ───► ┄        p ends at u, q at w; x runs w → u in the new face
@@ -112,7 +113,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     ) -> HalfEdgeId {
         let [at_p, from_p] = self.both(p);
         let [at_q, from_q] = self.both(q);
-        let old = at_p.face.get().expect("a face is cut");
+        let old = at_p.face.get().expect("p has a face");
         let new = self.next_face();
         let x = self.push_edge([
             Half {
@@ -136,7 +137,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         x
     }
 
-    /// O(degree): one new edge and one triangle for each side.
+    /// Splits `f` into one triangle per side, around a new vertex; O(degree).
     ///
     /// ```text
     ///          c
@@ -201,7 +202,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         Ok(m)
     }
 
-    /// O(degree + valence).
+    /// Splits `f` by an edge between two of its corners; O(degree + valence).
     pub(super) fn cut(
         &mut self,
         f: FaceId,
@@ -236,7 +237,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         Ok(self.cut_face(p, q, log).edge())
     }
 
-    /// O(degree) of both faces, O(degree log degree) beyond 16 corners.
+    /// Merges the two faces of `e`; O(degree) of both faces, O(degree log degree) above 16 corners.
     pub(super) fn dissolve(
         &mut self,
         e: EdgeId,
@@ -247,7 +248,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
             return Err(EditError::NotTwoFaces { edge: e, faces: 1 });
         };
         let [h, t] = self.halves_of(e);
-        // The corners of one face but the ends, which two faces of one edge share.
+        // The corners of one face, except the ends of `e`, which both faces share.
         let mut corners = Names::none();
         let mut before_h = one.next;
         loop {

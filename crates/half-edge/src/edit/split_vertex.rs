@@ -1,11 +1,11 @@
-//! Making two vertices of one.
+//! Vertex split: makes two vertices out of one.
 
-use mesh_core::{EditError, EditLog, Point, Probe, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, Point, Probe, Slot, VertexId};
 
 use super::Refusal;
 use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
-/// A spoke of the vertex that is split, and the half before it.
+/// A spoke of the vertex that is split, and the half-edge before it.
 #[derive(Clone, Copy)]
 struct Spoke {
     h: HalfEdgeId,
@@ -13,10 +13,10 @@ struct Spoke {
 }
 
 impl<P: Probe> EditableHalfEdgeMesh<P> {
-    /// O(valence).
+    /// Splits `v`; O(valence).
     ///
-    /// The edge to `left` goes with the new vertex and that to `right` stays, so that each new edge
-    /// takes the place of a spoke whose half before it the walk around `v` has come by.
+    /// The edge to `left` moves to the new vertex, and the edge to `right` stays. So each new edge
+    /// replaces a spoke whose previous half-edge is known from the walk around `v`.
     ///
     /// ```text
     ///        left                    left
@@ -42,7 +42,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         }
         let [mut to_left, mut to_right] = [None; 2];
         let mut h = first;
-        // The half before the first spoke is known when the walk is over.
+        // The half-edge before the first spoke is known after the walk.
         let mut before = first;
         loop {
             let arriving = self.row_of(h.twin());
@@ -77,7 +77,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
 
         let n = self.push_vertex(at, Slot::NONE);
         log.created_vertex(n);
-        // Clockwise from `left`, or from the boundary, to `right`, or to the boundary.
+        // Clockwise from `left` (or the boundary) to `right` (or the boundary).
         let from = to_left.map_or(first, |spoke| self.follow(spoke.h.twin()));
         let to = to_right.map_or(first, |spoke| spoke.h);
         let mut first_moves = false;
@@ -102,7 +102,8 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
             (spoke.h, self.double(spoke, v, y, log))
         });
         let (leaves_v, leaves_n) = match (left, right) {
-            // The first spoke, on the boundary if there is one, leaves one of the two, or its double.
+            // The first spoke, on the boundary if there is one, leaves one of the two vertices, or
+            // its new copy does.
             (Some((hl, new_l)), Some((hr, new_r))) => {
                 if first_moves {
                     (hr, first)
@@ -114,7 +115,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
                     (first, hl)
                 }
             }
-            // With one triangle the other half of the new edge comes into the boundary loop.
+            // With one triangle, the other half-edge of the new edge joins the boundary loop.
             (left, _) => {
                 let outer = if left.is_some() { x } else { y };
                 let after = self.follow(before);
@@ -132,8 +133,9 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         Ok(n)
     }
 
-    /// Makes two edges of a spoke: a new one, from `origin`, takes its place, and the spoke is the
-    /// first side of a new triangle, before the twin of the new half and `third`. The new half.
+    /// Doubles a spoke: a new half-edge from `origin` replaces it. The spoke becomes the first side
+    /// of a new triangle, followed by the twin of the new half-edge and by `third`. Returns the new
+    /// half-edge.
     fn double(
         &mut self,
         Spoke { h, before }: Spoke,

@@ -1,8 +1,8 @@
-//! What the laws do not see: the tables themselves, panics by name, and memory.
+//! Tests beyond the conformance suite: the tables, the panic messages and the memory.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use mesh_core::{
+use sixfold_core::{
     EditError, EditRecord, FaceId, MeshEdit, MeshQuery, Point, PolygonMesh, Ranks, Refine,
     Representation, Slot, Split, VertexId,
 };
@@ -22,7 +22,7 @@ fn mesh<const N: usize>(
     EditableHalfEdgeMesh::from_polygons(&polygons).expect("manifold")
 }
 
-/// The rows as next, origin and face, `.` on a boundary loop.
+/// Returns the rows as next, origin and face; `.` means no face.
 fn rows(mesh: &EditableHalfEdgeMesh) -> Vec<String> {
     let row = |half: &Half| {
         let face = half.face.get().map_or(".".to_owned(), |f| f.to_string());
@@ -35,8 +35,7 @@ fn corners(mesh: &EditableHalfEdgeMesh, f: u32) -> Vec<VertexId> {
     mesh.face_vertices(FaceId::new(f)).collect()
 }
 
-/// Takes an answer that nobody looks at.
-fn ask<T>(_: T) {}
+fn discard<T>(_: T) {}
 
 fn edge(mesh: &EditableHalfEdgeMesh, a: u32, b: u32) -> EdgeId {
     mesh.edge_between(v(a), v(b)).expect("an edge")
@@ -48,7 +47,8 @@ fn a_flip_turns_six_halves() {
     let before = "h6 v0 f0, h4 v1 ., h8 v0 f1, h0 v2 f0, h9 v0 ., \
                   h2 v3 f1, h3 v1 f0, h1 v2 ., h5 v2 f1, h7 v3 .";
     assert_eq!(rows(&mesh).join(", "), before);
-    // h2 runs v0 → v2 along f1, h3 back along f0; then h2 v1 → v3, and f1 has kept v0.
+    // Before, h2 runs v0 → v2 along f1, and h3 back along f0. After, h2 runs v1 → v3, and f1 keeps
+    // v0.
     let e = edge(&mesh, 0, 2);
     assert_eq!(mesh.halves_of(e), [2, 3].map(HalfEdgeId::new));
     assert_eq!(mesh.flip_edge(e, &mut ()), Ok(e));
@@ -61,7 +61,7 @@ fn a_flip_turns_six_halves() {
 }
 
 #[test]
-fn a_collapse_leaves_marks_where_two_triangles_were() {
+fn a_collapse_marks_the_deleted_rows() {
     // A closed fan of four triangles around v4.
     let mut mesh = mesh(5, [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);
     let e = edge(&mesh, 0, 4);
@@ -85,42 +85,42 @@ fn a_collapse_leaves_marks_where_two_triangles_were() {
 }
 
 #[test]
-fn what_was_deleted_panics_by_name() {
+fn queries_of_deleted_elements_panic_with_their_handle() {
     let mut mesh = mesh(6, [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);
     let e = edge(&mesh, 0, 4);
     let [h, t] = mesh.halves_of(e);
     mesh.remove_vertex(v(4), &mut ()).expect("legal");
     mesh.remove_vertex(v(5), &mut ()).expect("isolated");
     let f = FaceId::new(2);
-    type Ask<'a> = (&'a str, &'a dyn Fn());
-    let asked: [Ask; 16] = [
-        ("v4", &|| ask(mesh.position(v(4)))),
-        ("v5", &|| ask(mesh.position(v(5)))),
-        ("v4", &|| ask(mesh.vertex_vertices(v(4)).count())),
-        ("v5", &|| ask(mesh.vertex_edges(v(5)).count())),
-        ("v4", &|| ask(mesh.vertex_faces(v(4)).count())),
-        ("v4", &|| ask(mesh.half_leaving(v(4)))),
-        ("e1", &|| ask(mesh.edge_vertices(e))),
-        ("e1", &|| ask(mesh.edge_edges(e).count())),
-        ("e1", &|| ask(mesh.edge_faces(e).count())),
-        ("f2", &|| ask(mesh.face_vertices(f).count())),
-        ("f2", &|| ask(mesh.face_edges(f).count())),
-        ("f2", &|| ask(mesh.face_faces(f).count())),
-        ("h2", &|| ask(mesh.next(h))),
-        ("h3", &|| ask(mesh.origin(t))),
-        ("h3", &|| ask(mesh.face(t))),
-        ("h2", &|| ask(mesh.prev(h))),
+    type Query<'a> = (&'a str, &'a dyn Fn());
+    let queries: [Query; 16] = [
+        ("v4", &|| discard(mesh.position(v(4)))),
+        ("v5", &|| discard(mesh.position(v(5)))),
+        ("v4", &|| discard(mesh.vertex_vertices(v(4)).count())),
+        ("v5", &|| discard(mesh.vertex_edges(v(5)).count())),
+        ("v4", &|| discard(mesh.vertex_faces(v(4)).count())),
+        ("v4", &|| discard(mesh.half_leaving(v(4)))),
+        ("e1", &|| discard(mesh.edge_vertices(e))),
+        ("e1", &|| discard(mesh.edge_edges(e).count())),
+        ("e1", &|| discard(mesh.edge_faces(e).count())),
+        ("f2", &|| discard(mesh.face_vertices(f).count())),
+        ("f2", &|| discard(mesh.face_edges(f).count())),
+        ("f2", &|| discard(mesh.face_faces(f).count())),
+        ("h2", &|| discard(mesh.next(h))),
+        ("h3", &|| discard(mesh.origin(t))),
+        ("h3", &|| discard(mesh.face(t))),
+        ("h2", &|| discard(mesh.prev(h))),
     ];
     assert_eq!((e, h), (EdgeId::new(1), HalfEdgeId::new(2)));
-    for (i, (name, ask)) in asked.into_iter().enumerate() {
-        let panic = catch_unwind(AssertUnwindSafe(ask)).expect_err("it was deleted");
-        let told = panic.downcast_ref::<String>().expect("a message");
-        assert_eq!(*told, format!("{name} was deleted"), "question {i}");
+    for (i, (name, query)) in queries.into_iter().enumerate() {
+        let panic = catch_unwind(AssertUnwindSafe(query)).expect_err("it was deleted");
+        let message = panic.downcast_ref::<String>().expect("a message");
+        assert_eq!(*message, format!("{name} was deleted"), "query {i}");
     }
 }
 
 #[test]
-fn names_of_nothing_are_refused() {
+fn edits_refuse_handles_of_missing_elements() {
     let mut mesh = mesh(4, [[0, 1, 2], [0, 2, 3]]);
     let f = FaceId::new(1);
     mesh.remove_face(f, &mut ()).expect("legal");
@@ -155,15 +155,15 @@ fn names_of_nothing_are_refused() {
 }
 
 #[test]
-fn compacting_gives_memory_back() {
-    let polygons = shapes::triangle_grid(40, 40).expect("small");
+fn compact_releases_memory() {
+    let polygons = sixfold_shapes::triangle_grid(40, 40).expect("small");
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&polygons).expect("manifold");
     let whole = mesh.memory().total();
     let last = mesh.vertex_rows() as u32;
     for vertex in (60..last).rev().map(VertexId::new) {
-        mesh.remove_vertex(vertex, &mut ()).expect("at the rim");
+        mesh.remove_vertex(vertex, &mut ()).expect("on a boundary");
     }
-    assert!(mesh.memory().total() > whole, "rows stay, and bits come");
+    assert!(mesh.memory().total() > whole, "rows stay, bits are added");
     mesh.compact(&mut ());
     assert_eq!(mesh.validate(), Ok(()));
     assert_eq!(mesh.hole_count(), 0);
@@ -171,7 +171,7 @@ fn compacting_gives_memory_back() {
 }
 
 #[test]
-fn an_edited_mesh_is_refined_once_it_is_whole() {
+fn an_edited_mesh_can_be_refined_after_into_whole() {
     let mut mesh = mesh(4, [[0, 1, 2], [0, 2, 3]]);
     mesh.remove_face(FaceId::new(1), &mut ()).expect("legal");
     let mesh = mesh.into_whole();

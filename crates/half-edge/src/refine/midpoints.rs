@@ -1,8 +1,9 @@
-//! Faces split at the midpoints of their edges: into quads, or a triangle into four.
+//! Faces split at the midpoints of their edges: any face into quads, or a triangle into four.
 //!
-//! Half `h` runs from vertex `v` along face `f`; `p` and `n` are the halves before and after it, `t` is
-//! its twin, and `#h` the number of its corner. It is cut in two at the midpoint m(h): e(h) comes early
-//! and l(h) late. Its corner adds one edge inside the face, i(h) and its twin j(h).
+//! Half-edge `h` runs from vertex `v` along face `f`; `p` and `n` are the half-edges before and
+//! after it, `t` is its twin, and `#h` the number of its corner. It is cut in two at the midpoint
+//! m(h): e(h) is the early half, l(h) the late half. Its corner adds one edge inside the face, i(h)
+//! and its twin j(h).
 //!
 //! ```text
 //!   Quads                                  Triangles
@@ -16,7 +17,7 @@
 //!
 //! With E edges and C corners in the parent, and the face point of `f` called f:
 //!
-//! | half of the child | its row | next | origin | face |
+//! | half-edge of the child | row | next | origin | face |
 //! |---|---|---|---|---|
 //! | e(h) | 2h | i(h) | v | #h |
 //! | l(h) | 2t + 1 | e(n) | m(h) | #n |
@@ -27,26 +28,27 @@
 //! | e(b), on the boundary | 2b | l(b) | v | none |
 //! | l(b), on the boundary | 2(b ^ 1) + 1 | e(n) | m(b) | none |
 //!
-//! So edge e becomes the edges 2e and 2e + 1, whose four rows lie together, as do those of i and j for
-//! the halves of an edge: a thread takes some edges, and writes two runs of rows.
+//! So edge e becomes the edges 2e and 2e + 1, whose four rows are adjacent, as are the rows of i
+//! and j for the two half-edges of an edge. A thread takes a range of edges, and writes two ranges
+//! of rows.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use mesh_core::{FaceId, MeshQuery, Slot};
+use sixfold_core::{FaceId, MeshQuery, Slot};
 
 use super::{Corners, fill, for_parts, half};
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
-/// How far [`previous`] walks: what the corners of a face cost is the square of its degree.
+/// The number of steps after which [`previous`] stops: walks from all corners take O(degree²).
 const REACH: usize = 8;
 
-/// The numbers of the parent's rows that the names of the child's are made of.
+/// The row counts of the parent, from which the rows of the child are computed.
 #[derive(Clone, Copy)]
 struct Sizes {
     vertices: u32,
     faces: u32,
     edges: u32,
-    /// The first edge point.
+    /// The row of the first edge point.
     midpoints: u32,
 }
 
@@ -81,7 +83,7 @@ pub(super) fn quads<const CLOSED: bool>(
     split(mesh, corners, sizes, child, |h, record, n| {
         let (sizes, corners) = (sizes, *corners);
         let p = previous(rows, h, n).unwrap_or_else(|| {
-            // Never wrong in the end: large faces are linked once all rows are there.
+            // A placeholder: large faces are linked after all rows are written.
             far.store(true, Ordering::Relaxed);
             h
         });
@@ -126,7 +128,7 @@ pub(super) fn triangles<const CLOSED: bool>(
     });
 }
 
-/// Cuts every edge in two, and joins the midpoints inside the faces as `inner` says.
+/// Cuts every edge in two. `inner_pair` returns the two half-edges that a corner adds.
 #[inline(always)]
 fn split<const CLOSED: bool>(
     mesh: &HalfEdgeMesh,
@@ -137,7 +139,7 @@ fn split<const CLOSED: bool>(
 ) {
     let edges = mesh.half_rows().as_chunks::<2>().0;
     for_parts(edges.len(), corners, 4, child, |part| {
-        // Copies, which no write through the tables can change.
+        // Copies, so that the compiler knows that writes to the tables do not change them.
         let (sizes, corners) = (sizes, *corners);
         let pairs = &edges[part.edges.start as usize..part.edges.end as usize];
         let along = part.along.as_chunks_mut::<4>().0;
@@ -199,20 +201,21 @@ fn split<const CLOSED: bool>(
     });
     let points = &mut points[(sizes.midpoints - sizes.vertices) as usize..];
     fill(points, |e| {
-        // The boundary half if there is one.
+        // The boundary half-edge if there is one.
         let h = 2 * e as u32;
         let outer = if corners.is_one(h + 1) { h } else { h + 1 };
         Slot::some(HalfEdgeId::new(late(outer)))
     });
 }
 
-/// The half of the child from the midpoint of `h` to its target.
+/// Returns the half-edge of the child from the midpoint of `h` to its target.
 #[inline(always)]
 fn late(h: u32) -> u32 {
     2 * (h ^ 1) + 1
 }
 
-/// The half before `h`, whose next is `n`, along a face; none if the face is too large.
+/// Returns the half-edge before `h` along a face, or `None` if the face is too large. `n` is the
+/// next of `h`.
 #[inline(always)]
 fn previous(rows: &[Half], h: u32, n: u32) -> Option<u32> {
     let mut at = n;
@@ -226,7 +229,7 @@ fn previous(rows: &[Half], h: u32, n: u32) -> Option<u32> {
     None
 }
 
-/// Links what [`previous`] did not reach, by one walk along each large face; O(corners).
+/// Links the faces that are too large for [`previous`], by one walk along each; O(corners).
 #[cold]
 fn link_large_faces(mesh: &HalfEdgeMesh, child: &mut HalfEdgeMesh, inner: impl Fn(u32) -> u32) {
     let rows = child.halves.rows_mut();

@@ -1,8 +1,8 @@
-//! Triangles split by face points, and their edges flipped.
+//! Triangles split at face points, with their edges flipped.
 //!
-//! Half `h` runs from vertex `a` to `b` along face `f`; `p` and `n` are the halves before and after it,
-//! and its twin `t` has face `g`. It keeps its row, but runs from the face point g to f afterwards.
-//! Its corner adds one edge, the spoke s(h) from `a` to f, and r(h) back.
+//! Half-edge `h` runs from vertex `a` to `b` along face `f`; `p` and `n` are the half-edges before
+//! and after it, and its twin `t` has face `g`. In the child it has the same row, but runs from the
+//! face point g to f. Its corner adds one edge, the spoke s(h) from `a` to f, and r(h) back.
 //!
 //! ```text
 //!             g            x = next(t)            f           ▲ y + 4  ▲ y + 6   to f;
@@ -15,7 +15,7 @@
 //!
 //! With E edges and C corners in the parent, and `#h` the number of the corner of `h`:
 //!
-//! | half of the child | its row | next | origin | face |
+//! | half-edge of the child | row | next | origin | face |
 //! |---|---|---|---|---|
 //! | h, inner | h | r(h) | g | #h |
 //! | s(h), p inner | 2(E + #h) | p ^ 1 | a | #(p ^ 1) |
@@ -24,17 +24,17 @@
 //! | s(h), p ^ 1 without a face | 2(E + #h) | r(p) | a | #p |
 //! | r(h), t without a face | s(h) + 1 | h | f | #h |
 //!
-//! Boundary halves stay as they are. Where boundary edges are cut in three, the `j`-th of them gets the
-//! points q and q', the triangles C + 2j (a q f) and C + 2j + 1 (q q' f) beside #h (q' b f), and eight
-//! rows from y = 2(E + C) + 8j on. Its boundary half keeps its row and runs from `b` to q', then y + 1
-//! to q and y + 3 to `a`.
+//! Boundary half-edges stay as they are. If boundary edges are cut in three, the `j`-th of them
+//! gets the points q and q', the triangles C + 2j (a q f) and C + 2j + 1 (q q' f) beside #h (q' b
+//! f), and eight rows from y = 2(E + C) + 8j on. Its boundary half-edge keeps its row and runs from
+//! `b` to q'; y + 1 then runs to q, and y + 3 to `a`.
 
-use mesh_core::{FaceId, MeshQuery, Slot};
+use sixfold_core::{FaceId, MeshQuery, Slot};
 
 use super::{Corners, fill, for_parts, half};
 use crate::mesh::{HalfEdgeId, HalfEdgeMesh};
 
-/// Splits every triangle into three and flips the inner edges; boundary edges are cut in three where
+/// Splits every triangle into three and flips the inner edges; cuts boundary edges in three if
 /// `TRISECT`.
 pub(super) fn sqrt3<const CLOSED: bool, const TRISECT: bool>(
     mesh: &HalfEdgeMesh,
@@ -47,7 +47,8 @@ pub(super) fn sqrt3<const CLOSED: bool, const TRISECT: bool>(
     let next = |h: u32| rows[h as usize].next.index() as u32;
     let spoke = |h: u32| 2 * (edges + corners.number(h));
     let face_point = |f: Slot<FaceId>| vertices + f.get().map_or(0, |f| f.index() as u32);
-    // Of the boundary half `b`: how many there are before it, its first new half and its first point.
+    // For the boundary half-edge `b`: the number j of boundary half-edges before it; for j, the
+    // first new half-edge, the first new point and the first new triangle.
     let gap = |b: u32| b - corners.number(b);
     let cut = |j: u32| 2 * (edges + 3 * faces) + 8 * j;
     let point = |j: u32| vertices + faces + 2 * j;

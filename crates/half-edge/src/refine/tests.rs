@@ -1,10 +1,10 @@
-//! The closed forms, written out by hand.
+//! The closed forms, compared with rows written by hand.
 
-use mesh_core::Representation;
+use sixfold_core::Representation;
 
 use super::*;
 
-/// A row as its next, its origin and its face.
+/// A row: next, origin and face.
 type Row = (u32, u32, Option<u32>);
 
 fn mesh(vertices: usize, halves: &[Row], leaving: &[u32], first: &[u32]) -> HalfEdgeMesh {
@@ -31,9 +31,9 @@ fn split(mesh: &HalfEdgeMesh, split: Split) -> HalfEdgeMesh {
     child
 }
 
-/// The child of the one triangle is `expected`.
+/// Checks that the child of a single triangle is `expected`.
 fn triangle_becomes(expected: &HalfEdgeMesh, by: Split) {
-    // v0 ─h0→ v1 ─h2→ v2 ─h4→ v0, with the boundary halves h1, h3 and h5 beside them.
+    // v0 ─h0→ v1 ─h2→ v2 ─h4→ v0, with the boundary half-edges h1, h3 and h5 beside them.
     let inside = [(2, 0), (4, 1), (0, 2)].map(|(next, v)| (next, v, Some(0)));
     let outside = [(5, 1, None), (1, 2, None), (3, 0, None)];
     let rows = [0, 1, 2].map(|e| [inside[e], outside[e]]);
@@ -150,14 +150,14 @@ fn the_edge_between_two_triangles_is_flipped() {
 }
 
 #[test]
-fn large_faces_are_linked_all_round() {
-    // A face of each degree about the reach of `previous`, and a pyramid over it.
+fn large_faces_are_linked() {
+    // For each degree around the reach of `previous`: a face, and a pyramid over it.
     for degree in 3..24 {
         let rim = (0..degree).collect::<Vec<u32>>();
         let sides = (0..degree).map(|i| vec![(i + 1) % degree, i, degree]);
         let faces: Vec<Vec<u32>> = sides.chain([rim]).collect();
         let corners = (0..=degree).map(|i| Point::splat(i as f32));
-        let polygons = mesh_core::PolygonMesh::new(corners.collect::<Vec<_>>(), faces);
+        let polygons = sixfold_core::PolygonMesh::new(corners.collect::<Vec<_>>(), faces);
         let pyramid = HalfEdgeMesh::from_polygons(&polygons.expect("valid")).expect("closed");
         let child = split(&pyramid, Split::Quads);
         assert_eq!(child.validate(), Ok(()), "degree {degree}");

@@ -1,21 +1,21 @@
-//! Smoothing against closed forms and invariants.
+//! Smoothing, compared with closed forms and invariants.
 
-use conformance::strategy::manifold_mesh;
-use half_edge::HalfEdgeMesh;
-use indexed_face_set::IndexedFaceSet;
-use mesh_core::{FaceId, MoveError, PolygonMesh, Representation};
-use polygon_soup::PolygonSoup;
 use proptest::prelude::*;
+use sixfold_conformance::strategy::manifold_mesh;
+use sixfold_core::{FaceId, MoveError, PolygonMesh, Representation};
+use sixfold_half_edge::HalfEdgeMesh;
+use sixfold_indexed_face_set::IndexedFaceSet;
+use sixfold_polygon_soup::PolygonSoup;
 
 use super::*;
 
 const BOTH: [Weights; 2] = [Weights::Uniform, Weights::Cotangent];
 
 fn set(polygons: &PolygonMesh) -> IndexedFaceSet {
-    IndexedFaceSet::from_polygons(polygons).expect("it holds everything")
+    IndexedFaceSet::from_polygons(polygons).expect("it accepts any mesh")
 }
 
-/// The positions of `polygons` after smoothing, in its order.
+/// Returns the positions of `polygons` after smoothing, in its order.
 fn moved(polygons: &PolygonMesh, smoothing: &Smoothing) -> Vec<Point> {
     let mesh = set(polygons);
     let moved = smoothed(&mesh, smoothing).expect("it can be smoothed");
@@ -28,28 +28,28 @@ fn with_positions(polygons: &PolygonMesh, place: impl Fn(usize, Point) -> Point)
     PolygonMesh::from_faces(positions, polygons.faces().clone()).expect("valid")
 }
 
-/// A number of −1 to 1 that looks like none in particular.
+/// Returns a pseudo-random number from −1 to 1.
 fn noise(i: usize) -> f32 {
     (i * 2_654_435 % 2001) as f32 / 1000.0 - 1.0
 }
 
-/// Whether vertex `i` of an m × n grid is on its boundary.
+/// Returns whether vertex `i` of an m × n grid is on its boundary.
 fn on_rim(i: usize, m: usize, n: usize) -> bool {
     let (x, y) = (i % (m + 1), i / (m + 1));
     x == 0 || x == m || y == 0 || y == n
 }
 
-/// Around a vertex p of a regular solid the neighbours have the mean c·p, so one step leaves
-/// 1 − λ(1 − c) of it, and a step back 1 − μ(1 − c) of that.
+/// The neighbours of a vertex p of a regular solid have the mean c·p. A step scales p by
+/// 1 − λ(1 − c), and a step back by 1 − μ(1 − c).
 #[test]
 fn regular_solids_shrink_by_the_factor_of_their_ring() {
     let root5 = 5.0_f64.sqrt();
     let solids = [
-        (shapes::tetrahedron(), -1.0 / 3.0),
-        (shapes::cube(), 1.0 / 3.0),
-        (shapes::octahedron(), 0.0),
-        (shapes::dodecahedron(), root5 / 3.0),
-        (shapes::icosahedron(), 1.0 / root5),
+        (sixfold_shapes::tetrahedron(), -1.0 / 3.0),
+        (sixfold_shapes::cube(), 1.0 / 3.0),
+        (sixfold_shapes::octahedron(), 0.0),
+        (sixfold_shapes::dodecahedron(), root5 / 3.0),
+        (sixfold_shapes::icosahedron(), 1.0 / root5),
     ];
     for (solid, c) in solids {
         for (step, step_back) in [(0.4, None), (0.33, Some(-0.34))] {
@@ -82,10 +82,10 @@ fn regular_solids_shrink_by_the_factor_of_their_ring() {
     }
 }
 
-/// The vertices of this sphere lie on axes of its symmetry, and cannot leave them.
+/// The vertices of this sphere lie on its axes of symmetry, and cannot leave them.
 #[test]
 fn a_sphere_shrinks_towards_its_centre() {
-    let sphere = shapes::geodesic(2).expect("small");
+    let sphere = sixfold_shapes::geodesic(2).expect("small");
     for weights in BOTH {
         let moved = moved(
             &sphere,
@@ -105,7 +105,10 @@ fn a_sphere_shrinks_towards_its_centre() {
 
 #[test]
 fn the_inside_of_a_regular_grid_stays() {
-    for grid in [shapes::grid(5, 4), shapes::triangle_grid(5, 4)] {
+    for grid in [
+        sixfold_shapes::grid(5, 4),
+        sixfold_shapes::triangle_grid(5, 4),
+    ] {
         let grid = grid.expect("small");
         assert_eq!(moved(&grid, &Smoothing::default()), grid.positions());
     }
@@ -113,7 +116,7 @@ fn the_inside_of_a_regular_grid_stays() {
 
 #[test]
 fn a_plane_stays_a_plane() {
-    let grid = shapes::triangle_grid(6, 5).expect("small");
+    let grid = sixfold_shapes::triangle_grid(6, 5).expect("small");
     let shaken = with_positions(&grid, |i, p| {
         p + 0.3 * Point::new(noise(i), noise(3 * i + 1), 0.0)
     });
@@ -132,11 +135,11 @@ fn a_plane_stays_a_plane() {
     }
 }
 
-/// Linear precision: in a plane the cotangents of a ring balance, however uneven it is.
+/// Linear precision: in a plane the cotangent weights of any ring balance.
 #[test]
-fn cotangents_leave_a_plane_where_it_is() {
+fn cotangents_leave_a_plane_unchanged() {
     let (m, n) = (7, 6);
-    let grid = shapes::triangle_grid(m, n).expect("small");
+    let grid = sixfold_shapes::triangle_grid(m, n).expect("small");
     let shaken = with_positions(&grid, |i, p| {
         p + 0.3 * Point::new(noise(i), noise(3 * i + 1), 0.0)
     });
@@ -159,9 +162,9 @@ fn cotangents_leave_a_plane_where_it_is() {
 }
 
 #[test]
-fn bumps_go_and_a_fixed_boundary_stays() {
+fn bumps_shrink_and_a_fixed_boundary_stays() {
     let (m, n) = (8, 8);
-    let grid = shapes::triangle_grid(m, n).expect("small");
+    let grid = sixfold_shapes::triangle_grid(m, n).expect("small");
     let bumpy = with_positions(&grid, |i, p| p + 0.2 * noise(i) * Point::Z);
     let height = |points: &[Point]| {
         points
@@ -189,7 +192,7 @@ fn bumps_go_and_a_fixed_boundary_stays() {
     }
 }
 
-/// The neighbours of a corner of a regular n-gon have the mean cos(2π/n) of it.
+/// The mean of the neighbours of a corner p of a regular n-gon is cos(2π/n)·p.
 #[test]
 fn a_boundary_curve_shrinks_by_itself() {
     let n = 7;
@@ -225,9 +228,9 @@ fn a_boundary_curve_shrinks_by_itself() {
     }
 }
 
-/// Two triangles that meet in one vertex: it has four boundary edges, and the others have two.
+/// Two triangles that share one vertex: it has four boundary edges, the others have two.
 #[test]
-fn where_a_boundary_crosses_itself_it_stays() {
+fn a_vertex_where_the_boundary_crosses_itself_stays() {
     let points = [
         Point::ZERO,
         Point::X,
@@ -253,8 +256,8 @@ fn where_a_boundary_crosses_itself_it_stays() {
 }
 
 #[test]
-fn volume_comes_back_with_a_step_back() {
-    let sphere = shapes::geodesic(4).expect("small");
+fn a_step_back_keeps_the_volume() {
+    let sphere = sixfold_shapes::geodesic(4).expect("small");
     let radius = |step_back| {
         let smoothing = Smoothing {
             step: 0.33,
@@ -269,8 +272,8 @@ fn volume_comes_back_with_a_step_back() {
 }
 
 #[test]
-fn flat_triangles_and_isolated_vertices_make_no_nan() {
-    // All in one point; on a line; nearly on a line; and a vertex in no face.
+fn flat_triangles_and_isolated_vertices_give_finite_positions() {
+    // Triangles in one point, on a line and nearly on a line, and an isolated vertex.
     let points = [
         Point::ZERO,
         Point::ZERO,
@@ -310,8 +313,8 @@ fn flat_triangles_and_isolated_vertices_make_no_nan() {
 }
 
 #[test]
-fn each_refusal_is_named() {
-    let mesh = set(&shapes::mixed_grid(2, 1).expect("small"));
+fn each_invalid_input_returns_its_error() {
+    let mesh = set(&sixfold_shapes::mixed_grid(2, 1).expect("small"));
     let refusal = |smoothing: Smoothing| smoothed(&mesh, &smoothing).err();
     let cotangent = Smoothing {
         weights: Weights::Cotangent,
@@ -348,32 +351,33 @@ fn each_refusal_is_named() {
     assert_eq!(refusal(taubin), None);
 }
 
-/// A whole step takes every vertex of the octahedron to the centre; there they may meet, unless a
-/// vertex is its coordinates.
+/// Step 1 moves every vertex of the octahedron to the centre. Vertices may have equal positions
+/// there unless the structure identifies a vertex by its coordinates.
 #[test]
-fn vertices_that_meet_are_for_the_structure_to_judge() {
+fn the_structure_decides_whether_vertices_may_meet() {
     let whole = Smoothing {
         step: 1.0,
         iterations: 1,
         ..Smoothing::default()
     };
-    let mut soup = PolygonSoup::from_polygons(&shapes::octahedron()).expect("triangles");
+    let mut soup = PolygonSoup::from_polygons(&sixfold_shapes::octahedron()).expect("triangles");
     let moved = smoothed(&soup, &whole).expect("smooth");
     let face = FaceId::new(0);
     assert_eq!(
         soup.set_positions(&moved),
         Err(MoveError::CoincidentCorners { face })
     );
-    let mut halves = HalfEdgeMesh::from_polygons(&shapes::octahedron()).expect("a manifold");
+    let mut halves =
+        HalfEdgeMesh::from_polygons(&sixfold_shapes::octahedron()).expect("a manifold");
     let moved = smoothed(&halves, &whole).expect("smooth");
-    halves.set_positions(&moved).expect("rows do not mind");
+    halves.set_positions(&moved).expect("positions may repeat");
     assert!(halves.vertices().all(|v| halves.position(v) == Point::ZERO));
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Smoothing and then mapping is mapping and then smoothing.
+    /// Smoothing, then mapping gives the same result as mapping, then smoothing.
     #[test]
     fn uniform_smoothing_commutes_with_affine_maps(
         polygons in manifold_mesh(),
@@ -392,7 +396,7 @@ proptest! {
         }
     }
 
-    /// Cotangents know lengths, so turning, scaling and shifting is all they commute with.
+    /// Cotangents depend on angles, so they commute only with rotation, scaling and translation.
     #[test]
     fn cotangent_smoothing_commutes_with_similarities(
         axis in prop::array::uniform3(0.1_f32..1.0),
@@ -401,7 +405,7 @@ proptest! {
     ) {
         let turn = glam::Quat::from_axis_angle(Point::from_array(axis).normalize(), angle);
         let mapped = |p: Point| scale * (turn * p) + Point::ONE;
-        let torus = shapes::triangle_torus(9, 6).expect("small");
+        let torus = sixfold_shapes::triangle_torus(9, 6).expect("small");
         let smoothing = Smoothing { weights: Weights::Cotangent, iterations: 3, ..Smoothing::default() };
         let after = moved(&torus, &smoothing).into_iter().map(mapped);
         let before = moved(&with_positions(&torus, |_, p| mapped(p)), &smoothing);

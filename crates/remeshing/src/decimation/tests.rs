@@ -1,8 +1,8 @@
 use std::collections::BTreeSet;
 
-use half_edge::EditableHalfEdgeMesh;
-use indexed_face_set::EditableIndexedFaceSet;
-use mesh_core::{MeshQuery, Point, PolygonMesh};
+use sixfold_core::{MeshQuery, Point, PolygonMesh};
+use sixfold_half_edge::EditableHalfEdgeMesh;
+use sixfold_indexed_face_set::EditableIndexedFaceSet;
 
 use super::*;
 
@@ -33,7 +33,7 @@ fn euler(mesh: &EditableHalfEdgeMesh) -> isize {
 
 #[test]
 fn a_sphere_stays_a_sphere() {
-    let sphere = shapes::geodesic(8).expect("small");
+    let sphere = sixfold_shapes::geodesic(8).expect("small");
     let (mesh, report) = decimated(&sphere, &to(Target::Ratio(0.1), Boundary::Follow));
     assert_eq!((report.faces, report.stop), (128, Stop::Done));
     assert_eq!(euler(&mesh), 2);
@@ -48,11 +48,11 @@ fn a_sphere_stays_a_sphere() {
 }
 
 #[test]
-fn a_flat_square_comes_down_to_two_triangles() {
-    let grid = shapes::triangle_grid(12, 12).expect("small");
+fn a_flat_square_is_decimated_to_two_triangles() {
+    let grid = sixfold_shapes::triangle_grid(12, 12).expect("small");
     let (mesh, report) = decimated(&grid, &to(Target::Faces(2), Boundary::Follow));
     assert_eq!(report.faces, 2);
-    assert!(report.worst < 1e-6, "flat is flat: {}", report.worst);
+    assert!(report.worst < 1e-6, "no error if flat: {}", report.worst);
     let out = mesh.to_polygons();
     assert!(
         (area(&out) - area(&grid)).abs() < 1e-3 * area(&grid),
@@ -61,8 +61,8 @@ fn a_flat_square_comes_down_to_two_triangles() {
 }
 
 #[test]
-fn a_fixed_boundary_stays_to_the_bit() {
-    let grid = shapes::triangle_grid(8, 8).expect("small");
+fn a_fixed_boundary_keeps_its_exact_positions() {
+    let grid = sixfold_shapes::triangle_grid(8, 8).expect("small");
     let fresh = EditableHalfEdgeMesh::from_polygons(&grid).expect("a manifold");
     let outline = |mesh: &EditableHalfEdgeMesh| -> BTreeSet<[u32; 3]> {
         let edges = mesh.edges().filter(|&e| mesh.edge_faces(e).count() == 1);
@@ -81,19 +81,19 @@ fn a_fixed_boundary_stays_to_the_bit() {
 }
 
 #[test]
-fn what_cannot_be_reached_is_said() {
+fn an_unreachable_target_is_reported() {
     let (mesh, report) = decimated(
-        &shapes::icosahedron(),
+        &sixfold_shapes::icosahedron(),
         &to(Target::Faces(0), Boundary::Follow),
     );
     assert_eq!(report.stop, Stop::NothingLeft);
     assert_eq!(
         (report.faces, euler(&mesh)),
         (4, 2),
-        "a tetrahedron is the least of spheres"
+        "a tetrahedron is the smallest sphere"
     );
     let (_, report) = decimated(
-        &shapes::icosahedron(),
+        &sixfold_shapes::icosahedron(),
         &to(Target::Faces(99), Boundary::Follow),
     );
     assert_eq!(
@@ -103,17 +103,18 @@ fn what_cannot_be_reached_is_said() {
 }
 
 #[test]
-fn bad_input_is_refused_by_name() {
-    let mut cube = EditableHalfEdgeMesh::from_polygons(&shapes::cube()).expect("closed");
+fn bad_input_is_refused() {
+    let mut cube = EditableHalfEdgeMesh::from_polygons(&sixfold_shapes::cube()).expect("closed");
     let refused = decimate(&mut cube, &Decimation::default()).expect_err("quads");
     assert!(
         matches!(refused, RemeshError::NotATriangle { degree: 4, .. }),
         "{refused}"
     );
-    let mut mesh = EditableHalfEdgeMesh::from_polygons(&shapes::icosahedron()).expect("closed");
+    let mut mesh =
+        EditableHalfEdgeMesh::from_polygons(&sixfold_shapes::icosahedron()).expect("closed");
     for ratio in [f64::NAN, -0.1, 1.1, f64::INFINITY] {
         let how = to(Target::Ratio(ratio), Boundary::Follow);
-        let refused = decimate(&mut mesh, &how).expect_err("no ratio");
+        let refused = decimate(&mut mesh, &how).expect_err("invalid ratio");
         assert!(matches!(refused, RemeshError::BadRatio { .. }), "{refused}");
     }
     let nowhere = Point::new(0.0, f32::NAN, 0.0);
@@ -129,9 +130,9 @@ fn bad_input_is_refused_by_name() {
 #[test]
 fn a_structure_that_scans_makes_the_same_mesh() {
     for polygons in [
-        shapes::geodesic(4).expect("small"),
-        shapes::triangle_grid(9, 7).expect("small"),
-        shapes::triangle_torus(9, 8).expect("small"),
+        sixfold_shapes::geodesic(4).expect("small"),
+        sixfold_shapes::triangle_grid(9, 7).expect("small"),
+        sixfold_shapes::triangle_torus(9, 8).expect("small"),
     ] {
         let how = to(Target::Ratio(0.3), Boundary::Follow);
         let (walked, report) = decimated(&polygons, &how);
@@ -145,8 +146,8 @@ fn a_structure_that_scans_makes_the_same_mesh() {
 }
 
 #[test]
-fn who_watches_may_end_it() {
-    let sphere = shapes::geodesic(32).expect("small");
+fn watch_can_end_the_decimation() {
+    let sphere = sixfold_shapes::geodesic(32).expect("small");
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&sphere).expect("closed");
     let report = decimate_watched(
         &mut mesh,

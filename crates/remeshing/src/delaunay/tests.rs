@@ -1,12 +1,12 @@
-use half_edge::EditableHalfEdgeMesh;
-use mesh_core::{MeshQuery, Point, PolygonMesh};
 use proptest::prelude::*;
+use sixfold_core::{MeshQuery, Point, PolygonMesh};
+use sixfold_half_edge::EditableHalfEdgeMesh;
 
 use super::*;
 
-/// A flat grid whose inner vertices are shaken, triangulated all the same way.
+/// Builds a flat grid with displaced inner vertices, triangulated in the same direction everywhere.
 fn shaken(side: usize, by: &[[f32; 2]]) -> PolygonMesh {
-    let grid = shapes::triangle_grid(side, side).expect("small");
+    let grid = sixfold_shapes::triangle_grid(side, side).expect("small");
     let edge = |x: f32, most: f32| x <= 0.0 || x >= most;
     let most = grid
         .positions()
@@ -34,7 +34,7 @@ proptest! {
         let report = flip_to_delaunay(&mut mesh).expect("triangles");
         prop_assert_eq!(mesh.validate(), Ok(()));
         prop_assert_eq!(report.stop, Stop::Done);
-        // No vertex lies in the circle around a triangle, but where a flip was refused.
+        // Unless a flip was refused, no vertex is inside the circle around a triangle.
         let mut inside = 0;
         for f in mesh.faces() {
             let [a, b, c] = corners(&mesh, f).map(|v| at(&mesh, v));
@@ -51,8 +51,9 @@ proptest! {
 }
 
 #[test]
-fn what_is_delaunay_stays() {
-    let mut mesh = EditableHalfEdgeMesh::from_polygons(&shapes::icosahedron()).expect("closed");
+fn a_delaunay_mesh_is_unchanged() {
+    let mut mesh =
+        EditableHalfEdgeMesh::from_polygons(&sixfold_shapes::icosahedron()).expect("closed");
     let report = flip_to_delaunay(&mut mesh).expect("triangles");
     assert_eq!(
         (report.flips, report.refused, report.stop),
@@ -71,6 +72,6 @@ fn one_bad_edge_is_flipped() {
     let polygons = PolygonMesh::new(kite, [[0, 1, 2], [1, 0, 3]]).expect("valid");
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&polygons).expect("a manifold");
     assert_eq!(flip_to_delaunay(&mut mesh).expect("triangles").flips, 1);
-    let v = mesh_core::VertexId::new;
+    let v = sixfold_core::VertexId::new;
     assert!(mesh.edge_between(v(2), v(3)).is_some() && mesh.edge_between(v(0), v(1)).is_none());
 }

@@ -1,6 +1,6 @@
-use half_edge::EditableHalfEdgeMesh;
-use indexed_face_set::EditableIndexedFaceSet;
-use mesh_core::{MeshQuery, Point, PolygonMesh};
+use sixfold_core::{MeshQuery, Point, PolygonMesh};
+use sixfold_half_edge::EditableHalfEdgeMesh;
+use sixfold_indexed_face_set::EditableIndexedFaceSet;
 
 use super::*;
 
@@ -20,9 +20,9 @@ fn lengths(mesh: &EditableHalfEdgeMesh) -> Vec<f64> {
 }
 
 #[test]
-fn edges_come_to_the_length_asked_for() {
+fn edges_get_the_requested_length() {
     // Triangles of a uv sphere are thin at the poles and large at the equator.
-    let sphere = shapes::uv_sphere(24, 9)
+    let sphere = sixfold_shapes::uv_sphere(24, 9)
         .expect("small")
         .fan_triangulated()
         .expect("small");
@@ -44,7 +44,7 @@ fn edges_come_to_the_length_asked_for() {
 
 #[test]
 fn a_flat_square_keeps_its_outline() {
-    let grid = shapes::triangle_grid(6, 6).expect("small");
+    let grid = sixfold_shapes::triangle_grid(6, 6).expect("small");
     let length = {
         let mesh = EditableHalfEdgeMesh::from_polygons(&grid).expect("a manifold");
         lengths(&mesh).into_iter().fold(f64::INFINITY, f64::min)
@@ -65,11 +65,11 @@ fn a_flat_square_keeps_its_outline() {
 }
 
 #[test]
-fn any_length_is_refused_or_comes_to_an_end() {
-    let sphere = shapes::geodesic(4).expect("small");
+fn any_length_is_refused_or_remeshing_ends() {
+    let sphere = sixfold_shapes::geodesic(4).expect("small");
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&sphere).expect("closed");
     for length in [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        let refused = remesh(&mut mesh, &Remeshing::to(length)).expect_err("no length");
+        let refused = remesh(&mut mesh, &Remeshing::to(length)).expect_err("invalid length");
         assert!(
             matches!(refused, RemeshError::BadLength { .. }),
             "{refused}"
@@ -79,8 +79,8 @@ fn any_length_is_refused_or_comes_to_an_end() {
     assert!(matches!(refused, RemeshError::TooFine { .. }), "{refused}");
     let (mesh, _) = remeshed(&sphere, &Remeshing::to(1e30));
     assert!(mesh.face_count() >= 4);
-    // Faces without an area have edges to be cut all the same.
-    let line = [0.0, 1.0, 2.0].map(|x| mesh_core::Point::new(x, 0.0, 0.0));
+    // Faces without area also have edges to split.
+    let line = [0.0, 1.0, 2.0].map(|x| sixfold_core::Point::new(x, 0.0, 0.0));
     let flat = PolygonMesh::new(line, [[0, 1, 2]]).expect("valid");
     let mut flat = EditableHalfEdgeMesh::from_polygons(&flat).expect("a triangle");
     let refused = remesh(&mut flat, &Remeshing::to(1e-8)).expect_err("too fine");
@@ -100,8 +100,8 @@ fn any_length_is_refused_or_comes_to_an_end() {
 #[test]
 fn a_structure_that_scans_makes_the_same_mesh() {
     for polygons in [
-        shapes::geodesic(4).expect("small"),
-        shapes::triangle_grid(6, 5).expect("small"),
+        sixfold_shapes::geodesic(4).expect("small"),
+        sixfold_shapes::triangle_grid(6, 5).expect("small"),
     ] {
         let how = Remeshing {
             iterations: 3,
@@ -118,14 +118,14 @@ fn a_structure_that_scans_makes_the_same_mesh() {
 }
 
 #[test]
-fn what_positions_cannot_tell_is_refused_and_what_they_can_comes_to_an_end() {
-    let grid = shapes::triangle_grid(20, 20).expect("small");
-    // As survey coordinates are: half a unit is the step of singles there.
+fn lengths_below_the_precision_are_refused_and_others_end() {
+    let grid = sixfold_shapes::triangle_grid(20, 20).expect("small");
+    // Like survey coordinates: neighbouring f32 coordinates are half a unit apart there.
     let far = |p: &Point| Point::new(0.7 * p.x + 500_000.0, 0.7 * p.y + 4_650_000.0, 0.0);
     let far: Vec<Point> = grid.positions().iter().map(far).collect();
     let far = PolygonMesh::from_faces(far, grid.faces().clone()).expect("the same faces");
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&far).expect("a manifold");
-    let refused = remesh(&mut mesh, &Remeshing::to(0.3)).expect_err("half a step");
+    let refused = remesh(&mut mesh, &Remeshing::to(0.3)).expect_err("too short");
     assert!(
         matches!(refused, RemeshError::TooFar { step: 0.5, .. }),
         "{refused}"
@@ -136,7 +136,7 @@ fn what_positions_cannot_tell_is_refused_and_what_they_can_comes_to_an_end() {
         assert!(report.faces < 2 * grid.face_count(), "{report:?}");
         assert_eq!(mesh.validate(), Ok(()));
     }
-    // Sums that overflow singles are no places.
+    // Sums that overflow f32 are not positions.
     let huge = |p: &Point| (*p - Point::splat(10.0)) * 3.4e37;
     let huge: Vec<Point> = grid.positions().iter().map(huge).collect();
     let huge = PolygonMesh::from_faces(huge, grid.faces().clone()).expect("the same faces");
@@ -151,12 +151,12 @@ fn what_positions_cannot_tell_is_refused_and_what_they_can_comes_to_an_end() {
 }
 
 #[test]
-fn it_ends_once_it_has_settled_and_makes_room_where_it_can() {
-    let ball = shapes::geodesic(10).expect("small");
+fn remeshing_ends_when_settled_and_collapses_make_room() {
+    let ball = sixfold_shapes::geodesic(10).expect("small");
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&ball).expect("closed");
     let to = Remeshing {
         iterations: usize::MAX,
-        // Fewer than the mesh has, and more than the length takes.
+        // Fewer than the mesh has, and more than the length needs.
         most_faces: 1000,
         ..Remeshing::to(0.3)
     };

@@ -1,8 +1,8 @@
-//! What the programs that make reports share: the opening lines, and the middle of samples.
+//! Shared code of the programs that make reports: the opening lines and the median.
 
-use study::Environment;
+use sixfold_study::Environment;
 
-/// The command that makes the report, as a block, and the machine it was made on.
+/// Returns the command that makes the report, as a code block, and a description of the machine.
 pub(crate) fn opening(machine: &Environment, example: &str, folder: &str, rounds: usize) -> String {
     let cpu = machine.cpu_model.as_deref().unwrap_or("unknown processor");
     let load = machine.load_average.unwrap_or(f64::NAN);
@@ -11,9 +11,9 @@ pub(crate) fn opening(machine: &Environment, example: &str, folder: &str, rounds
         flags => format!("RUSTFLAGS=\"{flags}\" "),
     };
     format!(
-        "```sh\n{flags}cargo run --release -p report --example {example} -- {folder} {rounds}\n```\n\n\
+        "```sh\n{flags}cargo run --release -p sixfold-report --example {example} -- {folder} {rounds}\n```\n\n\
          {cpu}, {} cores, load {load:.1} at the start; {} {} {}; one thread, thread-CPU time, medians of \
-         {rounds} rounds in which all take turns.",
+         {rounds} interleaved rounds.",
         machine.cores.unwrap_or(0),
         machine.rustc,
         machine.profile,
@@ -21,7 +21,7 @@ pub(crate) fn opening(machine: &Environment, example: &str, folder: &str, rounds
     )
 }
 
-/// The middle of `samples`.
+/// Returns the median of `samples`.
 pub(crate) fn median(samples: &[f64]) -> f64 {
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -1,19 +1,19 @@
-//! From how much work on a structure pays for being built.
+//! The amount of work after which building a structure has paid off.
 
 use kuva::plot::LinePlot;
 use kuva::render::plots::Plot;
-use study::numbers::{counted, duration};
-use study::{Answer, Operation, Report, ResultRow};
+use sixfold_study::numbers::{counted, duration};
+use sixfold_study::{Answer, Operation, Report, ResultRow};
 
 use crate::colours::of_column;
 use crate::figure::{Figure, Table, drawn, laid_out};
 
-/// What is there already: who has nothing else begins with this.
+/// Structure that the mesh is given in; it need not be built.
 const GIVEN: &str = "indexed-face-set";
 
-/// Time of building and then running one operation again and again, against how often.
+/// Draws the time to build once and then repeat one operation, over the number of runs.
 pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure> {
-    // The operation that asks most, of those that were measured.
+    // The operation with the most queries among those measured.
     let asked = [
         Operation::AllQueries,
         Operation::VertexNormal,
@@ -42,7 +42,7 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
         .collect();
     let given = lines.iter().find(|(name, ..)| *name == GIVEN);
     let pays = |(name, build, run): (&str, f64, f64)| match given {
-        _ if name == GIVEN => "is there".into(),
+        _ if name == GIVEN => "given".into(),
         Some((_, _, slow)) if *slow > run => after(build / (slow - run), "run", "runs"),
         Some(_) => "never".into(),
         None => "–".into(),
@@ -56,12 +56,12 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
         })
         .collect();
     let title = format!(
-        "Building, and then {operation} again and again: {}",
+        "Building once, then repeating {operation}: {}",
         study.mesh.name
     );
     let caption = format!(
-        "An {GIVEN} is there already; another structure is built first, on fresh pages, and where its line goes below, it has paid \
-         for that. `sixfold pick` measures this for the mix of a program."
+        "The mesh is given as an {GIVEN}. Every other structure is built first, on fresh pages; this has paid off where its line \
+         falls below that of the {GIVEN}. `sixfold pick` measures this for the mix of a workload."
     );
     let curves = Curves {
         title,
@@ -74,12 +74,12 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
     curves.drawn(&lines, command)
 }
 
-/// Time of building and then running the mix of a workload, against how many operations of it.
+/// Draws the time to build once and then run the mix of a workload, over the number of operations.
 pub(super) fn of_workload(answer: &Answer, id: &str, command: &str) -> Option<Figure> {
     let pays = |name: &str| {
         let row = answer.break_even.iter().find(|row| row.backend == name);
         match row.map(|row| row.operations) {
-            _ if name == GIVEN => "is there".into(),
+            _ if name == GIVEN => "given".into(),
             None => "–".into(),
             Some(None) => "never".into(),
             Some(Some(operations)) => after(operations, "operation", "operations"),
@@ -96,10 +96,10 @@ pub(super) fn of_workload(answer: &Answer, id: &str, command: &str) -> Option<Fi
     });
     let lines: Vec<Line<'_>> = lines.collect();
     let name = &answer.workload.name;
-    let title = format!("Building, and then {name}");
+    let title = format!("Building once, then running {name}");
     let caption = format!(
-        "An {GIVEN} is there already; another structure is built first, on fresh pages, and where its line goes below, it has paid \
-         for that. One use of the mesh comes to {}.",
+        "The mesh is given as an {GIVEN}. Every other structure is built first, on fresh pages; this has paid off where its line \
+         falls below that of the {GIVEN}. One use of the mesh consists of {}.",
         counted(
             answer.operations.round() as usize,
             "operation",
@@ -111,13 +111,13 @@ pub(super) fn of_workload(answer: &Answer, id: &str, command: &str) -> Option<Fi
         id: id.into(),
         caption,
         axis: "operations",
-        once: "an operation",
+        once: "one operation",
         most: (100.0 * answer.operations).max(1e4),
     };
     curves.drawn(&lines, command)
 }
 
-/// One structure.
+/// The line of one structure, with times in nanoseconds.
 struct Line<'a> {
     name: &'a str,
     build: f64,
@@ -132,15 +132,15 @@ fn after(count: f64, one: &str, many: &str) -> String {
     }
 }
 
-/// What a figure says of its lines.
+/// Texts and range of a figure.
 struct Curves<'a> {
     title: String,
     id: String,
     caption: String,
     axis: &'a str,
-    /// What is done again and again.
+    /// Column title of the repeated work.
     once: &'a str,
-    /// How often at most.
+    /// Largest number of repetitions.
     most: f64,
 }
 
@@ -179,7 +179,7 @@ impl Curves<'_> {
         let layout = laid_out(&plots, 820.0, 440.0)
             .with_log_scale()
             .with_x_label(self.axis)
-            .with_y_label("milliseconds in all");
+            .with_y_label("total time, ms");
         Some(Figure {
             id: self.id,
             svg: drawn(&self.title, plots, layout),

@@ -1,15 +1,15 @@
-//! How costs grow with the mesh: lines through the logarithms, whose slopes are exponents.
+//! Growth of costs with the mesh: lines through the logarithms, whose slopes are exponents.
 
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;
-use study::numbers::{duration, grouped};
-use study::{Fit, GrowthReport, Operation, ResultRow, SizeReport, Slope};
+use sixfold_study::numbers::{duration, grouped};
+use sixfold_study::{Fit, GrowthReport, Operation, ResultRow, SizeReport, Slope};
 
 use super::one;
 use crate::colours::of_column;
 use crate::figure::{Figure, Table, drawn, laid_out};
 
-/// One figure for each operation.
+/// Draws one figure for each operation.
 pub(super) fn of_growth(report: &GrowthReport, id: &str, command: &str) -> Vec<Figure> {
     let operations: Vec<Operation> = { Operation::ALL.into_iter() }
         .filter(|&operation| report.fits.iter().any(|fit| fit.operation == operation))
@@ -100,29 +100,28 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
     let layout = laid_out(&plots, 860.0, 440.0)
         .with_log_scale()
         .with_x_label("faces")
-        .with_y_label("milliseconds in all");
+        .with_y_label("total time, ms");
     Figure {
         id: format!("{id}-{}", name.replace('_', "-")),
         svg: drawn(&title, plots, layout),
         title,
         caption: format!(
-            "Both axes are logarithmic, so that a straight line is a power of the number of faces, and its slope, behind \
-             each name, the exponent: 1 is a price for each element that does not depend on the size, 2 a look at all \
-             faces for each. The table has the time of {per}, and the slopes of the sizes that fit into the last \
-             cache and of those beyond."
+            "Both axes are logarithmic, so a straight line is a power of the number of faces. The number after each name \
+             is its exponent: 1 means a constant time per element, 2 a scan of all faces per element. The table shows \
+             the time {per}, and the slopes for the sizes that fit into the last cache and for those that do not."
         ),
         table,
         command: command.into(),
     }
 }
 
-/// What a size has for the line of `fit`.
+/// Returns the row of `size` with the backend and operation of `fit`.
 fn row_of<'s>(size: &'s SizeReport, fit: &Fit) -> Option<&'s ResultRow> {
     let mut rows = size.results.iter();
     rows.find(|row| row.operation == fit.operation && row.backend == fit.backend)
 }
 
-/// The time of a whole run, measured or estimated.
+/// Returns the time of a whole run in nanoseconds, measured or estimated.
 fn whole(row: &ResultRow) -> Option<f64> {
     row.median_ns.or(row.estimated_ns)
 }

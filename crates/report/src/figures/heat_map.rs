@@ -1,19 +1,19 @@
-//! Structures against operations, in one picture.
+//! The heat map: all structures and operations in one figure.
 
 use std::sync::Arc;
 
 use kuva::plot::{ColorMap, Heatmap};
 use kuva::render::plots::Plot;
-use study::numbers::times;
-use study::{Collection, Operation, Report};
+use sixfold_study::numbers::times;
+use sixfold_study::{Collection, Operation, Report};
 
 use crate::colours::GRID;
 use crate::figure::{Figure, Table, drawn, laid_out, ratios};
 
-/// Ratios beyond this have one colour: the differences that matter are below.
+/// Ratios above this have one colour, so that smaller differences remain visible.
 const LIGHTEST: f64 = 1000.0;
 
-/// The ratios to the best of one study.
+/// Draws the ratios to the best of one study.
 pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure> {
     let columns = study.backends.iter().filter(|column| column.holds);
     let columns: Vec<&str> = columns.map(|column| column.name.as_str()).collect();
@@ -25,7 +25,7 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
     figure(&title, &columns, &ratio, of, command)
 }
 
-/// The mean ratios over all meshes.
+/// Draws the mean ratios over all meshes.
 pub(super) fn pooled(collection: &Collection, command: &str) -> Option<Figure> {
     let mut columns: Vec<&str> = Vec::new();
     for row in &collection.pooled {
@@ -39,7 +39,7 @@ pub(super) fn pooled(collection: &Collection, command: &str) -> Option<Figure> {
         row.map(|row| row.ratio_to_best)
     };
     let title = format!(
-        "Every operation on every structure, the geometric mean over {} meshes",
+        "Every operation on every structure: geometric mean over {} meshes",
         collection.studies.len()
     );
     figure(&title, &columns, &ratio, "", command)
@@ -66,12 +66,12 @@ fn figure(
         line.extend(ratios.iter().map(|&ratio| shown(ratio)));
         table.row(line);
     }
-    // Rows go upwards: the first operation belongs on top.
+    // The plot draws rows upwards; the first operation must be on top.
     for &operation in operations.iter().rev() {
         let mut line = Vec::new();
         for column in columns {
             let value = ratio(operation, column);
-            // What was not measured is no number, and has a colour of its own.
+            // NaN stands for "not measured" and has its own colour.
             line.push(value.map_or(f64::NAN, |ratio| ratio.clamp(1.0, LIGHTEST).log10()));
             let shown = value.map_or_else(|| "not measured".into(), times);
             titles.push(format!("{operation} on {column}: {shown}"));
@@ -98,8 +98,8 @@ fn figure(
         title: title.to_owned(),
         svg: drawn(title, plots, layout),
         caption: format!(
-            "How many times as slow as the fastest of the row: dark is fast, {} and more have one colour. Grey is \
-             what was not measured, for it would take too long or cannot be done.",
+            "Time relative to the fastest of the row. Dark is fast; {} and more have one colour. Grey cells were not \
+             measured, because they would take too long or cannot be done.",
             times(LIGHTEST)
         ),
         table,
@@ -107,7 +107,7 @@ fn figure(
     })
 }
 
-/// From dark to light, and grey for what is no number.
+/// Returns a colour from dark to light; grey for NaN.
 fn colour(value: f64) -> String {
     match value.is_nan() {
         true => GRID.into(),

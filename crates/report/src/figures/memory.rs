@@ -1,17 +1,17 @@
-//! What each structure holds, table by table, stacked.
+//! Bytes of each structure as stacked bars, one part per table.
 
 use kuva::plot::BarPlot;
 use kuva::render::plots::Plot;
-use study::Report;
-use study::numbers::grouped;
+use sixfold_study::Report;
+use sixfold_study::numbers::grouped;
 
 use crate::colours::of_table;
 use crate::figure::{Figure, Table, drawn, laid_out};
 
-/// The table that all have, but for who has points in the place of vertices.
+/// Name of the table of positions; structures with points instead of vertices do not have it.
 const POSITIONS: &str = "positions";
 
-/// Bytes for each vertex, by table.
+/// Draws the bytes per vertex of each table.
 pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure> {
     let columns = study
         .backends
@@ -22,12 +22,12 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
     if columns.is_empty() || vertices == 0 {
         return None;
     }
-    let mut table = Table::new(["", "table", "rows", "bytes", "bytes a vertex"]);
+    let mut table = Table::new(["", "table", "rows", "bytes", "bytes per vertex"]);
     let mut plot = BarPlot::new();
     let mut titles = Vec::new();
     for column in &columns {
         let mut parts = Vec::new();
-        // Positions at the bottom, in one colour everywhere; the others as the structure has them.
+        // Positions first, in one colour for all structures; then the others in their order.
         let mut tables: Vec<_> = column.tables.iter().collect();
         tables.sort_by_key(|part| part.table != POSITIONS);
         let first = usize::from(tables.first().is_none_or(|part| part.table != POSITIONS));
@@ -35,7 +35,7 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
             let each = part.bytes as f64 / vertices as f64;
             parts.push((each, of_table(first + number)));
             titles.push(format!(
-                "{}, {}: {each:.1} bytes a vertex",
+                "{}, {}: {each:.1} bytes per vertex",
                 column.name, part.table
             ));
             let [rows, bytes] = [part.rows, part.bytes].map(grouped);
@@ -50,20 +50,20 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
         }
         plot = plot.with_group(column.name.clone(), parts);
     }
-    // Without the first, the groups of the marks would stay open.
+    // Without `with_tooltips`, the SVG groups of the marks are not closed.
     let plot = plot.with_tooltips().with_tooltip_labels(titles);
     let plot = plot.with_stacked();
     let plots = vec![Plot::Bar(plot)];
-    let title = format!("Bytes for each vertex, table by table: {}", study.mesh.name);
+    let title = format!("Bytes per vertex of each table: {}", study.mesh.name);
     let layout = laid_out(&plots, 820.0, 420.0)
-        .with_y_label("bytes a vertex")
+        .with_y_label("bytes per vertex")
         .with_clamp_y_axis();
     Some(Figure {
         id: format!("{of}memory"),
         svg: drawn(&title, plots, layout),
         title,
-        caption: "What is really held, spare room included: positions at the bottom, in one colour everywhere, and the \
-             other tables of each structure above; pointing at one names it."
+        caption: "Bytes held, including spare capacity. Positions are at the bottom, in one colour for all structures; \
+             the other tables of each structure are above. Point at a part to see its name."
             .into(),
         table,
         command: command.into(),

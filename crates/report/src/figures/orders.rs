@@ -1,15 +1,15 @@
-//! What the order of a mesh in memory costs each structure.
+//! Effect of the order of a mesh in memory on each structure.
 
 use kuva::plot::BarPlot;
 use kuva::render::plots::Plot;
-use study::numbers::duration;
-use study::{Comparison, OrderRow, OrdersReport};
+use sixfold_study::numbers::duration;
+use sixfold_study::{Comparison, OrderRow, OrdersReport};
 
 use super::one;
 use crate::colours::of_table;
 use crate::figure::{Figure, LEAST, Table, drawn, laid_out, ratios};
 
-/// One figure for each operation.
+/// Draws one figure for each operation.
 pub(super) fn of_orders(report: &OrdersReport, id: &str, command: &str) -> Vec<Figure> {
     let figures = { report.comparisons.iter() }
         .filter_map(|comparison| figure(report, comparison, id, command));
@@ -32,7 +32,7 @@ fn figure(
     let mut table = Table::new(header.chain(["worst / best", "95 %"]));
     let (mut plot, mut titles) = (BarPlot::new().with_legend(names), Vec::new());
     let logs = rows.iter().filter_map(|row| row.row.ratio_to_best);
-    // So far at least, or noise would look like a mountain.
+    // The axis reaches at least 1.5, so that noise does not fill the figure.
     let most = logs.fold(1.5, f64::max).log10();
     let per = one(operation.per());
     for of_one in rows.chunk_by(|a, b| a.row.backend == b.row.backend) {
@@ -61,12 +61,12 @@ fn figure(
         table.row(line);
         plot = plot.with_group(backend.clone(), bars);
     }
-    // Without the first, the groups of the marks would stay open.
+    // Without `with_tooltips`, the SVG groups of the marks are not closed.
     let plot = plot.with_tooltips().with_tooltip_labels(titles);
     let plots = vec![Plot::Bar(plot)];
     let name = operation.name();
     let title = format!(
-        "{name}: what the order in memory costs, {}",
+        "{name}: effect of the order in memory, {}",
         report.mesh.name
     );
     let layout = laid_out(&plots, 860.0, 360.0)
@@ -79,8 +79,8 @@ fn figure(
         svg: drawn(&title, plots, layout),
         title,
         caption: format!(
-            "Each structure in four orders of the same mesh, by its own best order; the axis is logarithmic and begins at \
-             1. The table has the time of {per}."
+            "Times of each structure in four orders of the same mesh, relative to its own best order; the axis is \
+             logarithmic and begins at 1. The table shows the time {per}."
         ),
         table,
         command: command.into(),

@@ -1,15 +1,15 @@
-//! Ranked bars: who is how many times as slow as the fastest, operation by operation.
+//! Ranked bars: the time of each backend relative to the fastest, for each operation.
 
 use kuva::plot::BarPlot;
 use kuva::render::plots::Plot;
-use study::numbers::duration;
-use study::{Answer, Collection, FIRST_TIME_SHOWN, Operation, Report, ResultRow, Standing};
+use sixfold_study::numbers::duration;
+use sixfold_study::{Answer, Collection, FIRST_TIME_SHOWN, Operation, Report, ResultRow, Standing};
 
 use super::{Row, one};
 use crate::colours::{WHISKER, of_column};
 use crate::figure::{Figure, LEAST, Table, drawn, laid_out, ratios};
 
-/// One figure for each operation of a study.
+/// Draws one figure for each operation of a study.
 pub(super) fn of_study(study: &Report, command: &str) -> Vec<Figure> {
     let figures = Operation::ALL.into_iter().filter_map(|operation| {
         let rows = study.rows(operation).filter_map(|row| {
@@ -36,14 +36,14 @@ pub(super) fn of_study(study: &Report, command: &str) -> Vec<Figure> {
     figures.collect()
 }
 
-/// The first time of an element, on fresh pages, where it differs from the others.
+/// Returns the time per element of a first run, on fresh pages, if it differs from later runs.
 fn first_time(row: &ResultRow) -> Option<f64> {
     let ratio = row.first_ratio()?;
     let each = row.first_ns? / row.elements.filter(|&n| n > 0)? as f64;
     (ratio.max(ratio.recip()) > FIRST_TIME_SHOWN).then_some(each)
 }
 
-/// One figure for each operation, over all meshes.
+/// Draws one figure for each operation, over all meshes.
 pub(super) fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
     let figures = Operation::ALL.into_iter().filter_map(|operation| {
         let rows = collection
@@ -66,7 +66,7 @@ pub(super) fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
     figures.collect()
 }
 
-/// Those that qualify for a workload.
+/// Draws the ranking for a workload.
 pub(super) fn of_workload(answer: &Answer, id: &str, command: &str) -> Option<Figure> {
     let rows = answer.ranking.iter().map(|ranked| Row {
         backend: &ranked.backend,
@@ -77,15 +77,12 @@ pub(super) fn of_workload(answer: &Answer, id: &str, command: &str) -> Option<Fi
         note: match (ranked.tied_with_best, ranked.ratio_to_best) {
             (_, 1.0) => "best".into(),
             (true, _) => "tied for best".into(),
-            _ if ranked.estimated => "an estimate: in full it would outlast the budget".into(),
+            _ if ranked.estimated => "estimated: a full run would exceed the budget".into(),
             _ if ranked.sampled => "from a sample of the elements".into(),
             _ => String::new(),
         },
     });
-    let title = format!(
-        "{}: how many times as slow as the fastest",
-        answer.workload.name
-    );
+    let title = format!("{}: time relative to the fastest", answer.workload.name);
     figure(title, id.into(), rows.collect(), "operation", command)
 }
 
@@ -96,7 +93,7 @@ fn of_operation(
     command: &str,
 ) -> Option<Figure> {
     let name = operation.name();
-    let title = format!("{name}: how many times as slow as the fastest");
+    let title = format!("{name}: time relative to the fastest");
     let id = format!("ranking-{}", name.replace('_', "-"));
     figure(title, id, rows, per, command)
 }
@@ -114,7 +111,7 @@ fn figure(
     rows.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
     let firsts = rows.iter().any(|row| row.first_ns.is_some());
     let mut header = vec!["".into(), "× the fastest".into(), "95 %".into(), one(per)];
-    header.extend(firsts.then(|| "the first time".into()));
+    header.extend(firsts.then(|| "first run".into()));
     header.push(String::new());
     let mut table = Table::new(header);
     let (mut bars, mut whiskers, mut titles) = (Vec::new(), Vec::new(), Vec::new());
@@ -144,7 +141,7 @@ fn figure(
             one(per)
         ));
     }
-    // Categories go upwards: the fastest belongs on top.
+    // The plot draws categories upwards; the fastest must be on top.
     bars.reverse();
     whiskers.reverse();
     titles.reverse();
@@ -172,8 +169,8 @@ fn figure(
         id,
         svg: drawn(&title, plots, layout),
         title,
-        caption: "Bars on a logarithmic scale that begins at 1, the fastest; the thin lines are 95 % intervals of \
-             the ratio, formed within rounds."
+        caption: "The scale is logarithmic and begins at 1, the fastest. The thin lines are 95 % intervals of the ratio, \
+             which is formed within rounds."
             .into(),
         table,
         command: command.into(),

@@ -1,15 +1,16 @@
-//! Times beside what moving the bytes takes: who is on the line cannot be faster but by fewer bytes.
+//! Times of queries over the bytes that they move. A mark on the line of a memory speed can become
+//! faster only by moving fewer bytes.
 
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;
-use study::numbers::{bytes, duration};
-use study::{Rung, Timed, Why, WhyRow};
+use sixfold_study::numbers::{bytes, duration};
+use sixfold_study::{Rung, Timed, Why, WhyRow};
 
 use super::one;
 use crate::colours::{INK, of_column};
 use crate::figure::{Figure, Table, drawn, laid_out};
 
-/// All relations on all structures in one figure; `None` where nothing was measured.
+/// Draws all relations on all structures in one figure; `None` if nothing was measured.
 pub(super) fn of_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
     let rungs = why.memory.as_ref()?;
     let rows = why.rows.iter().filter_map(|row| Some((row, row.timed?)));
@@ -24,7 +25,7 @@ pub(super) fn of_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
         return None;
     }
     let mut plots = Vec::new();
-    // The fastest and the slowest buffer: all others are between.
+    // The fastest and the slowest buffer; all others are between them.
     for rung in [rungs.first(), rungs.last()].into_iter().flatten() {
         plots.push(line(rung, least, most));
     }
@@ -59,8 +60,8 @@ pub(super) fn of_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
         "structure",
         "bytes",
         "jumps",
-        "takes",
-        "to move them",
+        "time",
+        "to move the bytes",
         "to wait",
         "bound by",
     ]);
@@ -79,23 +80,23 @@ pub(super) fn of_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
     let title = format!("Time against the bytes that must move: {}", why.mesh.name);
     let layout = laid_out(&plots, 860.0, 520.0)
         .with_log_scale()
-        .with_x_label("bytes that must move for each element")
-        .with_y_label("nanoseconds of each element");
+        .with_x_label("bytes that must move per element")
+        .with_y_label("time per element, ns");
     Some(Figure {
         id: id.into(),
         svg: drawn(&title, plots, layout),
         title,
-        caption: "One mark for each relation on each structure. The lines are what this machine takes to read so many \
-             bytes in order, from the smallest buffer and from the largest: a mark near its line is bound by \
-             bandwidth, one above it waits for reads that could not be foreseen, or is busy with its steps; the table \
-             says which."
+        caption: "One mark for each relation on each structure. The lines show the time of this machine to read these \
+             bytes in order, from the smallest and from the largest buffer. A mark near its line is bound by \
+             bandwidth. A mark above it waits for reads that cannot be predicted, or is busy computing; the table \
+             shows which."
             .into(),
         table,
         command: command.into(),
     })
 }
 
-/// What reading at the speed of `rung` takes, from the fewest bytes to the most.
+/// Draws the time to read `least` to `most` bytes at the speed of `rung`.
 fn line(rung: &Rung, least: f64, most: f64) -> Plot {
     let ends = [least, most].map(|bytes| (bytes, bytes / rung.gb_per_s));
     Plot::Line(

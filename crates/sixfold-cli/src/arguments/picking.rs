@@ -1,10 +1,10 @@
-//! Arguments of the commands that answer for a workload.
+//! Arguments of `sixfold pick` and `workloads`.
 
 use std::path::PathBuf;
 use std::time::Duration;
 
-use ::study::{Need, Policy};
 use clap::Args;
+use sixfold_study::{Need, Policy};
 
 use super::{backend, duration, seed};
 
@@ -14,55 +14,55 @@ const PICK_EXAMPLES: &str = "Examples:
   sixfold pick --workload mine.toml --needs edit,non-manifold scans/*.obj --json -
   sixfold workloads --show smoothing > mine.toml
 
-It runs the mix of the workload itself on every backend that qualifies, in its order of elements, in
-interleaved rounds; no single timings are added up. Where the mix only asks, flat tables of just the
-relations that it asks are one more candidate. Building is not in the ranking; the break-even table
-says from when on it pays, if an indexed face set is there already. Over several meshes backends are
-compared by geometric means.
+The whole mix of the workload runs on every backend that qualifies, in its access order, in
+interleaved rounds; times of single operations are not added up. If the mix has queries only, flat
+tables of the relations in it are one more candidate. The ranking excludes the time to build. The
+column `pays after` shows after how many operations building pays off, compared with keeping an
+indexed face set that exists already. Several meshes are combined by geometric means.
 
 Needs: edit, non-manifold, polygons, mixed-orientation, isolated-vertices, coincident-vertices,
 refine.
 
-Exit codes: 0 done; 1 no backend qualifies, or backends found different results, a fault in Sixfold;
-2 wrong usage, unusable input, or a budget too small to measure anything; 4 interrupted, finished
-part kept.";
+Exit codes: 0 success; 1 no backend qualifies, or results differ between backends (a fault in
+Sixfold); 2 wrong usage, unusable input, or a budget too small to measure anything; 4 interrupted,
+finished results are kept.";
 
 const WORKLOADS_EXAMPLES: &str = "Examples:
   sixfold workloads
-  sixfold workloads --show smoothing > mine.toml     a file to change
-  sixfold workloads --operations                     what a mix may have
+  sixfold workloads --show smoothing > mine.toml     a file to edit
+  sixfold workloads --operations                     what a mix may contain
 
-Exit codes: 0 done; 2 wrong usage.";
+Exit codes: 0 success; 2 wrong usage.";
 
-/// Say which backend fits a mesh and a workload.
+/// Find the backend that fits a mesh and a workload.
 ///
-/// Ranks the backends by running the workload on each, and says why, how sure it is, what each holds
-/// in memory, and from how many operations on it pays for being built.
+/// Runs the workload on each backend and ranks them. Shows the reasons, the confidence intervals,
+/// the memory of each, and after how many operations building it pays off.
 #[derive(Debug, Args)]
 #[command(after_help = PICK_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Pick {
-    /// The meshes, OBJ files; without any a built-in mesh of about 20,000 triangles
+    /// The meshes, OBJ files; without any, a built-in mesh of 20,000 triangles
     #[arg(value_name = "FILE.obj")]
     pub(crate) meshes: Vec<PathBuf>,
-    /// A built-in workload, or a file of one's own
+    /// A built-in workload, or your own file
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "smoothing")]
     pub(crate) workload: String,
-    /// How much memory the structure may hold: 2GiB, 500MB, 1000000
+    /// Memory limit of the structure: 2GiB, 500MB, 1000000
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     pub(crate) max_memory: Option<u64>,
-    /// What it has to be able to do or to hold: see below
+    /// Required abilities, from the list below
     #[arg(long, value_name = "NEED,…", value_delimiter = ',', value_parser = need)]
     pub(crate) needs: Vec<Need>,
     /// Only these backends, by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
-    /// How long to measure, in all: 20s, 500ms, 2m
+    /// Total time to measure: 20s, 500ms, 2m
     #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
-    /// What decides random orders
+    /// Seed of random orders
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
-    /// Freed pages: kept by this process, or system
+    /// Freed pages: kept in this process, or system
     #[arg(long, value_name = "POLICY", default_value = "kept")]
     pub(crate) heap: Policy,
     /// Cut every polygon into a fan of triangles first
@@ -73,14 +73,14 @@ pub(crate) struct Pick {
     pub(crate) json: Option<PathBuf>,
 }
 
-/// List the built-in workloads, and who does this.
+/// List the built-in workloads and the programs they model.
 #[derive(Debug, Args)]
 #[command(after_help = WORKLOADS_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Workloads {
-    /// Print the file of one of them, to be changed
+    /// Print the file of a built-in workload, to edit it
     #[arg(long, value_name = "NAME", conflicts_with_all = ["operations", "json"])]
     pub(crate) show: Option<String>,
-    /// List what a mix may have
+    /// List what a mix may contain
     #[arg(long, conflicts_with = "json")]
     pub(crate) operations: bool,
     /// Write the workloads as JSON (- for standard output)
@@ -93,7 +93,7 @@ fn need(name: &str) -> Result<Need, String> {
     parsed.map_err(|error| error.to_string())
 }
 
-/// `2GiB`, `500MB`, `1000000`: more than nothing.
+/// Parses `2GiB`, `500MB` or `1000000`: at least 1 byte.
 fn bytes(text: &str) -> Result<u64, String> {
     let units = [
         ("GiB", 1 << 30),
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn memory_has_a_unit_or_is_bytes() {
+    fn memory_without_a_unit_is_in_bytes() {
         assert_eq!(bytes("2GiB"), Ok(2 << 30));
         assert_eq!(bytes("1.5MB"), Ok(1_500_000));
         assert_eq!(bytes("17"), Ok(17));

@@ -1,9 +1,9 @@
-//! What `sixfold render` can be asked for.
+//! Arguments of `sixfold render`.
 
 use std::path::PathBuf;
 
-use ::render::{Shading, Size, Up, View};
 use clap::Args;
+use sixfold_render::{Shading, Size, Up, View};
 
 const EXAMPLES: &str = "Examples:
   sixfold render bunny.obj -o bunny.png
@@ -11,12 +11,12 @@ const EXAMPLES: &str = "Examples:
   sixfold render part.obj --creases part.creases -o part.png --view iso --up z
   sixfold render part.obj -o part.svg --wireframe --view=-20,10
 
-Several meshes stand in a row, all at one scale. Sharp edges and corners are red: those of the tags
-t crease and t corner in an OBJ file, and those of --creases, which may be given once for each mesh,
-in the same order. Blue is the side from which a face runs counter-clockwise; the other side is
-sand-coloured. A PNG is shaded sample by sample; an SVG has one colour for each face.
+Several meshes are drawn in a row, all at one scale. Sharp edges and corners are red: those of the
+tags t crease and t corner in an OBJ file, and those of --creases, which may be given once per mesh,
+in the same order. A face is blue on the side from which it runs counter-clockwise; the other
+side is sand-coloured. A PNG is shaded per sample; an SVG has one colour per face.
 
-Exit codes: 0 done; 2 wrong usage or unusable input; 3 too many faces for an SVG; 4 interrupted,
+Exit codes: 0 success; 2 wrong usage or unusable input; 3 too many faces for an SVG; 4 interrupted,
 nothing written.";
 
 /// Draw meshes with their edges and creases, as PNG or SVG.
@@ -26,33 +26,33 @@ pub(crate) struct Render {
     /// The meshes, OBJ files
     #[arg(value_name = "IN.obj", required = true)]
     pub(crate) meshes: Vec<PathBuf>,
-    /// Where to write the picture; its ending says in which format
+    /// The picture to write; .png or .svg selects the format
     #[arg(short, long, value_name = "OUT.png|OUT.svg")]
     pub(crate) output: PathBuf,
-    /// Pixels of the whole picture; without it 480 × 480 for each mesh
+    /// Pixels of the whole picture [default: 480 × 480 per mesh]
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<Size>,
-    /// Look from: degrees right and up, or iso
+    /// View from: degrees right and up, or iso
     #[arg(long, value_name = "AZIMUTH,ELEVATION", default_value = "30,22", value_parser = view, allow_hyphen_values = true)]
     pub(crate) view: [f64; 2],
-    /// Which axis points up: y or z
+    /// The axis that points up: y or z
     #[arg(long, value_name = "AXIS", default_value = "y", value_parser = up)]
     pub(crate) up: Up,
-    /// Draw the edges that are not sharp, too
+    /// Also draw the edges that are not sharp
     #[arg(long)]
     pub(crate) edges: bool,
-    /// Draw all edges, also the hidden ones, and no faces
+    /// Draw all edges, including hidden ones, and no faces
     #[arg(long)]
     pub(crate) wireframe: bool,
-    /// Sharp edges and corners, beside those that the mesh file tells
+    /// Sharp edges and corners, in addition to those in the mesh file
     #[arg(long, value_name = "FILE")]
     pub(crate) creases: Vec<PathBuf>,
-    /// smooth or flat
+    /// Shading: smooth or flat
     #[arg(long, value_name = "KIND", default_value = "smooth", value_parser = shading)]
     pub(crate) shade: Shading,
 }
 
-/// `640x480`.
+/// Parses `640x480`.
 fn size(text: &str) -> Result<Size, String> {
     let sides = text.trim().split_once(['x', '×']);
     let parsed = sides.and_then(|(width, height)| {
@@ -62,7 +62,7 @@ fn size(text: &str) -> Result<Size, String> {
     parsed.ok_or_else(|| "write a size in pixels as 640x480".into())
 }
 
-/// `30,20` or `iso`.
+/// Parses `30,20` or `iso`.
 fn view(text: &str) -> Result<[f64; 2], String> {
     if text.trim() == "iso" {
         return Ok(View::ISO);
@@ -72,7 +72,7 @@ fn view(text: &str) -> Result<[f64; 2], String> {
     });
     let wrong = || "write a view in degrees as 30,20, or as iso".to_owned();
     let [azimuth, elevation] = angles.ok_or_else(wrong)?;
-    // Which axis is up does not matter to angles.
+    // The up axis does not affect the check of the angles.
     let checked = View::new(azimuth, elevation, Up::Y);
     checked.map_err(|error| error.to_string())?;
     Ok([azimuth, elevation])
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sizes_and_views_are_read() {
+    fn sizes_and_views_are_parsed() {
         let (width, height) = (640, 48);
         assert_eq!(size("640x48"), Ok(Size { width, height }));
         assert_eq!(size(" 640 × 48 "), Ok(Size { width, height }));

@@ -1,4 +1,4 @@
-//! What `sixfold smooth`, `dual` and `triangulate` can be asked for.
+//! Arguments of `sixfold smooth`, `dual` and `triangulate`.
 
 use std::path::PathBuf;
 
@@ -11,33 +11,33 @@ use super::subdivision::named;
 const SMOOTH_EXAMPLES: &str = "Examples:
   sixfold smooth scan.obj -o smooth.obj
   sixfold smooth scan.obj --weights cotangent --iterations 50 -o smooth.obj
-  sixfold smooth scan.obj --step 0.33 --step-back=-0.34 -o smooth.obj    the volume is kept
+  sixfold smooth scan.obj --step 0.33 --step-back=-0.34 -o smooth.obj    keeps the volume
 
-Exit codes: 0 done; 2 wrong usage or unusable input; 3 the weights or the backend do not support the
-mesh; 4 interrupted, nothing written.";
+Exit codes: 0 success; 2 wrong usage or unusable input; 3 the weights or the backend do not
+support the mesh; 4 interrupted, nothing written.";
 
 /// Move vertices towards their neighbours.
 ///
-/// The connectivity stays as it is.
+/// The connectivity does not change.
 #[derive(Debug, Args)]
 #[command(after_help = SMOOTH_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Smooth {
     /// The mesh, an OBJ file
     #[arg(value_name = "IN.obj")]
     pub(crate) mesh: PathBuf,
-    /// Where to write the result (- for standard output)
+    /// The file to write (- for standard output)
     #[arg(short, long, value_name = "OUT.obj")]
     pub(crate) output: PathBuf,
-    /// uniform or cotangent
+    /// Weights of the neighbours: uniform or cotangent
     #[arg(long, value_name = "WHICH", default_value = "uniform", value_parser = weights)]
     pub(crate) weights: Weights,
-    /// fixed, or curve: smoothed along itself
+    /// Boundary: fixed, or curve (smoothed along itself)
     #[arg(long, value_name = "RULE", default_value = "fixed", value_parser = boundary)]
     pub(crate) boundary: Boundary,
-    /// How often
+    /// Number of iterations
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = iterations, allow_hyphen_values = true)]
     pub(crate) iterations: usize,
-    /// Part of the way to the mean of the neighbours: 0 to 1
+    /// Fraction of the way to the mean of the neighbours: 0 to 1
     #[arg(
         long,
         value_name = "PART",
@@ -45,10 +45,10 @@ pub(crate) struct Smooth {
         allow_hyphen_values = true
     )]
     pub(crate) step: f64,
-    /// A step away again after each, below minus the step, which keeps the volume
+    /// Second, negative step, below minus --step: keeps the volume
     #[arg(long, value_name = "PART", allow_hyphen_values = true)]
     pub(crate) step_back: Option<f64>,
-    /// The structure to do it with
+    /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
     pub(crate) backend: String,
 }
@@ -56,10 +56,10 @@ pub(crate) struct Smooth {
 const DUAL_EXAMPLES: &str = "Examples:
   sixfold dual icosahedron.obj -o dodecahedron.obj
 
-Exit codes: 0 done; 2 wrong usage or unusable input; 3 the mesh has no dual, or the backend does not
-hold it; 4 interrupted, nothing written.";
+Exit codes: 0 success; 2 wrong usage or unusable input; 3 the mesh has no dual, or the backend
+cannot hold it; 4 interrupted, nothing written.";
 
-/// Make a vertex of each face, and a face of each vertex.
+/// Turn each face into a vertex, and each vertex into a face.
 ///
 /// The mesh must be a closed, oriented manifold.
 #[derive(Debug, Args)]
@@ -68,10 +68,10 @@ pub(crate) struct Dual {
     /// The mesh, an OBJ file
     #[arg(value_name = "IN.obj")]
     pub(crate) mesh: PathBuf,
-    /// Where to write the result (- for standard output)
+    /// The file to write (- for standard output)
     #[arg(short, long, value_name = "OUT.obj")]
     pub(crate) output: PathBuf,
-    /// The structure to do it with
+    /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
     pub(crate) backend: String,
 }
@@ -81,32 +81,32 @@ const TRIANGULATE_EXAMPLES: &str = "Examples:
   sixfold triangulate quads.obj --method fan -o triangles.obj
   sixfold triangulate scan.obj --orient outward -o consistent.obj
 
-Exit codes: 0 done; 2 wrong usage or unusable input; 3 the mesh cannot be oriented; 4 interrupted,
-nothing written.";
+Exit codes: 0 success; 2 wrong usage or unusable input; 3 the mesh cannot be oriented;
+4 interrupted, nothing written.";
 
 /// Cut polygons into triangles.
 ///
-/// No vertex is added; triangles run the way of their polygons.
+/// Adds no vertex. Triangles keep the orientation of their polygons.
 #[derive(Debug, Args)]
 #[command(after_help = TRIANGULATE_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Triangulate {
     /// The mesh, an OBJ file
     #[arg(value_name = "IN.obj")]
     pub(crate) mesh: PathBuf,
-    /// Where to write the result (- for standard output)
+    /// The file to write (- for standard output)
     #[arg(short, long, value_name = "OUT.obj")]
     pub(crate) output: PathBuf,
-    /// ears, for any simple polygon, or fan, for convex ones
+    /// ears (for any simple polygon) or fan (for convex ones)
     #[arg(long, value_name = "NAME", default_value = "ears", value_parser = triangulation)]
     pub(crate) method: Triangulation,
-    /// Turn faces over to agree: majority (as most face) or outward
+    /// Flip faces until they agree: majority (as most faces) or outward
     #[arg(long, value_name = "RULE", value_parser = facing)]
     pub(crate) orient: Option<Facing>,
 }
 
 pub(super) fn iterations(text: &str) -> Result<usize, String> {
     let parsed = text.trim().parse();
-    parsed.map_err(|_| format!("a number of iterations is from 0 to {}", usize::MAX))
+    parsed.map_err(|_| format!("the number of iterations must be from 0 to {}", usize::MAX))
 }
 
 fn weights(text: &str) -> Result<Weights, String> {

@@ -1,4 +1,4 @@
-//! What `sixfold schemes` and `sixfold subdivide` can be asked for.
+//! Arguments of `sixfold schemes` and `sixfold subdivide`.
 
 use std::path::PathBuf;
 
@@ -15,25 +15,25 @@ const EXAMPLES: &str = "Examples:
 
 Schemes: catmull-clark, loop, sqrt3, butterfly, doo-sabin, midpoint, bilinear.
 
-A crease file has lines `edge a b sharpness` and `corner v sharpness`: vertices from 0, sharpness a
-number from 0 on, or inf; # begins a comment. From 10 on an edge is sharp for ever, below it gets
-smoother by one a level. What an OBJ file says of creases (t crease, t corner) holds as well.
-`sixfold schemes` lists what runs on which backend.
+A crease file has lines `edge a b sharpness` and `corner v sharpness`. Vertices count from 0; the
+sharpness is a number from 0, or inf; # begins a comment. A sharpness of 10 or more never decreases;
+a smaller one decreases by one per level. Creases in an OBJ file (t crease, t corner) are used too.
+`sixfold schemes` lists which methods run on which backend.
 
---select, with midpoint, takes the faces that a file lists (numbers from 0), those that touch a
-box, or those that bend from a neighbour by more than an angle; neighbours are halved so that no
-gaps are left.
+--select, with midpoint only, refines the faces that a file lists (numbers from 0), the faces that
+touch a box, or the faces at an edge that bends by more than an angle. Adjacent faces are halved, so
+that no gaps are left.
 
-Exit codes: 0 done; 2 wrong usage or unusable input; 3 the scheme, the backend or the memory does
+Exit codes: 0 success; 2 wrong usage or unusable input; 3 the scheme, the backend or the memory does
 not allow the mesh, the option or the levels; 4 interrupted, nothing written.";
 
 const SCHEMES_EXAMPLES: &str = "Examples:
   sixfold schemes
-  sixfold schemes --json -                   for machines
+  sixfold schemes --json -                   machine-readable
 
-Exit codes: 0 done; 2 wrong usage.";
+Exit codes: 0 success; 2 wrong usage.";
 
-/// Say what subdivision schemes there are, and what runs on which backend.
+/// List the subdivision schemes, and which backends support them.
 #[derive(Debug, Args)]
 #[command(after_help = SCHEMES_EXAMPLES)]
 pub(crate) struct Schemes {
@@ -42,68 +42,68 @@ pub(crate) struct Schemes {
     pub(crate) json: Option<PathBuf>,
 }
 
-/// Refine a mesh by a subdivision scheme.
+/// Refine a mesh with a subdivision scheme.
 ///
-/// Says beforehand how large the result is and what memory it takes, and refuses what the machine
-/// does not have.
+/// First prints the size of the result and the memory that it takes; refuses if less memory is
+/// free.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Subdivide {
     /// The mesh, an OBJ file
     #[arg(value_name = "IN.obj")]
     pub(crate) mesh: PathBuf,
-    /// Where to write the result (- for standard output)
+    /// The file to write (- for standard output)
     #[arg(short, long, value_name = "OUT.obj")]
     pub(crate) output: PathBuf,
-    /// The scheme: see the list below
+    /// The scheme, from the list below
     #[arg(long, value_name = "NAME", default_value = "catmull-clark", value_parser = scheme)]
     pub(crate) scheme: Scheme,
-    /// How many steps to take
+    /// Number of levels
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = levels, allow_hyphen_values = true)]
     pub(crate) levels: u32,
     /// Refine only faces:FILE, box:X0,Y0,Z0,X1,Y1,Z1 or angle:DEGREES
     #[arg(long, value_name = "WHAT", value_parser = select, allow_hyphen_values = true)]
     pub(crate) select: Option<Select>,
-    /// The structure to do it with
+    /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
     pub(crate) backend: String,
-    /// gather, scatter or native [default: the last the backend has]
+    /// gather, scatter or native [default: the last one supported]
     #[arg(long, value_name = "NAME", value_parser = method)]
     pub(crate) method: Option<Method>,
-    /// Threads of a native step; 0 for one on each processor
+    /// Threads of a native step; 0: one per processor
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub(crate) threads: Option<usize>,
-    /// Sharp edges and vertices, beside those that the mesh file tells
+    /// Sharp edges and vertices, in addition to those in the mesh file
     #[arg(long, value_name = "FILE")]
     pub(crate) creases: Option<PathBuf>,
-    /// edge-and-corner, edge-only or none
+    /// Rule for the boundary: edge-and-corner, edge-only or none
     #[arg(long, value_name = "RULE", value_parser = boundary)]
     pub(crate) boundary: Option<Boundary>,
-    /// uniform or chaikin
+    /// How sharpness decreases: uniform or chaikin
     #[arg(long, value_name = "RULE", value_parser = creasing)]
     pub(crate) creasing: Option<Creasing>,
-    /// loop or warren
+    /// Weights of the scheme loop: loop or warren
     #[arg(long, value_name = "WHOSE", value_parser = loop_weights)]
     pub(crate) loop_weights: Option<LoopWeights>,
-    /// Write limit positions and normals here as well
+    /// Also write limit positions and normals to this file
     #[arg(long, value_name = "LIMIT.obj")]
     pub(crate) limit: Option<PathBuf>,
-    /// Write the sharpness that is left, as a crease file
+    /// Also write the remaining sharpness, as a crease file
     #[arg(long, value_name = "FILE")]
     pub(crate) creases_left: Option<PathBuf>,
-    /// Go on where the result is larger than the memory that is free
+    /// Continue even if the result takes more than the free memory
     #[arg(long)]
     pub(crate) force: bool,
 }
 
-/// Which faces to refine.
+/// The faces to refine.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Select {
-    /// Those that a file lists.
+    /// The faces that a file lists.
     Faces(PathBuf),
-    /// Those that touch a box: its lower and its upper corner.
+    /// The faces that touch a box, given by its lower and its upper corner.
     Box([f32; 3], [f32; 3]),
-    /// Those at an edge that bends by more than so many degrees.
+    /// The faces at an edge that bends by more than this number of degrees.
     Angle(f32),
 }
 
@@ -124,19 +124,19 @@ fn select(text: &str) -> Result<Select, String> {
             [x0, y0, z0, x1, y1, z1] if x0 <= x1 && y0 <= y1 && z0 <= z1 => {
                 Ok(Select::Box([x0, y0, z0], [x1, y1, z1]))
             }
-            [_, _, _, _, _, _] => Err("the lower corner of a box comes first".to_owned()),
+            [_, _, _, _, _, _] => Err("the lower corner of the box comes first".to_owned()),
             _ => Err(wrong()),
         },
         "angle" => match numbers()?[..] {
             [degrees] if (0.0..=180.0).contains(&degrees) => Ok(Select::Angle(degrees)),
-            [_] => Err("an angle is from 0 to 180 degrees".to_owned()),
+            [_] => Err("the angle must be from 0 to 180 degrees".to_owned()),
             _ => Err(wrong()),
         },
         _ => Err(wrong()),
     }
 }
 
-/// The item of `all` that is called `text`.
+/// Returns the item of `all` with the name `text`.
 pub(super) fn named<T: Copy>(
     all: &[T],
     name: impl Fn(T) -> &'static str,
@@ -169,20 +169,20 @@ fn loop_weights(text: &str) -> Result<LoopWeights, String> {
     named(&LoopWeights::ALL, LoopWeights::name, text)
 }
 
-/// No more levels than 32-bit coordinates can be halved; a mesh that grows ends far before.
+/// Parses a number of levels. The limit exceeds the times that a 32-bit coordinate can be halved.
 fn levels(text: &str) -> Result<u32, String> {
     const MOST: u32 = 1000;
     match text.trim().parse() {
         Ok(levels) if levels <= MOST => Ok(levels),
-        _ => Err(format!("a number of levels is from 0 to {MOST}")),
+        _ => Err(format!("the number of levels must be from 0 to {MOST}")),
     }
 }
 
-/// No more threads than any machine has use for.
+/// Parses a number of threads. The limit exceeds what any machine can use.
 fn threads(text: &str) -> Result<usize, String> {
     let parsed: Result<usize, _> = text.trim().parse();
     match parsed {
         Ok(threads) if threads <= 1024 => Ok(threads),
-        _ => Err("a number of threads is from 0 to 1024".to_owned()),
+        _ => Err("the number of threads must be from 0 to 1024".to_owned()),
     }
 }

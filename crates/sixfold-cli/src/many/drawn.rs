@@ -1,8 +1,8 @@
-//! `sixfold report`: results that were written before, on a page.
+//! `sixfold report`: draws saved results on one page.
 
 use std::process::ExitCode;
 
-use ::study::{Collection, Results};
+use sixfold_study::{Collection, Results};
 
 use super::folder::Folder;
 use crate::arguments::Draw;
@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::load;
 use crate::measured::typed;
 
-/// Reads the results, and draws them.
+/// Reads the results and draws them.
 pub(crate) fn run(arguments: &Draw) -> Result<ExitCode, Failure> {
     let mut collection = Collection::empty();
     for place in &arguments.results {

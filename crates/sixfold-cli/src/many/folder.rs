@@ -1,12 +1,12 @@
-//! The folder of a report: each finished study a file of its own, and at the end all in one.
+//! The folder of a report: one file per finished study, and at the end all results in one file.
 //!
 //! ```text
-//! DIR/studies/bunny-0e2a97c1.json  one mesh, written as soon as it is finished; what --resume goes by
-//! DIR/labs/orders.json           what else was measured
-//! DIR/results.json               all of it
+//! DIR/studies/bunny-0e2a97c1.json  one mesh, written as soon as it is finished; used by --resume
+//! DIR/labs/orders.json           another lab
+//! DIR/results.json               all results
 //! DIR/results.csv                every sample
-//! DIR/report.html                the page, which needs nothing else
-//! DIR/report.md, DIR/figures     the same for a repository
+//! DIR/report.html                the page, which needs no other file
+//! DIR/report.md, DIR/figures     the same in Markdown
 //! ```
 
 use std::fs;
@@ -14,27 +14,27 @@ use std::hash::Hasher;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use ::report::Page;
-use ::study::{Asked, Collection, Report, Results};
 use serde::{Deserialize, Serialize};
+use sixfold_report::Page;
+use sixfold_study::{Asked, Collection, Report, Results};
 
 use super::meshes::Mesh;
 use crate::failure::Failure;
 use crate::output::{Output, cannot_write};
 use crate::text::complain;
-use ::study::numbers::counted;
+use sixfold_study::numbers::counted;
 
-/// A place for results.
+/// A folder for results.
 pub(super) struct Folder {
     path: PathBuf,
 }
 
-/// The study of one mesh as it is kept, or why there is none.
+/// The saved study of one mesh, or the reason why it failed.
 #[derive(Debug, Deserialize, Serialize)]
 pub(super) struct Piece {
     schema: u32,
     mesh: String,
-    /// What the file of the mesh was like, so that another under its name is seen.
+    /// Size and checksum of the mesh file, to detect that the file has changed.
     content: Option<String>,
     settings: Asked,
     study: Option<Report>,
@@ -48,7 +48,7 @@ impl Piece {
             Err(reason) => (None, Some(reason)),
         };
         Self {
-            schema: ::study::SCHEMA,
+            schema: sixfold_study::SCHEMA,
             mesh: mesh.name.clone(),
             content: mesh.path.as_deref().and_then(content),
             settings: settings.clone(),
@@ -57,7 +57,7 @@ impl Piece {
         }
     }
 
-    /// Takes it into the results.
+    /// Adds it to the results.
     pub(super) fn settle(self, collection: &mut Collection) {
         match self.study {
             Some(study) => collection.finish(study),
@@ -66,7 +66,7 @@ impl Piece {
     }
 }
 
-/// The bytes of a file, told in short; `None` if it cannot be read.
+/// Returns the size and checksum of a file; `None` if it cannot be read.
 fn content(path: &Path) -> Option<String> {
     let mut file = fs::File::open(path).ok()?;
     let mut hasher = crc32fast::Hasher::new();
@@ -85,8 +85,8 @@ fn content(path: &Path) -> Option<String> {
 }
 
 impl Folder {
-    /// Opens `path`, which is made if it is not there, and takes in what is finished in it if that is
-    /// to be gone on with.
+    /// Opens `path`, or creates it if it does not exist. If `resume`, adds its finished studies to
+    /// `collection`.
     pub(super) fn open(
         path: &Path,
         resume: bool,
@@ -102,14 +102,14 @@ impl Folder {
             let foreign = folder.path.join("results.json");
             return match pieces.len() {
                 0 if foreign.exists() => Err(Failure::usage(format!(
-                    "{} is there already, and is of no study that is kept here: name another folder, or take --resume to write over it",
+                    "{} exists already, but does not belong to a study in this folder: name another folder, or use --resume to overwrite it",
                     foreign.display()
                 ))),
                 0 => Ok(folder),
                 finished => {
-                    let finished = counted(finished, "study that is", "studies that are");
+                    let finished = counted(finished, "finished study", "finished studies");
                     Err(Failure::usage(format!(
-                        "{shown} has {finished} finished: go on with --resume, or name another folder"
+                        "{shown} has {finished}: continue with --resume, or name another folder"
                     )))
                 }
             };
@@ -118,23 +118,23 @@ impl Folder {
             let Ok(piece) = serde_json::from_str::<Piece>(&text) else {
                 let file = file.display();
                 complain(&format!(
-                    "note: {file}: no study that this program wrote, so it is made again"
+                    "note: {file}: not a study of this program, so the mesh is studied again"
                 ));
                 continue;
             };
             if piece.settings != collection.settings {
                 return Err(Failure::usage(format!(
-                    "{} was made with other settings: name another folder, or ask for the same",
+                    "{} was made with other settings: name another folder, or use the same settings",
                     file.display()
                 )));
             }
             let Some(mesh) = meshes.iter().find(|mesh| mesh.name == piece.mesh) else {
-                continue; // no longer asked for
+                continue; // no longer selected
             };
             match mesh.path.as_deref().and_then(content) == piece.content {
                 true => piece.settle(collection),
                 false => complain(&format!(
-                    "note: {}: another file than when it was studied, so it is studied again",
+                    "note: {}: the file has changed since it was studied, so it is studied again",
                     mesh.name
                 )),
             }
@@ -142,7 +142,7 @@ impl Folder {
         Ok(folder)
     }
 
-    /// The folder at `path`, for results that are complete.
+    /// Opens or creates the folder at `path`, for complete results.
     pub(super) fn made(path: &Path) -> Result<Self, Failure> {
         let shown = path.display().to_string();
         fs::create_dir_all(path).map_err(|cause| cannot_write(&shown, &cause))?;
@@ -153,7 +153,7 @@ impl Folder {
         self.path.join("studies")
     }
 
-    /// The files of finished studies, and what is in them.
+    /// Returns the files of finished studies and their text.
     fn pieces(&self) -> Result<Vec<(PathBuf, String)>, Failure> {
         let failed = |path: &Path, cause: io::Error| {
             Failure::usage(format!("{}: cannot be read: {cause}", path.display()))
@@ -172,7 +172,7 @@ impl Folder {
         Ok(pieces)
     }
 
-    /// Keeps the study of a mesh: the file has its name when it is complete.
+    /// Saves the study of a mesh. The file gets its name when it is complete.
     pub(super) fn keep(&self, piece: &Piece) -> Result<(), Failure> {
         let stem = Path::new(&piece.mesh).file_stem().unwrap_or_default();
         let fine = |c: char| {
@@ -183,7 +183,7 @@ impl Folder {
             }
         };
         let stem: String = stem.to_string_lossy().chars().map(fine).take(40).collect();
-        // No two meshes have one file, whatever they are called and whichever were asked for before.
+        // The checksum of the name keeps the files of meshes with the same stem apart.
         let name = crc32fast::hash(piece.mesh.as_bytes());
         let path = self.studies().join(format!("{stem}-{name:08x}.json"));
         Output::open(&path)?.finish(|writer| {
@@ -192,13 +192,13 @@ impl Folder {
         })
     }
 
-    /// What was measured besides, and kept as `name`; `None` if there is nothing that can be read.
+    /// Reads the saved lab `name`; returns `None` if it cannot be read.
     pub(super) fn lab(&self, name: &str) -> Option<Results> {
         let text = fs::read_to_string(self.lab_path(name)).ok()?;
         Results::read_json(&text).ok()
     }
 
-    /// Keeps it.
+    /// Saves the results of the lab `name`.
     pub(super) fn keep_lab(&self, name: &str, results: &Results) -> Result<(), Failure> {
         let path = self.lab_path(name);
         let folder = self.path.join("labs");
@@ -211,7 +211,7 @@ impl Folder {
         self.path.join("labs").join(format!("{name}.json"))
     }
 
-    /// Writes all of it in one, and draws it; `command` makes it again.
+    /// Writes all results and the page; `command` is the command that reproduces them.
     pub(super) fn finish(&self, collection: &Collection, command: &str) -> Result<(), Failure> {
         let output = |name: &str| Output::open(&self.path.join(name));
         output("results.json")?.finish(|writer| collection.write_json(writer))?;
@@ -219,7 +219,7 @@ impl Folder {
         self.draw(collection, command)
     }
 
-    /// The page alone.
+    /// Writes only the page and its figures.
     pub(super) fn draw(&self, collection: &Collection, command: &str) -> Result<(), Failure> {
         let output = |name: &str| Output::open(&self.path.join(name));
         let page = Page::of(collection, command);

@@ -1,24 +1,24 @@
-//! What a report of one mesh has besides its study: its orders, its growth, and what its queries wait for.
+//! The labs in the report of one mesh besides its study: orders, growth and why.
 
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use ::study::unknown;
-use ::study::{GrowthSettings, Labs, Operation, Results, Settings, Specimen, WhySettings};
+use sixfold_study::unknown;
+use sixfold_study::{GrowthSettings, Labs, Operation, Results, Settings, Specimen, WhySettings};
 
 use super::folder::Folder;
 use crate::failure::Failure;
 use crate::text::{Text, complain, hanging, tame};
 use crate::{growth, orders, why};
 
-/// One of them.
+/// A lab.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Lab {
-    /// The mesh in several orders, as `sixfold orders` measures it.
+    /// The mesh in several orders, as measured by `sixfold orders`.
     Orders,
-    /// A shape in several sizes, as `sixfold growth` measures it.
+    /// A shape in several sizes, as measured by `sixfold growth`.
     Growth,
-    /// What queries read, as `sixfold why` counts it.
+    /// The reads of queries, as counted by `sixfold why`.
     Why,
 }
 
@@ -34,14 +34,14 @@ impl Lab {
     }
 }
 
-/// Which of them somebody asks for.
+/// The labs selected by `--labs`.
 #[derive(Clone, Debug)]
 pub(crate) struct Chosen(Vec<Lab>);
 
 impl FromStr for Chosen {
     type Err = String;
 
-    /// `all`, `none`, or names.
+    /// Parses `all`, `none`, or names separated by commas.
     fn from_str(text: &str) -> Result<Self, String> {
         let named = |name: &str| {
             let lab = Lab::ALL.into_iter().find(|lab| lab.name() == name.trim());
@@ -56,11 +56,12 @@ impl FromStr for Chosen {
     }
 }
 
-/// Those that belong into the report: all, unless some were chosen; none of several meshes.
+/// Returns the labs of the report: the selected ones, or all by default. Several meshes have no
+/// labs.
 pub(super) fn wanted(chosen: Option<&Chosen>, single: bool) -> Result<Vec<Lab>, Failure> {
     match (chosen, single) {
         (Some(Chosen(labs)), false) if !labs.is_empty() => Err(Failure::usage(
-            "--labs are for the report of one mesh: measure them by `sixfold orders`, `growth` and `why`",
+            "--labs is for the report of one mesh: use `sixfold orders`, `growth` and `why` instead",
         )),
         (_, false) => Ok(Vec::new()),
         (Some(Chosen(labs)), true) => Ok(labs.clone()),
@@ -68,18 +69,20 @@ pub(super) fn wanted(chosen: Option<&Chosen>, single: bool) -> Result<Vec<Lab>, 
     }
 }
 
-/// What they are measured on.
+/// The input of the labs.
 pub(super) struct Measuring<'a> {
     pub(super) specimen: &'a Specimen,
     pub(super) settings: &'a Settings,
     pub(super) folder: &'a Folder,
-    /// The study was finished before: what is in the folder is of the same mesh and settings.
+    /// The study was finished by an earlier run: the folder has results of the same mesh and
+    /// settings.
     pub(super) resumed: bool,
     pub(super) stop: &'a AtomicBool,
 }
 
 impl Measuring<'_> {
-    /// Measures those that are not in the folder; one that cannot be measured is told of and left out.
+    /// Measures the labs that are not in the folder yet. A lab that cannot be measured is reported
+    /// and left out.
     pub(super) fn labs(&self, wanted: &[Lab]) -> Result<Labs, Failure> {
         let mut labs = Labs::default();
         for &lab in wanted {
@@ -102,7 +105,7 @@ impl Measuring<'_> {
                     labs.take(results);
                 }
                 Ok(None) => complain(&format!(
-                    "note: the report is without {}: none of these operations is a relation",
+                    "note: the report is without {}: none of the selected operations is a relation",
                     lab.name()
                 )),
                 Err(failure) => complain(&format!(
@@ -164,10 +167,10 @@ impl Measuring<'_> {
     }
 }
 
-/// What they show, in words; the rest is in the report.
+/// Prints the findings of the labs; the report has the rest.
 pub(super) fn print(labs: &Labs, text: &mut Text) {
     let orders = { labs.orders.iter() }.map(|orders| {
-        let title = format!("What the order of {} costs", tame(&orders.mesh.name));
+        let title = format!("Effect of the order of {}", tame(&orders.mesh.name));
         (title, &orders.words)
     });
     let growth = { labs.growth.iter() }

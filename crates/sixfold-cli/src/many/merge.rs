@@ -1,8 +1,8 @@
-//! `sixfold merge`: the shards of a study of many meshes, put together.
+//! `sixfold merge`: merges the shards of a study of many meshes.
 
 use std::process::ExitCode;
 
-use ::study::Collection;
+use sixfold_study::Collection;
 
 use super::folder::Folder;
 use crate::arguments::Merge;
@@ -12,11 +12,11 @@ use crate::measured::{studies_ended, typed};
 use crate::output::{Output, check_kept, is_stdout};
 use crate::text::Text;
 
-/// Reads what each shard wrote, and writes what one run would have.
+/// Reads the results of the shards, and writes them as the results of a single run.
 pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
     if arguments.json.is_none() && arguments.report.is_none() {
         return Err(Failure::usage(
-            "say where to: --report DIR, or --json FILE (- for standard output)",
+            "no output given: use --report DIR, or --json FILE (- for standard output)",
         ));
     }
     let mut merged: Option<Collection> = None;

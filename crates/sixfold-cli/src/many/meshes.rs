@@ -1,4 +1,4 @@
-//! Which meshes: files as they are named, and the OBJ files of folders.
+//! Finds the meshes of a study: named files, and the OBJ files of folders.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,13 +11,13 @@ use crate::failure::Failure;
 /// One of many meshes.
 #[derive(Clone, Debug)]
 pub(crate) struct Mesh {
-    /// What it is called in results: its path as given.
+    /// Its name in results: the path as given.
     pub(crate) name: String,
-    /// Where it is; `None` for the one that is built in.
+    /// Its file; `None` for the built-in mesh.
     pub(crate) path: Option<PathBuf>,
 }
 
-/// Every n-th mesh, from the i-th on: the share of one of n jobs.
+/// Every n-th mesh, from the i-th on: the part of one of n jobs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shard {
     index: usize,
@@ -25,7 +25,7 @@ pub(crate) struct Shard {
 }
 
 impl Shard {
-    /// Whether mesh `number`, counted from 0, is in it.
+    /// Returns whether mesh `number`, counted from 0, is in the shard.
     pub(crate) fn has(self, number: usize) -> bool {
         number % self.count == self.index - 1
     }
@@ -34,7 +34,7 @@ impl Shard {
 impl FromStr for Shard {
     type Err = String;
 
-    /// `2/8`: the second of eight.
+    /// Parses `2/8`: the second of eight.
     fn from_str(text: &str) -> Result<Self, String> {
         let parts = text.split_once('/');
         let parsed =
@@ -48,8 +48,8 @@ impl FromStr for Shard {
     }
 }
 
-/// The meshes that `places` name: a file is itself, a folder its OBJ files and those of its folders, by
-/// name. Each once, in that order; without any the one that is built in.
+/// Returns the meshes in `places`: files, and all OBJ files in folders and their subfolders, sorted
+/// by name. Each file occurs once. Without any place, returns the built-in mesh.
 pub(crate) fn found(places: &[PathBuf]) -> Result<Vec<Mesh>, Failure> {
     let mut meshes: Vec<Mesh> = Vec::new();
     if places.is_empty() {
@@ -66,7 +66,7 @@ pub(crate) fn found(places: &[PathBuf]) -> Result<Vec<Mesh>, Failure> {
             })?;
             if files.is_empty() {
                 return Err(Failure::usage(format!(
-                    "{}: a directory with no .obj file in it, nor in those below",
+                    "{}: no .obj file in this directory or its subdirectories",
                     place.display()
                 )));
             }
@@ -84,14 +84,15 @@ pub(crate) fn found(places: &[PathBuf]) -> Result<Vec<Mesh>, Failure> {
     Ok(meshes)
 }
 
-/// A path as text; bytes that are no text are escaped, so that no two paths have one name.
+/// Returns a path as text. Bytes that are not UTF-8 are escaped, so that no two paths have the same
+/// name.
 fn name_of(path: &Path) -> String {
     path.to_str()
         .map_or_else(|| format!("{path:?}"), ToOwned::to_owned)
 }
 
-/// All OBJ files in `folder` and below, by name, but for hidden ones: other programs leave these behind.
-/// Links to folders are not followed: they may lead back.
+/// Lists all OBJ files in `folder` and its subfolders, sorted by name. Skips hidden files, which
+/// other programs leave behind. Does not follow links to folders, because they may form a cycle.
 fn list(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), (PathBuf, io::Error)> {
     let failed = |cause| (folder.to_owned(), cause);
     let entries = fs::read_dir(folder).map_err(failed)?;
@@ -103,7 +104,7 @@ fn list(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), (PathBuf, io::Err
         }
         let path = entry.path();
         let is_folder = entry.file_type().map_err(failed)?.is_dir();
-        // What is no file, and no link to one, may block whoever opens it.
+        // Only files and links to files: opening a pipe, for example, may block.
         if is_folder || fs::metadata(&path).is_ok_and(|there| there.is_file()) {
             paths.push((path, is_folder));
         }
@@ -125,7 +126,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shards_share_the_meshes_out() {
+    fn each_mesh_is_in_exactly_one_shard() {
         let shards: Vec<Shard> = (1..=3)
             .map(|i| format!("{i}/3").parse().expect("a shard"))
             .collect();

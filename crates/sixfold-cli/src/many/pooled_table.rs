@@ -1,11 +1,12 @@
-//! The table of what many meshes come to.
+//! The table of the results of many meshes.
 
-use ::study::{Collection, Pooled};
 use comfy_table::{Attribute, Cell, CellAlignment};
+use sixfold_study::{Collection, Pooled};
 
 use crate::tables::styled;
 
-/// For each operation and column, the geometric mean of the ratio to the best of each mesh.
+/// Returns the table of the geometric mean, over all meshes, of the ratio to the best backend of
+/// the mesh: a row per operation, a column per backend.
 pub(super) fn pooled_table(collection: &Collection, bold: bool) -> String {
     let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
     let mut columns: Vec<&str> = Vec::new();
@@ -32,9 +33,10 @@ pub(super) fn pooled_table(collection: &Collection, bold: bool) -> String {
     format!("{}\n{LEGEND}", table.trim_fmt())
 }
 
-const LEGEND: &str = "* on most meshes the fastest alone, or tied for it; (n) on n meshes only: it holds no others, or did other work there";
+const LEGEND: &str = "* fastest or tied with the fastest on most meshes\n\
+    (n) on n meshes only: it cannot hold the other meshes, or did other work on them";
 
-/// `1.04*`, `18.2 (3)`.
+/// Formats a cell as `1.04*` or `18.2 (3)`.
 fn cell(row: &Pooled, most: usize, bold: bool) -> Cell {
     let ratio = match row.ratio_to_best {
         ratio if ratio < 9.995 => format!("{ratio:.2}"),

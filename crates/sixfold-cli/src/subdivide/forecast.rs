@@ -1,28 +1,30 @@
-//! How large the result of a subdivision will be, and whether the machine has room for it.
+//! Predicts the size of a subdivision, and checks that enough memory is free.
 
 use sixfold::subdivision::{Extent, Method, Subdivision};
-use sixfold::{Counts, MAX_ROWS, Point, PolygonMesh, Representation, VertexId, Visitor, visit};
+use sixfold::{Counts, MAX_ROWS, Point, PolygonMesh, VertexId};
+use sixfold_study::Backend;
 
 use crate::failure::Failure;
 use crate::free_memory::check_room;
-use ::study::numbers::{bytes, counted};
+use sixfold_study::numbers::{bytes, counted};
 
-/// What a pass over the faces adds up for each edge, in a hash map where edges have no rows.
+/// Bytes of the sums per edge in a pass over the faces. They are in a hash map if edges have no
+/// rows.
 const SUMS_BYTES: usize = 120;
 
-/// What is kept for each vertex while limits are taken.
+/// Bytes per vertex while limits are computed.
 const LIMIT_BYTES: usize = 128;
 
-/// The sizes of all levels, and the most memory that making them takes.
+/// The sizes of all levels, and the peak of memory while they are made.
 pub(crate) struct Forecast {
-    /// Of the control mesh and of each level.
+    /// Counts of the control mesh and of each level.
     levels: Vec<Counts>,
-    /// Bytes at the worst moment.
+    /// Peak memory in bytes.
     peak: usize,
 }
 
 impl Forecast {
-    /// What `levels` steps make of `polygons`.
+    /// Predicts the sizes of `levels` steps from `polygons`.
     pub(crate) fn of(
         subdivision: &Subdivision,
         method: Method,
@@ -48,7 +50,7 @@ impl Forecast {
             ];
             if let Some((elements, _)) = rows.iter().find(|(_, number)| *number > MAX_ROWS) {
                 return Err(Failure::unsupported(format!(
-                    "level {} of {levels} would have more than {MAX_ROWS} {elements}, and handles are 32 bits: take fewer levels, or split the mesh",
+                    "level {} of {levels} would have more than {MAX_ROWS} {elements}, but handles have 32 bits: take fewer levels, or split the mesh",
                     level + 1
                 )));
             }
@@ -57,9 +59,9 @@ impl Forecast {
         let peak = counts.windows(2).map(|pair| {
             let [old, new] = [&pair[0], &pair[1]];
             match method {
-                // Two meshes, and at the end the polygons that are written.
+                // Two meshes, and at the end the polygons of the result.
                 Method::Native => held(backend, old) + held(backend, new) + flat(new),
-                // The polygons of both, the structure, and data by handle beside it.
+                // The polygons of both levels, the structure, and data per handle.
                 Method::Gather => flat(old) + flat(new) + 3 * held(backend, old),
                 Method::Scatter => {
                     flat(old) + flat(new) + held(backend, old) + old.edges * SUMS_BYTES
@@ -78,23 +80,23 @@ impl Forecast {
         })
     }
 
-    /// Faces of all levels but the first.
+    /// Returns the number of faces of all new levels.
     pub(crate) fn faces_in_all(&self) -> usize {
         self.levels.iter().skip(1).map(|counts| counts.faces).sum()
     }
 
-    /// What to expect, in a line.
+    /// Describes the expected result in a line.
     pub(crate) fn told(&self) -> String {
         let result = &self.levels[self.levels.len() - 1];
         format!(
-            "to make: {}, {}; some {} of memory",
+            "result: {}, {}; needs about {} of memory",
             counted(result.vertices, "vertex", "vertices"),
             counted(result.faces, "face", "faces"),
             bytes(self.peak)
         )
     }
 
-    /// Refuses what the machine has no room for, unless told to go on.
+    /// Refuses a result that takes more than the free memory, unless `force`.
     pub(crate) fn check(&self, force: bool) -> Result<(), Failure> {
         let result = &self.levels[self.levels.len() - 1];
         let faces = counted(result.faces, "face", "faces");
@@ -102,35 +104,27 @@ impl Forecast {
     }
 }
 
-/// Refuses `what` if it takes more than the memory that is free, unless told to go on.
+/// Refuses `what` if it takes more than the free memory, unless `force`.
 pub(super) fn check_memory(what: &str, peak: usize, force: bool) -> Result<(), Failure> {
     match force {
         true => Ok(()),
         false => check_room(
             what,
             peak as u64,
-            "take fewer levels, or go on with --force",
+            "take fewer levels, or continue with --force",
         ),
     }
 }
 
-/// Bytes of the positions and faces of a polygon mesh.
+/// Returns the bytes of the positions and faces of a polygon mesh.
 fn flat(counts: &Counts) -> usize {
     let positions = counts.vertices.saturating_mul(size_of::<Point>());
     positions.saturating_add(counts.corners.saturating_mul(size_of::<VertexId>()))
 }
 
-/// Bytes of the structure called `backend`.
+/// Returns the bytes of the structure with the name `backend`.
 fn held(backend: &str, counts: &Counts) -> usize {
-    struct Layout<'a>(&'a Counts);
-
-    impl Visitor for Layout<'_> {
-        type Output = usize;
-
-        fn visit<M: Representation + 'static>(&mut self) -> usize {
-            M::layout_bytes(self.0)
-        }
-    }
-
-    visit(backend, &mut Layout(counts)).unwrap_or(0)
+    let mut roster = Backend::roster().into_iter();
+    let found = roster.find(|found| found.name() == backend);
+    found.map_or(0, |found| (found.layout_bytes)(counts))
 }

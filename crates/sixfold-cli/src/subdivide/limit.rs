@@ -1,29 +1,30 @@
-//! `--limit`: the result where endless levels would take it.
+//! `--limit`: moves the vertices to their limits for infinitely many levels.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::Path;
 
-use sixfold::mesh_io::write_obj_with_normals;
+use sixfold::io::write_obj_with_normals;
 use sixfold::subdivision::{LimitPoint, NoLimit, Step, Subdivision};
 use sixfold::{FaceVertexMesh, MeshQuery, Point, PolygonMesh, Representation};
 
 use crate::failure::Failure;
 use crate::text::tame;
-use ::study::numbers::counted;
+use sixfold_study::numbers::counted;
 
-/// A result where endless levels would take it.
+/// A result with its vertices at their limits for infinitely many levels.
 pub(super) struct Limits {
     moved: PolygonMesh,
     normals: Vec<Option<Point>>,
-    /// How many vertices have no limit, for each reason.
+    /// The number of vertices without a limit, for each reason.
     undefined: BTreeMap<&'static str, usize>,
 }
 
 impl Limits {
-    /// The limit positions and normals of `step`; a vertex without one stays.
+    /// Computes the limit positions and normals of `step`. A vertex without a limit keeps its
+    /// position.
     pub(super) fn of(subdivision: &Subdivision, step: &Step, levels: u32) -> Result<Self, Failure> {
-        // Face-vertex meshes hold everything, and keep the numbers.
+        // Face-vertex meshes hold every polygon mesh, and keep the order of the elements.
         let mesh = FaceVertexMesh::from_polygons(&step.polygons).map_err(Failure::unsupported)?;
         let creases = match levels {
             0 => subdivision.control(&mesh, &step.polygons, &step.creases),
@@ -57,7 +58,7 @@ impl Limits {
         write_obj_with_normals(&self.moved, &self.normals, writer)
     }
 
-    /// What there is to say of them, once they are written to `path`.
+    /// Describes the limits, written to `path`, in lines.
     pub(super) fn told(&self, path: &Path) -> Vec<String> {
         let place = tame(&path.display().to_string());
         let with = self.normals.iter().flatten().count();
@@ -73,9 +74,9 @@ impl Limits {
 
 fn because(reason: NoLimit) -> &'static str {
     match reason {
-        NoLimit::SemiSharp => "sharp for some levels yet: take more levels",
-        NoLimit::NotAllQuads => "beside a face that is no quad: take one level more",
-        NoLimit::Dart => "where a crease ends: the rules have no limit for a dart",
-        _ => "for which the rules have no limit",
+        NoLimit::SemiSharp => "still sharp for some levels: take more levels",
+        NoLimit::NotAllQuads => "at a face that is not a quad: take one more level",
+        NoLimit::Dart => "at the end of a crease: the rules have no limit for a dart",
+        _ => "because the rules have no limit there",
     }
 }

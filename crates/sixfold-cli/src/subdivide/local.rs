@@ -1,10 +1,10 @@
-//! `--select`: only some triangles are refined.
+//! `--select`: refines only some triangles.
 
 use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
-use sixfold::mesh_io::write_obj;
+use sixfold::io::write_obj;
 use sixfold::subdivision::{LocalError, LocalMesh, Scheme, Selection};
 use sixfold::{FaceId, Point, PolygonMesh, Representation, Visitor, visit};
 
@@ -14,7 +14,7 @@ use crate::load;
 use crate::output::{Output, check_kept, is_stdout};
 use crate::progress::Waiting;
 use crate::text::{Text, tame};
-use ::study::numbers::{counted, grouped};
+use sixfold_study::numbers::{counted, grouped};
 
 use super::check_tags;
 use super::forecast::check_memory;
@@ -56,7 +56,7 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
     let all = mesh.faces().iter();
     let green = all.filter(|&(f, _)| refined.is_green(f)).count();
     text.say(&format!(
-        "{place}: {vertices}, {faces}, of which {} are halves; refined on {}",
+        "{place}: {vertices}, {faces} ({} of them halves); refined on {}",
         grouped(green),
         arguments.backend
     ));
@@ -64,7 +64,7 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
     Ok(ExitCode::SUCCESS)
 }
 
-/// New points of a part of a mesh are midpoints; nothing else has been asked for.
+/// Refuses schemes other than midpoint, and options that midpoints do not use.
 fn check(arguments: &Subdivide) -> Result<(), Failure> {
     let Subdivide { scheme, .. } = arguments;
     if *scheme != Scheme::Midpoint {
@@ -86,7 +86,7 @@ fn check(arguments: &Subdivide) -> Result<(), Failure> {
     ];
     match others.into_iter().find(|&(_, asked)| asked) {
         Some((option, _)) => Err(Failure::unsupported(format!(
-            "{option} has no meaning beside --select, which puts midpoints in: leave it out"
+            "{option} has no effect with --select, which inserts midpoints: leave it out"
         ))),
         None => Ok(()),
     }
@@ -103,12 +103,12 @@ fn selection(select: &Select) -> Result<Selection, Failure> {
     })
 }
 
-/// The faces that a file lists: numbers from 0 between blanks, `#` begins a comment.
+/// Reads the faces that a file lists: numbers from 0 separated by spaces; `#` begins a comment.
 fn listed(path: &Path) -> Result<Vec<FaceId>, Failure> {
     let shown = path.display();
     let text = fs::read_to_string(path).map_err(|cause| {
         Failure::usage(format!(
-            "{shown}: cannot be read ({cause}): name a text file with numbers of faces"
+            "{shown}: cannot be read ({cause}): name a text file with face numbers"
         ))
     })?;
     let mut faces = Vec::new();
@@ -117,7 +117,7 @@ fn listed(path: &Path) -> Result<Vec<FaceId>, Failure> {
         for word in said.split_whitespace() {
             let face: u32 = word.parse().map_err(|_| {
                 Failure::usage(format!(
-                    "{shown}:{number}: `{word}` is no face: write numbers from 0, one or more a line"
+                    "{shown}:{number}: `{word}` is not a face: write numbers from 0, one or more per line"
                 ))
             })?;
             faces.push(FaceId::new(face));
@@ -126,16 +126,16 @@ fn listed(path: &Path) -> Result<Vec<FaceId>, Failure> {
     Ok(faces)
 }
 
-/// Bytes for a level of a mesh with so many faces, of which some are chosen: each of these becomes four
-/// and takes some neighbours with it, as far as there are faces.
+/// Returns an upper bound of the bytes of a level, for a mesh with `faces` faces and `chosen`
+/// selected ones. Each selected face becomes four and also splits some neighbours.
 fn most_bytes(faces: usize, chosen: usize) -> usize {
-    /// Polygons, structure and what the step knows, for each old face and each new one.
+    /// Bytes of polygons, structure and scratch data, per old or new face.
     const BYTES: usize = 200;
     let grown = faces.saturating_add(chosen.saturating_mul(12));
     grown.min(faces.saturating_mul(4)).saturating_mul(BYTES)
 }
 
-/// Local refinement with a structure that is chosen at run time.
+/// Local refinement on a structure that is selected at run time.
 struct Locally<'a> {
     polygons: &'a PolygonMesh,
     selection: &'a Selection,
@@ -146,7 +146,7 @@ struct Locally<'a> {
 impl Visitor for Locally<'_> {
     type Output = Result<LocalMesh, Failure>;
 
-    /// As `refine_locally`, but how much a level takes is known only when its faces are chosen.
+    /// Works as `refine_locally`, but checks the memory of each level once its faces are selected.
     fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
         let mut local = LocalMesh::new(self.polygons.clone()).map_err(Failure::unsupported)?;
         for level in 0..self.levels {

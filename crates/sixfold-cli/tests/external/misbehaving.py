@@ -1,4 +1,4 @@
-"""A program that takes part in a study and goes wrong in the way its second argument names."""
+"""An external program of a study that fails in the way that its second argument names."""
 
 import json
 import subprocess

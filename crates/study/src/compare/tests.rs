@@ -1,14 +1,14 @@
 use crate::heap::CacheState;
+use sixfold_workload::pages::Policy;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
-use workload::pages::Policy;
 
 use sixfold::shapes;
 
 use super::*;
 use crate::{Settings, Specimen, study};
 
-/// A study whose samples are replaced by known ones: what was measured, times `factor`.
+/// Returns a study whose samples are replaced by known ones: 1000 ns times `factor`.
 fn report(factor: impl Fn(&str, Operation) -> f64) -> Report {
     let specimen = Specimen::new("ball", shapes::icosahedron());
     let settings = Settings {
@@ -19,12 +19,12 @@ fn report(factor: impl Fn(&str, Operation) -> f64) -> Report {
     let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ());
     let mut report = report.expect("a study");
     report.control = None;
-    // Whatever other tests of this program have put in force meanwhile.
+    // Other tests of this program may have changed the policy.
     report.environment.heap.as_mut().expect("measured").policy = Policy::Kept;
-    // Of every row, however little time there was for it.
+    // Every row gets samples, even one that had no time for any.
     let raw = report.results.iter().map(|row| {
         let base = 1000.0 * factor(&row.backend, row.operation);
-        // Nine samples, two per cent apart.
+        // Nine samples, from −2 % to +2 %.
         let known: Vec<f64> = (0..9)
             .map(|i| base * (1.0 + 0.005 * f64::from(i - 4)))
             .collect();
@@ -59,7 +59,7 @@ fn a_known_change_is_found_and_nothing_else() {
     let after = report(|backend, operation| match (backend, operation) {
         ("half-edge", Operation::EdgeLength) => 1.5,
         ("corner-table", Operation::Build) => 0.5,
-        // Within the drift of a machine, however narrow the intervals are.
+        // Within the drift of a machine, although the intervals are narrow.
         ("winged-edge", Operation::Boundary) => 1.06,
         _ => 1.0,
     });
@@ -106,7 +106,7 @@ fn a_known_change_is_found_and_nothing_else() {
 }
 
 #[test]
-fn a_slower_machine_is_one_factor_and_what_is_left_is_told() {
+fn a_slower_machine_is_one_factor_that_relative_removes() {
     let before = report(|_, _| 1.0);
     let mut after = report(|backend, operation| match (backend, operation) {
         ("half-edge", Operation::EdgeLength) => 2.0,
@@ -142,7 +142,7 @@ fn a_slower_machine_is_one_factor_and_what_is_left_is_told() {
 }
 
 #[test]
-fn other_heaps_and_other_caches_are_refused() {
+fn different_heaps_and_caches_are_refused() {
     let before = report(|_, _| 1.0);
     let mut after = before.clone();
     let heap = after.environment.heap.as_mut().expect("measured");
@@ -162,14 +162,14 @@ fn other_heaps_and_other_caches_are_refused() {
     let refused = compare(&before, &after, Comparing::default());
     let message = refused.expect_err("two states").to_string();
     assert!(message.contains("--caches cold"), "{message}");
-    // Older versions measured on the system's heap, with warm caches.
+    // Older versions measured on the system's heap with warm caches.
     let mut old = before.clone();
     (old.environment.heap, old.environment.cache_state) = (None, None);
     assert_eq!(old.environment.memory_words(), ["system", "warm"]);
 }
 
 #[test]
-fn what_only_one_has_another_work_and_another_winner_are_told() {
+fn missing_rows_other_checksums_and_new_winners_are_reported() {
     let before = report(|_, _| 1.0);
     let mut after = report(|_, _| 1.0);
     after
@@ -208,7 +208,7 @@ fn what_only_one_has_another_work_and_another_winner_are_told() {
 }
 
 #[test]
-fn without_samples_only_what_is_beyond_doubt_counts() {
+fn without_samples_only_ratios_above_two_count() {
     let before = report(|_, _| 1.0);
     let mut after = report(|backend, _| if backend == "half-edge" { 2.5 } else { 1.5 });
     after.raw.clear();

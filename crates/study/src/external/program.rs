@@ -1,4 +1,4 @@
-//! A program on the other end of two pipes, which may crash, hang or talk rubbish.
+//! An external program behind two pipes, which may crash, hang or write invalid lines.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
@@ -11,39 +11,40 @@ use std::time::{Duration, Instant};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use workload::pages::Policy;
+use sixfold_workload::pages::Policy;
 
 use crate::tame::tame;
 
-/// The version of the protocol.
+/// Version of the protocol.
 const PROTOCOL: u32 = 1;
-/// No line is longer, or it is none of the protocol: nothing grows with what a program writes.
+/// Largest length of a line in bytes. It limits the memory that a program's output can take.
 const LONGEST_LINE: u64 = 1 << 16;
-/// So much of what it says on standard error is kept, the last of it.
+/// Number of last bytes of standard error that are kept.
 const LAST_WORDS: usize = 400;
-/// How often a wait looks whether the study was told to stop.
+/// Interval between two checks of the stop flag while waiting.
 const LOOK: Duration = Duration::from_millis(20);
-/// How long a program may take to end when nothing is asked any more.
+/// Time limit for a program to end after its input is closed.
 const FAREWELL: Duration = Duration::from_secs(1);
 
-/// What a program says first.
+/// The first line of a program.
 #[derive(Debug, Deserialize)]
 pub(super) struct Greeting {
     protocol: u32,
-    /// It holds the mesh, and can be asked.
+    /// Whether it holds the mesh.
     pub(super) holds: bool,
-    /// Why not.
+    /// Why it does not hold the mesh.
     pub(super) reason: Option<String>,
-    /// The bytes that its structure holds, if it knows.
+    /// Bytes of its structure, if known.
     pub(super) bytes: Option<usize>,
-    /// What it measures: a library and its version.
+    /// The library it measures, with its version.
     pub(super) library: Option<String>,
-    /// Its allocator, if that can be told by the environment to keep pages: `glibc`.
+    /// Its allocator, if environment variables can make it keep pages: `glibc`.
     #[serde(default)]
     pub(super) heap: Option<String>,
 }
 
-/// What tells the GNU C library to keep freed pages, as this program tells its own.
+/// Environment variable, and its value, that makes the GNU C library keep freed pages, as Sixfold
+/// does.
 const TUNABLES: [&str; 2] = [
     "GLIBC_TUNABLES",
     "glibc.malloc.mmap_max=0:glibc.malloc.trim_threshold=9223372036854775807:glibc.malloc.top_pad=1048576:glibc.malloc.arena_max=1",
@@ -61,25 +62,25 @@ impl Greeting {
         }
     }
 
-    /// Whether its allocator obeys the environment that it was started with.
+    /// Returns whether its allocator keeps pages if started with [`TUNABLES`].
     pub(super) fn keeps_pages_if_told(&self) -> bool {
         self.heap.as_deref() == Some("glibc")
     }
 }
 
-/// What is asked.
+/// A request to run an operation.
 #[derive(Debug, Serialize)]
 pub(super) struct Question {
-    /// The operation.
+    /// Name of the operation.
     pub(super) run: &'static str,
-    /// How often in a row.
+    /// Number of runs in a row.
     pub(super) times: u32,
 }
 
-/// What it answers.
+/// The answer to a request.
 #[derive(Debug, Deserialize)]
 pub(super) struct Answer {
-    /// Why it does not do that.
+    /// Why it does not run the operation.
     pub(super) refused: Option<String>,
     /// Processor time of all runs together.
     pub(super) cpu_ns: Option<f64>,
@@ -87,11 +88,11 @@ pub(super) struct Answer {
     pub(super) wall_ns: Option<f64>,
     /// A number that depends on all results of one run.
     pub(super) checksum: Option<f64>,
-    /// How many elements one run visits.
+    /// Number of elements that one run visits.
     pub(super) elements: Option<u64>,
 }
 
-/// A program that was started.
+/// A running program.
 pub(super) struct Program<'a> {
     child: Child,
     input: Option<ChildStdin>,
@@ -108,7 +109,7 @@ enum Line {
 }
 
 impl<'a> Program<'a> {
-    /// Starts `words`; `Err` says why that did not work.
+    /// Starts the program `words[0]` with the other words as arguments; `Err` holds the reason.
     pub(super) fn start(
         words: &[String],
         heap: Policy,
@@ -123,7 +124,7 @@ impl<'a> Program<'a> {
         }
         command.stdin(Stdio::piped());
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        // Ctrl-C is for us: what we started is told by the end of its input.
+        // Ctrl-C must reach only Sixfold: the program ends when its input ends.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let child = command.spawn();
@@ -154,30 +155,31 @@ impl<'a> Program<'a> {
         })
     }
 
-    /// Whether programs are told to keep pages: not if the user has set the variable for that.
+    /// Returns whether programs are started with [`TUNABLES`]: not if the user has set the
+    /// variable.
     pub(super) fn is_told(heap: Policy) -> bool {
         heap == Policy::Kept && std::env::var_os(TUNABLES[0]).is_none()
     }
 
-    /// What it says of the mesh.
+    /// Reads the first line of the program and checks its protocol version.
     pub(super) fn greeting(&mut self) -> Result<Greeting, String> {
         let greeting: Greeting = self.answer("at the start")?;
         if greeting.protocol != PROTOCOL {
             let other = greeting.protocol;
             return Err(format!(
-                "it speaks version {other} of the protocol, and this is version {PROTOCOL}"
+                "it uses version {other} of the protocol, expected version {PROTOCOL}"
             ));
         }
         Ok(greeting)
     }
 
-    /// Asks it, and waits for the answer.
+    /// Sends `question` and waits for the answer.
     pub(super) fn ask(&mut self, question: &Question) -> Result<Answer, String> {
-        // What is there already answers nothing, and would be taken for the answer to this.
+        // A line that is already there would be taken for the answer to this question.
         if let Ok(Line::Text(line)) = self.lines.try_recv() {
             self.kill();
             let shown = shown(&line);
-            return Err(format!("it writes `{shown}` without being asked"));
+            return Err(format!("it wrote `{shown}` without a request"));
         }
         let mut line = serde_json::to_string(question).map_err(|error| error.to_string())?;
         line.push('\n');
@@ -187,7 +189,7 @@ impl<'a> Program<'a> {
         });
         match asked {
             Some(Ok(())) => self.answer(&format!("to {}", question.run)),
-            // It has closed its end: what it said last says why.
+            // It closed its input: report its status and last error line.
             _ => Err(self.ended()),
         }
     }
@@ -199,18 +201,20 @@ impl<'a> Program<'a> {
                 Ok(Line::Text(line)) => break line,
                 Ok(Line::TooLong) => {
                     self.kill();
-                    return Err(format!("it answers {to} with a line without end"));
+                    return Err(format!(
+                        "its answer {to} is longer than {LONGEST_LINE} bytes"
+                    ));
                 }
                 Ok(Line::End) | Err(RecvTimeoutError::Disconnected) => return Err(self.ended()),
                 Err(RecvTimeoutError::Timeout) if self.stop.load(Ordering::Relaxed) => {
                     self.kill();
-                    return Err("the study was told to stop".into());
+                    return Err("the study was stopped".into());
                 }
                 Err(RecvTimeoutError::Timeout) if start.elapsed() > self.patience => {
                     self.kill();
                     let seconds = self.patience.as_secs_f64();
                     return Err(format!(
-                        "no answer {to} within {seconds} s, so it was ended"
+                        "no answer {to} within {seconds} s, so it was killed"
                     ));
                 }
                 Err(RecvTimeoutError::Timeout) => {}
@@ -219,11 +223,11 @@ impl<'a> Program<'a> {
         serde_json::from_str(&line).map_err(|error| {
             self.kill();
             let shown = shown(&line);
-            format!("it answers {to} with `{shown}`, which is none of the protocol: {error}")
+            format!("its answer {to}, `{shown}`, does not follow the protocol: {error}")
         })
     }
 
-    /// That it has ended, how, and what it said last.
+    /// Ends the program and describes its exit status and the last line of its standard error.
     fn ended(&mut self) -> String {
         let status = self.wait(FAREWELL);
         let how = match status {
@@ -242,7 +246,7 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// Waits so long for its end.
+    /// Waits up to `patience` for the program to end; `None` if it is still running.
     fn wait(&mut self, patience: Duration) -> Option<ExitStatus> {
         let start = Instant::now();
         loop {
@@ -254,7 +258,7 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// Ends it, and what it has started.
+    /// Kills the program and, on Unix, every process it has started.
     fn kill(&mut self) {
         self.input = None;
         #[cfg(unix)]
@@ -268,7 +272,7 @@ impl<'a> Program<'a> {
 }
 
 impl Drop for Program<'_> {
-    /// No program outlives the study.
+    /// Ends the program, so that it does not outlive the study.
     fn drop(&mut self) {
         self.input = None;
         if self.wait(FAREWELL).is_none() {
@@ -277,7 +281,7 @@ impl Drop for Program<'_> {
     }
 }
 
-/// The beginning of a line that makes no sense.
+/// Returns the first 80 characters of an invalid line, without control characters.
 fn shown(line: &str) -> String {
     tame(line).chars().take(80).collect()
 }
@@ -292,7 +296,7 @@ fn read_line(output: &mut impl BufRead) -> Line {
     }
 }
 
-/// Reads to the end, and keeps the last of it.
+/// Reads `errors` to the end and keeps the last [`LAST_WORDS`] bytes.
 fn keep_the_end(mut errors: impl Read, kept: &Mutex<Vec<u8>>) -> Option<()> {
     let mut buffer = [0; LAST_WORDS];
     loop {

@@ -1,15 +1,16 @@
-//! A program on the bench, beside the structures.
+//! An external program as a subject of measurements, beside the structures.
 
 use sixfold::QueryCost;
-use workload::{Clock, Job, Outcome, Run, Series, Subject, Time};
+use sixfold_workload::{Clock, Job, Outcome, Run, Series, Subject, Time};
 
 use super::program::{Answer, Program, Question};
 use crate::tame::tame;
 
-/// How much longer than our wait a program's own figure may be: two clocks.
+/// Largest ratio of the time a program reports to the time Sixfold waited; the two clocks may
+/// differ.
 const CLOCKS: f64 = 1.01;
 
-/// A program that holds the mesh; without the program once it has failed.
+/// An external program that holds the mesh; after a failure, the error instead of the program.
 pub(super) struct ExternalSubject<'a> {
     name: String,
     bytes: usize,
@@ -25,8 +26,8 @@ impl<'a> ExternalSubject<'a> {
         }
     }
 
-    /// Asks, and does without the program from then on if that fails, or if its time cannot be; no time
-    /// where it refuses.
+    /// Sends `question` and checks the reported time, which is `None` if the program refuses. After
+    /// an error or an impossible time the program is not used again.
     fn ask(
         &mut self,
         question: &Question,
@@ -43,7 +44,7 @@ impl<'a> ExternalSubject<'a> {
             Ok((answer, time))
         });
         if let Err(why) = &answered {
-            self.program = Err(format!("it had failed before: {why}"));
+            self.program = Err(format!("it failed earlier: {why}"));
         }
         answered
     }
@@ -58,7 +59,7 @@ impl Subject for ExternalSubject<'_> {
         true
     }
 
-    /// Nobody knows; it is timed as a whole, whatever it does.
+    /// Returns placeholders: the costs are unknown, and only full runs are timed.
     fn costs(&self) -> [QueryCost; 9] {
         [QueryCost::Local; 9]
     }
@@ -80,7 +81,7 @@ impl Subject for ExternalSubject<'_> {
             refusal: Some(refusal),
         };
         if job.sample.is_some() {
-            return refused("it cannot be asked about a sample".into());
+            return refused("it cannot run samples".into());
         }
         let question = |times: u32| Question {
             run: job.operation.name(),
@@ -104,16 +105,16 @@ impl Subject for ExternalSubject<'_> {
     }
 }
 
-/// The time that it tells, if that can be.
+/// Returns the reported time, or an error if it is missing or impossible.
 fn time(answer: &Answer, waited_ns: f64, cpu: bool) -> Result<Time, String> {
     let Some(wall_ns) = answer.wall_ns else {
-        return Err("it answers without `wall_ns`, the time of the runs".into());
+        return Err("its answer has no `wall_ns`, the time of the runs".into());
     };
     let times = [Some(wall_ns), answer.cpu_ns.filter(|_| cpu)];
     for ns in times.into_iter().flatten() {
         if !(0.0..=waited_ns * CLOCKS).contains(&ns) {
             return Err(format!(
-                "it claims {ns} ns, and was waited for {waited_ns:.0} ns: times are nanoseconds of all runs together, on one thread"
+                "it reports {ns} ns, but its answer took {waited_ns:.0} ns: give the time of all runs together, on one thread, in nanoseconds"
             ));
         }
     }

@@ -1,4 +1,4 @@
-//! The lines through the times, and where the caches end.
+//! Fits of lines to the times, and the sizes at which layouts outgrow caches.
 
 use serde::{Deserialize, Serialize};
 use sixfold::Counts;
@@ -6,42 +6,42 @@ use sixfold::Counts;
 use super::SizeReport;
 use super::settings::scaled;
 use crate::slope::Slope;
-use workload::Cache;
-use workload::{Backend, Operation};
+use sixfold_workload::Cache;
+use sixfold_workload::{Backend, Operation};
 
-/// How the time of one operation on one backend goes with the number of faces.
+/// The growth of the time of one operation on one backend with the number of faces.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Fit {
     /// The backend.
     pub backend: String,
     /// The operation.
     pub operation: Operation,
-    /// It looks at all faces for each element.
+    /// Whether it scans all faces for each element.
     pub scans: bool,
-    /// Over all sizes; `None` for a single one.
+    /// Line through all sizes; `None` for a single size.
     pub all: Option<Slope>,
-    /// Over those whose structure fits into the last cache.
+    /// Line through the sizes at which the structure fits into the last cache.
     pub in_cache: Option<Slope>,
-    /// Over those whose structure does not.
+    /// Line through the sizes at which it does not fit.
     pub beyond: Option<Slope>,
-    /// At how many sizes the time is an estimate.
+    /// Number of sizes at which the time is an estimate.
     pub estimated: usize,
 }
 
-/// Where a structure outgrows a cache.
+/// The size at which a structure outgrows a cache.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct CacheEnd {
     /// The backend.
     pub backend: String,
-    /// The level of the cache.
+    /// Level of the cache.
     pub level: u8,
-    /// Its bytes.
+    /// Bytes of the cache.
     pub cache_bytes: u64,
-    /// The fewest faces at which the layout takes more.
+    /// Smallest number of faces at which the layout takes more bytes than the cache has.
     pub faces: usize,
 }
 
-/// The lines through the times of each backend and operation that has any.
+/// Fits lines to the times of each backend and operation that has any.
 pub(super) fn fits(
     sizes: &[SizeReport],
     backends: &[&Backend],
@@ -90,7 +90,8 @@ pub(super) fn fits(
     fits
 }
 
-/// For each cache of data, where each layout outgrows it; `counts` are those of a large mesh.
+/// Finds for each data cache the size at which each layout outgrows it; `counts` are those of a
+/// large mesh.
 pub(super) fn cache_ends(
     backends: &[&Backend],
     counts: &Counts,
@@ -103,7 +104,7 @@ pub(super) fn cache_ends(
                 let counts = scaled(counts, faces as f64 / counts.faces as f64);
                 (backend.layout_bytes)(&counts) as u64 > cache.bytes
             };
-            // No layout has less than a byte for a face.
+            // Every layout takes at least one byte per face.
             let (mut fits, mut does_not) = (0, cache.bytes as usize + 1);
             while does_not - fits > 1 {
                 let middle = usize::midpoint(fits, does_not);
@@ -153,8 +154,8 @@ mod tests {
     }
 
     #[test]
-    fn each_side_of_the_last_cache_has_its_own_line() {
-        // Linear up to 10⁵ faces, which fill the cache; beyond, with the power 1.5.
+    fn sizes_inside_and_beyond_the_last_cache_have_separate_lines() {
+        // Linear up to 10⁵ faces, which fill the cache; then with the power 1.5.
         let time = |n: f64| {
             if n <= 1e5 {
                 n
@@ -178,14 +179,14 @@ mod tests {
         assert!((small.exponent - 1.0).abs() < 1e-9 && small.sizes == 3);
         assert!((large.exponent - 1.5).abs() < 1e-9 && large.sizes == 2);
         assert!(all.is_some_and(|all| all.sizes == 5));
-        // Where nobody tells how large it is, there is one line only.
+        // If the cache size is unknown, there is only one line.
         let blind = &fit(None)[0];
         assert_eq!((blind.in_cache, blind.beyond), (None, None));
         assert_eq!(blind.all, fit_of_it.all);
     }
 
     #[test]
-    fn a_cache_ends_where_the_layout_passes_it() {
+    fn a_cache_ends_at_the_first_layout_larger_than_it() {
         let mesh = shapes::triangle_torus(20, 10).expect("small");
         let counts = mesh.counts(Facts::of(&mesh).edges);
         let cache = |kind: &str| Cache {
@@ -201,7 +202,7 @@ mod tests {
             &counts,
             &[cache("instruction"), cache("unified")],
         );
-        assert_eq!(ends.len(), backends.len(), "instructions are no data");
+        assert_eq!(ends.len(), backends.len(), "instruction caches skipped");
         for (end, backend) in ends.iter().zip(&backends) {
             let bytes = |faces: usize| {
                 let counts = scaled(&counts, faces as f64 / counts.faces as f64);
@@ -210,7 +211,7 @@ mod tests {
             assert!(bytes(end.faces) > 512 << 10, "{end:?}");
             assert!(bytes(end.faces - 1) <= 512 << 10, "{end:?}");
         }
-        // 24 words a vertex, two faces each: 48 bytes a face.
+        // 24 words per vertex, two faces per vertex: 48 bytes per face.
         let half_edge = ends
             .iter()
             .find(|end| end.backend == "half-edge")

@@ -1,4 +1,4 @@
-//! What to sweep over, and what is refused before anything is made.
+//! Settings of a sweep, and the checks made before any mesh is built.
 
 use std::time::Duration;
 
@@ -8,32 +8,32 @@ use sixfold::shapes::{Order, ShapeError};
 use super::shapes::{GROWING, Growing};
 use crate::orders::{chosen_operations, draw_bytes, on_the_bench_bytes};
 use crate::study::{Settings, StudyError};
-use workload::{Backend, Operation, unknown};
+use sixfold_workload::{Backend, Operation, unknown};
 
-/// The fewest faces: below, a clock tells little.
+/// Smallest number of faces; smaller meshes are too short to time.
 const LEAST: usize = 100;
-/// The most: about as many triangles as handles can name corners of.
+/// Largest number of faces; corner handles can number about this many triangles.
 const MOST: usize = 500_000_000;
-/// What each size takes at the least.
+/// Smallest budget of one size.
 const SHORTEST: Duration = Duration::from_millis(100);
-/// No sweep needs more sizes.
+/// Largest number of sizes.
 const MOST_STEPS: usize = 1000;
 
-/// What to sweep over, and for how long.
+/// The shape, the sizes and the budget of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GrowthSettings {
-    /// Backends, operations, seed, and the budget for everything. No operations mean the few that
-    /// show most.
+    /// Backends, operations, seed, and the budget of the whole sweep. If the operations are empty,
+    /// [`FEW_OPERATIONS`](crate::FEW_OPERATIONS) are measured.
     pub study: Settings,
-    /// The name of a shape of [`GROWING`].
+    /// Name of a shape of [`GROWING`].
     pub shape: String,
-    /// The order of its elements in memory.
+    /// Order of its elements in memory.
     pub order: Order,
-    /// About how many faces the smallest has.
+    /// Approximate number of faces of the smallest size.
     pub from: usize,
-    /// About how many faces the largest has.
+    /// Approximate number of faces of the largest size.
     pub to: usize,
-    /// How many sizes, each as many times larger than the one before.
+    /// Number of sizes; each is larger than the previous one by the same factor.
     pub steps: usize,
 }
 
@@ -53,7 +53,7 @@ impl Default for GrowthSettings {
     }
 }
 
-/// Why there is no sweep.
+/// The reason why a sweep cannot be run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -61,26 +61,26 @@ pub enum GrowthError {
     /// There is nothing to study.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// What the shape refuses.
+    /// The shape refuses its parameters.
     #[error(transparent)]
     Shape(#[from] ShapeError),
-    /// A name that no growing shape has.
+    /// The name of the shape is unknown.
     #[error("{}", unknown("shape that grows", .name, &GROWING.iter().map(|shape| shape.name).collect::<Vec<_>>()))]
     UnknownShape { name: String },
-    /// The largest is not larger than the smallest.
+    /// The largest size is not larger than the smallest.
     #[error("sizes from {from} to {to} faces do not grow: give the smaller first")]
     SizesReversed { from: usize, to: usize },
-    /// Sizes that tell nothing, or that no structure can number.
+    /// A size is too small to time, or too large for handles.
     #[error("{faces} faces: choose from {LEAST} to {MOST}")]
     SizeOutOfRange { faces: usize },
-    /// Growth needs two sizes.
+    /// The number of sizes is below two or too large.
     #[error("{steps} sizes: choose from 2 to {MOST_STEPS}")]
     StepsOutOfRange { steps: usize },
-    /// Different numbers of faces that are the same mesh.
-    #[error("from {from} to {to} faces the shape has one size only: take sizes further apart")]
+    /// All requested face counts give the same mesh.
+    #[error("the shape has only one size from {from} to {to} faces: use sizes further apart")]
     OneSize { from: usize, to: usize },
-    /// There is no time to measure.
-    #[error("a budget of {} ms is too short for {steps} sizes: take {} ms or more, or fewer --steps", .budget.as_millis(), .least.as_millis())]
+    /// The budget is too short.
+    #[error("a budget of {} ms is too short for {steps} sizes: use {} ms or more, or fewer --steps", .budget.as_millis(), .least.as_millis())]
     BudgetTooSmall {
         budget: Duration,
         least: Duration,
@@ -88,17 +88,17 @@ pub enum GrowthError {
     },
 }
 
-/// Settings that make sense.
+/// Checked settings.
 pub(super) struct Plan {
     pub(super) shape: &'static Growing,
-    /// About how many faces, the fewest first.
+    /// Approximate numbers of faces, ascending.
     pub(super) sizes: Vec<usize>,
     pub(super) backends: Vec<Backend>,
     pub(super) operations: Vec<Operation>,
 }
 
 impl GrowthSettings {
-    /// The usual sizes, or as many between their ends as the budget of `study` has time for.
+    /// Returns the default range of sizes, with fewer steps if the budget of `study` is short.
     pub fn within(study: Settings) -> Self {
         let usual = Self::default();
         let time_for = study.budget.as_millis() / SHORTEST.as_millis();
@@ -110,7 +110,7 @@ impl GrowthSettings {
         }
     }
 
-    /// Refuses what cannot be done, before anything is made.
+    /// Checks the settings, before any mesh is built.
     pub(super) fn plan(&self) -> Result<Plan, GrowthError> {
         let Self {
             study,
@@ -142,7 +142,7 @@ impl GrowthSettings {
                 steps,
             });
         }
-        // The shape does not come in every size.
+        // Different face counts can give the same parameters of the shape.
         let mut sizes = sizes(from, to, steps);
         sizes.dedup_by_key(|faces| shape.parameters(*faces));
         if sizes.len() < 2 {
@@ -157,7 +157,7 @@ impl GrowthSettings {
     }
 }
 
-/// Sizes that grow by one factor, both ends included.
+/// Returns sizes that grow by a constant factor, including both ends.
 fn sizes(from: usize, to: usize, steps: usize) -> Vec<usize> {
     let factor = to as f64 / from as f64;
     let size = |step: usize| from as f64 * factor.powf(step as f64 / (steps - 1) as f64);
@@ -166,14 +166,14 @@ fn sizes(from: usize, to: usize, steps: usize) -> Vec<usize> {
     sizes
 }
 
-/// About how many bytes the sweep holds at its worst moment: at the largest size.
+/// Estimates the peak memory of the sweep in bytes, reached at the largest size.
 ///
 /// # Errors
 ///
-/// What [`growth`](super::growth) refuses before it measures.
+/// The errors of [`growth`](super::growth) about invalid settings.
 pub fn growth_bytes(settings: &GrowthSettings) -> Result<u64, GrowthError> {
     let plan = settings.plan()?;
-    // A small one has the proportions of a large one.
+    // A small mesh has the same proportions as a large one.
     let small = plan.shape.make(plan.sizes[0])?;
     let counts = small.counts(Facts::of(&small).edges);
     let counts = scaled(&counts, settings.to as f64 / counts.faces as f64);
@@ -181,11 +181,11 @@ pub fn growth_bytes(settings: &GrowthSettings) -> Result<u64, GrowthError> {
     let (all, most) = weights.fold((0, 0), |(all, most): (u64, u64), one| {
         (all + one, most.max(one))
     });
-    // The control, and what building one takes besides.
+    // Plus the control, and temporary memory for building one structure.
     Ok(all + 3 * most + 2 * draw_bytes(&counts))
 }
 
-/// The counts of a mesh so many times larger.
+/// Returns `counts` scaled by `factor`.
 pub(super) fn scaled(counts: &sixfold::Counts, factor: f64) -> sixfold::Counts {
     let scaled = |count: usize| (count as f64 * factor).round() as usize;
     sixfold::Counts {
@@ -216,12 +216,12 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_refused_by_name() {
+    fn invalid_settings_are_refused_with_a_specific_error() {
         let refused = |change: fn(&mut GrowthSettings)| {
             let mut settings = GrowthSettings::default();
             change(&mut settings);
             let refusal = settings.plan().err().expect("refused");
-            assert_eq!(growth_bytes(&settings), Err(refusal.clone()), "both say it");
+            assert_eq!(growth_bytes(&settings), Err(refusal.clone()), "same error");
             refusal.to_string()
         };
         type Case = (fn(&mut GrowthSettings), &'static str);
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn a_short_budget_has_fewer_sizes_and_none_too_few() {
+    fn a_short_budget_has_fewer_sizes_but_at_least_two() {
         let steps = |milliseconds| {
             let within = GrowthSettings::within(Settings {
                 budget: Duration::from_millis(milliseconds),
@@ -257,10 +257,10 @@ mod tests {
     }
 
     #[test]
-    fn the_forecast_grows_with_the_mesh_and_the_structures() {
+    fn the_memory_estimate_grows_with_the_mesh_and_the_structures() {
         let mut settings = GrowthSettings::default();
         let all = growth_bytes(&settings).expect("sound");
-        // Six structures and a control of a million triangles, some 50 bytes a face each.
+        // Six structures and a control of a million triangles, about 50 bytes per face each.
         assert!((200 << 20..2 << 30).contains(&all), "{all}");
         settings.to = 10_000_000;
         let tenfold = growth_bytes(&settings).expect("sound") as f64 / all as f64;

@@ -1,45 +1,45 @@
-//! Shapes of any size: the parameters that give about so many faces.
+//! Shapes of any size: the parameters for an approximate number of faces.
 
 use sixfold::PolygonMesh;
 use sixfold::shapes::{ShapeError, recipe};
 
-/// A shape that can be made with about any number of faces.
+/// A shape that can be made with approximately any number of faces.
 #[derive(Clone, Copy, Debug)]
 pub struct Growing {
-    /// What users call it, as `generate` does.
+    /// Name, the same as in `generate`.
     pub name: &'static str,
-    /// What it is, in one line.
+    /// Description in one line.
     pub summary: &'static str,
     takes: fn(f64) -> Vec<(&'static str, f64)>,
 }
 
 impl Growing {
-    /// The shape called `name`.
+    /// Returns the shape called `name`.
     pub fn named(name: &str) -> Option<&'static Self> {
         GROWING.iter().find(|shape| shape.name == name)
     }
 
-    /// What its recipe takes to come near so many faces.
+    /// Returns the parameters of its recipe for approximately `faces` faces.
     pub(super) fn parameters(&self, faces: usize) -> Vec<(&'static str, f64)> {
         (self.takes)(faces as f64)
     }
 
-    /// The shape with about so many faces.
+    /// Builds the shape with approximately `faces` faces.
     ///
     /// # Errors
     ///
-    /// A number of faces beyond what the shape allows.
+    /// The shape does not allow this number of faces.
     ///
     /// # Panics
     ///
-    /// Never: each of the list is a recipe, as a test shows.
+    /// Panics if `name` is not the name of a recipe. A test checks this for all of [`GROWING`].
     pub fn make(&self, faces: usize) -> Result<PolygonMesh, ShapeError> {
         let recipe = recipe(self.name).expect("a recipe");
         recipe.make(&self.parameters(faces))
     }
 }
 
-/// All such shapes; the first is the default.
+/// All shapes for sweeps; the first is the default.
 pub const GROWING: &[Growing] = &[
     Growing {
         name: "geodesic",
@@ -83,7 +83,7 @@ pub const GROWING: &[Growing] = &[
     },
 ];
 
-/// So many cells, `aspect` times as many one way as the other.
+/// Returns parameters `m` and `n` with m · n ≈ `cells` and m / n ≈ `aspect`.
 fn cells(cells: f64, aspect: f64) -> Vec<(&'static str, f64)> {
     let n = (cells / aspect).sqrt().round().max(3.0);
     vec![("m", (cells / n).round().max(3.0)), ("n", n)]
@@ -94,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_shape_comes_near_the_number_asked_for() {
+    fn every_shape_has_within_ten_percent_of_the_requested_faces() {
         for shape in GROWING {
             let summary = recipe(shape.name).map(|recipe| recipe.summary);
             assert!(summary.is_some(), "{}", shape.name);

@@ -1,12 +1,12 @@
-//! What a sweep over sizes shows, in a few plain sentences.
+//! Sentences on the results of a sweep over sizes.
 
 use super::{CacheEnd, Fit, SizeReport};
 use crate::numbers::{grouped, times};
 use crate::report::{Agreement, Standing};
 use crate::slope::Slope;
-use workload::{Cache, last_level};
+use sixfold_workload::{Cache, last_level};
 
-/// Sentences on exponents, on the price of an element, on who is fastest where, and on the caches.
+/// Returns sentences on exponents, times per element, the fastest backends and the caches.
 pub(super) fn words(
     sizes: &[SizeReport],
     fits: &[Fit],
@@ -25,7 +25,7 @@ pub(super) fn words(
             if row.agreement == Agreement::Mismatch {
                 let (backend, operation) = (&row.backend, row.operation);
                 words.push(format!(
-                    "{backend} finds something else than the others for {operation} at {} faces: a fault in Sixfold; please report it.",
+                    "{backend} has other results than the other backends for {operation} at {} faces: a fault in Sixfold; please report it.",
                     grouped(size.faces)
                 ));
             }
@@ -34,22 +34,22 @@ pub(super) fn words(
     words
 }
 
-/// Which sizes there was no time for.
+/// Lists the sizes that were left out for lack of time.
 pub(super) fn left_out(sizes: &[usize]) -> Option<String> {
     let names: Vec<String> = sizes.iter().map(|&faces| grouped(faces)).collect();
     (!names.is_empty()).then(|| {
         format!(
-            "Sizes of about {} faces are left out for want of time: a longer --budget has them.",
+            "Sizes of about {} faces are left out for lack of time: use a longer --budget.",
             names.join(", ")
         )
     })
 }
 
-/// The exponents of what scans and of what does not.
+/// Describes the exponents, separately for backends that scan and those that do not.
 fn exponents(fits: &[Fit], caches: &[Cache]) -> Vec<String> {
     let range = |scans: bool, slope: &dyn Fn(&Fit) -> Option<Slope>| {
         let slopes = fits.iter().filter(|fit| fit.scans == scans);
-        // A line through two points says nothing of how far it may be off.
+        // A line through two points has no error estimate.
         let sure = slopes.filter_map(|fit| slope(fit).filter(|s| s.standard_error.is_some()));
         let mut slopes: Vec<f64> = sure.map(|slope| slope.exponent).collect();
         slopes.sort_by(f64::total_cmp);
@@ -68,12 +68,12 @@ fn exponents(fits: &[Fit], caches: &[Cache]) -> Vec<String> {
             false => format!(" ({})", parts.join(", ")),
         };
         words.push(format!(
-            "Where the faces around an element are enough, the time of a whole pass goes with the number of faces to the power {all}{split}."
+            "If a structure does not scan, the time of a whole pass grows with the number of faces to the power {all}{split}."
         ));
     }
     if let Some(all) = range(true, &|fit| fit.all) {
         words.push(format!(
-            "Where a structure looks at all faces for each element, to the power {all}."
+            "If a structure scans all faces for each element, the time grows with the number of faces to the power {all}."
         ));
     }
     let sure = |fit: &Fit| {
@@ -82,13 +82,13 @@ fn exponents(fits: &[Fit], caches: &[Cache]) -> Vec<String> {
     };
     if last_level(caches).is_some() && !fits.iter().any(sure) {
         words.push(
-            "Fewer than three sizes lie beyond the last cache, too few to trust a line of their own: a larger --to, or more --steps, has some.".into(),
+            "Fewer than three sizes exceed the last cache, too few for a reliable line: use a larger --to or more --steps.".into(),
         );
     }
     words
 }
 
-/// How much dearer one element is at the largest size than at the smallest.
+/// Describes the change of the time per element from the smallest to the largest size.
 fn prices(sizes: &[SizeReport], fits: &[Fit]) -> Option<String> {
     let (small, large) = (sizes.first()?, sizes.last()?);
     let price = |size: &SizeReport, fit: &Fit| {
@@ -106,7 +106,7 @@ fn prices(sizes: &[SizeReport], fits: &[Fit]) -> Option<String> {
     let (most, last) = dearer.last()?;
     (small.faces < large.faces).then(|| {
         format!(
-            "From {} to {} faces the price of one element changes by a factor of {least:.2} ({} on {}) to {most:.2} ({} on {}).",
+            "From {} to {} faces, the time per element changes by a factor between {least:.2} ({} on {}) and {most:.2} ({} on {}).",
             grouped(small.faces),
             grouped(large.faces),
             first.operation,
@@ -117,7 +117,7 @@ fn prices(sizes: &[SizeReport], fits: &[Fit]) -> Option<String> {
     })
 }
 
-/// For each operation who is fastest beyond doubt, from which size to which.
+/// Lists for each operation the backend that is fastest beyond the noise, with its range of sizes.
 fn fastest(sizes: &[SizeReport]) -> Vec<String> {
     let mut words = Vec::new();
     let operations = sizes.first().map_or(&[][..], |size| &size.results);
@@ -149,11 +149,13 @@ fn fastest(sizes: &[SizeReport]) -> Vec<String> {
     words
 }
 
-/// Where the last cache ends, or that nobody tells.
+/// Lists the sizes at which structures outgrow the last cache, or states that the caches are
+/// unknown.
 fn cache_words(caches: &[Cache], ends: &[CacheEnd]) -> Option<String> {
     let Some(bytes) = last_level(caches) else {
         return Some(
-            "This platform does not tell the sizes of its caches, so there is one line for all sizes.".into(),
+            "The cache sizes of this machine are unknown, so one line is fitted to all sizes."
+                .into(),
         );
     };
     let last = ends.iter().map(|end| end.level).max()?;
@@ -163,24 +165,24 @@ fn cache_words(caches: &[Cache], ends: &[CacheEnd]) -> Option<String> {
         .collect();
     let kib = grouped(bytes as usize >> 10);
     Some(format!(
-        "The last cache (L{last}, {kib} KiB) ends at so many faces: {}.",
+        "Faces at which each structure outgrows the last cache (L{last}, {kib} KiB): {}.",
         parts.join(", ")
     ))
 }
 
-/// What the controls of all sizes show.
+/// Describes the noise that the controls of all sizes show.
 fn noise(sizes: &[SizeReport]) -> Option<String> {
     let controls = sizes.iter().filter_map(|size| size.control.as_ref());
     let controls: Vec<_> = controls.collect();
     let name = &controls.first()?.backend;
     let most = controls.iter().map(|c| c.typical).fold(1.0, f64::max);
     Some(format!(
-        "Noise: {name} was entered twice at every size; its two columns typically differ by no more than {}.",
+        "Noise: {name} was entered twice at every size; its two columns typically differ by at most {}.",
         times(most)
     ))
 }
 
-/// Where the budget was too small for an answer.
+/// Describes figures that are uncertain because the budget was too small.
 fn doubts(sizes: &[SizeReport], fits: &[Fit]) -> Vec<String> {
     let mut words = Vec::new();
     let rows = sizes.iter().flat_map(|size| &size.results);
@@ -188,13 +190,13 @@ fn doubts(sizes: &[SizeReport], fits: &[Fit]) -> Vec<String> {
     if let Some(fewest) = measured.map(|r| r.samples).min().filter(|&n| n < 5) {
         let samples = if fewest == 1 { "sample" } else { "samples" };
         words.push(format!(
-            "Some figures rest on {fewest} {samples} only: a longer --budget makes them surer."
+            "Some figures rest on only {fewest} {samples}: use a longer --budget."
         ));
     }
     let estimated: usize = fits.iter().map(|fit| fit.estimated).sum();
     if estimated > 0 {
         words.push(format!(
-            "{} of the times behind the lines are estimates of runs too long for the budget.",
+            "{} of the fitted times are estimates, because the runs are too long for the budget.",
             grouped(estimated)
         ));
     }

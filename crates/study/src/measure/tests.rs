@@ -1,4 +1,4 @@
-//! Structures whose costs are known, on a machine whose speed drifts.
+//! Tests with structures of known cost, on a machine whose speed drifts.
 
 use std::cell::Cell;
 use std::rc::Rc;
@@ -13,9 +13,9 @@ use crate::disturbed::Machine;
 use crate::heap::CacheState;
 use crate::plan::FEWEST_ELEMENTS;
 use crate::statistics::Median;
-use workload::pages::Policy;
+use sixfold_workload::pages::Policy;
 
-/// A structure whose every element costs the same, known, time.
+/// A structure with the same known time for every element.
 struct Synthetic {
     machine: Machine,
     ns_per_element: f64,
@@ -25,14 +25,14 @@ struct Synthetic {
     place: Place,
 }
 
-/// Where the tables of a structure lie.
+/// The place of the tables of a structure in memory.
 #[derive(Clone, Default)]
 struct Place {
-    /// What building them elsewhere takes, in nanoseconds.
+    /// Time to build them elsewhere, in nanoseconds.
     rebuild_ns: f64,
-    /// How often they were.
+    /// Number of rebuilds.
     rebuilt: Rc<Cell<u32>>,
-    /// By how much everything takes longer, by place: in each the structure is as often as in any other.
+    /// Slowdown of everything at each place; rebuilds go through the places in turn.
     slowdowns: Vec<f64>,
 }
 
@@ -86,7 +86,7 @@ fn measured(costs_ns: &[f64], scanning: bool, budget: Duration, stop: bool) -> V
     bench(costs_ns, scanning, budget, stop, false).0
 }
 
-/// What was measured, and how long that took.
+/// Returns the measured entries and the time taken.
 fn bench(
     costs_ns: &[f64],
     scanning: bool,
@@ -114,7 +114,7 @@ fn bench(
     run(&machine, &mut subjects, budget, stop, skewed)
 }
 
-/// What was measured of `subjects`, and how long that took.
+/// Returns the measured entries of `subjects` and the time taken.
 fn run(
     machine: &Machine,
     subjects: &mut [Box<dyn Subject>],
@@ -146,8 +146,8 @@ fn ratio(entries: &[Entry], a: usize, b: usize) -> Median {
 }
 
 #[test]
-fn a_cost_that_depends_on_the_place_is_seen_by_the_control() {
-    // The second entry of the first takes a fifth longer, wherever it lies.
+fn the_control_shows_a_difference_of_its_two_entries() {
+    // The second entry of the control takes 20 % longer at every place.
     let entries = measured(&[7.0, 10.0, 8.4], false, Duration::from_secs(2), false);
     let planted = control(&entries, 0, 2, "synthetic").expect("samples");
     for row in &planted.operations {
@@ -179,12 +179,12 @@ fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget()
                 },
             }) as Box<dyn Subject>
         };
-        // Where one is slow the other is fast.
+        // At each place one is slow and the other fast.
         let mut subjects = vec![subject(0, [1.0, 1.2]), subject(1, [1.2, 1.0])];
         let (entries, took) = run(&machine, &mut subjects, budget, false, false);
         (entries, took, rebuilt[0].get())
     };
-    // Both are in both places, and no median rests on one of them.
+    // Both are at both places equally often.
     let (entries, took, rebuilt) = placed(100_000.0);
     assert!(took <= budget);
     assert!(
@@ -201,7 +201,7 @@ fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget()
         all > 15 && (2 * slower).abs_diff(all) <= all / 5,
         "{slower} of {all}"
     );
-    // What takes long is tried once, and told by that.
+    // A long rebuild happens once; its time prevents others.
     assert_eq!(placed(1e8).2, 1);
 }
 
@@ -228,7 +228,7 @@ fn a_control_leaves_out_times_of_zero() {
 }
 
 #[test]
-fn a_control_tells_the_noise_of_a_drifting_machine() {
+fn a_control_shows_the_noise_of_a_drifting_machine() {
     let entries = measured(&[7.0, 10.0, 7.0], false, Duration::from_secs(2), false);
     let control = control(&entries, 0, 2, "synthetic").expect("samples");
     assert_eq!(control.operations.len(), 3);
@@ -245,7 +245,7 @@ fn a_control_tells_the_noise_of_a_drifting_machine() {
 }
 
 #[test]
-fn ratios_within_rounds_survive_a_drifting_machine() {
+fn ratios_within_rounds_do_not_depend_on_drift() {
     let entries = measured(&[7.0, 10.0, 7.1], false, Duration::from_secs(2), false);
     assert!(entries.iter().all(|e| e.samples.len() >= 20), "20 rounds");
     for first in [0, 3, 6] {
@@ -254,7 +254,7 @@ fn ratios_within_rounds_survive_a_drifting_machine() {
         let alike = ratio(&entries, first + 2, first).value;
         assert!((alike - 1.0).abs() < 0.05, "{alike}");
     }
-    // The drift is no straw man: single samples of one entry differ by more than those two costs.
+    // The drift is large: single samples of one entry differ by more than the two costs.
     let own = Median::of(entries[0].samples.iter().map(|(_, t)| t.ns())).expect("samples");
     let most = entries[0]
         .samples
@@ -266,7 +266,7 @@ fn ratios_within_rounds_survive_a_drifting_machine() {
 
 #[test]
 fn scans_are_sampled_or_estimated_to_fit_the_budget() {
-    // 10,000 elements of 200 µs: 2 s a run, and three operations in a budget of 2 s.
+    // 10,000 elements of 200 µs: 2 s per run, and three operations in a budget of 2 s.
     let entries = measured(&[200_000.0], true, Duration::from_secs(2), false);
     for entry in &entries[..2] {
         let sample = entry.job.sample.expect("a sample");
@@ -283,7 +283,7 @@ fn scans_are_sampled_or_estimated_to_fit_the_budget() {
         .expect("a search that scans takes too long");
     assert!((1e9..1e10).contains(&estimate.ns()), "{estimate:?}");
     assert!(entries[2].samples.is_empty() && entries[2].times().is_empty());
-    // With time enough nothing is sampled and nothing left out.
+    // With enough time nothing is sampled or left out.
     let entries = measured(&[40_000.0], true, Duration::from_secs(200), false);
     assert!(
         entries
@@ -293,8 +293,8 @@ fn scans_are_sampled_or_estimated_to_fit_the_budget() {
 }
 
 #[test]
-fn a_skewed_mesh_is_sampled_on_whatever_structure() {
-    // 2 s a run on each of three structures that do not scan: six operations walk around.
+fn a_skewed_mesh_is_sampled_on_every_structure() {
+    // 2 s per run on each of three structures that do not scan; six entries walk around elements.
     let costs = [200_000.0; 3];
     let budget = Duration::from_secs(2);
     let (entries, took) = bench(&costs, false, budget, false, true);
@@ -303,18 +303,18 @@ fn a_skewed_mesh_is_sampled_on_whatever_structure() {
         assert!(entry.job.sample.is_some() && !entry.times().is_empty());
     }
     assert!(entries[6..].iter().all(|e| e.estimate.is_some()));
-    // What is cheap is run in full there too.
+    // Cheap operations run in full on a skewed mesh, too.
     let (entries, _) = bench(&[7.0], false, budget, false, true);
     assert!(entries.iter().all(|e| e.job.sample.is_none()));
     assert!(entries.iter().all(|e| e.samples.len() >= 5));
-    // Nothing was gained where the mesh is not skewed: this is what the samples save.
+    // On a mesh that is not skewed nothing is sampled: the run takes far longer than the budget.
     let (_, took) = bench(&costs, false, budget, false, false);
     assert!(took > budget * 5, "{took:?}");
 }
 
 #[test]
 fn a_search_that_fits_the_budget_once_is_run_once() {
-    // 1 s a run: too long for rounds within 5 s, and yet no reason to leave it out.
+    // 1 s per run: too long for rounds within the budget of 6 s, but not for a single run.
     let (entries, took) = bench(&[100_000.0], true, Duration::from_secs(6), false, false);
     let search = &entries[2];
     assert!(search.estimate.is_none() && search.samples.is_empty());
@@ -327,7 +327,7 @@ fn a_search_that_fits_the_budget_once_is_run_once() {
 }
 
 #[test]
-fn a_stopped_study_ends_at_once_and_a_spent_budget_keeps_the_warm_up() {
+fn a_stopped_study_has_no_times_and_a_tiny_budget_has_the_warm_up() {
     let entries = measured(&[7.0, 9.0], false, Duration::from_secs(1), true);
     assert!(entries.iter().all(|e| e.times().is_empty()));
     let entries = measured(&[7.0, 9.0], false, Duration::from_nanos(1), false);
@@ -335,7 +335,7 @@ fn a_stopped_study_ends_at_once_and_a_spent_budget_keeps_the_warm_up() {
 }
 
 #[test]
-fn a_subdivision_is_estimated_first_and_left_out_if_it_is_long_and_nobody_asked() {
+fn a_long_subdivision_is_only_estimated_unless_requested_by_name() {
     let machine = Machine::default();
     let stop = AtomicBool::new(false);
     let planned = |ns_per_element: f64, cost: QueryCost, named: bool| {
@@ -364,10 +364,10 @@ fn a_subdivision_is_estimated_first_and_left_out_if_it_is_long_and_nobody_asked(
         let entries = bench.measure(&[Operation::CatmullClark(Method::Gather)]);
         (entries[0].clone(), asked.get())
     };
-    // A millisecond a run, and no search: it has its rounds.
+    // 1 ms per run without searches: it takes part in rounds.
     let (entry, _) = planned(100.0, QueryCost::Local, false);
     assert!(entry.samples.len() >= 5 && entry.estimate.is_none());
-    // 0.3 s a run in 2 s: only estimated, from a patch; run where somebody asks for it.
+    // 0.3 s per run in a budget of 2 s: only estimated from a patch, unless requested by name.
     let (entry, asked) = planned(30_000.0, QueryCost::Local, false);
     let estimate = entry.estimate.expect("long").ns();
     assert!((1e8..1e9).contains(&estimate) && entry.by_name_only);
@@ -375,11 +375,11 @@ fn a_subdivision_is_estimated_first_and_left_out_if_it_is_long_and_nobody_asked(
     let (entry, asked) = planned(30_000.0, QueryCost::Local, true);
     assert!(entry.estimate.is_none() && entry.times().len() == 1);
     assert_eq!(asked, 10_000);
-    // Six relations are searched for, 0.1 s each.
+    // Searches for six relations, 0.1 s each.
     let (entry, _) = planned(10_000.0, QueryCost::Scan, false);
     let estimate = entry.estimate.expect("long").ns();
     assert!((3e8..2e9).contains(&estimate), "{estimate}");
-    // Longer than the budget: not even by name, and no promise that it would be.
+    // Longer than the budget: only estimated even by name, and `by_name_only` is not set.
     for named in [false, true] {
         let (entry, _) = planned(1e6, QueryCost::Local, named);
         assert!(entry.estimate.is_some() && !entry.by_name_only);

@@ -1,20 +1,20 @@
-//! What matters more, the order or the structure: ratios within rounds, and their intervals.
+//! Effects of order and structure on times: ratios within rounds, with intervals.
 
 use serde::{Deserialize, Serialize};
 use sixfold::shapes::Order;
 
 use crate::standing::ratio;
 use crate::statistics::Median;
-use workload::{Operation, Time};
+use sixfold_workload::{Operation, Time};
 
-/// How far a ratio may be off that has no interval.
+/// Assumed error factor of a ratio without an interval.
 const UNSURE: f64 = 1.5;
 
 /// The samples of one structure in one order.
 pub(super) struct Timed {
     pub(super) backend: &'static str,
     pub(super) order: Order,
-    /// It looks at all faces for each element.
+    /// Whether it scans all faces for each element.
     pub(super) scans: bool,
     pub(super) samples: Vec<(u32, Time)>,
 }
@@ -25,14 +25,14 @@ impl Timed {
     }
 }
 
-/// How many times one time another is: the median over rounds.
+/// The ratio of two times: the median over rounds, with its interval.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Factor {
     /// The median.
     pub ratio: f64,
-    /// The lower end of its 95 % interval; `None` below three rounds.
+    /// Lower end of the 95 % interval; `None` below three rounds.
     pub ci_low: Option<f64>,
-    /// Its upper end.
+    /// Upper end of the interval.
     pub ci_high: Option<f64>,
 }
 
@@ -46,7 +46,7 @@ impl Factor {
         })
     }
 
-    /// Whether it is more than what the control shows for nothing.
+    /// Returns whether the ratio is larger than the noise, and its interval lies above 1.
     fn beyond(&self, noise: f64) -> bool {
         self.ratio > noise && self.low() > 1.0
     }
@@ -60,66 +60,66 @@ impl Factor {
     }
 }
 
-/// How much the order matters for one structure.
+/// The effect of the order on one structure.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct OrderEffect {
     /// The structure.
     pub backend: String,
-    /// It looks at all faces for each element of this operation.
+    /// Whether it scans all faces for each element of this operation.
     pub scans: bool,
     /// The order with the smallest median.
     pub best: Order,
-    /// The order with the largest.
+    /// The order with the largest median.
     pub worst: Order,
-    /// The worst by the best.
+    /// Time of the worst order divided by that of the best.
     pub worst_to_best: Factor,
-    /// The order given by the best.
+    /// Time of the given order divided by that of the best.
     pub given_to_best: Option<Factor>,
-    /// The worst is slower than the best beyond the noise.
+    /// Whether the worst order is slower than the best beyond the noise.
     pub matters: bool,
 }
 
-/// How much the structure matters where each is in its own best order; of those that do not scan.
+/// The effect of the structure, each in its own best order, among structures that do not scan.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct StructureEffect {
     /// The structure with the smallest median.
     pub fastest: String,
     /// Its best order.
     pub fastest_order: Order,
-    /// The structure with the largest.
+    /// The structure with the largest median.
     pub slowest: String,
     /// Its best order.
     pub slowest_order: Order,
-    /// The slowest by the fastest.
+    /// Time of the slowest divided by that of the fastest.
     pub slowest_to_fastest: Factor,
-    /// The slowest is slower than the fastest beyond the noise.
+    /// Whether the slowest is slower than the fastest beyond the noise.
     pub matters: bool,
 }
 
-/// Which of the two is larger.
+/// The larger of the two effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Larger {
-    /// On every structure that does not scan, the order makes more of a difference.
+    /// The effect of the order is larger on every structure that does not scan.
     Order,
-    /// On none of them.
+    /// The effect of the structure is larger on all of them.
     Structure,
-    /// On some it does, or the intervals overlap.
+    /// It depends on the structure, or the intervals overlap.
     Depends,
 }
 
-/// One operation: how much the order matters, and how much the structure.
+/// The effects of order and structure on one operation.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Comparison {
     /// The operation.
     pub operation: Operation,
     /// Ratios up to this are noise.
     pub noise: f64,
-    /// By structure; those with samples of two orders or more.
+    /// Effect of the order on each structure with samples of at least two orders.
     pub orders: Vec<OrderEffect>,
-    /// Between structures; `None` with fewer than two that do not scan.
+    /// Effect of the structure; `None` if fewer than two structures do not scan.
     pub structures: Option<StructureEffect>,
-    /// Which is larger; `None` where one of the two is not known.
+    /// The larger of the two; `None` if one of them is unknown.
     pub larger: Option<Larger>,
 }
 
@@ -150,7 +150,7 @@ impl Comparison {
     }
 }
 
-/// The entries with the smallest and the largest median.
+/// Returns the entries with the smallest and the largest median.
 fn extremes<'t>(timed: impl IntoIterator<Item = &'t Timed>) -> Option<(&'t Timed, &'t Timed)> {
     let there = timed.into_iter().filter_map(|t| Some((t.median()?, t)));
     let mut sorted: Vec<(f64, &Timed)> = there.collect();
@@ -192,7 +192,8 @@ fn between(best: &[&Timed], noise: f64) -> Option<StructureEffect> {
     })
 }
 
-/// Which is larger, if the intervals tell.
+/// Returns which effect is larger according to the intervals; `None` without an effect of the
+/// order.
 fn larger(orders: &[Factor], structures: &Factor) -> Option<Larger> {
     if orders.is_empty() {
         return None;
@@ -212,7 +213,7 @@ fn larger(orders: &[Factor], structures: &Factor) -> Option<Larger> {
 mod tests {
     use super::*;
 
-    /// A structure at `ns`, in seven rounds of a machine that drifts.
+    /// Returns samples of about `ns` in seven rounds on a machine that drifts.
     fn timed(backend: &'static str, order: Order, ns: f64, scans: bool) -> Timed {
         let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
         let time = |drift: f64| Time {
@@ -278,13 +279,13 @@ mod tests {
     }
 
     #[test]
-    fn no_larger_is_named_where_it_depends() {
+    fn the_larger_effect_is_named_only_if_the_intervals_are_apart() {
         let larger =
             |a: [f64; 2], b: [f64; 2]| compared(&[("a", a, false), ("b", b, false)]).larger;
         assert_eq!(larger([10.0, 11.0], [30.0, 31.0]), Some(Larger::Structure));
         assert_eq!(larger([10.0, 50.0], [30.0, 31.0]), Some(Larger::Depends));
         assert_eq!(larger([10.0, 50.0], [11.0, 44.0]), Some(Larger::Order));
-        // One structure, or one that has nothing else to be compared with.
+        // Only one structure that does not scan.
         assert_eq!(compared(&[("a", [1.0, 2.0], false)]).larger, None);
         let beside_scan = compared(&[("a", [1.0, 2.0], false), ("s", [9.0, 9.0], true)]);
         assert_eq!((beside_scan.structures, beside_scan.larger), (None, None));
@@ -292,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn few_samples_tell_no_difference() {
+    fn few_samples_show_no_difference() {
         let mut a = [
             timed("a", Order::Given, 10.0, false),
             timed("a", Order::Morton, 14.0, false),

@@ -1,16 +1,16 @@
-//! One mesh in every order, with the same elements drawn from each.
+//! One mesh in every order, with a draw of the same elements for each.
 
 use sixfold::PolygonMesh;
 use sixfold::shapes::{Order, Reordered};
 
-use workload::{Draw, Side};
+use sixfold_workload::{Draw, Side};
 
-/// The mesh in every order, each with the same draw in its own names.
+/// The mesh in every order, each with the same drawn elements under its own handles.
 pub(super) struct Meshes(Vec<(Order, PolygonMesh, Option<Draw>)>);
 
 impl Meshes {
     pub(super) fn of(polygons: &PolygonMesh, seed: u64, drawn: bool) -> Self {
-        // Another stream than the shuffle, or the first drawn might be the first in memory.
+        // A seed other than that of the shuffle, so that the draw does not repeat its order.
         let draw = drawn.then(|| Draw::of(polygons, !seed));
         let meshes = Order::ALL.map(|order| {
             let reordered = order.with_names(polygons, seed);
@@ -27,7 +27,7 @@ impl Meshes {
     }
 }
 
-/// The same elements under the names that they have after reordering.
+/// Returns the draw with the handles that its elements have after reordering.
 fn renamed(draw: &Draw, to: &Reordered) -> Draw {
     let side = |side: &Side| {
         let mut ends = side.ends.map(|v| to.vertices[v.index()]);

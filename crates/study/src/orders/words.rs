@@ -1,4 +1,4 @@
-//! What the tables of orders show, in a few plain sentences.
+//! Sentences on the tables of orders.
 
 use sixfold::shapes::Order;
 
@@ -6,7 +6,7 @@ use super::{Comparison, Larger, OrderEffect, OrderRow};
 use crate::numbers::times;
 use crate::report::{Agreement, Control, Standing};
 
-/// Sentences on the best order, on the order given, and on what matters more.
+/// Returns sentences on the best order, on the given order, and on the larger effect.
 pub(super) fn words(
     rows: &[OrderRow],
     comparisons: &[Comparison],
@@ -21,7 +21,7 @@ pub(super) fn words(
     words.extend(control.map(|control| {
         let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
         format!(
-            "Noise: {} in the order given was entered twice, and its two columns differ by {}, at most {}; what differs by no more than that within an operation is a tie.",
+            "Noise: {} in the given order was entered twice; its two columns typically differ by {}, at most by {}. In each operation, smaller differences are ties.",
             control.backend,
             percent(control.typical),
             percent(control.worst),
@@ -32,14 +32,14 @@ pub(super) fn words(
         if row.agreement == Agreement::Mismatch {
             let (backend, operation) = (&row.backend, row.operation);
             words.push(format!(
-                "{backend} finds something else for {operation} in the order {order}: a fault in Sixfold; please report it."
+                "{backend} has other results for {operation} in the order {order}: a fault in Sixfold; please report it."
             ));
         }
     }
     words
 }
 
-/// How often each order is best, or as good as the best.
+/// Counts how often each order is best alone, and how often it is tied for best.
 fn best_orders(rows: &[OrderRow]) -> Option<String> {
     let pairs =
         rows.chunk_by(|a, b| a.row.operation == b.row.operation && a.row.backend == b.row.backend);
@@ -60,16 +60,16 @@ fn best_orders(rows: &[OrderRow]) -> Option<String> {
     sorted.sort_by_key(|&(_, best, tied)| std::cmp::Reverse((best + tied, best)));
     let parts: Vec<String> = sorted
         .iter()
-        .map(|(order, best, tied)| format!("{order} {best} and {tied}"))
+        .map(|(order, best, tied)| format!("{order} alone in {best}, tied in {tied}"))
         .collect();
     Some(format!(
-        "Of {} pairs of a structure and an operation, so often an order is best alone and tied for best: {}.",
+        "Of {} pairs of a structure and an operation, the best order is: {}.",
         pairs.len(),
-        parts.join(", ")
+        parts.join("; ")
     ))
 }
 
-/// What reordering would gain.
+/// Describes how far the given order is from the best.
 fn as_given(comparisons: &[Comparison]) -> Option<String> {
     let effects = comparisons
         .iter()
@@ -84,12 +84,10 @@ fn as_given(comparisons: &[Comparison]) -> Option<String> {
         .count();
     let all = given.len();
     if near == all {
-        return Some(
-            "The order given is as good as the best everywhere, as far as anybody can tell.".into(),
-        );
+        return Some("The given order is within the noise of the best everywhere.".into());
     }
     Some(format!(
-        "The order given is within the noise of the best in {near} of {all} pairs; at worst it takes {} as long ({} on {}, best {}).",
+        "The given order is within the noise of the best in {near} of {all} pairs; at worst it takes {} the time of the best ({} on {}, best order {}).",
         times(*most),
         comparison.operation,
         effect.backend,
@@ -97,7 +95,7 @@ fn as_given(comparisons: &[Comparison]) -> Option<String> {
     ))
 }
 
-/// One operation: the reach of the order, that of the structure, and which is larger.
+/// Describes for one operation the effects of order and structure, and which is larger.
 fn compared(comparison: &Comparison) -> Option<String> {
     let local = || comparison.orders.iter().filter(|effect| !effect.scans);
     let ratio = |effect: &&OrderEffect| effect.worst_to_best.ratio;
@@ -105,13 +103,13 @@ fn compared(comparison: &Comparison) -> Option<String> {
     let most = local().max_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
     let said = |effect: &OrderEffect| match effect.matters {
         true => format!("{} ({})", times(effect.worst_to_best.ratio), effect.backend),
-        false => format!("nothing ({})", effect.backend),
+        false => format!("less than the noise ({})", effect.backend),
     };
     let operation = comparison.operation;
     let orders = match local().count() {
-        1 => format!("{operation}: the order makes {}", said(most)),
+        1 => format!("{operation}: the order changes the time by {}", said(most)),
         _ => format!(
-            "{operation}: the order makes {} to {}",
+            "{operation}: the order changes the time by {} to {}",
             said(least),
             said(most)
         ),
@@ -121,12 +119,12 @@ fn compared(comparison: &Comparison) -> Option<String> {
     };
     let between = match structures.matters {
         true => format!(
-            "the structure {} ({} to {}, each in its best order)",
+            "the structure by {} ({} to {}, each in its best order)",
             times(structures.slowest_to_fastest.ratio),
             structures.fastest,
             structures.slowest
         ),
-        false => "the structures do not differ in their best orders".into(),
+        false => "the structures in their best orders do not differ beyond the noise".into(),
     };
     let larger = match comparison.larger? {
         Larger::Order => "the order matters more",
@@ -136,7 +134,7 @@ fn compared(comparison: &Comparison) -> Option<String> {
     Some(format!("{orders}, {between}: {larger}."))
 }
 
-/// What looks at all faces goes through memory from end to end.
+/// Describes the effect of the order on structures that scan: they read memory from end to end.
 fn on_scans(comparisons: &[Comparison]) -> Option<String> {
     let scans = comparisons.iter().flat_map(|comparison| {
         let scans = comparison.orders.iter().filter(|effect| effect.scans);
@@ -148,11 +146,11 @@ fn on_scans(comparisons: &[Comparison]) -> Option<String> {
     })?;
     Some(match most.matters {
         true => format!(
-            "Where a structure looks at all faces for each element, the order changes that by {} at most ({operation} on {}).",
+            "If a structure scans all faces for each element, the order changes the time by at most {} ({operation} on {}).",
             times(most.worst_to_best.ratio),
             most.backend
         ),
-        false => "Where a structure looks at all faces for each element, the order makes no difference beyond the noise.".into(),
+        false => "If a structure scans all faces for each element, the order makes no difference beyond the noise.".into(),
     })
 }
 
@@ -162,19 +160,19 @@ fn verdict(comparisons: &[Comparison]) -> Option<String> {
     let (order, structure) = (count(Larger::Order), count(Larger::Structure));
     (known.len() > 1).then(|| {
         format!(
-            "In all: the order matters more in {order} of {} operations, the structure in {structure}; in {} it depends on the structure.",
+            "Overall: the order matters more in {order} of {} operations, the structure in {structure}; in {} it depends on the structure.",
             known.len(),
             count(Larger::Depends)
         )
     })
 }
 
-/// Where the budget was too small for an answer.
+/// Describes figures that are uncertain because the budget was too small.
 fn doubts(rows: &[OrderRow]) -> Option<String> {
     let measured = rows.iter().filter(|r| r.row.median_ns.is_some());
     let fewest = measured.map(|r| r.row.samples).min()?;
     (fewest < 5).then(|| {
         let samples = if fewest == 1 { "sample" } else { "samples" };
-        format!("Some figures rest on {fewest} {samples} only: a longer --budget makes them surer.")
+        format!("Some figures rest on only {fewest} {samples}: use a longer --budget.")
     })
 }

@@ -1,10 +1,10 @@
-//! The answer, in the shape that `reports/SCHEMA.md` documents.
+//! The answer, in the format that `reports/SCHEMA.md` documents.
 
 use std::io;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_with::{DeserializeAs, Map, Same};
-use workload::{Action, Workload};
+use sixfold_workload::{Action, Workload};
 
 use crate::environment::Environment;
 use crate::numbers::grouped;
@@ -12,44 +12,45 @@ use crate::pick::needs::Need;
 use crate::report::write_json;
 use crate::timer::Timer;
 
-/// Which backend, how sure, and why.
+/// The ranking of the backends, with intervals and reasons.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Answer {
-    /// The version of the shape.
+    /// The version of the format.
     pub schema: u32,
-    /// The meshes that it is for.
+    /// The names of the meshes.
     pub meshes: Vec<String>,
     /// The workload that was run.
     pub workload: Workload,
-    /// How many operations one use of the mesh comes to; the mean over the meshes.
+    /// The number of operations in one use of the mesh; the mean over the meshes.
     pub operations: f64,
-    /// What the structure had to be able to do.
+    /// The capabilities that were required.
     pub needs: Vec<Need>,
-    /// How many bytes it might hold.
+    /// The maximum size of the structure that was allowed, in bytes.
     pub max_memory: Option<u64>,
-    /// The backends that qualify, the fastest first; empty where none does.
+    /// The backends that qualify, the fastest first; empty if no backend does.
     pub ranking: Vec<Ranked>,
-    /// The others, and why.
+    /// The other backends, with the reasons.
     #[serde(serialize_with = "by_name", deserialize_with = "from_names")]
     pub excluded: Vec<Excluded>,
-    /// After how many operations each pays for being built, beside an indexed face set that is there
-    /// already; empty where that did not take part.
+    /// For each backend, the number of operations after which its building time is saved, compared
+    /// with an indexed face set that exists already; empty if the indexed face set did not take
+    /// part.
     pub break_even: Vec<BreakEven>,
-    /// The difference between two entries of one backend, as a ratio of 1 or more: the noise.
+    /// The time ratio, 1 or more, of one backend that was measured twice: the noise.
     pub noise: Option<f64>,
-    /// Backends that found something else than the others for the same work: a fault in Sixfold.
+    /// Backends with other results than the rest for the same work: a fault in Sixfold.
     pub mismatches: Vec<String>,
-    /// The answer and its reasons, in words.
+    /// The answer and its reasons, as sentences.
     pub words: Vec<String>,
-    /// What may be wrong with it, and what helps, in words.
+    /// Possible faults of the measurement with remedies, as sentences.
     pub warnings: Vec<String>,
-    /// Told to stop before the end: it rests on fewer samples.
+    /// Whether the measurement was stopped early, so that there are fewer samples.
     pub interrupted: bool,
-    /// What the clock and the engine cost.
+    /// The costs of reading the clock.
     pub timer: Timer,
-    /// The machine and the program.
+    /// The machine and the program version.
     pub environment: Environment,
-    /// Mesh by mesh, where there are several; each in the shape of this whole, without what is common.
+    /// The results for each mesh if there are several; empty for one mesh.
     pub by_mesh: Vec<OnMesh>,
 }
 
@@ -58,101 +59,110 @@ pub struct Answer {
 pub struct OnMesh {
     /// The mesh.
     pub mesh: String,
-    /// As in the whole.
+    /// As [`Answer::ranking`].
     pub ranking: Vec<Ranked>,
-    /// As in the whole.
+    /// As [`Answer::break_even`].
     pub break_even: Vec<BreakEven>,
-    /// As in the whole.
+    /// As [`Answer::noise`].
     pub noise: Option<f64>,
 }
 
-/// One backend that qualifies.
+/// One backend in the ranking.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Ranked {
-    /// The backend; `relation-tables` for flat tables of just the relations that the workload asks.
+    /// The backend; `relation-tables` for flat tables of only the relations that the workload
+    /// queries.
     pub backend: String,
-    /// The structure that the tables were made of.
+    /// The structure from which the tables were made; `None` for a structure.
     pub over: Option<String>,
-    /// The median over the rounds, rebuilding included, in nanoseconds of one operation of the mix.
+    /// The median, over rounds, of the time of one operation of the mix, rebuilding included, in
+    /// nanoseconds.
     pub ns_per_operation: f64,
-    /// The lower end of its 95 % interval; `None` below three rounds.
+    /// The lower end of its 95 % interval; `None` with fewer than three rounds.
     pub ns_ci_low: Option<f64>,
     /// Its upper end.
     pub ns_ci_high: Option<f64>,
-    /// The median, over rounds, of its time by that of the fastest; 1 for the fastest itself.
+    /// The median, over rounds, of its time divided by the time of the fastest; 1 for the fastest
+    /// itself.
     pub ratio_to_best: f64,
     /// The lower end of the 95 % interval of that ratio.
     pub ci_low: Option<f64>,
     /// Its upper end.
     pub ci_high: Option<f64>,
-    /// Nobody can tell it from the fastest.
+    /// Whether it is tied with the fastest: not measurably different from it.
     pub tied_with_best: bool,
-    /// What building it from polygons takes, tabulating included, where freed pages are there to be used
-    /// again: what each rebuilding costs.
+    /// The time to build it from polygons, tabulating included, on pages that were freed before, in
+    /// nanoseconds. Each rebuilding costs this time.
     pub build_ns: f64,
-    /// The same on fresh pages: what a program pays that builds it once. `None` where there was no time.
+    /// The same on fresh pages: the time in a program that builds the structure once. `None` if
+    /// there was no time to measure it.
     #[serde(default)]
     pub first_build_ns: Option<f64>,
-    /// The bytes it holds.
+    /// The size of its tables, in bytes.
     pub bytes: usize,
-    /// The same for each vertex.
+    /// The same per vertex of the mesh.
     pub bytes_per_vertex: f64,
-    /// A sample of elements stands for all, for it looks at all faces to answer.
+    /// Whether only a sample of the elements was queried, because a query scans all faces.
     pub sampled: bool,
-    /// Some part was not run in full, for that would outlast the budget: its time is an estimate.
+    /// Whether the time of some part is an estimate, because a full run would exceed the budget.
     pub estimated: bool,
-    /// What each part of the mix costs by itself.
+    /// The cost of each part of the mix, timed by itself.
     pub parts: Vec<PartCost>,
-    /// How many rounds it took part in.
+    /// The number of rounds in which it was measured.
     pub samples: usize,
-    /// The most page faults in any sample; `None` where they were not counted.
+    /// The largest number of page faults in a sample; `None` if they were not counted.
     #[serde(default)]
     pub faults: Option<u64>,
-    /// The crates to depend on.
+    /// The packages to add as dependencies.
     pub crates: Vec<String>,
+    /// The path of the type to use, for each package.
+    #[serde(default)]
+    pub types: Vec<String>,
 }
 
-/// One part of the mix on one backend.
+/// The cost of one part of the mix on one backend.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct PartCost {
-    /// What is done.
+    /// The operation.
     pub operation: Action,
-    /// What part of all operations it is.
+    /// Its share of all operations, from 0 to 1.
     pub share: f64,
-    /// What one takes by itself, in the order of the workload; `None` where nothing was measured.
+    /// The time of one operation, timed by itself in the access order of the workload, in
+    /// nanoseconds; `None` if it was not measured.
     pub ns: Option<f64>,
 }
 
 impl Ranked {
-    /// What the first building takes: on fresh pages, where that is known.
+    /// Returns the time of the first building: on fresh pages if measured, else [`Self::build_ns`].
     pub fn first_build_ns(&self) -> f64 {
         self.first_build_ns.unwrap_or(self.build_ns)
     }
 }
 
 impl PartCost {
-    /// What it adds to an operation of the mix.
+    /// Returns its contribution to the time of one operation of the mix, in nanoseconds.
     pub(crate) fn weighed(&self) -> f64 {
         self.ns.unwrap_or(0.0) * self.share
     }
 }
 
-/// From when on a backend pays.
+/// The number of operations after which building a backend has paid off.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct BreakEven {
     /// The backend.
     pub backend: String,
-    /// What building it takes.
+    /// The time to build it, in nanoseconds.
     pub build_ns: f64,
-    /// How much less an operation takes than on the indexed face set; negative where it takes more.
+    /// The time that it saves per operation, compared with the indexed face set, in nanoseconds;
+    /// negative if it is slower.
     pub saves_ns_per_operation: f64,
-    /// After so many operations it has paid for its building; `None` if never.
+    /// The number of operations after which its building time is saved; `None` if never.
     pub operations: Option<f64>,
     /// The lower end of the 95 % interval of that number.
     pub ci_low: Option<f64>,
-    /// Its upper end; `None` where it may be never.
+    /// Its upper end; `None` if it may be never.
     pub ci_high: Option<f64>,
-    /// The same in uses of the mesh by this workload.
+    /// The same number in uses of the mesh by this workload.
     pub uses: Option<f64>,
 }
 
@@ -161,7 +171,7 @@ pub struct BreakEven {
 pub struct Excluded {
     /// The backend.
     pub backend: String,
-    /// Why.
+    /// The reason.
     pub reason: String,
 }
 
@@ -174,7 +184,7 @@ impl Excluded {
     }
 }
 
-/// That so many bytes are too many.
+/// Returns the reason for excluding a backend of `bytes` bytes with at most `most` allowed.
 pub(crate) fn too_heavy(bytes: u64, most: u64) -> String {
     let [bytes, most] = [bytes, most].map(|bytes| grouped(bytes as usize));
     format!("it takes {bytes} bytes, and --max-memory allows {most}")
@@ -185,13 +195,13 @@ impl Answer {
     ///
     /// # Errors
     ///
-    /// What `writer` reports.
+    /// The errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
 }
 
-/// As a map from names to reasons that keeps the order.
+/// Serializes a map from names to reasons that keeps the order.
 fn by_name<S: Serializer>(excluded: &[Excluded], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(excluded.iter().map(|e| (&e.backend, &e.reason)))
 }

@@ -1,15 +1,16 @@
-//! From how many operations on a structure pays for being built.
+//! The number of operations after which building a structure has paid off.
 
 use crate::pick::answer::{BreakEven, Ranked};
 use crate::pick::entrant::Entrant;
 use crate::statistics::Median;
 
-/// What a program has when it begins: positions and index lists.
+/// The structure that a program has from the start: positions and index lists.
 const BASE: &str = "indexed-face-set";
 
-/// For each entrant, beside an indexed face set that need not be built: after n operations the time
-/// saved is that of building, n = build / (t_base − t). Differences are formed within rounds, and the
-/// interval of n is that of the median difference. `operations` is what one use comes to.
+/// Returns the break-even of each backend, compared with an indexed face set that need not be
+/// built. It is at n = build / (t_base − t) operations, where the time saved equals the building
+/// time. Differences are formed within rounds; the interval of n is derived from the interval of
+/// the median difference. `operations` is the number of operations in one use.
 pub(crate) fn break_even(
     entrants: &[&Entrant<'_>],
     ranking: &[Ranked],

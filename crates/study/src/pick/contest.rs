@@ -1,4 +1,4 @@
-//! The rounds of a contest on one mesh, and who stands where after them.
+//! The rounds of measurement on one mesh, and the ranking that results.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -8,7 +8,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sixfold::subdivision::{Method, Scheme};
 use sixfold::{Counts, support};
-use workload::{Action, Clock, Kind, NoPlace, Operation, Run, Sample, Script, Series, Start, Time};
+use sixfold_workload::{
+    Action, Clock, Kind, NoPlace, Operation, Run, Sample, Script, Series, Start, Time,
+};
 
 use crate::agreement::agree;
 use crate::gauge::{Gauge, Verdict, undisturbed};
@@ -21,28 +23,28 @@ use crate::pick::{PickError, Question};
 use crate::standing::{NO_DIFFERENCE, places, ratio};
 use crate::statistics::Median;
 
-/// No interval gets much better by more rounds than these.
+/// The largest number of rounds. More rounds hardly narrow the intervals.
 const MOST_ROUNDS: u32 = 200;
-/// Fewer rounds than these say nothing.
+/// The smallest number of rounds for a result.
 const FEWEST_ROUNDS: u32 = 3;
-/// The fastest entrant is given so much to do that the clock does not show in it.
+/// The shortest sample of the fastest backend. In shorter ones the resolution of the clock shows.
 const SHORTEST_SAMPLE_NS: f64 = 500_000.0;
-/// Nobody is given so much at once that the rounds become few.
+/// The longest sample of the slowest backend. Longer ones would leave too few rounds.
 const LONGEST_SAMPLE_NS: f64 = 20_000_000.0;
-/// A structure is built in so many rounds, for its time; in all if the workload rebuilds.
+/// Number of rounds in which building is timed; all rounds if the workload rebuilds.
 const BUILDS: usize = 9;
-/// What the parts by themselves may take of the budget, after the rounds.
+/// Part of the budget after the rounds, for timing each part alone and for the first builds.
 const FOR_PARTS: f64 = 0.15;
-/// What building on fresh pages may take of the budget, at the end.
+/// Part of the budget for building on fresh pages, at the end.
 const FOR_FIRST_BUILDS: f64 = 0.05;
-/// More copies than these in a sample make it no better.
+/// The largest number of copies in a sample. More do not improve it.
 const MOST_COPIES: usize = 10_000;
-/// So many faces tell for the first time what a pass takes that scans.
+/// Sizes of the patches, in faces, from which the time of a scanning pass is estimated.
 const PATCHES: [usize; 2] = [256, 1024];
-/// Elements that are asked where every answer is a search.
+/// Number of operations in the first probe of a part.
 const FEWEST_ASKED: u64 = 4;
 
-/// The mesh, the question, and what there is to measure by.
+/// The mesh, the question, and the means of measurement.
 pub(crate) struct Contest<'c> {
     pub(crate) specimen: &'c Specimen,
     pub(crate) question: &'c Question,
@@ -55,31 +57,31 @@ pub(crate) struct Contest<'c> {
     pub(crate) progress: &'c mut dyn FnMut(f64, &str),
 }
 
-/// What a contest on one mesh came to.
+/// The result of the measurement on one mesh.
 pub(crate) struct Outcome {
     pub(crate) mesh: String,
     pub(crate) ranking: Vec<Ranked>,
     pub(crate) excluded: Vec<Excluded>,
     pub(crate) break_even: Vec<BreakEven>,
     pub(crate) noise: Option<f64>,
-    /// Backends that did not find what the others found.
+    /// Backends whose results differ from the others.
     pub(crate) disagreeing: Vec<String>,
     pub(crate) operations: f64,
-    /// The shortest sample that was timed.
+    /// The shortest timed sample, in nanoseconds.
     pub(crate) shortest_ns: Option<f64>,
 }
 
-/// How the element operations are cut into samples.
+/// How the element operations are divided into samples.
 #[derive(Clone, Copy, Debug)]
 struct Slices {
-    /// So many turns make a sample.
+    /// Number of turns in a sample.
     turns: u64,
-    /// On so many copies, where there are edits.
+    /// Number of copies that a sample runs on, if there are edits.
     copies: usize,
 }
 
 impl Contest<'_> {
-    /// Has `entrants` measured, and ranks them.
+    /// Measures `entrants` and ranks them.
     pub(crate) fn held(
         mut self,
         mut entrants: Vec<Entrant<'_>>,
@@ -108,7 +110,7 @@ impl Contest<'_> {
         let mut cost = 0.0;
         for round in 0..MOST_ROUNDS {
             let now = self.now();
-            // The first round tells what one takes.
+            // The first round is always run: it gives the time of a round.
             if self.stopped() || (round > 0 && now + cost > rounds_end) {
                 break;
             }
@@ -139,7 +141,7 @@ impl Contest<'_> {
             entrant.samples = undisturbed(&entrant.samples, &entrant.slowdowns);
         }
         self.time_parts(&mut entrants, deadline - FOR_FIRST_BUILDS * budget);
-        // Last, for the pages that it gives back are those that samples would find.
+        // Last, because it returns pages to the kernel that later samples would need.
         self.time_first_builds(&mut entrants, deadline);
         let shortest_ns = entrants
             .iter()
@@ -156,8 +158,8 @@ impl Contest<'_> {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// How many turns make a sample: enough for the clock on the fastest, not too many on the slowest,
-    /// and no more than there are places for edits.
+    /// Plans how many turns make a sample: enough for the clock on the fastest backend, not too
+    /// many on the slowest, and no more than there are places for edits.
     fn plan_slices(&self, entrants: &mut [Entrant<'_>]) -> Result<Slices, NoPlace> {
         let nothing = Slices {
             turns: 0,
@@ -173,13 +175,13 @@ impl Contest<'_> {
             (least, most) = (least.min(ns), most.max(ns));
         }
         if !least.is_finite() {
-            return Ok(nothing); // all scan
+            return Ok(nothing); // all backends scan
         }
         let turns = (SHORTEST_SAMPLE_NS / least).ceil();
         let turns = turns.min(LONGEST_SAMPLE_NS / most).max(1.0) as u64;
         let room = self.script.edits().filter_map(|part| {
             let places = entrants.iter().map(|e| e.mixer.cycle(part)).min()?;
-            // More turns than these would need more places than there are.
+            // More turns would need more places than there are.
             let fits = |turns: &u64| self.script.within(part, *turns) <= places;
             (1..=turns).take_while(fits).last().or(Some(0))
         });
@@ -197,7 +199,7 @@ impl Contest<'_> {
         }
     }
 
-    /// Which operation each pass is on this backend, and how it is timed.
+    /// Plans which operation each pass is on this backend, and how it is timed.
     fn plan_passes(&self, entrant: &mut Entrant<'_>, share: f64) {
         for part in self.script.passes() {
             let operation = match self.script.parts[part].action {
@@ -227,8 +229,8 @@ impl Contest<'_> {
         }
     }
 
-    /// A pass that looks at all faces again and again: on a sample of the elements, or, where that
-    /// cannot be, as far as patches of the mesh tell.
+    /// Plans a pass that scans all faces for each element: on a sample of the elements, or, if it
+    /// cannot be sampled and is too long, as an estimate from patches of the mesh.
     fn plan_search(
         &self,
         entrant: &mut Entrant<'_>,
@@ -243,7 +245,7 @@ impl Contest<'_> {
             entrant.mixer.run_pass(operation, sample, &series)
         };
         if operation.can_be_sampled() || operation == Operation::FfBfs {
-            // What walks over all faces asks the relation of each.
+            // A walk over all faces is estimated by the relation that it queries.
             let asked = match operation.relations(Kind::Face) {
                 &[relation] if !operation.can_be_sampled() => Operation::Relation(relation),
                 _ => operation,
@@ -265,14 +267,14 @@ impl Contest<'_> {
                 size *= 4;
             }
         }
-        // Each of n elements looks at all n faces: from two patches the power of n is known.
+        // The times of the two patches give the power of n with which the time grows.
         let [small, large] = PATCHES.map(|size| {
             let patch = Sample {
                 scanned: [false; 3],
                 size,
             };
             let size = size.min(self.counts.faces) as f64;
-            // The time of a patch comes scaled to the whole, in proportion to its faces.
+            // `run_pass` scales the time of a patch to the whole mesh; this undoes it.
             run(operation, Some(patch))
                 .time
                 .scaled(size / self.counts.faces as f64)
@@ -287,7 +289,7 @@ impl Contest<'_> {
         }
     }
 
-    /// One step of subdivision, by the best method of a backend.
+    /// Returns one step of subdivision by the best method of a backend.
     fn subdivision(&self, backend: &str) -> Operation {
         let triangles = self.specimen.polygons.first_polygon().is_none();
         let scheme = match triangles {
@@ -305,7 +307,8 @@ impl Contest<'_> {
         }
     }
 
-    /// How many operations of each part make a sample by itself, and what they find on all elements.
+    /// Plans how many operations of each part make a sample of that part, and records what they
+    /// yield on all elements.
     fn plan_parts(&self, entrant: &mut Entrant<'_>, share: f64) {
         let scans = entrant.mixer.scans();
         for part in self.script.elements() {
@@ -336,7 +339,7 @@ impl Contest<'_> {
         }
     }
 
-    /// Takes a sample of everything that the mix does.
+    /// Takes a sample of the whole mix.
     fn sample(&self, gauge: &mut Gauge, entrant: &mut Entrant<'_>, round: u32, slices: Slices) {
         let kept = self.memory.keeps_pages();
         let taken = gauge.take(
@@ -355,7 +358,7 @@ impl Contest<'_> {
         }
     }
 
-    /// The time of the mix, and that of building where it was built.
+    /// Returns the time of one operation of the mix, and the building time if it was built.
     fn sample_once(
         &self,
         entrant: &mut Entrant<'_>,
@@ -383,8 +386,8 @@ impl Contest<'_> {
         (total, build)
     }
 
-    /// All parts on elements in one loop; the turns before these run first, untimed, so that caches
-    /// hold what they would have there.
+    /// Runs all parts on elements in one loop. The preceding turns are run first, untimed, so that
+    /// the caches are in the same state as in a program.
     fn mixed(&self, entrant: &mut Entrant<'_>, round: u32, slices: Slices) -> Time {
         let Slices { turns, copies } = slices;
         let at = u64::from(round) * turns;
@@ -394,8 +397,8 @@ impl Contest<'_> {
         run.time.scaled(self.script.on_elements / operations)
     }
 
-    /// A few operations of each part: where one looks at all faces the others hardly matter, and what
-    /// is in a cache even less.
+    /// Runs a few operations of each part. If one part scans all faces, it dominates the others,
+    /// and the state of the caches hardly matters.
     fn part_by_part(&self, entrant: &mut Entrant<'_>, round: u32) -> Time {
         let mut total = Time::none_like(self.clock.now());
         for part in self.script.elements() {
@@ -445,7 +448,7 @@ impl Contest<'_> {
         }
     }
 
-    /// Each part by itself, in rounds, as long as there is time; at least once.
+    /// Times each part alone, in rounds, while there is time; at least once.
     fn time_parts(&mut self, entrants: &mut [Entrant<'_>], deadline: f64) {
         let start = self.now();
         let mut longest = 0.0_f64;
@@ -456,7 +459,7 @@ impl Contest<'_> {
             }
             (self.progress)(
                 0.9 + 0.1 * ((now - start) / (deadline - start).max(1.0)).clamp(0.0, 1.0),
-                "looking for the reasons",
+                "timing each part",
             );
             for entrant in entrants.iter_mut().filter(|e| !e.control) {
                 for part in 0..self.script.parts.len() {
@@ -477,7 +480,8 @@ impl Contest<'_> {
         }
     }
 
-    /// By entrant: whether it found something else than the first that keeps the mesh as it is.
+    /// Returns the backends whose results differ from the first backend that does not merge
+    /// vertices.
     fn disagreeing(&self, entrants: &[Entrant<'_>]) -> Vec<String> {
         let faithful = |e: &&Entrant<'_>| e.mixer.merged_vertices() == 0;
         let differs = |entrant: &&Entrant<'_>| {
@@ -548,12 +552,15 @@ impl Contest<'_> {
                     .filter_map(|(_, time)| time.faults)
                     .max(),
                 crates: entrant
-                    .over
+                    .mixer
+                    .type_paths()
                     .into_iter()
-                    .chain([match entrant.over {
-                        Some(_) => "relation-table",
-                        None => name,
-                    }])
+                    .map(package_of)
+                    .collect(),
+                types: entrant
+                    .mixer
+                    .type_paths()
+                    .into_iter()
                     .map(str::to_owned)
                     .collect(),
             })
@@ -575,7 +582,7 @@ impl Contest<'_> {
 
     fn parts(&self, entrant: &Entrant<'_>) -> Vec<PartCost> {
         let parts = self.script.parts.iter().enumerate();
-        let cost = |(part, of): (usize, &workload::Part)| PartCost {
+        let cost = |(part, of): (usize, &sixfold_workload::Part)| PartCost {
             operation: of.action,
             share: self.script.shares[part],
             ns: Median::of(entrant.parts[part].iter().copied()).map(|m| m.value),
@@ -584,7 +591,7 @@ impl Contest<'_> {
     }
 }
 
-/// How long the shortest sample of an entrant's mixed turns took, if it had any.
+/// Returns the time of the shortest sample of mixed turns, in nanoseconds; `None` if there is none.
 fn shortest(entrant: &Entrant<'_>, slices: Slices, script: &Script) -> Option<f64> {
     if entrant.scans() || script.on_elements <= 0.0 {
         return None;
@@ -596,4 +603,10 @@ fn shortest(entrant: &Entrant<'_>, slices: Slices, script: &Script) -> Option<f6
         .iter()
         .map(|(_, time)| time.ns() * operations);
     times.min_by(f64::total_cmp)
+}
+
+/// Returns the package of a type; its path begins with the name of the crate.
+fn package_of(type_path: &str) -> String {
+    let (package, _) = type_path.split_once("::").unwrap_or((type_path, ""));
+    package.replace('_', "-")
 }

@@ -1,44 +1,44 @@
-//! Who takes part in a contest, and what each has done so far.
+//! The backends that are measured on a mesh, with their samples.
 
 use sixfold::Edit;
-use workload::{Action, Clock, Mixer, NoPlace, Script, Series, Time};
+use sixfold_workload::{Action, Clock, Mixer, NoPlace, Script, Series, Time};
 
-/// A backend, or tables, with its samples.
+/// A structure or relation tables, with its samples.
 pub(crate) struct Entrant<'a> {
     pub(crate) mixer: Box<dyn Mixer + 'a>,
-    /// The structure that tables were made of.
+    /// The structure from which the tables were made; `None` for a structure.
     pub(crate) over: Option<&'static str>,
-    /// It is another a second time.
+    /// Whether it is the second copy of a backend, for the control.
     pub(crate) control: bool,
-    /// By part: how many runs in a row, or on how large a sample, a pass is timed.
+    /// By part: how a pass is timed.
     pub(crate) passes: Vec<PassPlan>,
-    /// By part, where it is timed by itself: how many operations make a sample.
+    /// By part: number of operations in one sample of that part alone.
     pub(crate) part_operations: Vec<u64>,
     /// By round: the time of one operation of the mix, rebuilding included.
     pub(crate) samples: Vec<(u32, Time)>,
-    /// By sample: the larger slowdown of the gauge before and after it.
+    /// By sample: the slowdown that the gauge measured before or after it, whichever is larger.
     pub(crate) slowdowns: Vec<f64>,
-    /// What building took.
+    /// The building times.
     pub(crate) builds: Vec<Time>,
-    /// How much longer building took on fresh pages than right after.
+    /// Ratios of building times: on fresh pages to directly afterwards on kept pages.
     pub(crate) first_builds: Vec<f64>,
-    /// By part: the times of one operation by itself.
+    /// By part: the times of one operation, timed by itself, in nanoseconds.
     pub(crate) parts: Vec<Vec<f64>>,
-    /// By part: how much its operations yielded on all elements, or the checksum of a pass; `None` where
-    /// not all were asked.
+    /// By part: what its operations yielded on all elements, or the checksum of a pass; `None` if
+    /// not all elements were queried.
     pub(crate) found: Vec<Option<f64>>,
 }
 
-/// How a pass is timed on one entrant.
+/// How a pass is timed on one backend.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PassPlan {
-    /// Which operation it comes to on this backend; `None` for parts that are no passes.
-    pub(crate) operation: Option<workload::Operation>,
-    /// So many runs in a row make a sample.
+    /// The operation that it is on this backend; `None` for parts that are not passes.
+    pub(crate) operation: Option<sixfold_workload::Operation>,
+    /// Number of consecutive runs in one sample.
     pub(crate) runs: u32,
-    /// On a sample, where it scans.
-    pub(crate) sample: Option<workload::Sample>,
-    /// Its time, where a run would outlast the budget.
+    /// The sample of the elements to run on, if it scans.
+    pub(crate) sample: Option<sixfold_workload::Sample>,
+    /// Its estimated time, if a run would exceed the budget.
     pub(crate) estimate: Option<Time>,
 }
 
@@ -67,14 +67,15 @@ impl<'a> Entrant<'a> {
         }
     }
 
-    /// Whether some part looks at all faces: its parts are timed one by one then, on a few elements.
+    /// Returns whether some part scans all faces. Then the parts are timed one by one, on few
+    /// elements.
     pub(crate) fn scans(&self) -> bool {
         self.mixer.scans().contains(&true)
     }
 }
 
-/// Has everybody try the edits at their places, and go on with those that all accept: so that all do
-/// the same work.
+/// Tries the edits of the script at their places on all backends, and keeps the places that all of
+/// them accept, so that all do the same work.
 pub(crate) fn agree_on_places(
     entrants: &mut [Entrant<'_>],
     script: &Script,
@@ -114,8 +115,8 @@ pub(crate) fn agree_on_places(
     Ok(())
 }
 
-/// Tables of what the workload asks, over the structure from which they are made soonest; `None`
-/// where it asks nothing that could be tabulated.
+/// Returns tables of the relations that the workload queries, made from the structure for which
+/// that is fastest; `None` if the workload queries nothing that can be tabulated.
 pub(crate) fn tables<'a>(
     entrants: &[Entrant<'a>],
     clock: &dyn Clock,

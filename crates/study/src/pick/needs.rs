@@ -1,4 +1,4 @@
-//! What a program needs of its mesh data structure, by name.
+//! The capabilities that a program can require of its mesh data structure, by name.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,31 +6,31 @@ use std::str::FromStr;
 use serde_with::{DeserializeFromStr, SerializeDisplay};
 use sixfold::subdivision::{Method, Scheme};
 use sixfold::support;
-use workload::{Backend, unknown};
+use sixfold_workload::{Backend, unknown};
 
-/// Something that a structure has to be able to do, or to hold.
+/// A required capability of a structure.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, DeserializeFromStr, SerializeDisplay,
 )]
 pub enum Need {
-    /// Change connectivity: split, collapse, flip.
+    /// Changes connectivity: split, collapse, flip.
     Edit,
-    /// Hold edges with three faces or more, and vertices whose faces form more than one fan.
+    /// Holds edges with three or more faces, and vertices with more than one fan.
     NonManifold,
-    /// Hold faces with any number of corners.
+    /// Holds faces of any degree.
     Polygons,
-    /// Hold two faces that run along an edge in the same direction.
+    /// Holds two faces that run along an edge in the same direction.
     MixedOrientation,
-    /// Hold vertices without a face.
+    /// Holds vertices without a face.
     IsolatedVertices,
-    /// Keep vertices apart that share their coordinates.
+    /// Keeps vertices with equal coordinates separate.
     CoincidentVertices,
-    /// Split its own tables for subdivision.
+    /// Subdivides by splitting its own tables.
     Refine,
 }
 
 impl Need {
-    /// All of them, in the order in which they are listed.
+    /// All needs, in listing order.
     pub const ALL: [Self; 7] = [
         Self::Edit,
         Self::NonManifold,
@@ -41,7 +41,7 @@ impl Need {
         Self::Refine,
     ];
 
-    /// What users call it: `non-manifold`.
+    /// Returns its name for users: `non-manifold`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Edit => "edit",
@@ -54,11 +54,11 @@ impl Need {
         }
     }
 
-    /// What `backend` lacks of it, in words; `None` if it has it.
+    /// Returns why `backend` does not meet this need; `None` if it does.
     pub(crate) fn lacking(self, backend: &Backend) -> Option<String> {
         let can = backend.info.capabilities;
         let (has, lacks) = match self {
-            // The roster knows of edits what a backend of one type does not.
+            // Only the roster lists the edits: `Backend::of` leaves them out.
             Self::Edit => (edits(backend.name()), "it cannot be edited"),
             Self::NonManifold => (
                 can.non_manifold_edges && can.non_manifold_vertices,
@@ -100,11 +100,11 @@ impl fmt::Display for Need {
     }
 }
 
-/// A need that nobody has heard of.
+/// The error for an unknown name of a need.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", unknown("need", .name, &Need::ALL.map(Need::name)))]
 pub struct UnknownNeed {
-    /// The name.
+    /// The name that was given.
     pub name: String,
 }
 

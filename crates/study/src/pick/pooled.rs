@@ -1,4 +1,4 @@
-//! One answer from the contests on one mesh or several.
+//! Combines the results of one or several meshes into one answer.
 
 use std::collections::BTreeMap;
 
@@ -11,8 +11,8 @@ use crate::report::SCHEMA;
 use crate::standing::NO_DIFFERENCE;
 use crate::timer::Timer;
 
-/// Puts the outcomes together. Who is excluded on one mesh is no answer for all; the others are
-/// compared by geometric means over the meshes.
+/// Combines the outcomes of the meshes. A backend that is excluded on one mesh is excluded from the
+/// ranking; the others are compared by geometric means over the meshes.
 pub(crate) fn pooled(
     mut outcomes: Vec<Outcome>,
     question: &Question,
@@ -89,7 +89,7 @@ pub(crate) fn pooled(
     answer
 }
 
-/// The backends that took part on all meshes, by the geometric mean of their times.
+/// Ranks the backends that took part on all meshes, by the geometric mean of their times.
 fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
     let mut by_name: BTreeMap<&str, Vec<&Ranked>> = BTreeMap::new();
     for ranked in outcomes.iter().flat_map(|o| &o.ranking) {
@@ -110,7 +110,8 @@ fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
                 .zip(&best)
                 .map(|(r, b)| r.ratio_to_best / b.ratio_to_best),
         );
-        // Meshes are measured apart: their doubts add up as squares, and the best has its own.
+        // Meshes are measured independently, so the squared half widths of the log intervals add
+        // up. The interval of the best backend is added, too.
         let doubt = |rows: &[&Ranked]| -> f64 {
             let width = |r: &&Ranked| Some((r.ci_high? / r.ci_low?).ln() / 2.0);
             rows.iter()
@@ -148,7 +149,7 @@ fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
     rows.collect()
 }
 
-/// The break-even of `ranked` over all meshes; never where it never pays on one.
+/// Returns the break-even of `ranked` over all meshes; never if it is never on one of them.
 fn on_all(outcomes: &[Outcome], ranked: &Ranked) -> Option<BreakEven> {
     let rows: Option<Vec<&BreakEven>> = outcomes
         .iter()

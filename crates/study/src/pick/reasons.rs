@@ -1,9 +1,9 @@
-//! The answer and its reasons, in plain words.
+//! The answer and its reasons, as sentences.
 
 use crate::numbers::{duration, grouped, times};
 use crate::pick::answer::{Answer, PartCost, Ranked};
 
-/// The answer first, then why, from when on, and what to depend on.
+/// Returns the answer, its reasons, the break-even and the packages to add, in this order.
 pub(crate) fn words(answer: &Answer) -> Vec<String> {
     let Some(best) = answer.ranking.first() else {
         return vec!["No backend qualifies.".into()];
@@ -17,33 +17,33 @@ pub(crate) fn words(answer: &Answer) -> Vec<String> {
     words
 }
 
-/// Doubts: noise, few rounds, a busy machine, backends that found something else.
+/// Returns warnings: noise, few rounds, a busy machine, backends with other results.
 pub(crate) fn warnings(answer: &Answer) -> Vec<String> {
     let mut warnings = crate::warnings::of_machine(&answer.environment);
     if let Some(noise) = answer.noise.filter(|&noise| noise > 1.05) {
         warnings.push(format!(
-            "One backend differs from itself by {:.0} %: smaller differences say nothing. Measure on a quieter machine, or with a longer --budget.",
+            "Two measurements of one backend differ by {:.0} %: smaller differences between backends are not significant. Measure on a quieter machine, or with a longer --budget.",
             100.0 * (noise - 1.0)
         ));
     }
     let fewest = answer.ranking.iter().map(|ranked| ranked.samples).min();
     if let Some(fewest) = fewest.filter(|&fewest| fewest < 6) {
         warnings.push(format!(
-            "Some figures rest on {fewest} rounds, too few for a 95 % interval: a longer --budget makes them surer."
+            "Some figures are from {fewest} rounds, too few for a 95 % interval: use a longer --budget."
         ));
     }
     for backend in &answer.mismatches {
         warnings.push(format!(
-            "{backend} finds something else than the others: a fault in Sixfold; please report it."
+            "{backend} has other results than the other backends: a fault in Sixfold; please report it."
         ));
     }
     warnings
 }
 
-/// What a backend is called in a sentence.
+/// Returns the name of a backend in a sentence.
 fn name(ranked: &Ranked) -> String {
     match &ranked.over {
-        Some(over) => format!("{} (over {over})", ranked.backend),
+        Some(over) => format!("{} (made from {over})", ranked.backend),
         None => ranked.backend.clone(),
     }
 }
@@ -66,25 +66,25 @@ fn verdict(answer: &Answer, best: &Ranked) -> String {
                 format!(" (95 %: {} to {})", precise(low), precise(high))
             });
         format!(
-            "; {} takes {} as long{sure}",
+            "; {} takes {} that time{sure}",
             name(next),
             times(next.ratio_to_best)
         )
     });
     match &tied[..] {
         [] => format!(
-            "For {workload}, {} is fastest: {each} an operation{next}.",
+            "For {workload}, {} is fastest: {each} per operation{next}.",
             name(best)
         ),
         tied => format!(
-            "For {workload}, {} and {} tie: {each} an operation{next}.",
+            "For {workload}, {} and {} are tied: {each} per operation{next}.",
             tied.join(", "),
             name(best)
         ),
     }
 }
 
-/// `1.04`, `12.3`, `123`: a ratio beside another that may be close.
+/// Formats a ratio with three digits, to be compared with a close one: `1.04`, `12.3`, `123`.
 fn precise(ratio: f64) -> String {
     match ratio {
         r if r < 10.0 => format!("{r:.2}"),
@@ -93,7 +93,7 @@ fn precise(ratio: f64) -> String {
     }
 }
 
-/// Which part of the mix takes most of the time.
+/// Describes which part of the mix takes most of the time.
 fn dominating(answer: &Answer, best: &Ranked) -> Option<String> {
     let total: f64 = best.parts.iter().map(PartCost::weighed).sum();
     let heaviest = best
@@ -105,13 +105,13 @@ fn dominating(answer: &Answer, best: &Ranked) -> Option<String> {
         return None;
     }
     Some(format!(
-        "There {} takes {:.0} % of the time ({each} each).",
+        "{} takes {:.0} % of the time of the fastest backend ({each} each).",
         heaviest.operation,
         100.0 * heaviest.weighed() / total
     ))
 }
 
-/// Where the first that is slower loses what it loses.
+/// Describes the part of the mix in which the first slower backend loses most time.
 fn runner_up(answer: &Answer, best: &Ranked) -> Option<String> {
     let next = answer
         .ranking
@@ -124,7 +124,7 @@ fn runner_up(answer: &Answer, best: &Ranked) -> Option<String> {
         return None;
     }
     Some(format!(
-        "{} loses most in {}: {} against {}.",
+        "{} is slower mainly in {}: {}, compared with {}.",
         name(next),
         theirs.operation,
         duration(theirs.ns?),
@@ -132,29 +132,29 @@ fn runner_up(answer: &Answer, best: &Ranked) -> Option<String> {
     ))
 }
 
-/// What tables would bring, where they are not the answer, or what the best structure is without them.
+/// Describes the time of relation tables; if they are the best, that of the fastest structure.
 fn tables(answer: &Answer, best: &Ranked) -> Option<String> {
     let structure = answer.ranking.iter().find(|ranked| ranked.over.is_none())?;
     if best.over.is_some() {
         return Some(format!(
-            "Of the structures themselves {} is fastest: {} an operation.",
+            "Without relation tables, {} is fastest: {} per operation.",
             structure.backend,
             duration(structure.ns_per_operation)
         ));
     }
     let tables = answer.ranking.iter().find(|ranked| ranked.over.is_some())?;
     Some(format!(
-        "Tables of just the relations that are asked, made once over {}, take {} as long.",
+        "Tables of only the queried relations, made once from {}, take {} the time of the fastest.",
         tables.over.as_deref().unwrap_or_default(),
         times(tables.ratio_to_best)
     ))
 }
 
-/// Who is cheapest if building counts, over as many operations as one use has.
+/// Describes the fastest backend for one use of the mesh, building included.
 fn over_one_use(answer: &Answer, best: &Ranked) -> Option<String> {
     let operations = answer.operations;
     let total = |ranked: &Ranked| {
-        // An indexed face set is what there is before anything is built.
+        // A program has an indexed face set before it builds anything.
         let build = match ranked.backend.as_str() {
             "indexed-face-set" => 0.0,
             _ => ranked.first_build_ns(),
@@ -171,10 +171,11 @@ fn over_one_use(answer: &Answer, best: &Ranked) -> Option<String> {
     let cost = duration(total(least));
     Some(match least.backend == best.backend {
         true => format!(
-            "With its building counted it is still the least for one use of {count} {used}: {cost} in all."
+            "With building included, {} is still fastest for one use of {count} {used}: {cost} in total.",
+            name(best)
         ),
         false => format!(
-            "With building counted, and an indexed face set there already, one use of {count} {used} is cheapest on {}: {cost} in all, against {} on {}.",
+            "With building included, except for an indexed face set, one use of {count} {used} is fastest on {}: {cost} in total, compared with {} on {}.",
             name(least),
             duration(total(best)),
             name(best)
@@ -182,7 +183,18 @@ fn over_one_use(answer: &Answer, best: &Ranked) -> Option<String> {
     })
 }
 
+/// Describes the command that adds the packages, and the types to use. Packages of Sixfold are
+/// taken from a checkout.
 fn to_add(best: &Ranked) -> String {
-    let crates: Vec<String> = best.crates.iter().map(|name| format!("`{name}`")).collect();
-    format!("To use it, depend on {}.", crates.join(" and "))
+    let command = |package: &String| match package.strip_prefix("sixfold-") {
+        Some(folder) => format!("`cargo add {package} --path CHECKOUT/crates/{folder}`"),
+        None => format!("`cargo add {package}`"),
+    };
+    let commands: Vec<String> = best.crates.iter().map(command).collect();
+    let types: Vec<String> = best.types.iter().map(|path| format!("`{path}`")).collect();
+    format!(
+        "To use {} in your package, run {}. CHECKOUT is the path of this repository.",
+        types.join(" and "),
+        commands.join(" and ")
+    )
 }

@@ -1,26 +1,26 @@
-//! Contests of mixers whose costs are known, on a machine whose speed drifts.
+//! Measurements of mixers with known costs, on a machine whose speed drifts.
 
 use sixfold::{PolygonMesh, shapes};
-use workload::pages::Policy;
-use workload::{MixRun, Mixer, Operation, Run, Sample, Series, Time, built_in};
+use sixfold_workload::pages::Policy;
+use sixfold_workload::{MixRun, Mixer, Operation, Run, Sample, Series, Time, built_in};
 
 use super::*;
 use crate::disturbed::Machine;
 use crate::pick::contest::Outcome;
 
-/// A mixer whose every operation, and whose building, costs the same, known, time.
+/// A mixer with a known time for each operation and a known building time.
 struct Known {
     name: &'static str,
     machine: Machine,
     operation_ns: f64,
     build_ns: f64,
     parts: usize,
-    /// What it yields for each operation: 1, if it does as the others do.
+    /// What it yields per operation: 1, if it agrees with the others.
     yields: u64,
 }
 
 impl Known {
-    fn time(&self, ns: f64, clock: &dyn workload::Clock) -> Time {
+    fn time(&self, ns: f64, clock: &dyn sixfold_workload::Clock) -> Time {
         let start = clock.now();
         self.machine.work(ns);
         clock.now() - start
@@ -31,6 +31,9 @@ impl Mixer for Known {
     fn name(&self) -> &'static str {
         self.name
     }
+    fn type_paths(&self) -> Vec<&'static str> {
+        vec!["sixfold_half_edge::HalfEdgeMesh"]
+    }
     fn bytes(&self) -> usize {
         1 << 20
     }
@@ -40,7 +43,13 @@ impl Mixer for Known {
     fn scans(&self) -> Vec<bool> {
         vec![false; self.parts]
     }
-    fn run(&mut self, _: u64, turns: u64, copies: usize, clock: &dyn workload::Clock) -> MixRun {
+    fn run(
+        &mut self,
+        _: u64,
+        turns: u64,
+        copies: usize,
+        clock: &dyn sixfold_workload::Clock,
+    ) -> MixRun {
         let operations = 256 * turns * copies as u64;
         MixRun {
             time: self.time(self.operation_ns * operations as f64, clock),
@@ -54,7 +63,7 @@ impl Mixer for Known {
         _: usize,
         _: u64,
         operations: u64,
-        clock: &dyn workload::Clock,
+        clock: &dyn sixfold_workload::Clock,
     ) -> MixRun {
         MixRun {
             time: self.time(self.operation_ns * operations as f64, clock),
@@ -82,7 +91,7 @@ impl Mixer for Known {
 
 fn question(budget: Duration) -> Question {
     Question {
-        workload: built_in("geodesic-dijkstra").expect("it is built in"),
+        workload: built_in("geodesic-dijkstra").expect("a built-in workload"),
         backends: Vec::new(),
         needs: Vec::new(),
         max_memory: None,
@@ -92,10 +101,10 @@ fn question(budget: Duration) -> Question {
     }
 }
 
-/// Finds something else than the others.
+/// The backend whose results differ from the others.
 const FAULTY: &str = "face-vertex";
 
-/// The contest of an indexed face set, which takes 50 ns, with mixers of these costs.
+/// Measures an indexed face set of 50 ns per operation, and mixers of these costs.
 fn contest(costs_ns: &[f64], seed: u64) -> Outcome {
     let specimen = Specimen::new("ball", shapes::icosahedron());
     let budget = Duration::from_secs(1);
@@ -135,7 +144,7 @@ fn contest(costs_ns: &[f64], seed: u64) -> Outcome {
         stop: &stop,
         progress: &mut |_, _| (),
     };
-    contest.held(entrants, Vec::new()).expect("time enough")
+    contest.held(entrants, Vec::new()).expect("enough time")
 }
 
 #[test]
@@ -174,10 +183,10 @@ fn known_ratios_are_found_on_a_drifting_machine() {
 }
 
 #[test]
-fn building_pays_after_what_it_costs_by_what_it_saves() {
+fn break_even_is_building_time_divided_by_time_saved() {
     let outcome = contest(&[10.0, 60.0], 1);
     let row = |name: &str| outcome.break_even.iter().find(|row| row.backend == name);
-    // 40 µs by 40 ns an operation; the machine drifts between building and running.
+    // 40 µs divided by 40 ns per operation; the machine drifts between building and running.
     let pays = row("half-edge")
         .and_then(|row| row.operations)
         .expect("it pays");
@@ -185,10 +194,10 @@ fn building_pays_after_what_it_costs_by_what_it_saves() {
     let never = row("winged-edge").expect("it took part");
     assert_eq!(never.operations, None);
     assert!(never.saves_ns_per_operation < 0.0);
-    assert!(row("indexed-face-set").is_none(), "it is there already");
+    assert!(row("indexed-face-set").is_none(), "it need not be built");
 }
 
-/// The 95 % interval of a known ratio holds it in about 19 of 20 contests, whatever the machine does.
+/// The 95 % interval contains a known ratio in about 19 of 20 measurements, on a drifting machine.
 #[test]
 fn intervals_cover_a_known_ratio() {
     let mut covered = 0;
@@ -218,16 +227,16 @@ fn quick(question: &Question, meshes: &[PolygonMesh]) -> Result<Answer, PickErro
 }
 
 #[test]
-fn a_real_contest_ranks_all_and_says_why() {
-    let torus = shapes::triangle_torus(24, 24).expect("small");
-    let answer = quick(&question(Duration::from_secs(2)), &[torus]).expect("time enough");
+fn a_real_measurement_ranks_all_backends_with_reasons() {
+    let torus = shapes::triangle_torus(24, 24).expect("a torus");
+    let answer = quick(&question(Duration::from_secs(2)), &[torus]).expect("enough time");
     assert_eq!(answer.ranking.len(), 7, "{:?}", answer.ranking);
     assert!(answer.excluded.is_empty());
     let times = answer.ranking.iter().map(|row| row.ns_per_operation);
     assert!(times.is_sorted());
     assert_eq!(answer.ranking[0].ratio_to_best, 1.0);
     assert_eq!(answer.break_even.len(), 6);
-    let soup = answer.ranking.last().expect("seven");
+    let soup = answer.ranking.last().expect("seven backends");
     assert!(soup.sampled && soup.ratio_to_best > 10.0);
     assert!(
         answer.words[0].starts_with("For geodesic-dijkstra, "),
@@ -259,8 +268,8 @@ fn a_real_contest_ranks_all_and_says_why() {
 }
 
 #[test]
-fn needs_memory_and_edits_exclude() {
-    let torus = shapes::triangle_torus(24, 24).expect("small");
+fn needs_and_memory_limits_exclude_backends() {
+    let torus = shapes::triangle_torus(24, 24).expect("a torus");
     let asked = |needs: &[Need], max_memory| Question {
         needs: needs.to_vec(),
         max_memory,
@@ -270,7 +279,7 @@ fn needs_memory_and_edits_exclude() {
         &asked(&[Need::Edit, Need::NonManifold], None),
         std::slice::from_ref(&torus),
     );
-    let answer = answer.expect("time enough");
+    let answer = answer.expect("enough time");
     let mut names: Vec<&str> = answer
         .ranking
         .iter()
@@ -279,13 +288,13 @@ fn needs_memory_and_edits_exclude() {
     names.sort_unstable();
     assert_eq!(names, ["face-vertex", "indexed-face-set", "polygon-soup"]);
     assert_eq!(answer.excluded.len(), 4, "{:?}", answer.excluded);
-    // Nine words a vertex is the least there is.
+    // The smallest structure takes nine words per vertex.
     let vertices = torus.vertex_count() as u64;
     let answer = quick(
         &asked(&[], Some(36 * vertices)),
         std::slice::from_ref(&torus),
     )
-    .expect("fine");
+    .expect("an answer");
     assert!(
         answer
             .ranking
@@ -298,19 +307,19 @@ fn needs_memory_and_edits_exclude() {
             .iter()
             .any(|out| out.reason.contains("--max-memory"))
     );
-    let answer = quick(&asked(&[], Some(10)), &[torus]).expect("an answer, too");
+    let answer = quick(&asked(&[], Some(10)), &[torus]).expect("an answer");
     assert!(answer.ranking.is_empty());
     assert_eq!(answer.words, ["No backend qualifies."]);
 }
 
 #[test]
 fn edits_are_done_by_all_at_the_same_places() {
-    let torus = shapes::triangle_torus(30, 30).expect("small");
+    let torus = shapes::triangle_torus(30, 30).expect("a torus");
     let question = Question {
-        workload: built_in("remeshing").expect("it is built in"),
+        workload: built_in("remeshing").expect("a built-in workload"),
         ..question(Duration::from_secs(3))
     };
-    let answer = quick(&question, &[torus]).expect("time enough");
+    let answer = quick(&question, &[torus]).expect("enough time");
     let names: Vec<&str> = answer
         .ranking
         .iter()
@@ -323,13 +332,13 @@ fn edits_are_done_by_all_at_the_same_places() {
 }
 
 #[test]
-fn several_meshes_are_one_answer() {
+fn several_meshes_give_one_answer() {
     let meshes = [
-        shapes::triangle_torus(20, 20).expect("small"),
-        shapes::triangle_grid(20, 20).expect("small"),
-        shapes::grid(12, 12).expect("small"),
+        shapes::triangle_torus(20, 20).expect("a torus"),
+        shapes::triangle_grid(20, 20).expect("a grid"),
+        shapes::grid(12, 12).expect("a grid"),
     ];
-    let answer = quick(&question(Duration::from_secs(3)), &meshes).expect("time enough");
+    let answer = quick(&question(Duration::from_secs(3)), &meshes).expect("enough time");
     assert_eq!(answer.by_mesh.len(), 3);
     assert!(
         answer
@@ -341,14 +350,14 @@ fn several_meshes_are_one_answer() {
         .excluded
         .iter()
         .find(|out| out.backend == "corner-table")
-        .expect("of quads");
+        .expect("it holds triangles only");
     assert!(out.reason.starts_with("mesh 2: "), "{}", out.reason);
     assert_eq!(answer.ranking[0].ratio_to_best, 1.0);
 }
 
 #[test]
-fn what_cannot_be_asked_is_refused() {
-    let torus = shapes::triangle_torus(20, 20).expect("small");
+fn invalid_questions_are_refused() {
+    let torus = shapes::triangle_torus(20, 20).expect("a torus");
     let nothing = quick(
         &question(Duration::from_nanos(1)),
         std::slice::from_ref(&torus),
@@ -368,9 +377,9 @@ fn what_cannot_be_asked_is_refused() {
         matches!(said, PickError::Study(StudyError::NoFaces)),
         "{said}"
     );
-    let quads = shapes::grid(20, 20).expect("small");
+    let quads = shapes::grid(20, 20).expect("a grid");
     let remeshing = Question {
-        workload: built_in("remeshing").expect("it is built in"),
+        workload: built_in("remeshing").expect("a built-in workload"),
         ..question(Duration::from_secs(1))
     };
     let said = quick(&remeshing, &[quads]).expect_err("quads").to_string();
@@ -382,8 +391,8 @@ fn what_cannot_be_asked_is_refused() {
 }
 
 #[test]
-fn an_interrupted_contest_keeps_what_it_has() {
-    let torus = shapes::triangle_torus(20, 20).expect("small");
+fn an_interrupted_measurement_keeps_its_samples() {
+    let torus = shapes::triangle_torus(20, 20).expect("a torus");
     let specimen = [Specimen::new("torus", torus)];
     let stop = AtomicBool::new(false);
     let mut heard = 0;
@@ -398,6 +407,6 @@ fn an_interrupted_contest_keeps_what_it_has() {
             }
         },
     );
-    let answer = answer.expect("what there is");
+    let answer = answer.expect("the finished part");
     assert!(answer.interrupted && !answer.ranking.is_empty());
 }

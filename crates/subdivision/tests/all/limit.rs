@@ -1,24 +1,24 @@
-//! Limit positions and normals, against the surfaces that steps really come to.
+//! Limit positions and normals, compared with the surfaces that many steps approach.
 
-use conformance::strategy::manifold_mesh;
-use half_edge::HalfEdgeMesh;
-use indexed_face_set::IndexedFaceSet;
-use mesh_core::{Creases, MeshQuery, Point, PolygonMesh, Representation, VertexId};
 use proptest::prelude::*;
-use subdivision::{
+use sixfold_conformance::strategy::manifold_mesh;
+use sixfold_core::{Creases, MeshQuery, Point, PolygonMesh, Representation, VertexId};
+use sixfold_half_edge::HalfEdgeMesh;
+use sixfold_indexed_face_set::IndexedFaceSet;
+use sixfold_subdivision::{
     Boundary, ControlGrid, Ends, LimitNormal, LimitPoint, LoopWeights, NoLimit, Scheme, Step,
     Subdivision, SubdivisionError,
 };
 
 const SCHEMES: [Scheme; 2] = [Scheme::CatmullClark, Scheme::Loop];
 
-/// The creases that the first step starts from, and all limits in the order of the vertices.
+/// Returns the creases before the first step, and all limits in the order of the vertices.
 fn limits<M: Representation>(
     scheme: &Subdivision,
     polygons: &PolygonMesh,
     creases: &Creases,
 ) -> (Creases, Vec<LimitPoint>) {
-    let mesh = M::from_polygons(polygons).expect("the structure holds it");
+    let mesh = M::from_polygons(polygons).expect("the structure accepts it");
     let control = scheme.control(&mesh, polygons, creases).expect("creases");
     let limits = limits_of(scheme, &mesh, &control);
     (control, limits)
@@ -30,12 +30,12 @@ fn limits_of<M: MeshQuery>(scheme: &Subdivision, mesh: &M, creases: &Creases) ->
 }
 
 fn step(scheme: &Subdivision, polygons: &PolygonMesh, creases: &Creases) -> Step {
-    let mesh = IndexedFaceSet::from_polygons(polygons).expect("holds all");
+    let mesh = IndexedFaceSet::from_polygons(polygons).expect("it accepts any mesh");
     scheme.gather(&mesh, creases, 0).expect("a step")
 }
 
-/// A vertex with `faces` faces around it, triangles for Loop and else quads, on bumpy ground; it is
-/// vertex 0, and its neighbours follow.
+/// Builds a vertex with `faces` faces around it (triangles for Loop, otherwise quads) on uneven
+/// ground. It is vertex 0, and its neighbours follow.
 fn fan(scheme: Scheme, faces: usize, is_closed: bool, seed: usize) -> PolygonMesh {
     let bump = |i: usize| ((i * 37 + seed * 101) as f32 * 12.9898).sin() * 0.3;
     let spokes = if is_closed { faces } else { faces + 1 };
@@ -64,8 +64,8 @@ fn fan(scheme: Scheme, faces: usize, is_closed: bool, seed: usize) -> PolygonMes
     PolygonMesh::new(points, (0..faces).map(face)).expect("a fan")
 }
 
-/// The faces at vertex 0 after a step, moved there and made as large as before; and where it was and
-/// what it was made larger by.
+/// Runs a step and returns the faces at vertex 0, with this vertex moved to the origin and the
+/// largest distance scaled to 1; also the position of the vertex, and the largest distance before.
 fn ring_after(scheme: &Subdivision, from: &Step) -> (Step, Point, f32) {
     let Step { polygons, creases } = step(scheme, &from.polygons, &from.creases);
     let faces = polygons.faces().iter().map(|(_, face)| face);
@@ -91,7 +91,7 @@ fn ring_after(scheme: &Subdivision, from: &Step) -> (Step, Point, f32) {
     });
     let corners = creases.corners().iter();
     let corners = corners.filter_map(|&(v, sharpness)| Some((name(v)?, sharpness)));
-    // Edges of the outer rim come and go, but those at the vertex matter alone.
+    // Only edges at the vertex matter; edges of the outer boundary change from step to step.
     let edges: Vec<_> = edges.filter(|&(ends, _)| ends.contains(&0)).collect();
     let creases = Creases::new(&ring, edges, corners.collect::<Vec<_>>()).expect("of the ring");
     let step = Step {
@@ -101,8 +101,8 @@ fn ring_after(scheme: &Subdivision, from: &Step) -> (Step, Point, f32) {
     (step, origin, size)
 }
 
-/// Where vertex 0 comes to by so many steps, and the sum of the normals of the faces around it, of
-/// those that `counts` picks by their first neighbour.
+/// Returns the position of vertex 0 after `levels` steps, and the direction of the sum of the
+/// normals of its faces; only of the faces that `counts` selects by their first neighbour.
 fn followed(
     scheme: &Subdivision,
     from: Step,
@@ -159,12 +159,12 @@ fn all_options(scheme: Scheme) -> Vec<Subdivision> {
 }
 
 #[test]
-fn values_worked_out_by_hand() {
-    let cube = shapes::cube();
+fn limits_match_values_computed_by_hand() {
+    let cube = sixfold_shapes::cube();
     let scheme = Subdivision::new(Scheme::CatmullClark);
     let (_, at) = limits::<HalfEdgeMesh>(&scheme, &cube, &Creases::default());
     for (v, limit) in cube.positions().iter().zip(at) {
-        // (9 + 4 − 1)/24 of a corner; outwards.
+        // The position is (9 + 4 − 1)/24 of the corner; the normal points outwards.
         let (position, normal) = defined(limit);
         assert!(position.distance(*v * 0.5) < 1e-6);
         let LimitNormal::One(normal) = normal else {
@@ -172,11 +172,11 @@ fn values_worked_out_by_hand() {
         };
         assert!(normal.distance(v.normalize()) < 1e-5);
     }
-    let tetrahedron = shapes::tetrahedron();
+    let tetrahedron = sixfold_shapes::tetrahedron();
     let scheme = Subdivision::new(Scheme::Loop);
     let (_, at) = limits::<HalfEdgeMesh>(&scheme, &tetrahedron, &Creases::default());
     for (v, limit) in tetrahedron.positions().iter().zip(at) {
-        // β = 3/16, so ω = 1/5, and the neighbours of v come to −v.
+        // β = 3/16, so ω = 1/5, and the neighbours of v sum to −v.
         let (position, normal) = defined(limit);
         assert!(position.distance(*v * 0.2) < 1e-6);
         assert_eq!(
@@ -185,7 +185,7 @@ fn values_worked_out_by_hand() {
         );
         assert!(matches!(normal, LimitNormal::One(_)));
     }
-    let torus = shapes::triangle_torus(5, 6).expect("small");
+    let torus = sixfold_shapes::triangle_torus(5, 6).expect("small");
     let mesh = HalfEdgeMesh::from_polygons(&torus).expect("a torus");
     let (_, at) = limits::<HalfEdgeMesh>(&scheme, &torus, &Creases::default());
     for (v, limit) in mesh.vertices().zip(at) {
@@ -196,12 +196,12 @@ fn values_worked_out_by_hand() {
 }
 
 #[test]
-fn a_smooth_vertex_comes_to_its_limit() {
+fn a_smooth_vertex_converges_to_its_limit() {
     for scheme in SCHEMES.into_iter().flat_map(all_options) {
         for (n, seed) in (2..12).flat_map(|n| (0..4).map(move |seed| (n, seed))) {
             let polygons = fan(scheme.scheme, n, true, seed);
             if n == 2 && scheme.scheme == Scheme::Loop {
-                // Two triangles with the same corners: the rim is shut as well.
+                // Two triangles with the same corners: their outer edges are joined too.
                 continue;
             }
             let (creases, at) = limits::<IndexedFaceSet>(&scheme, &polygons, &Creases::default());
@@ -223,7 +223,7 @@ fn a_smooth_vertex_comes_to_its_limit() {
 }
 
 #[test]
-fn a_boundary_vertex_comes_to_its_limit() {
+fn a_boundary_vertex_converges_to_its_limit() {
     for scheme in SCHEMES.into_iter().flat_map(all_options) {
         let scheme = Subdivision {
             boundary: Boundary::EdgeOnly,
@@ -234,7 +234,8 @@ fn a_boundary_vertex_comes_to_its_limit() {
             let (creases, at) = limits::<IndexedFaceSet>(&scheme, &polygons, &Creases::default());
             let (position, normal) = defined(at[0]);
             let start = Step { polygons, creases };
-            // Few faces grow flat against the boundary, until rounding shows; many turn slowly.
+            // Few faces become flat along the boundary until rounding dominates; many converge
+            // slowly.
             let (levels, least) = match k {
                 1 | 2 => (14, 0.9995),
                 3 => (20, 0.9995),
@@ -272,7 +273,7 @@ fn a_crease_has_a_normal_on_either_side() {
             for (side, normal) in sides.into_iter().enumerate() {
                 let faces = [second, n - second][side];
                 let levels = if faces < 4 { 9 } else { 45 };
-                // The ring starts anywhere: which faces are on a side is known by the first normal.
+                // The ring may start at any neighbour: try every start, and take the best normal.
                 let best = (0..n).map(|first| {
                     let counts = |i: usize| (i as u32 + n - first) % n < faces;
                     let (place, seen) = followed(&scheme, start.clone(), levels, counts);
@@ -318,9 +319,9 @@ fn a_grid_has_the_limits_of_its_patch() {
 }
 
 #[test]
-fn where_there_is_no_limit_it_is_said() {
+fn undefined_limits_have_the_expected_reason() {
     let scheme = Subdivision::new(Scheme::CatmullClark);
-    let cube = shapes::cube();
+    let cube = sixfold_shapes::cube();
     let mesh = HalfEdgeMesh::from_polygons(&cube).expect("a cube");
     let neighbours: Vec<u32> = mesh
         .vertex_vertices(VertexId::new(0))
@@ -347,8 +348,8 @@ fn where_there_is_no_limit_it_is_said() {
     assert_eq!(first(&[infinite; 3], 0.5), corner);
     assert_eq!(first(&[0.5], infinite), corner);
     assert!(first(&[infinite; 2], 0.0).position().is_some());
-    // Pentagons: at once on a crease, after a step everywhere.
-    let polygons = shapes::dodecahedron();
+    // Pentagons: the limit is defined on a crease at once, everywhere after one step.
+    let polygons = sixfold_shapes::dodecahedron();
     let (control, at) = limits::<IndexedFaceSet>(&scheme, &polygons, &Creases::default());
     assert!(
         at.iter()
@@ -357,7 +358,7 @@ fn where_there_is_no_limit_it_is_said() {
     let after = step(&scheme, &polygons, &control);
     let (_, at) = limits::<IndexedFaceSet>(&scheme, &after.polygons, &after.creases);
     assert!(at.iter().all(|limit| limit.normal().is_some()));
-    let pentagon = shapes::dodecahedron()
+    let pentagon = sixfold_shapes::dodecahedron()
         .faces()
         .iter()
         .next()
@@ -391,8 +392,8 @@ fn where_there_is_no_limit_it_is_said() {
 }
 
 #[test]
-fn other_schemes_are_refused_by_name() {
-    let mesh = HalfEdgeMesh::from_polygons(&shapes::cube()).expect("a cube");
+fn other_schemes_return_no_limit() {
+    let mesh = HalfEdgeMesh::from_polygons(&sixfold_shapes::cube()).expect("a cube");
     for scheme in Scheme::ALL {
         let limit = Subdivision::new(scheme).limit(&mesh, &Creases::default());
         match scheme {
@@ -415,9 +416,10 @@ fn other_schemes_are_refused_by_name() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(96))]
 
-    /// The limit of a vertex is that of its child, whatever is sharp, and one for all structures.
+    /// The limit of a vertex equals that of its child, for any sharpness, and is the same on all
+    /// structures.
     #[test]
-    fn a_step_leaves_the_limit_where_it_is(
+    fn a_step_does_not_change_the_limit(
         polygons in manifold_mesh(),
         picks in prop::collection::vec((any::<prop::sample::Index>(), 0..5_usize), 0..12),
         scheme in prop::sample::select(SCHEMES.to_vec()),
@@ -432,7 +434,7 @@ proptest! {
         let mut edges = Vec::new();
         for (pick, kind) in picks {
             let face = pick.index(polygons.face_count());
-            let face = polygons.faces().face(mesh_core::FaceId::new(face as u32));
+            let face = polygons.faces().face(sixfold_core::FaceId::new(face as u32));
             let corner = pick.index(face.len());
             let ends = [face[corner], face[(corner + 1) % face.len()]];
             edges.push((ends.map(|v| v.index() as u32), sharpness(kind)));
@@ -452,16 +454,16 @@ proptest! {
         let mut at = polygons;
         for _ in 0..3 {
             let after = step(&scheme, &at, &creases);
-            let mesh = IndexedFaceSet::from_polygons(&after.polygons).expect("holds all");
+            let mesh = IndexedFaceSet::from_polygons(&after.polygons).expect("it accepts any mesh");
             let limits = limits_of(&scheme, &mesh, &after.creases);
             for (v, (a, b)) in before.iter().zip(&limits).enumerate() {
                 let (Some(p), Some(q)) = (a.position(), b.position()) else {
-                    // What is defined stays so.
+                    // A defined limit stays defined.
                     prop_assert!(a.position().is_none(), "{}: {:?} {:?}", v, a, b);
                     continue;
                 };
                 prop_assert!(p.distance(q) < 1e-5 * size, "{}: {:?} {:?}", v, a, b);
-                // Which side comes first may change, with the numbers of the ends.
+                // The order of the sides may change with the numbers of the ends.
                 let (m, n) = (normals(*a), normals(*b));
                 let known = |m: &Point| n.is_empty() || n.iter().any(|n| m.dot(*n) > 0.98);
                 prop_assert!(m.iter().all(known), "{}: {:?} {:?}", v, a, b);

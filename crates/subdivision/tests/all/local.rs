@@ -1,13 +1,13 @@
-//! Local refinement: conforming, with the shape of its angles kept, and one for all structures.
+//! Local refinement: conforming, with bounded angles, and the same on all structures.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use conformance::strategy::manifold_mesh;
-use half_edge::HalfEdgeMesh;
-use indexed_face_set::IndexedFaceSet;
-use mesh_core::{BuildError, FaceId, Facts, MeshQuery, Point, PolygonMesh, Representation};
 use proptest::prelude::*;
-use subdivision::{LocalError, LocalMesh, Selection, refine_locally};
+use sixfold_conformance::strategy::manifold_mesh;
+use sixfold_core::{BuildError, FaceId, Facts, MeshQuery, Point, PolygonMesh, Representation};
+use sixfold_half_edge::HalfEdgeMesh;
+use sixfold_indexed_face_set::IndexedFaceSet;
+use sixfold_subdivision::{LocalError, LocalMesh, Selection, refine_locally};
 
 fn refined(polygons: &PolygonMesh, selection: &Selection, levels: u32) -> LocalMesh {
     refine_locally::<IndexedFaceSet>(polygons, selection, levels).expect("it can be refined")
@@ -35,7 +35,7 @@ fn smallest_angle(polygons: &PolygonMesh) -> f64 {
     faces(polygons).flat_map(angles).fold(180.0, f64::min)
 }
 
-/// The smallest angle after one side of one face has been halved.
+/// Returns the smallest angle after one side of one face has been halved.
 fn smallest_of_halves(polygons: &PolygonMesh) -> f64 {
     let halves = faces(polygons).flat_map(|[a, b, c]| {
         [[a, b, c], [b, c, a], [c, a, b]]
@@ -48,7 +48,7 @@ fn smallest_of_halves(polygons: &PolygonMesh) -> f64 {
     halves.flat_map(angles).fold(180.0, f64::min)
 }
 
-/// Whether topology is as before: a corner on a side would open the mesh there.
+/// Asserts that the topology is unchanged; a corner inside a side would open the mesh there.
 fn conforms(before: &PolygonMesh, after: &PolygonMesh) {
     let [old, new] = [before, after].map(Facts::of);
     assert_eq!(new.euler_characteristic, old.euler_characteristic);
@@ -57,9 +57,9 @@ fn conforms(before: &PolygonMesh, after: &PolygonMesh) {
     assert_eq!(new.isolated_vertices, old.isolated_vertices);
     assert_eq!(new.consistently_oriented, old.consistently_oriented);
     assert_eq!(new.degenerate_faces, 0);
-    // The boundary is what it was, in length, and its new points are on it.
+    // The length of the boundary is unchanged, so its new points lie on it.
     let length = |mesh: &PolygonMesh| -> f64 {
-        let structure = IndexedFaceSet::from_polygons(mesh).expect("holds all");
+        let structure = IndexedFaceSet::from_polygons(mesh).expect("it accepts any mesh");
         let rim = structure
             .edges()
             .filter(|&e| structure.edge_faces(e).count() == 1);
@@ -69,7 +69,7 @@ fn conforms(before: &PolygonMesh, after: &PolygonMesh) {
     assert!((length(before) - length(after)).abs() <= 1e-4 * length(before));
 }
 
-/// The new faces of each old one.
+/// Returns the new faces of each old face.
 fn parts(local: &LocalMesh) -> BTreeMap<FaceId, Vec<FaceId>> {
     let mut parts = BTreeMap::<_, Vec<_>>::new();
     for (part, origin) in (0..).map(FaceId::new).zip(local.origins()) {
@@ -84,7 +84,7 @@ fn ids(faces: &[u32]) -> Vec<FaceId> {
 
 #[test]
 fn one_face_of_an_octahedron() {
-    let before = shapes::octahedron();
+    let before = sixfold_shapes::octahedron();
     let local = refined(&before, &Selection::Faces(ids(&[0])), 1);
     let parts = parts(&local);
     let mut sizes: Vec<usize> = parts.values().map(Vec::len).collect();
@@ -100,8 +100,8 @@ fn one_face_of_an_octahedron() {
 
 #[test]
 fn two_split_sides_make_a_face_red() {
-    // The first face's neighbours by side; both of them chosen, it follows.
-    let before = shapes::octahedron();
+    // Two neighbours of the first face are chosen, so the first face becomes red too.
+    let before = sixfold_shapes::octahedron();
     let mesh = HalfEdgeMesh::from_polygons(&before).expect("closed");
     let beside: Vec<FaceId> = mesh.face_faces(FaceId::new(0)).take(2).collect();
     let local = refined(&before, &Selection::Faces(beside.clone()), 1);
@@ -110,13 +110,13 @@ fn two_split_sides_make_a_face_red() {
         assert_eq!(parts[f].len(), 4);
         assert!(!parts[f].iter().any(|&part| local.is_green(part)));
     }
-    // Chosen is what was chosen, not what had to follow.
+    // Only the chosen faces count as chosen, not the face that had to follow.
     assert_eq!(local.chosen_parts().len(), 8);
 }
 
 #[test]
 fn green_faces_are_undone() {
-    // Two triangles: one red, the other green, whose half is then chosen.
+    // Two triangles: one becomes red, the other green; then a half of the green one is chosen.
     let corners = [
         [0.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],
@@ -130,7 +130,7 @@ fn green_faces_are_undone() {
         assert!(first.is_green(FaceId::new(half)));
         let mesh = HalfEdgeMesh::from_polygons(first.polygons()).expect("a sheet");
         let second = first.refined(&mesh, &ids(&[half])).expect("small");
-        // All eight parts of a uniform step, and no vertex more: the side was split before.
+        // All eight parts of a uniform step, and no extra vertex: the side was split before.
         let uniform = refined(&before, &Selection::Faces(ids(&[0, 1])), 1);
         let shape = |local: &LocalMesh| {
             let mut all: Vec<_> = faces(local.polygons())
@@ -146,8 +146,8 @@ fn green_faces_are_undone() {
         assert_eq!(shape(&second), shape(&uniform));
         assert_eq!(second.polygons().vertex_count(), 9);
         assert_eq!(second.chosen_parts().len(), 4);
-        // A face beside the green one, which then must give way twice: its whole becomes red, and an
-        // outer part of it green.
+        // A face next to the green pair is chosen: the whole of the pair becomes red, and one of
+        // its outer parts green.
         let third = first.refined(&mesh, &ids(&[0])).expect("small");
         conforms(&before, third.polygons());
         assert!((area(third.polygons()) - 1.0).abs() < 1e-6);
@@ -157,12 +157,12 @@ fn green_faces_are_undone() {
 #[test]
 fn angles_stay_bounded_at_a_point() {
     let corner = Point::new(0.3, 0.2, 0.0);
-    let tiling = shapes::triangle_tiling(4, 3).expect("small");
-    let sphere = shapes::icosahedron();
+    let tiling = sixfold_shapes::triangle_tiling(4, 3).expect("small");
+    let sphere = sixfold_shapes::icosahedron();
     let on_sphere = faces(&sphere)
         .next()
         .map(|[a, b, c]| (a * 3.0 + b * 2.0 + c) / 6.0);
-    let grid = shapes::triangle_grid(3, 3).expect("small");
+    let grid = sixfold_shapes::triangle_grid(3, 3).expect("small");
     for (mesh, at) in [
         (tiling, corner),
         (sphere, on_sphere.expect("faces")),
@@ -180,7 +180,7 @@ fn angles_stay_bounded_at_a_point() {
             let polygons = local.polygons();
             conforms(&mesh, polygons);
             assert!((area(polygons) - area(&mesh)).abs() < 1e-5 * area(&mesh));
-            // Every face is like an old one or half of it, at all levels.
+            // At all levels, every face has the shape of an old face or of half of one.
             let angle = smallest_angle(polygons);
             assert!(angle > halves - 0.1, "level {levels}: {angle} of {halves}");
             if smallest > 59.0 {
@@ -189,7 +189,8 @@ fn angles_stay_bounded_at_a_point() {
                     "level {levels}: {angle} of {smallest}"
                 );
             }
-            // It is a point that is refined: so many faces more at each level, not times as many.
+            // Refinement at a point adds a bounded number of faces per level, and does not multiply
+            // them.
             assert!(polygons.face_count() < mesh.face_count() + 40 * levels as usize);
             assert!(polygons.face_count() > faces);
             faces = polygons.face_count();
@@ -199,7 +200,7 @@ fn angles_stay_bounded_at_a_point() {
 
 #[test]
 fn an_angle_finds_the_folds() {
-    // A ridge along the middle of a strip, and the same flat.
+    // A strip with a ridge along its middle, flat if the height is 0.
     let strip = |height: f32| {
         let points = (0..9).map(|i| {
             let (x, y) = ((i % 3) as f32, (i / 3) as f32);
@@ -211,7 +212,7 @@ fn an_angle_finds_the_folds() {
             .flat_map(|i| [[i, i + 1, i + 4], [i, i + 4, i + 3]]);
         PolygonMesh::new(points.collect::<Vec<_>>(), faces).expect("valid")
     };
-    // tan 45° up and down again.
+    // 45° up and 45° down.
     let chosen = |height, degrees| {
         let polygons = strip(height);
         let mesh = HalfEdgeMesh::from_polygons(&polygons).expect("a sheet");
@@ -229,7 +230,7 @@ fn an_angle_finds_the_folds() {
 }
 
 #[test]
-fn faces_that_run_the_same_way_are_no_fold() {
+fn faces_that_run_in_the_same_direction_are_not_a_fold() {
     let corners = [
         [0.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],
@@ -237,7 +238,7 @@ fn faces_that_run_the_same_way_are_no_fold() {
         [0.0, 1.0, 0.0],
     ];
     let turned = PolygonMesh::new(corners.map(Point::from), [[0, 1, 2], [0, 3, 2]]).expect("valid");
-    let mesh = IndexedFaceSet::from_polygons(&turned).expect("holds all");
+    let mesh = IndexedFaceSet::from_polygons(&turned).expect("it accepts any mesh");
     assert_eq!(Selection::Angle(1.0).faces(&mesh), Ok(vec![]));
 }
 
@@ -255,13 +256,13 @@ fn all_pages_of_a_book_take_part() {
     let local = refined(&book, &Selection::Faces(ids(&[1])), 3);
     conforms(&book, local.polygons());
     assert_eq!(Facts::of(local.polygons()).non_manifold_edges, 8);
-    let mesh = IndexedFaceSet::from_polygons(&book).expect("holds all");
+    let mesh = IndexedFaceSet::from_polygons(&book).expect("it accepts any mesh");
     assert_eq!(Selection::Angle(180.0).faces(&mesh), Ok(ids(&[0, 1, 2])));
 }
 
 #[test]
-fn each_fault_is_named() {
-    let mesh = shapes::octahedron();
+fn each_invalid_input_returns_its_error() {
+    let mesh = sixfold_shapes::octahedron();
     let fault =
         |selection: Selection| refine_locally::<IndexedFaceSet>(&mesh, &selection, 1).unwrap_err();
     let missing = LocalError::MissingFace {
@@ -270,7 +271,7 @@ fn each_fault_is_named() {
     };
     assert_eq!(fault(Selection::Faces(ids(&[0, 8]))), missing);
     let local = LocalMesh::new(mesh.clone()).expect("triangles");
-    let structure = IndexedFaceSet::from_polygons(&mesh).expect("holds all");
+    let structure = IndexedFaceSet::from_polygons(&mesh).expect("it accepts any mesh");
     assert_eq!(local.refined(&structure, &ids(&[8])), Err(missing));
     let of = |min, max| fault(Selection::Box { min, max });
     let nan = Point::new(0.0, f32::NAN, 0.0);
@@ -286,7 +287,7 @@ fn each_fault_is_named() {
             LocalError::BadAngle { .. }
         ));
     }
-    let cube = shapes::cube();
+    let cube = sixfold_shapes::cube();
     let all = Selection::Faces(vec![]);
     let expected = LocalError::NotATriangle {
         face: FaceId::new(0),
@@ -294,9 +295,9 @@ fn each_fault_is_named() {
     };
     let error = refine_locally::<IndexedFaceSet>(&cube, &all, 1);
     assert_eq!(error, Err(expected.clone()));
-    let structure = IndexedFaceSet::from_polygons(&cube).expect("holds all");
+    let structure = IndexedFaceSet::from_polygons(&cube).expect("it accepts any mesh");
     assert_eq!(Selection::Angle(1.0).faces(&structure), Err(expected));
-    // As many levels as one likes end where coordinates do.
+    // With unlimited levels, refinement ends when the coordinates are too coarse.
     let at = Point::new(1.0, 0.0, 0.0);
     let error =
         refine_locally::<HalfEdgeMesh>(&mesh, &Selection::Box { min: at, max: at }, u32::MAX);
@@ -319,7 +320,8 @@ fn each_fault_is_named() {
     assert!(matches!(refusal, BuildError::NonManifoldEdge { .. }));
 }
 
-/// Fans, each triangle once: of two with the same corners the edges inside would be one.
+/// Returns fans without repeated triangles: two with the same corners would share their inner
+/// edges.
 fn triangulated(polygons: &PolygonMesh) -> PolygonMesh {
     let fans = polygons.fan_triangulated().expect("small");
     let mut known = BTreeSet::new();
@@ -356,9 +358,9 @@ proptest! {
             prop_assert_eq!(parts[f].len(), 4_usize.pow(levels));
             prop_assert!(!parts[f].iter().any(|&part| local.is_green(part)));
         }
-        // Old vertices stay where they are, and first.
+        // Old vertices keep their positions, and come first.
         prop_assert_eq!(&local.polygons().positions()[..before.vertex_count()], before.positions());
-        // Greens come two by two.
+        // Green faces come in pairs.
         let greens: Vec<FaceId> = (0..local.polygons().face_count() as u32)
             .map(FaceId::new)
             .filter(|&f| local.is_green(f))
@@ -367,13 +369,13 @@ proptest! {
             let [f, g] = [pair[0], pair[1]].map(|f| local.polygons().faces().face(f));
             prop_assert_eq!(f.iter().filter(|v| g.contains(v)).count(), 2);
         }
-        // Any face of the result, green or not, can be chosen in turn.
-        let mesh = IndexedFaceSet::from_polygons(local.polygons()).expect("holds all");
+        // Any face of the result, green or not, can be chosen next.
+        let mesh = IndexedFaceSet::from_polygons(local.polygons()).expect("it accepts any mesh");
         let any = FaceId::new(again.index(local.polygons().face_count()) as u32);
         let next = local.refined(&mesh, &[any]).expect("small");
         conforms(&before, next.polygons());
         prop_assert!(next.chosen_parts().len() >= 4);
-        // Another structure makes the same faces, by the places of their corners.
+        // Another structure makes the same faces, compared by the positions of their corners.
         if HalfEdgeMesh::from_polygons(&before).is_ok() {
             let other = refine_locally::<HalfEdgeMesh>(&before, &Selection::Faces(chosen), levels);
             let other = other.expect("it can be refined");

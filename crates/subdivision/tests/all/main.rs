@@ -1,4 +1,4 @@
-//! What needs whole meshes and several structures; one binary.
+//! Tests that need whole meshes and several structures; one binary.
 
 mod limit;
 mod local;

@@ -1,6 +1,6 @@
-//! A face over vertices that are there.
+//! Adding faces.
 
-use mesh_core::{
+use sixfold_core::{
     EditError, EditLog, FaceId, Few, Lookup, MeshQuery, Probe, Refusal, Slot, VertexId,
 };
 
@@ -9,13 +9,13 @@ use crate::edge::{Edge, RunId};
 use crate::mesh::EditableWingedEdgeMesh;
 
 impl<P: Probe> EditableWingedEdgeMesh<P> {
-    /// Links a new face corner by corner.
+    /// Adds a face over `corners`, and links it corner by corner.
     ///
     /// ```text
-    ///          w                      At each corner v the face has one run in, u→v, and one out,
-    ///         ╱│                      v→w. Each is there already, as a run without a face, or it is
-    ///    out ╱ │                      an edge to be made. Both there: v is closed. One there: the fan
-    ///       ╱  │  new face            at v grows at that end. None there: v had no face at all.
+    ///          w                      At each corner v the face has a run in, u→v, and a run out,
+    ///         ╱│                      v→w. Each is an existing run without a face, or belongs to a
+    ///    out ╱ │                      new edge. Both exist: the fan at v closes. One exists: it
+    ///       ╱  │  new face            grows at that end. None exists: v had no face.
     ///      v───u
     ///        in
     /// ```
@@ -37,7 +37,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
                 self.side_or_new([v, corners[i + 1]], log)
             };
             self.link_corner(v, before, after);
-            // Not earlier: whether there is a side already, its run without a face tells.
+            // Not earlier: a run without a face shows that the side already exists.
             self.set_face(before.run, Slot::some(face));
             before = after;
         }
@@ -45,7 +45,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         Ok(face)
     }
 
-    /// How many edges a face over `corners` makes, if there may be one.
+    /// Checks a new face over `corners`; returns the number of edges that it adds.
     fn check_new_face(&self, corners: &[VertexId]) -> Result<usize, Refusal<Self>> {
         if corners.len() < 3 {
             let corners = corners.len();
@@ -63,14 +63,15 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
             if is_new && before_is_new && self.spoke(v).is_some() {
                 return Err(EditError::SeveralFans { vertex: v });
             }
-            // On a vertex without a boundary there are no sides without a face: both are new.
+            // At a vertex without a boundary, every side has a face, so both edges are new.
             new_edges += usize::from(is_new);
             before_is_new = is_new;
         }
         Ok(new_edges)
     }
 
-    /// Whether no edge joins the two; refused where the edge has a face already that runs it so.
+    /// Returns whether no edge joins the two vertices. Refuses if an edge joins them and its side
+    /// in this direction already has a face.
     fn is_new(&self, [from, to]: [VertexId; 2]) -> Result<bool, Refusal<Self>> {
         if self.boundary_side([from, to]).is_some() {
             return Ok(false);
@@ -78,7 +79,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         let Some(edge) = self.edge_between(from, to) else {
             return Ok(true);
         };
-        // All sides without a face that leave `from` are one, and this is another.
+        // Only one side without a face leaves `from`, and it leads elsewhere.
         let run = self.run(self.leaving(edge, from));
         match (run.face().get(), run.across().get()) {
             (Some(face), None) => Err(EditError::RepeatedSide { from, to, face }),
@@ -86,13 +87,14 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         }
     }
 
-    /// The run without a face from one vertex to another, if there is one.
+    /// Returns the run without a face from one vertex to the other, if there is one.
     fn boundary_side(&self, [from, to]: [VertexId; 2]) -> Option<RunId> {
         let side = self.run_after(self.boundary_into(from)?);
         (self.run(side).target() == to).then_some(side)
     }
 
-    /// The run without a face from one vertex to another: of an edge that is there, or of a new one.
+    /// Returns the run without a face from one vertex to the other, of an existing edge or of a new
+    /// one.
     fn side_or_new(&mut self, ends: [VertexId; 2], log: &mut impl EditLog<Self>) -> NewSide {
         if let Some(run) = self.boundary_side(ends) {
             return NewSide { run, is_new: false };
@@ -137,7 +139,7 @@ struct NewSide {
     is_new: bool,
 }
 
-/// A vertex that comes twice, if there is one.
+/// Returns a vertex that occurs twice, if there is one.
 fn repeated(corners: &[VertexId]) -> Option<VertexId> {
     if corners.len() <= 16 {
         let mut pairs = corners.iter().enumerate();

@@ -1,6 +1,6 @@
-//! Two ends of an edge made one vertex.
+//! Edge collapse: merges the two ends of an edge into one vertex.
 
-use mesh_core::{
+use sixfold_core::{
     EdgeId, EditError, EditLog, FaceId, Few, Lookup, MeshQuery, Point, Probe, Refusal, Slot,
     VertexId,
 };
@@ -8,13 +8,13 @@ use mesh_core::{
 use crate::edge::{Run, RunId};
 use crate::mesh::EditableWingedEdgeMesh;
 
-/// A triangle along the edge that goes, and what becomes of its other sides.
+/// A triangle along the collapsed edge, and its other two sides.
 ///
 /// ```text
-///           c              The edge k–c stays and g–c goes: the run of k–c inside the triangle
-///         ╱   ╲            (`stays`) gets what lies beyond g–c (`beyond`, its run outside).
+///           c              The edge k–c stays, and g–c is removed. The run of k–c inside the
+///         ╱   ╲            triangle (`stays`) replaces the run of g–c outside it (`beyond`).
 ///  stays ╱     ╲ beyond
-///      ╱         ╲         On the other side of k–g all is the mirror image.
+///      ╱         ╲         The triangle on the other side of k–g is the mirror image.
 ///     k ────────► g
 /// ```
 #[derive(Clone, Copy)]
@@ -25,7 +25,7 @@ struct Triangle {
     beyond: RunId,
 }
 
-/// The edges at the end that goes, but for those that go with it.
+/// The edges at the removed end, except those that are removed too.
 struct Spokes {
     edges: Few<EdgeId>,
     on_boundary: bool,
@@ -81,8 +81,8 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         Ok(keep)
     }
 
-    /// Links around `out`, from the first of `ends` to the second; the edge with which the boundary of
-    /// the vertex that they make begins, if that is the boundary of the second.
+    /// Relinks the edges around `out`, which runs from the first of `ends` to the second. Returns
+    /// the spoke of the merged vertex if its boundary begins at the second end.
     fn relink(
         &mut self,
         out: RunId,
@@ -96,7 +96,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         } else {
             None
         };
-        // What only loses a side comes first: a triangle may then get what lies along it.
+        // Faces that only lose a side come first, because a triangle may take over their runs.
         for (run, _) in { [out, out.back()].into_iter().zip(sides) }.filter(|(_, s)| s.is_none()) {
             let (before, after) = (self.run_before(run), self.run_after(run));
             let face = self.run(run).face();
@@ -108,7 +108,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         for &spoke in spokes.edges.as_slice() {
             self.set_end(spoke, gone, keep);
         }
-        // One of these two may follow the other: both have the new end before they are taken over.
+        // One of these two runs may follow the other, so both get the new end before `take_over`.
         for triangle in sides.into_iter().flatten() {
             self.set_end(triangle.beyond.edge, gone, keep);
         }
@@ -121,7 +121,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         first
     }
 
-    /// `new` lies where `old` did.
+    /// Puts `new` in the place of `old`.
     fn take_over(&mut self, old: RunId, new: RunId) {
         let (before, after) = (self.run_before(old), self.run_after(old));
         let face = self.run(old).face();
@@ -133,8 +133,8 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         }
     }
 
-    /// Makes one triangle of the three around a vertex: the one that is not along the edge that goes
-    /// gets what stays of the other two.
+    /// Merges the three triangles around a vertex into one: the triangle that is not along the
+    /// collapsed edge gets the remaining sides of the other two.
     #[inline(always)]
     fn relink_one(&mut self, left: Triangle, right: Triangle) {
         let run = self.run(left.beyond);
@@ -149,7 +149,8 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         }
     }
 
-    /// The triangle on the left of `out`, a run to `gone`.
+    /// Returns the triangle on the left of `out`, which runs to `gone`, if the face there is a
+    /// triangle.
     #[inline(always)]
     fn left_of(&self, out: Run<'_>, gone: VertexId) -> Result<Option<Triangle>, Refusal<Self>> {
         let goes = Run::from(self.record(out.next()), gone);
@@ -168,7 +169,8 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         }))
     }
 
-    /// The triangle on the left of `back`, a run to `keep`.
+    /// Returns the triangle on the left of `back`, which runs to `keep`, if the face there is a
+    /// triangle.
     #[inline(always)]
     fn right_of(&self, back: Run<'_>, keep: VertexId) -> Result<Option<Triangle>, Refusal<Self>> {
         let stays = Run::from(self.record(back.next()), keep);
@@ -187,7 +189,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         }))
     }
 
-    /// Beyond the two sides that become one there must be a face.
+    /// Checks that there is a face beyond at least one of the two sides that become one.
     #[inline(always)]
     fn check_last_face(vertex: VertexId, across: [Slot<FaceId>; 2]) -> Result<(), Refusal<Self>> {
         if across == [Slot::NONE; 2] {
@@ -196,10 +198,10 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         Ok(())
     }
 
-    /// The link condition of Dey et al. (1999), and that no face would have a corner twice.
+    /// Checks the link condition (Dey et al. 1999), and that no face would contain `keep` twice.
     ///
-    /// A walk around the end that goes, and then one around the other: no two spokes may lead to one
-    /// vertex but the third corners, and no face may lie between spokes of both.
+    /// Walks around the removed end, then around the kept end. Only the third corners may be
+    /// adjacent to both, and no face except those along the edge may be at both.
     fn check_link(
         &self,
         out: RunId,
@@ -261,8 +263,8 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         Ok(spokes)
     }
 
-    /// Whether the end that goes has three edges and around them three triangles: then its neighbours
-    /// are the other end and the third corners, and nobody has to walk.
+    /// Returns whether the removed end has three edges and three triangles around it. Its
+    /// neighbours are then the kept end and the third corners, so no walk is needed.
     #[inline(always)]
     fn is_tip_of_three(&self, left: Triangle, right: Triangle) -> bool {
         let (to_tip, from_tip) = (self.run(left.beyond), self.run(right.beyond));
@@ -271,7 +273,8 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
             && to_tip.prev() == from_tip.next()
     }
 
-    /// Whether the same is true of the other end: then the two last triangles would be one.
+    /// Returns whether the same is true of the kept end. The last two triangles would then have the
+    /// same corners.
     #[inline(always)]
     fn are_three(&self, left: Triangle, right: Triangle) -> bool {
         let from_keep = self.run(left.stays.back());
@@ -281,7 +284,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
             && to_keep.prev() == from_keep.next()
     }
 
-    /// Whether all faces at the ends of `out` are triangles once it is collapsed.
+    /// Returns whether all faces at the ends of `out` would be triangles after the collapse.
     #[cold]
     #[inline(never)]
     fn only_triangles_stay(&self, out: RunId, ends: [VertexId; 2]) -> bool {

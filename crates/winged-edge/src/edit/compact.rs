@@ -1,12 +1,12 @@
-//! Holes closed up.
+//! Compaction: closes the holes.
 
-use mesh_core::{EdgeId, EditLog, FaceId, HoleSet, Holes, Probe, RowId, Slot, VertexId};
+use sixfold_core::{EdgeId, EditLog, FaceId, HoleSet, Holes, Probe, RowId, Slot, VertexId};
 
 use crate::mesh::EditableWingedEdgeMesh;
 use crate::wings::Wings;
 
 impl<P: Probe> EditableWingedEdgeMesh<P> {
-    /// Moves all rows up over the holes, and renames what they hold.
+    /// Moves all rows down over the holes, in order, and replaces the handles in them; O(mesh).
     pub(super) fn close_holes<L: EditLog<Self>>(&mut self, log: &mut L) {
         let vertices = NewNames::of(&self.vertex_holes, self.positions.len());
         let edges = NewNames::of(&self.edge_holes, self.edges.len());
@@ -41,9 +41,9 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     }
 }
 
-/// What rows are called once the holes among them are closed up.
+/// The new row of each old row after the holes are closed.
 struct NewNames {
-    /// By old row; empty where there are no holes, and every name stays.
+    /// By old row; empty if there are no holes, because every row then stays.
     rows: Vec<u32>,
 }
 

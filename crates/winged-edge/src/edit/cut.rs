@@ -1,6 +1,6 @@
-//! Edges and faces cut: new vertices in edges and faces, new edges across faces.
+//! Splitting edges and faces.
 
-use mesh_core::{
+use sixfold_core::{
     EdgeId, EditError, EditLog, FaceId, MeshQuery, Point, Probe, Refusal, Slot, VertexId, row,
 };
 
@@ -9,7 +9,8 @@ use crate::edge::{Run, RunId};
 use crate::mesh::EditableWingedEdgeMesh;
 
 impl<P: Probe> EditableWingedEdgeMesh<P> {
-    /// Puts a vertex into `e`, which is there: the vertex, and the edge on from it.
+    /// Inserts a vertex into the existing edge `e`; returns the vertex and the new edge, which
+    /// starts there.
     ///
     /// ```text
     ///     a ──── e ────► b        a ── e ──► m ── n ──► b
@@ -34,7 +35,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         self.edges.write(next.edge.index()).prev.put(next.side, n);
         self.edges.write(prev.edge.index()).next.put(prev.side, n);
         self.replace_spoke(b, e, n);
-        // Run from m, e has the left face on its right, and n the right one.
+        // Seen from m, e has the left face on its right, and n has the right face on its right.
         self.set_spoke(m, if left == Slot::NONE { e } else { n });
         (m, n)
     }
@@ -61,7 +62,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         }
         self.check_room([1, 3, 2])?;
         let (m, n) = self.insert(e, at, log);
-        // On each side the run that leaves m, and the one that leaves the third corner.
+        // On each side, the run that leaves m and the run that leaves the third corner.
         let [left, right] = [both_sides(n)[0], both_sides(e)[1]];
         for (run, apex) in [left, right].into_iter().zip(apexes) {
             if apex.is_some() {
@@ -72,8 +73,8 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         Ok(m)
     }
 
-    /// Cuts a face by an edge from the origin of `p` to that of `q`; what lies along `p` and on to `q`
-    /// is the new face. O(degree) of the new face.
+    /// Cuts a face by an edge from the origin of `p` to the origin of `q`. The part from `p` up to
+    /// `q` becomes a new face. O(degree) of the new face.
     ///
     /// ```text
     ///     ◄─── q ─── y ◄──────
@@ -147,13 +148,13 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         Ok(self.cut(p, q, log))
     }
 
-    /// Cuts a face into triangles around a new vertex m.
+    /// Splits `f` into one triangle per side, around a new vertex m; O(degree).
     ///
     /// ```text
-    ///               m              side i runs from corner i; its triangle is f for the first, else
-    ///             ▲   ▲            new; the new edge i runs from corner i to m, between the triangle
-    ///         i ╱       ╲ i + 1    of side i − 1 on its left and that of side i on its right
-    ///         ╱           ╲
+    ///               m              Side i runs from corner i. Its triangle is f if i is 0, else a
+    ///             ▲   ▲            new face. The new edge i runs from corner i to m, with the
+    ///         i ╱       ╲ i + 1    triangle of side i − 1 on its left and that of side i on its
+    ///         ╱           ╲        right.
     ///       ●──── side i ──►●
     /// ```
     #[inline]
@@ -166,7 +167,8 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         let mut side = self.check_face(f)?;
         let first = Run::along(self.record(side), f);
         let mut before = first.prev();
-        // A triangle is known by its first side and its last, which does not wait for the one between.
+        // The first and the last side show whether f is a triangle, without waiting for the middle
+        // one.
         let degree = if Run::along(self.record(before), f).prev() == first.next() {
             3
         } else {

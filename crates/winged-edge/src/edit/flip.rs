@@ -1,13 +1,14 @@
-//! An edge turned within the quad of its two triangles.
+//! Edge flip: turns an edge within the quad of its two triangles.
 
-use mesh_core::{EdgeId, EditError, Probe, Refusal, Slot, VertexId};
+use sixfold_core::{EdgeId, EditError, Probe, Refusal, Slot, VertexId};
 
 use super::surgery::{both_sides, edge_of};
 use crate::edge::{Run, RunId};
 use crate::mesh::EditableWingedEdgeMesh;
 
 impl<P: Probe> EditableWingedEdgeMesh<P> {
-    /// Turns `e` counter-clockwise: six records change, and what the ends and the faces start from.
+    /// Flips `e` counter-clockwise: changes five edge records, and possibly the spokes of its ends
+    /// and the sides of its faces.
     ///
     /// ```text
     ///          c                        c
@@ -28,7 +29,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
             return Err(EditError::NotTwoFaces { edge: e, faces: 1 });
         }
         let ([bc, ad], [ca, db]) = (edge.next.both(), edge.prev.both());
-        // All four run from a or b here, along the two faces or away from them.
+        // These four run from a or from b, along the two faces or against them.
         let [b_to_c, b_to_d] = [bc, db].map(|edge| Run::from(self.record(edge), b));
         let [a_to_c, a_to_d] = [ca, ad].map(|edge| Run::from(self.record(edge), a));
         if b_to_c.next() != ca || a_to_d.next() != db {
@@ -38,7 +39,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         if c == d {
             return Err(EditError::SameApex { edge: e, vertex: c });
         }
-        // Beyond f and g one more face at an end, and its edges are three.
+        // An end has three edges if it has only one face besides f and g.
         if a_to_c.ccw() == ad && a_to_c.face() != Slot::NONE {
             return Err(EditError::LowValence { vertex: a });
         }
@@ -61,7 +62,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         self.set_lane(ad, f, e, ca.edge);
         self.set_lane(db, g, bc.edge, e);
         self.set_lane(bc, g, e, db.edge);
-        // An inner vertex each, if e was its spoke: no boundary edge is lost.
+        // If e is the spoke of an end, that end is an inner vertex: no boundary spoke is lost.
         self.replace_spoke(a, e, ad.edge);
         self.replace_spoke(b, e, bc.edge);
         for face in [f, g].into_iter().filter_map(Slot::get) {
@@ -70,11 +71,11 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         Ok(e)
     }
 
-    /// Whether two vertices have an edge. Each comes with the edge to begin with, counter-clockwise, the
-    /// one to end before, and the other vertex.
+    /// Returns whether an edge joins two vertices. Each entry has a vertex, the first edge of its
+    /// walk (counter-clockwise), the edge at which the walk stops, and the other vertex.
     ///
-    /// Both walks at once, until the shorter one ends: neither waits for the other, and a vertex of
-    /// very many edges costs no more than its partner.
+    /// Walks around both vertices at once, so that neither walk waits for the other, until the
+    /// shorter walk ends: a vertex with many edges costs no more than the other one.
     #[inline(always)]
     fn meet(&self, rings: [(VertexId, EdgeId, EdgeId, VertexId); 2]) -> bool {
         let [(c, mut at_c, end_c, to_d), (d, mut at_d, end_d, to_c)] = rings;
@@ -89,7 +90,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         false
     }
 
-    /// The refusal where one of two faces is no triangle.
+    /// Returns the error for the face of `e` that is not a triangle.
     #[cold]
     #[inline(never)]
     fn flips_no_polygon(&self, e: EdgeId) -> Refusal<Self> {
@@ -98,6 +99,6 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
                 return Self::not_a_triangle(self.run(run).face(), degree);
             }
         }
-        unreachable!("one of the faces is no triangle")
+        unreachable!("one of the faces is not a triangle")
     }
 }

@@ -1,13 +1,15 @@
-//! Two faces made one.
+//! Merging two faces.
 
-use mesh_core::{EdgeId, EditError, EditLog, FaceId, Few, Lookup, Probe, Refusal, Slot, VertexId};
+use sixfold_core::{
+    EdgeId, EditError, EditLog, FaceId, Few, Lookup, Probe, Refusal, Slot, VertexId,
+};
 
 use super::surgery::both_sides;
 use crate::edge::RunId;
 use crate::mesh::EditableWingedEdgeMesh;
 
 impl<P: Probe> EditableWingedEdgeMesh<P> {
-    /// Takes `e` out; the face with fewer sides is the one that goes.
+    /// Removes `e` and, of its two faces, the one with fewer sides.
     pub(super) fn dissolve(
         &mut self,
         e: EdgeId,
@@ -48,7 +50,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         Ok(kept)
     }
 
-    /// The corners of the face along `run` that are none of its ends.
+    /// Returns the corners of the face along `run`, except the ends of `run`.
     fn corners_beyond(&self, run: RunId) -> Few<VertexId> {
         let end = self.run(run).origin();
         let mut corners = Few::new();

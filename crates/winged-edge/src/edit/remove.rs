@@ -1,6 +1,6 @@
-//! Faces taken out: one, all at a vertex; and vertices that have none.
+//! Removing one face, all faces at a vertex, and isolated vertices.
 
-use mesh_core::{
+use sixfold_core::{
     EditError, EditLog, FaceId, Few, HoleSet, Lookup, Probe, Refusal, Slot, VertexId, row,
 };
 
@@ -8,8 +8,8 @@ use crate::edge::{Run, RunId};
 use crate::mesh::EditableWingedEdgeMesh;
 use crate::wings::Side;
 
-/// A run along the outline of the faces that go; the outline of a face is all its sides, that of all
-/// faces at a vertex the sides without the vertex.
+/// A run along the outline of the removed faces. The outline of one face is all its sides; the
+/// outline of the faces at a vertex is their sides that do not touch the vertex.
 #[derive(Clone, Copy)]
 struct Rim {
     run: RunId,
@@ -23,13 +23,13 @@ struct Rim {
 enum Across {
     /// A face that stays: the rim becomes a boundary.
     Stays,
-    /// No face: the edge goes.
+    /// No face: the edge is removed.
     Blank,
-    /// Another of the faces that go: the edge goes, and is on the outline twice.
+    /// Another removed face: the edge is removed, and is on the outline twice.
     Goes,
 }
 
-/// What is left at a corner of the outline: runs without a face from now on.
+/// A corner of the outline, and the runs there that lose their face but stay.
 #[derive(Clone, Copy)]
 struct Corner {
     v: VertexId,
@@ -98,7 +98,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
             self.check_corners(corners.clone(), &gone)?;
             self.take_out(outline.as_slice(), corners, log);
         } else {
-            // Around polygons the outline may come to a vertex twice; around triangles it does not.
+            // With polygons, the outline may visit a vertex twice; with triangles only, it cannot.
             let merged = Self::merged(corners.collect())?;
             self.check_corners(merged.iter().copied(), &gone)?;
             self.take_out(outline.as_slice(), merged, log);
@@ -139,7 +139,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         }
     }
 
-    /// Corners by vertex, each once; refused where two fans are left at one.
+    /// Merges the corners of each vertex. Refuses if two fans would remain at one.
     fn merged(mut corners: Vec<Corner>) -> Result<Vec<Corner>, Refusal<Self>> {
         corners.sort_unstable_by_key(|corner| corner.v);
         let mut two_fans = None;
@@ -161,8 +161,8 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         }
     }
 
-    /// A fan begins where the outline arrives with a face across; then no other may begin where the
-    /// boundary did before.
+    /// Checks that one fan remains at each corner. A fan begins where the outline arrives and the
+    /// face across it stays. No other fan may then begin at the boundary that was there before.
     fn check_corners(
         &self,
         corners: impl IntoIterator<Item = Corner>,
@@ -183,7 +183,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         Ok(())
     }
 
-    /// Makes a boundary of the outline, and takes the edges out that have no face any more.
+    /// Makes the outline a boundary, and removes the edges that no longer have a face.
     fn take_out(
         &mut self,
         outline: &[Rim],
@@ -217,14 +217,16 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         }
     }
 
-    /// The run without a face that arrives at `v`, where the outline meets the boundary there.
+    /// Returns the run without a face that arrives at `v`, where the outline meets the old
+    /// boundary.
     fn old_boundary_into(&self, v: VertexId) -> RunId {
         let into = self.boundary_into(v);
-        into.expect("a fan that ends at no rim ends at the boundary")
+        into.expect("a fan that does not end at a rim ends at the boundary")
     }
 }
 
-/// The corners between rims that follow each other, and those where a chain of them ends or begins.
+/// Iterates over the corners between consecutive rims, and those where a chain of rims begins or
+/// ends.
 fn corners_of(outline: &[Rim]) -> impl Iterator<Item = Corner> + Clone {
     let kept = |rim: &Rim| (rim.across == Across::Stays).then_some(rim.run);
     let before = outline.iter().cycle().skip(outline.len() - 1);

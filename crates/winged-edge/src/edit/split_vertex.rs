@@ -1,6 +1,6 @@
-//! One vertex made two.
+//! Vertex split: makes two vertices out of one.
 
-use mesh_core::{
+use sixfold_core::{
     EdgeId, EditError, EditLog, Few, MeshQuery, Point, Probe, Refusal, Slot, VertexId,
 };
 
@@ -8,18 +8,18 @@ use super::surgery::both_sides;
 use crate::edge::{Edge, Run, RunId};
 use crate::mesh::EditableWingedEdgeMesh;
 
-/// The part of the fan at a vertex that goes to a new one.
+/// The part of the fan that moves to the new vertex.
 struct Part {
-    /// The edges to the sides, as far as there are sides.
+    /// The edges to `left` and `right`, if given.
     left: Option<EdgeId>,
     right: Option<EdgeId>,
-    /// The edges between them, or from the boundary, or up to it.
+    /// The edges between them; if one is missing, from or up to the boundary.
     moved: Few<EdgeId>,
     /// Whether the boundary begins in this part.
     has_boundary: bool,
 }
 
-/// A run into which a triangle comes, and the run of a new edge that gets what lay along it.
+/// A run that becomes a side of a new triangle, and the run of a new edge that replaces it.
 #[derive(Clone, Copy)]
 struct Doubled {
     run: RunId,
@@ -29,13 +29,14 @@ struct Doubled {
 }
 
 impl<P: Probe> EditableWingedEdgeMesh<P> {
-    /// Puts a new edge from `v` to a new vertex n between the two parts of the fan.
+    /// Splits `v`: adds an edge from `v` to a new vertex n, between the two parts of the fan;
+    /// O(valence).
     ///
     /// ```text
     ///     left             left
-    ///    ╲ │ ╱           ╲ ╱ ╲ ╱        The edges to the sides stay with v, for the triangles; what
-    ///    ─ v ─     →     ─v───n─        lay along them in the part of n lies along the new edges from
-    ///    ╱ │ ╲           ╱ ╲ ╱ ╲        n to the sides.
+    ///    ╲ │ ╱           ╲ ╱ ╲ ╱        The edges to the sides stay at v, as sides of the new
+    ///    ─ v ─     →     ─v───n─        triangles. In the part of n, the new edges from n to the
+    ///    ╱ │ ╲           ╱ ╲ ╱ ╲        sides replace them.
     ///    right            right
     /// ```
     pub(super) fn split_fan(
@@ -66,7 +67,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
             self.doubled(self.leaving(edge, v), both_sides(new)[0])
         });
         let doubled = [on_left, on_right];
-        // What follows or precedes such a run does so to the new one from now on.
+        // A run before or after a doubled run is now before or after the new run.
         let now = |run: RunId| {
             let mut doubled = doubled.iter().flatten();
             doubled.find(|d| d.run == run).map_or(run, |d| d.new)
@@ -80,7 +81,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
                 self.set_side(f, d.new.edge);
             }
         }
-        // Along a side that is none the new edge is part of the boundary.
+        // If a side is not given, the new edge is part of the boundary there.
         for (d, run) in [(on_left, to_n), (on_right, to_v)] {
             if let (None, Some([into, out])) = (d, boundary) {
                 self.link(now(into), run);
@@ -93,7 +94,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         if let Some(d) = on_right {
             self.fill([to_v, d.run, d.new.back()], log);
             if self.run(d.new).face() == Slot::NONE {
-                // The boundary that came from v to the side comes from n.
+                // The boundary that ran from v to the side now runs from n.
                 let side = self.run(d.new).target();
                 self.set_spoke(side, d.new.edge);
             }
@@ -112,7 +113,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         Ok(n)
     }
 
-    /// Checks the sides, and walks from the right one to the left one.
+    /// Checks the sides, and walks from the right side to the left side.
     fn part_between(
         &self,
         v: VertexId,
@@ -177,7 +178,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         }
     }
 
-    /// A new triangle along three runs.
+    /// Adds a triangle along three runs.
     fn fill(&mut self, runs: [RunId; 3], log: &mut impl EditLog<Self>) {
         let f = self.push_face(runs[0].edge, log);
         for i in 0..3 {

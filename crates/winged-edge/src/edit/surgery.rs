@@ -1,6 +1,6 @@
-//! The steps that edits are made of: checks of names, runs by name, linking, new rows and holes.
+//! Steps that several edits share: checks of handles, runs, links, new rows and holes.
 
-use mesh_core::{
+use sixfold_core::{
     EdgeId, EditError, EditLog, FaceId, HoleSet, MAX_ROWS, Point, Probe, Refusal, Slot, VertexId,
     row,
 };
@@ -9,10 +9,11 @@ use crate::edge::{Edge, NO_EDGE, Run, RunId};
 use crate::mesh::EditableWingedEdgeMesh;
 use crate::wings::Side;
 
-/// As many edges as can be built from polygons: so their corners can be numbered, too.
+/// Maximum number of edges, as for building from polygons, so that their corners can be numbered
+/// too.
 const MAX_EDGES: usize = MAX_ROWS / 4;
 
-/// What names something, and whether there is room for more.
+/// Checks that elements exist and that there is room for more.
 impl<P: Probe> EditableWingedEdgeMesh<P> {
     #[inline(always)]
     pub(super) fn check_vertex(&self, vertex: VertexId) -> Result<(), Refusal<Self>> {
@@ -23,7 +24,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         Ok(())
     }
 
-    /// The record of `edge`, if it is there.
+    /// Returns the record of `edge`, or an error if `edge` does not exist.
     #[inline(always)]
     pub(super) fn check_edge(&self, edge: EdgeId) -> Result<&Edge, Refusal<Self>> {
         if edge.index() < self.edges.len() {
@@ -35,7 +36,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         Err(EditError::NoSuchEdge { edge })
     }
 
-    /// A side of `face`, if it is there.
+    /// Returns a side of `face`, or an error if `face` does not exist.
     #[inline(always)]
     pub(super) fn check_face(&self, face: FaceId) -> Result<EdgeId, Refusal<Self>> {
         if face.index() < self.sides.len() {
@@ -47,7 +48,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         Err(EditError::NoSuchFace { face })
     }
 
-    /// Whether handles can name so many more vertices, edges and faces.
+    /// Checks that this number of vertices, edges and faces can be added.
     #[inline(always)]
     pub(super) fn check_room(&self, more: [usize; 3]) -> Result<(), Refusal<Self>> {
         let [vertices, edges, faces] = more;
@@ -64,46 +65,47 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     }
 }
 
-/// Runs by name; all O(1), one record read.
+/// Runs as an edge and a side; all O(1), except the degree that `apex` returns as an error.
 impl<P: Probe> EditableWingedEdgeMesh<P> {
     #[inline(always)]
     pub(super) fn run(&self, run: RunId) -> Run<'_> {
         Run::on(self.record(run.edge), run.side)
     }
 
-    /// `edge`, which has `v`, run away from it.
+    /// Returns the run of `edge` that leaves its end `v`.
     #[inline(always)]
     pub(super) fn leaving(&self, edge: EdgeId, v: VertexId) -> RunId {
         RunId::on(edge, Run::from(self.record(edge), v).side())
     }
 
-    /// `edge`, which has `v`, run towards it.
+    /// Returns the run of `edge` that arrives at its end `v`.
     #[inline(always)]
     pub(super) fn arriving(&self, edge: EdgeId, v: VertexId) -> RunId {
         self.leaving(edge, v).back()
     }
 
-    /// `edge`, which lies along `f`, run with it on the left.
+    /// Returns the run of `edge` with its face `f` on the left.
     #[inline(always)]
     pub(super) fn along(&self, edge: EdgeId, f: FaceId) -> RunId {
         RunId::on(edge, Run::along(self.record(edge), f).side())
     }
 
-    /// The run after `run` along its face.
+    /// Returns the run after `run` along its face.
     #[inline(always)]
     pub(super) fn run_after(&self, run: RunId) -> RunId {
         let run = self.run(run);
         self.leaving(run.next(), run.target())
     }
 
-    /// The run before `run` along its face.
+    /// Returns the run before `run` along its face.
     #[inline(always)]
     pub(super) fn run_before(&self, run: RunId) -> RunId {
         let run = self.run(run);
         self.arriving(run.prev(), run.origin())
     }
 
-    /// The third corner if the face on the left of `run` is a triangle; its degree if it is none.
+    /// Returns the third corner if the face on the left of `run` is a triangle, otherwise its
+    /// degree as an error.
     pub(super) fn apex(&self, run: RunId) -> Result<VertexId, usize> {
         let [next, prev] = [self.run(run).next(), self.run(run).prev()];
         let after = self.run(self.run_after(run));
@@ -120,7 +122,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     }
 }
 
-/// Writes of a field.
+/// Writes to single fields.
 impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// Makes `after` follow `before`.
     #[inline(always)]
@@ -136,7 +138,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         self.edges.write(run.edge.index()).faces[run.side.index()] = face;
     }
 
-    /// Everything along one side: the face, and the wings ahead and behind.
+    /// Sets the face, the next wing and the previous wing of one side.
     #[inline(always)]
     pub(super) fn set_lane(&mut self, run: RunId, face: Slot<FaceId>, next: EdgeId, prev: EdgeId) {
         let record = self.edges.write(run.edge.index());
@@ -145,7 +147,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         record.prev.put(run.side, prev);
     }
 
-    /// `edge`, which ends at `old`, ends at `new` instead.
+    /// Replaces the end `old` of `edge` by `new`.
     #[inline(always)]
     pub(super) fn set_end(&mut self, edge: EdgeId, old: VertexId, new: VertexId) {
         let ends = &mut self.edges.write(edge.index()).ends;
@@ -157,7 +159,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         *self.spokes.write(v.index()) = Slot::some(spoke);
     }
 
-    /// An edge that goes is no spoke any more: `other` is, at an inner vertex any will do.
+    /// Makes `other` the spoke of `v` if `gone` was. At an inner vertex, any edge can be the spoke.
     #[inline(always)]
     pub(super) fn replace_spoke(&mut self, v: VertexId, gone: EdgeId, other: EdgeId) {
         if *self.spokes.read(v.index()) == Slot::some(gone) {
@@ -171,9 +173,9 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     }
 }
 
-/// New rows, and holes. Whoever adds rows has asked for room.
+/// New rows, and holes. The caller checks the room before it adds rows.
 impl<P: Probe> EditableWingedEdgeMesh<P> {
-    /// A vertex without an edge.
+    /// Adds a vertex without an edge.
     #[inline(always)]
     pub(super) fn push_vertex(&mut self, at: Point, log: &mut impl EditLog<Self>) -> VertexId {
         let v = VertexId::new(row(self.positions.len()));
@@ -191,7 +193,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         e
     }
 
-    /// The name that the next new edge has.
+    /// Returns the edge that will be added next.
     #[inline(always)]
     pub(super) fn next_edge(&self) -> EdgeId {
         EdgeId::new(row(self.edges.len()))
@@ -227,9 +229,9 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     }
 }
 
-/// Around vertices.
+/// Steps for boundaries and polygons.
 impl<P: Probe> EditableWingedEdgeMesh<P> {
-    /// The run without a face that arrives at `v`, if `v` is on a boundary.
+    /// Returns the run without a face that arrives at `v`, if `v` is on a boundary.
     #[inline(always)]
     pub(super) fn boundary_into(&self, v: VertexId) -> Option<RunId> {
         let spoke = self.spokes.read(v.index()).get()?;
@@ -237,7 +239,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         (run.across() == Slot::NONE).then(|| RunId::on(spoke, run.side()).back())
     }
 
-    /// The refusal of a face that is no triangle.
+    /// Returns the error for a face that is not a triangle.
     #[cold]
     pub(super) fn not_a_triangle(face: Slot<FaceId>, degree: usize) -> Refusal<Self> {
         let face = face.get().expect("a run with a face");
@@ -245,8 +247,8 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     }
 }
 
-/// The record of an edge from `ends[0]` to `ends[1]`, with what lies along its left and its right: a
-/// face, the wing ahead and the wing behind.
+/// Builds the record of an edge from `ends[0]` to `ends[1]`. `left` and `right` have the face, the
+/// next wing and the previous wing of each side.
 #[inline(always)]
 pub(super) fn edge_of(
     ends: [VertexId; 2],
@@ -262,7 +264,7 @@ pub(super) fn edge_of(
     }
 }
 
-/// Both sides of `edge`, the left first.
+/// Returns both runs of `edge`, the left one first.
 #[inline(always)]
 pub(super) fn both_sides(edge: EdgeId) -> [RunId; 2] {
     [RunId::on(edge, Side::LEFT), RunId::on(edge, Side::RIGHT)]

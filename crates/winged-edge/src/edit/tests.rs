@@ -1,6 +1,6 @@
-//! What the laws do not see: the records themselves, panics, and memory.
+//! Tests beyond the conformance suite: the records, the panic messages and the memory.
 
-use mesh_core::{
+use sixfold_core::{
     EdgeId, EditError, FaceId, MeshEdit, MeshQuery, Point, PolygonMesh, Representation, RowId,
     VertexId,
 };
@@ -18,12 +18,12 @@ fn mesh(vertices: u16, faces: &[&[u32]]) -> EditableWingedEdgeMesh {
     EditableWingedEdgeMesh::from_polygons(&polygons).expect("manifold")
 }
 
-/// A square of two triangles; the diagonal e1 runs from v0 to v2.
+/// Returns a square of two triangles; the diagonal e1 runs from v0 to v2.
 fn square() -> EditableWingedEdgeMesh {
     mesh(4, &[&[0, 1, 2], &[0, 2, 3]])
 }
 
-/// Both triangles of the square gone but for one, and the vertex that nothing needs any more.
+/// Returns the square without its second triangle and without v3.
 fn half() -> EditableWingedEdgeMesh {
     let mut mesh = square();
     mesh.remove_face(FaceId::new(1), &mut ())
@@ -36,7 +36,7 @@ fn between(mesh: &EditableWingedEdgeMesh, a: u32, b: u32) -> EdgeId {
     mesh.edge_between(v(a), v(b)).expect("an edge")
 }
 
-/// Ends, faces, the next wings and the ones before; each on the left, then on the right.
+/// Returns the ends, the faces, the next wings and the previous wings, each left then right.
 fn row(edge: &Edge) -> ([u32; 2], [Option<u32>; 2], [u32; 2], [u32; 2]) {
     (
         edge.ends().map(RowId::row),
@@ -52,7 +52,7 @@ fn a_flip_turns_the_records_as_drawn() {
     let e = between(&mesh, 0, 2);
     let [ab, bc, cd, da] =
         [[0, 1], [1, 2], [2, 3], [3, 0]].map(|[a, b]| between(&mesh, a, b).row());
-    // From v0 to v2 it runs with f1 = (0, 2, 3) on the left; then from v1 to v3.
+    // Before, it runs from v0 to v2 with f1 = (0, 2, 3) on the left; after, from v1 to v3.
     assert_eq!(
         row(mesh.edge(e)),
         ([0, 2], [Some(1), Some(0)], [cd, ab], [da, bc])
@@ -67,13 +67,13 @@ fn a_flip_turns_the_records_as_drawn() {
 }
 
 #[test]
-fn spokes_begin_at_the_boundary_after_edits_there() {
+fn spokes_start_on_the_boundary_after_edits() {
     let mut mesh = square();
     let m = mesh
         .split_edge(between(&mesh, 0, 1), Point::ZERO, &mut ())
         .expect("always legal");
     assert_eq!(mesh.spoke(m), Some(between(&mesh, 4, 1)));
-    // v1 goes: its boundary edge to v2 becomes that of v4, which begins there.
+    // v1 is removed: its boundary edge to v2 becomes the first boundary edge of v4.
     let e = between(&mesh, 4, 1);
     mesh.collapse_edge(e, m, Point::ZERO, &mut ())
         .expect("a boundary edge");
@@ -82,8 +82,8 @@ fn spokes_begin_at_the_boundary_after_edits_there() {
 }
 
 #[test]
-fn a_vertex_of_very_many_edges_is_edited_too() {
-    // A wheel, and around it polygons that meet the rim's vertices twice.
+fn vertices_with_many_edges_can_be_edited() {
+    // A wheel of triangles, with up to 16 spokes and with more.
     for spokes in [5, 16, 17, 40] {
         let rim = |i: u32| 1 + i % spokes;
         let faces: Vec<Vec<u32>> = (0..spokes).map(|i| vec![0, rim(i), rim(i + 1)]).collect();
@@ -91,7 +91,7 @@ fn a_vertex_of_very_many_edges_is_edited_too() {
         let wheel = mesh(spokes as u16 + 1, &faces);
 
         let mut removed = wheel.clone();
-        removed.remove_vertex(v(0), &mut ()).expect("all of it");
+        removed.remove_vertex(v(0), &mut ()).expect("legal");
         assert_eq!([removed.edge_count(), removed.face_count()], [0, 0]);
         assert_eq!(removed.validate(), Ok(()));
 
@@ -106,7 +106,7 @@ fn a_vertex_of_very_many_edges_is_edited_too() {
         );
         assert_eq!(closed.validate(), Ok(()));
 
-        // The hub moves into the rim: only there are its neighbours neighbours of both ends.
+        // Collapses the hub into a rim vertex: only the third corners are adjacent to both.
         let mut collapsed = wheel.clone();
         let e = between(&wheel, 0, 1);
         collapsed
@@ -125,7 +125,7 @@ fn a_vertex_of_very_many_edges_is_edited_too() {
 }
 
 #[test]
-fn compaction_gives_memory_back() {
+fn compact_releases_memory() {
     let mut mesh = square();
     let bytes = mesh.memory().total();
     for _ in 0..6 {
@@ -149,7 +149,7 @@ fn compaction_gives_memory_back() {
 }
 
 #[test]
-fn positions_are_set_by_row_past_the_holes() {
+fn set_positions_works_with_holes() {
     let mut mesh = half();
     let mut places = mesh.vertex_map(Point::ONE);
     places[v(2)] = Point::ZERO;
@@ -160,7 +160,7 @@ fn positions_are_set_by_row_past_the_holes() {
 }
 
 #[test]
-fn handles_of_what_is_deleted_are_refused() {
+fn edits_refuse_handles_of_missing_elements() {
     let mut mesh = half();
     let (vertex, face) = (v(3), FaceId::new(1));
     let edge = between(&square(), 0, 3);
@@ -186,13 +186,13 @@ fn handles_of_what_is_deleted_are_refused() {
 
 #[test]
 #[should_panic(expected = "no vertex v3: it was deleted")]
-fn a_deleted_vertex_panics_by_name() {
+fn a_deleted_vertex_panics_with_its_handle() {
     let _ = half().vertex_faces(v(3)).count();
 }
 
 #[test]
 #[should_panic(expected = "no vertex v3: it was deleted")]
-fn a_deleted_vertex_is_nowhere() {
+fn a_deleted_vertex_has_no_position() {
     half().position(v(3));
 }
 
@@ -216,6 +216,6 @@ fn a_deleted_edge_has_no_neighbours() {
 
 #[test]
 #[should_panic(expected = "no face f1: it was deleted")]
-fn a_deleted_face_panics_by_name() {
+fn a_deleted_face_panics_with_its_handle() {
     let _ = half().face_vertices(FaceId::new(1)).count();
 }

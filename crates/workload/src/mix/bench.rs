@@ -25,26 +25,27 @@ use crate::series::{KeptCopies, Series, time_making};
 use crate::sweeps::Outputs;
 use crate::workload::{Action, Part};
 
-/// A structure ready for a mix, or why it is not.
+/// A structure ready for a mix, or the reason why it is not.
 pub type MixOutcome<'a> = Result<Box<dyn Mixer + 'a>, MixRefusal>;
 
-/// Why a structure takes no part in a mix.
+/// The reason why a structure cannot run a mix.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MixRefusal {
-    /// It cannot hold the mesh.
+    /// The structure cannot hold the mesh.
     #[error(transparent)]
     Build(#[from] BuildError),
-    /// It has no such edit.
-    #[error("it has no {0}")]
+    /// The structure does not support the edit.
+    #[error("it does not support {0}")]
     NoEdit(Edit),
-    /// The mix cannot be run on this mesh, whatever the structure.
+    /// The mix cannot be run on this mesh with any structure.
     #[error(transparent)]
     NoPlace(#[from] NoPlace),
 }
 
-/// Builds the structure called `backend` from `polygons` for `script` along `route`; `None` where there
-/// is no such structure. Where the script says so, as a mesh that can be edited.
+/// Builds the structure called `backend` from `polygons` and prepares it for `script` along
+/// `route`. The mesh is editable if the script needs it. Returns `None` if there is no such
+/// structure.
 pub fn set_up<'a>(
     backend: &str,
     polygons: &'a PolygonMesh,
@@ -96,16 +97,16 @@ impl<'a> EditVisitor for Start<'a> {
     }
 }
 
-/// How a mesh is written to.
+/// The write access to a mesh.
 trait Writing<M: Representation> {
     fn set_position(mesh: &mut M, v: M::Vertex, to: Point);
     fn prepare(mesh: &mut M, edit: Edit, place: &mut Place<M>) -> bool;
     fn perform(mesh: &mut M, edit: Edit, place: &Place<M>) -> bool;
-    /// Whether an edit looks at all faces.
+    /// Returns whether an edit visits all faces of the mesh.
     fn scans(edit: Edit) -> bool;
 }
 
-/// Scripts that do not write never come here.
+/// The write access of scripts that only read; its methods are never called.
 struct Never;
 
 impl<M: Representation> Writing<M> for Never {
@@ -121,12 +122,13 @@ impl<M: Representation> Writing<M> for Never {
     }
 }
 
+/// The write access through [`MeshEdit`].
 struct ByEdits;
 
 impl<M: Representation + MeshEdit> Writing<M> for ByEdits {
     #[inline(always)]
     fn set_position(mesh: &mut M, v: M::Vertex, to: Point) {
-        // To where it is: no structure refuses that, and the mesh stays what it is.
+        // Writes the current position: no structure refuses this, and the mesh does not change.
         let _ = black_box(mesh.set_position(v, to, &mut ()).is_ok());
     }
     fn prepare(mesh: &mut M, edit: Edit, place: &mut Place<M>) -> bool {
@@ -141,18 +143,18 @@ impl<M: Representation + MeshEdit> Writing<M> for ByEdits {
     }
 }
 
-/// What there is to do: the script, the names of the route, and the places of the edits.
+/// The work of a mix: the script, the handles of the route, and the places of the edits.
 struct Doing<'a, M: Representation, W> {
     script: &'a Script,
     streams: Streams<M>,
     chosen: Places,
-    /// By edit of the script: where it is done, on a mesh made ready for it.
+    /// By edit of the script: its places, on a mesh prepared for the edits.
     places: Vec<Vec<Place<M>>>,
     writing: PhantomData<W>,
 }
 
 impl<M: Representation, W: Writing<M>> Doing<'_, M, W> {
-    /// The edit of the script that `part` is, with its places.
+    /// Returns the edit of `part` with its places; `None` if `part` is not an edit.
     fn edit(&self, part: usize) -> Option<(Edit, &[Place<M>])> {
         let nth = self.script.edits().position(|other| other == part)?;
         match self.script.parts[part].action {
@@ -161,8 +163,8 @@ impl<M: Representation, W: Writing<M>> Doing<'_, M, W> {
         }
     }
 
-    /// Does the operations of `range` of one part to `mesh`; edits are numbered from the first place.
-    /// How many operations, how much they yielded, how many edits were refused.
+    /// Runs the operations `range` of one part on `mesh`; for edits, `range` is a range of places.
+    /// Returns the number of operations, the number of results, and the number of refused edits.
     #[inline]
     fn act(&self, mesh: &mut M, part: usize, range: Range<u64>) -> [u64; 3] {
         let operations = range.end - range.start;
@@ -191,7 +193,8 @@ impl<M: Representation, W: Writing<M>> Doing<'_, M, W> {
         }
     }
 
-    /// The element operations of some turns. Edits start anew with each copy of the mesh.
+    /// Runs the element operations of some turns and returns the counts of [`act`](Self::act).
+    /// Edits start at their first place, because each call gets a fresh copy of the mesh.
     #[inline]
     fn turns(&self, mesh: &mut M, turns: Range<u64>) -> [u64; 3] {
         let mut sums = [0; 3];
@@ -211,19 +214,19 @@ impl<M: Representation, W: Writing<M>> Doing<'_, M, W> {
     }
 }
 
-/// A structure and what there is to do to it.
+/// A structure and the work of a mix on it.
 struct Bench<'a, M: Representation, W> {
     mesh: M,
     polygons: &'a PolygonMesh,
     draw: &'a Draw,
     outputs: Outputs<M>,
     doing: Doing<'a, M, W>,
-    /// The mesh made ready for its edits; `None` without.
+    /// The mesh prepared for its edits; `None` if there are no edits.
     ready: Option<M>,
-    /// Copies of it, and what the last run on each came to.
+    /// Copies of `ready`, each with the counts of the last run on it.
     copies: KeptCopies<(M, [u64; 3])>,
-    /// The structure as a study has it, for passes that make a mesh or go over a sample; built when it
-    /// is first needed.
+    /// The structure as a study measures it, for passes that make a mesh or visit a sample. Built
+    /// when first needed.
     as_studied: Option<Box<dyn Subject + 'a>>,
 }
 
@@ -252,8 +255,8 @@ impl<'a, M: Representation + 'static, W: Writing<M>> Bench<'a, M, W> {
         Ok(bench)
     }
 
-    /// Names the places, and makes a mesh ready for the edits at them: by edit and place, whether it
-    /// could be.
+    /// Looks up the handles of the places and prepares a copy of the mesh for the edits there.
+    /// Returns for each edit and place whether the preparation succeeded.
     fn look_up(&mut self) -> Vec<Vec<bool>> {
         if self.doing.chosen.by_edit.is_empty() {
             return Vec::new();
@@ -286,8 +289,8 @@ impl<'a, M: Representation + 'static, W: Writing<M>> Bench<'a, M, W> {
         prepared
     }
 
-    /// Runs `work` once on the mesh, or, where there are edits, `runs` times on copies that are put back
-    /// while the clock stands still.
+    /// Runs `work` once on the mesh. If there are edits, runs it `runs` times on copies that are
+    /// reset outside the timing.
     fn run_timed(
         &mut self,
         runs: usize,
@@ -314,7 +317,7 @@ impl<'a, M: Representation + 'static, W: Writing<M>> Bench<'a, M, W> {
                     |(copy, _)| copy.clone_from(ready),
                     |(copy, counts)| *counts = work(doing, copy),
                 );
-                // All runs do the same.
+                // All runs have the same counts.
                 counts = copies.changed().map_or(counts, |(_, counts)| *counts);
                 time
             }
@@ -332,6 +335,10 @@ impl<'a, M: Representation + 'static, W: Writing<M>> Bench<'a, M, W> {
 impl<M: Representation + 'static, W: Writing<M>> Mixer for Bench<'_, M, W> {
     fn name(&self) -> &'static str {
         M::NAME
+    }
+
+    fn type_paths(&self) -> Vec<&'static str> {
+        vec![M::type_path()]
     }
 
     fn bytes(&self) -> usize {

@@ -1,4 +1,4 @@
-//! Passes that only ask, on any mesh.
+//! Read-only passes over any mesh.
 
 use std::hint::black_box;
 
@@ -9,7 +9,7 @@ use crate::operation::{Kind, Operation};
 use crate::series::Series;
 use crate::sweeps::{All, Outputs, Tally, field_sum, share};
 
-/// Runs `operation` over all of `mesh` so many times; the time is that of one.
+/// Runs `operation` over all of `mesh` as `series` describes; the time is that of one run.
 pub(crate) fn pass_over<M: MeshQuery>(
     mesh: &M,
     outputs: &mut Outputs<M>,

@@ -1,4 +1,4 @@
-//! Where the edits of a mix are done: each at a place of its own, far from what is asked.
+//! The places of the edits of a mix: each edit has its own place, away from the queried elements.
 
 use sixfold::{Edit, FaceId, FaceVertexMesh, PolygonMesh, Representation};
 
@@ -6,52 +6,53 @@ use crate::mix::script::Script;
 use crate::place::places;
 use crate::workload::Action;
 
-/// One place for so many vertices at most: the rest of the mesh is there to be asked.
+/// Minimum number of vertices for each place. The rest of the mesh is left for queries.
 const VERTICES_A_PLACE: usize = 60;
-/// More places than these make no sample better, and structures that scan need long for each.
+/// Maximum number of places. More do not improve a sample, and structures that scan are slow at
+/// each.
 const MOST_PLACES: usize = 512;
 
-/// Why a mix with edits cannot be run on a mesh.
+/// The reason why a mix with edits cannot be run on a mesh.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the message says what each field is")]
+#[expect(missing_docs, reason = "the message explains each field")]
 pub enum NoPlace {
-    /// Edits are done to triangles.
+    /// A face is not a triangle; edits need triangles.
     #[error("face {face} has {degree} corners, and {edit} needs triangles: triangulate the mesh")]
     NotATriangle {
         edit: Edit,
         face: FaceId,
         degree: usize,
     },
-    /// Around the places of the edits there has to be something else.
+    /// The mesh is too small for the places of the edits and other elements to query.
     #[error(
-        "the mesh has no room for {edits} kinds of edits and something to ask besides: take a larger one"
+        "the mesh has no room for {edits} kinds of edits and other elements to query: use a larger mesh"
     )]
     TooSmall { edits: usize },
-    /// Not one of the places takes the edit.
+    /// The edit is refused at every place by at least one backend.
     #[error(
-        "no place of the mesh takes {edit} on all backends: leave it out, or take another mesh"
+        "no place of the mesh allows {edit} on all backends: leave it out, or use another mesh"
     )]
     NowhereTaken { edit: Edit },
 }
 
-/// The faces at which each edit of a script is done, and the vertices around them.
+/// The faces at which each edit of a script is done, and the vertices near them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Places {
     /// By edit of the script: its faces.
     pub(crate) by_edit: Vec<Vec<FaceId>>,
-    /// By vertex of the mesh: whether it is near a place. Empty without edits.
+    /// By vertex of the mesh: whether it is near a place. Empty if there are no edits.
     pub(crate) taken: Vec<bool>,
 }
 
 impl Places {
-    /// Spreads the edits of `script` over `polygons`, each as often as its share says.
+    /// Distributes the edits of `script` over `polygons`, in proportion to their shares.
     pub(crate) fn of(script: &Script, polygons: &PolygonMesh) -> Result<Self, NoPlace> {
         let edits: Vec<(Edit, f64)> = script
             .edits()
             .map(|part| match script.parts[part].action {
                 Action::Edit(edit) => (edit, script.shares[part]),
-                _ => (Edit::Compact, 0.0), // no edit of a mix: it is filtered above
+                _ => (Edit::Compact, 0.0), // unreachable: `edits` returns only edits
             })
             .collect();
         let Some(&(edit, _)) = edits.first() else {
@@ -66,7 +67,7 @@ impl Places {
         if faces.len() < edits.len() {
             return Err(too_small);
         }
-        // Each gets one, and then whoever has least beside its share.
+        // Each edit gets one place, then the edit with the fewest places relative to its share.
         let mut by_edit: Vec<Vec<FaceId>> = faces.drain(..edits.len()).map(|f| vec![f]).collect();
         for face in faces {
             let poorest = (0..edits.len()).min_by(|&a, &b| {
@@ -83,7 +84,7 @@ impl Places {
         Ok(Self { by_edit, taken })
     }
 
-    /// Those that are accepted.
+    /// Returns only the accepted places.
     pub(crate) fn kept(&self, accepted: &[Vec<bool>]) -> Self {
         let keep = |(faces, accepted): (&Vec<FaceId>, &Vec<bool>)| {
             let both = faces.iter().zip(accepted);
@@ -98,11 +99,11 @@ impl Places {
     }
 }
 
-/// By vertex: whether it is a corner of a face around a corner of a place.
+/// Returns for each vertex whether it is a corner of a face that touches a place.
 fn around(by_edit: &[Vec<FaceId>], polygons: &PolygonMesh) -> Vec<bool> {
     let mut taken = vec![false; polygons.vertex_count()];
     let Ok(mesh) = FaceVertexMesh::from_polygons(polygons) else {
-        return taken; // it holds every mesh but one with too many elements
+        return taken; // it refuses only meshes with too many elements
     };
     for &f in by_edit.iter().flatten() {
         let fans = mesh.face(f).iter().flat_map(|&v| mesh.fan(v));

@@ -1,4 +1,4 @@
-//! In which order a mix comes by the elements: the same for every structure.
+//! The order in which a mix visits the elements; it is the same for every structure.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -8,13 +8,13 @@ use sixfold::{FaceId, FaceVertexMesh, MeshQuery, PolygonMesh, Representation, Ve
 use crate::sample::{Draw, Side};
 use crate::workload::Access;
 
-/// A patch has so many faces.
+/// Maximum number of faces of a patch.
 const PATCH: usize = 128;
 
 /// The elements of a mesh in the order in which they are visited.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Route {
-    /// In the order of each structure; the lists are empty then.
+    /// Whether elements are visited in the order of each structure. The lists are empty then.
     pub(crate) own: bool,
     pub(crate) vertices: Vec<VertexId>,
     pub(crate) edges: Vec<Side>,
@@ -22,7 +22,7 @@ pub struct Route {
 }
 
 impl Route {
-    /// The route through `polygons`; the seed decides what is random. O(corners) expected.
+    /// Builds the route through `polygons`, with random choices from `seed`. O(corners) expected.
     pub fn of(access: Access, polygons: &PolygonMesh, seed: u64) -> Self {
         let nothing = Self {
             own: true,
@@ -43,14 +43,14 @@ impl Route {
             }
             Access::Patches => match FaceVertexMesh::from_polygons(polygons) {
                 Ok(mesh) => patches(&mesh, polygons, seed),
-                Err(_) => nothing, // it holds every mesh but one with too many elements
+                Err(_) => nothing, // it refuses only meshes with too many elements
             },
         }
     }
 }
 
-/// Patches around random faces until they have as many faces as the mesh. Vertices without faces are
-/// in none.
+/// Builds patches around random faces until they have as many faces in total as the mesh. They
+/// contain no isolated vertices.
 fn patches(mesh: &FaceVertexMesh, polygons: &PolygonMesh, seed: u64) -> Route {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut route = Route {
@@ -60,7 +60,7 @@ fn patches(mesh: &FaceVertexMesh, polygons: &PolygonMesh, seed: u64) -> Route {
         faces: Vec::new(),
     };
     let count = polygons.face_count();
-    // By element: the patch that came by it last, so that each has it once.
+    // By element: the last patch that contains it, so that each patch contains it only once.
     let mut face_seen = vec![0_u32; count];
     let mut vertex_seen = vec![0_u32; polygons.vertex_count()];
     let mut patch = 0;
@@ -94,7 +94,7 @@ fn patches(mesh: &FaceVertexMesh, polygons: &PolygonMesh, seed: u64) -> Route {
                 route.edges.push(Side { face, ends });
             }
         }
-        // A side that two faces of the patch share is one edge: the first stands for it.
+        // Sides of the patch with the same ends are one edge: the first side is kept.
         let mut of_patch = route.edges.split_off(sides);
         let mut order: Vec<usize> = (0..of_patch.len()).collect();
         order.sort_by_key(|&i| (of_patch[i].ends, i));
@@ -118,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_patch_hangs_together_and_names_each_element_once() {
+    fn a_patch_is_connected_and_contains_each_element_once() {
         let mesh = shapes::triangle_torus(40, 40).expect("small");
         let route = Route::of(Access::Patches, &mesh, 3);
         assert!(route.faces.len() >= mesh.face_count());
@@ -128,7 +128,7 @@ mod tests {
         for &face in &route.faces[1..PATCH] {
             assert!(built.face_faces(face).any(|beside| patch.contains(&beside)));
         }
-        // Euler: a patch without a hole has one more vertex and face than edges.
+        // Euler: V − E + F = 1 for a patch without a hole.
         let corners = |f: &FaceId| mesh.faces().face(*f).to_vec();
         let vertices: BTreeSet<VertexId> = patch.iter().flat_map(corners).collect();
         assert_eq!(

@@ -1,4 +1,4 @@
-//! Which part of a mix has its turn when.
+//! The schedule of a mix: the operations of each part in each turn.
 
 use std::ops::Range;
 
@@ -6,28 +6,29 @@ use sixfold::Counts;
 
 use crate::workload::{Action, Part, Workload};
 
-/// So many operations on elements make a turn: what chooses between the parts is lost in them.
+/// Operations on elements in a turn: enough that switching between the parts takes negligible time.
 const TURN: f64 = 256.0;
-/// So many where there are edits: a turn has to find places for all of its own, and they are long.
+/// Operations on elements in a turn if there are edits: edits take longer, and each needs its own
+/// place.
 const EDITING_TURN: f64 = 64.0;
 
-/// The mix of a workload on a mesh, unrolled.
+/// The schedule of the mix of a workload on a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Script {
-    /// The mix.
+    /// The parts of the mix.
     pub parts: Vec<Part>,
-    /// By part: its share of all operations.
+    /// By part: its share of all operations, from 0 to 1.
     pub shares: Vec<f64>,
-    /// What part of all operations are done to elements; the rest are passes.
+    /// The share of all operations that work on elements; the rest are passes.
     pub on_elements: f64,
-    /// So many operations on elements make a turn.
+    /// The number of operations on elements in a turn.
     pub turn_operations: f64,
-    /// Whether a mesh that can be edited is needed, if only for what the mix does not tell.
+    /// Whether the mix needs an editable mesh: it has edits or sets positions.
     pub editable: bool,
 }
 
 impl Script {
-    /// The script of `workload` on a mesh with such counts.
+    /// Builds the script of `workload` on a mesh with these counts.
     pub fn of(workload: &Workload, counts: &Counts) -> Self {
         let shares = workload.shares(counts);
         let on_elements = shares.iter().zip(&workload.mix);
@@ -44,18 +45,20 @@ impl Script {
         }
     }
 
-    /// Which operations of `part` turn `turn` does, counted from the first of all.
+    /// Returns the range of operations of `part` that turn `turn` runs, counted from the first
+    /// turn.
     pub fn turn(&self, part: usize, turn: u64) -> Range<u64> {
         if self.parts[part].action.is_a_pass() {
             return 0..0;
         }
-        // So that what is owed is neither lost nor paid twice: one in a thousand has every fourth turn.
+        // Rounds the running total, so that no operation is lost or repeated. A part with a share
+        // of 1/1000 gets one operation in about every fourth turn.
         let each = self.turn_operations * self.shares[part] / self.on_elements;
         let done = |turns: u64| (each * turns as f64) as u64;
         done(turn)..done(turn + 1)
     }
 
-    /// How many operations of `part` so many turns do, from the first on.
+    /// Returns the number of operations of `part` in the first `turns` turns.
     pub fn within(&self, part: usize, turns: u64) -> u64 {
         match turns {
             0 => 0,
@@ -63,17 +66,17 @@ impl Script {
         }
     }
 
-    /// The parts that are edits.
+    /// Returns the parts that are edits.
     pub fn edits(&self) -> impl Iterator<Item = usize> + Clone {
         (0..self.parts.len()).filter(|&part| is_edit(self.parts[part].action))
     }
 
-    /// The parts that are passes.
+    /// Returns the parts that are passes.
     pub fn passes(&self) -> impl Iterator<Item = usize> {
         (0..self.parts.len()).filter(|&part| self.parts[part].action.is_a_pass())
     }
 
-    /// The parts that are done to elements.
+    /// Returns the parts that work on elements.
     pub fn elements(&self) -> impl Iterator<Item = usize> {
         (0..self.parts.len()).filter(|&part| !self.parts[part].action.is_a_pass())
     }
@@ -83,7 +86,7 @@ fn is_edit(action: Action) -> bool {
     matches!(action, Action::Edit(_))
 }
 
-/// Whether an action on elements changes the mesh.
+/// Returns whether an action on elements changes the mesh.
 fn writes(action: Action) -> bool {
     is_edit(action) || action == Action::SetPosition
 }

@@ -1,4 +1,4 @@
-//! The names that one structure gives to the elements of a route, and what is done to them.
+//! The handles of one structure for the elements of a route, and the operations on them.
 
 use std::hint::black_box;
 use std::ops::Range;
@@ -11,7 +11,7 @@ use crate::operation::Kind;
 use crate::sweeps::Sink;
 use crate::workload::Action;
 
-/// The elements of a route by the names of one structure.
+/// The elements of a route as handles of one structure.
 pub(crate) struct Streams<M: MeshQuery> {
     vertices: Vec<M::Vertex>,
     edges: Vec<M::Edge>,
@@ -19,7 +19,7 @@ pub(crate) struct Streams<M: MeshQuery> {
 }
 
 impl<M: MeshQuery> Streams<M> {
-    /// All elements, in the order of the structure.
+    /// Lists all elements in the order of the structure.
     pub(crate) fn own(mesh: &M) -> Self {
         Self {
             vertices: mesh.vertices().collect(),
@@ -28,7 +28,7 @@ impl<M: MeshQuery> Streams<M> {
         }
     }
 
-    /// The same elements by the names that another mesh has for them.
+    /// Converts the handles to those of another mesh for the same elements.
     pub(crate) fn renamed<N: MeshQuery>(
         self,
         vertex: impl FnMut(M::Vertex) -> N::Vertex,
@@ -42,7 +42,7 @@ impl<M: MeshQuery> Streams<M> {
         }
     }
 
-    /// How many there are of `kind`.
+    /// Returns the number of elements of `kind`.
     pub(crate) fn len(&self, kind: Kind) -> usize {
         match kind {
             Kind::Vertex => self.vertices.len(),
@@ -51,8 +51,8 @@ impl<M: MeshQuery> Streams<M> {
         }
     }
 
-    /// Does `action` to the elements that the operations of `range` are about; gives back how many
-    /// elements that yielded, or positions were read.
+    /// Runs `action` on the elements of the operations `range`. Returns the number of elements that
+    /// it yielded, or of positions that it read.
     #[inline(never)]
     pub(crate) fn ask(&self, mesh: &M, action: Action, range: Range<u64>) -> u64 {
         let (v, e, f) = (&self.vertices, &self.edges, &self.faces);
@@ -81,27 +81,27 @@ impl<M: MeshQuery> Streams<M> {
             Action::EndPositions => sum(e, range, |sum, e| {
                 positions(mesh, mesh.edge_vertices(e).into_iter(), sum)
             }),
-            // Who writes does so itself.
+            // The callers run actions that write, and passes.
             Action::SetPosition | Action::Edit(_) | Action::Pass(_) | Action::Subdivide => 0,
         }
     }
 
-    /// The vertices that the operations of `range` are about, in one or more runs.
+    /// Returns the vertices of the operations `range`, as one or more slices.
     pub(crate) fn vertices(&self, range: Range<u64>) -> impl Iterator<Item = &[M::Vertex]> {
         runs(&self.vertices, range)
     }
 }
 
 impl<M: Representation> Streams<M> {
-    /// The names of `route` on `mesh`, which was built from `polygons`, without the vertices that are
-    /// `taken` and whatever has one of them.
+    /// Looks up the handles of `route` on `mesh`, which was built from `polygons`. Leaves out the
+    /// vertices that are `taken`, and the edges and faces that have such a vertex.
     pub(crate) fn along(route: &Route, mesh: &M, polygons: &PolygonMesh, taken: &[bool]) -> Self {
         let free = |v: &VertexId| !taken.get(v.index()).is_some_and(|&taken| taken);
         if route.own && taken.is_empty() {
             return Self::own(mesh);
         }
         if route.own {
-            // In the order of the structure, but for what is near an edit.
+            // In the order of the structure, without the elements near an edit.
             let mut barred = mesh.vertex_map(false);
             for v in polygons.vertices().filter(|v| !free(v)) {
                 barred[M::vertex_name(polygons, v)] = true;
@@ -126,7 +126,8 @@ impl<M: Representation> Streams<M> {
     }
 }
 
-/// The handles that the operations of `range` are about: round and round, in one or more runs.
+/// Returns the handles of the operations `range` as one or more slices. After the last handle comes
+/// the first again.
 fn runs<H>(handles: &[H], range: Range<u64>) -> impl Iterator<Item = &[H]> {
     let all = handles.len() as u64;
     let mut left = if all == 0 { 0 } else { range.end - range.start };
@@ -185,7 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_route_is_gone_along_round_and_round() {
+    fn a_route_starts_again_after_its_last_element() {
         let handles = [0, 1, 2, 3, 4];
         let gone = |range| {
             runs(&handles, range)

@@ -1,12 +1,12 @@
-//! The relations that a workload asks, as flat tables, in the place of a structure.
+//! A mix on flat tables of the queried relations, instead of on a structure.
 
 use std::hint::black_box;
 
-use relation_table::{Numbering, RelationTable, TabulationError};
 use sixfold::{
     EdgeId, FaceId, MeshQuery, Point, PolygonMesh, Relation, Representation, RowId, VertexId,
     Visitor, visit,
 };
+use sixfold_relation_table::{Numbering, RelationTable, TabulationError};
 
 use crate::candidate::{Run, Sample};
 use crate::clock::{Clock, Time, timed};
@@ -20,7 +20,7 @@ use crate::series::{Series, time_making};
 use crate::sweeps::Outputs;
 use crate::workload::Action;
 
-/// The relations asked, positions, and how many elements there are.
+/// Tables of the queried relations, the positions, and the element counts.
 struct Tables {
     positions: Vec<Point>,
     edges: usize,
@@ -81,7 +81,8 @@ impl Tables {
     }
 }
 
-/// The row of a relation that the workload asks, or it would not be asked here.
+/// Defines one query; an empty row if the relation has no table, because the workload does not
+/// query it.
 macro_rules! row {
     ($name:ident, $from:ty, $to:ty) => {
         #[inline]
@@ -133,7 +134,7 @@ impl MeshQuery for Tables {
     fn edge_vertices(&self, e: EdgeId) -> [VertexId; 2] {
         let table = self.edge_vertices.as_ref();
         let row = table.and_then(|table| table.of(e).first_chunk());
-        *row.expect("asked of edges, it is tabulated, and an edge has two ends")
+        *row.expect("a queried relation has a table, and an edge has two ends")
     }
     row!(edge_edges, EdgeId, EdgeId);
     row!(edge_faces, EdgeId, FaceId);
@@ -151,9 +152,9 @@ impl MeshQuery for Tables {
     }
 }
 
-/// Tabulates the `relations` that `script` asks over the structure called `backend`, built from
-/// `polygons`; `None` where there is no such structure, or it cannot hold them, or the script changes
-/// what the tables hold.
+/// Builds tables of the relations that `script` queries, from the structure called `backend`, which
+/// is built from `polygons`. Returns `None` if there is no such structure, it cannot hold
+/// `polygons`, or the script changes connectivity.
 pub fn tabulate<'a>(
     backend: &str,
     polygons: &'a PolygonMesh,
@@ -183,6 +184,7 @@ pub fn tabulate<'a>(
                 streams,
                 polygons: self.polygons,
                 build: build::<M>,
+                over: M::type_path(),
             }))
         }
     }
@@ -202,13 +204,13 @@ pub fn tabulate<'a>(
     visit(backend, &mut start).flatten()
 }
 
-/// The relations that a script asks, each once.
+/// Returns the relations that a script queries; a relation may occur several times.
 fn relations(script: &Script) -> Vec<Relation> {
     let asked = script.parts.iter().flat_map(|part| part.action.relations());
     asked.collect()
 }
 
-/// The route by the numbers of the tables.
+/// Converts the route to the element numbers of the tables.
 fn streams<M: Representation>(mesh: &M, polygons: &PolygonMesh, route: &Route) -> Streams<Tables> {
     let named = Streams::along(route, mesh, polygons, &[]);
     let numbers = Numbering::of(mesh);
@@ -219,8 +221,8 @@ fn streams<M: Representation>(mesh: &M, polygons: &PolygonMesh, route: &Route) -
     )
 }
 
-/// Builds the structure and tabulates, in the time that both take; the tables are dropped while the
-/// clock stands still.
+/// Builds the structure and its tables, and returns the time of both. The tables are dropped
+/// outside the timing.
 fn build<M: Representation>(
     polygons: &PolygonMesh,
     relations: &[Relation],
@@ -234,7 +236,7 @@ fn build<M: Representation>(
     time_making(series, bytes, build).0
 }
 
-/// Tables on which a mix is run.
+/// The tables on which a mix is run.
 struct Tabulated<'a> {
     tables: Tables,
     script: &'a Script,
@@ -244,6 +246,8 @@ struct Tabulated<'a> {
     merged: usize,
     polygons: &'a PolygonMesh,
     build: fn(&PolygonMesh, &[Relation], usize, &Series<'_>) -> Time,
+    /// The path of the structure type from which the tables are built.
+    over: &'static str,
 }
 
 impl Tabulated<'_> {
@@ -267,6 +271,10 @@ impl Tabulated<'_> {
 impl Mixer for Tabulated<'_> {
     fn name(&self) -> &'static str {
         "relation-tables"
+    }
+
+    fn type_paths(&self) -> Vec<&'static str> {
+        vec![self.over, "sixfold_relation_table::RelationTable"]
     }
 
     fn bytes(&self) -> usize {
@@ -325,7 +333,7 @@ impl Mixer for Tabulated<'_> {
         if operation != Operation::VvSmooth {
             return run;
         }
-        // Into a copy, as with every structure: the old positions stay.
+        // Written to a copy, as for every structure, so that the mesh keeps its positions.
         let Self { moved, outputs, .. } = self;
         let swap = series.time_together(|| {
             moved.copy_from_slice(black_box(outputs.vertices.values()));

@@ -2,14 +2,14 @@ use std::collections::HashSet;
 
 use sixfold::shapes::{self, Order};
 use sixfold::{
-    CornerTable, FaceVertexMesh, HalfEdgeMesh, Handle, IndexedFaceSet, MeshQuery, Point,
-    PolygonMesh, Relation, Representation, Traced, Visitor, visit_all,
+    CornerTable, FaceVertexMesh, HalfEdgeMesh, Handle, IndexedFaceSet, Measured, MeshQuery, Point,
+    PolygonMesh, Relation, Representation, Traced, for_each_representation,
 };
 
 use super::*;
 use crate::ledger::LINE_BYTES;
 
-/// Keeps everything.
+/// Keeps all counts.
 #[derive(Default)]
 struct Kept(Vec<Reads>);
 
@@ -21,11 +21,11 @@ impl Counted for Kept {
     }
 }
 
-fn reads_of<M: Representation>(polygons: &PolygonMesh, relation: Relation) -> Reads {
-    let mesh = M::from_polygons(polygons).expect("it is held");
+fn reads_of<M: Measured>(polygons: &PolygonMesh, relation: Relation) -> Reads {
+    let mesh = M::from_polygons(polygons).expect("the structure holds it");
     let mut kept = Kept::default();
     count(mesh, &[relation], &AtomicBool::new(false), &mut kept);
-    let reads = kept.0.pop().expect("nobody stops it");
+    let reads = kept.0.pop().expect("not stopped");
     assert!(kept.0.is_empty());
     reads
 }
@@ -43,8 +43,8 @@ fn tables(reads: &Reads) -> Vec<(&str, usize, f64)> {
 }
 
 #[test]
-fn corners_of_triangles_are_twelve_bytes_and_now_and_then_two_lines() {
-    // Face f is bytes 12 f to 12 f + 11 of the corners: f5 and f10 lie across the ends of lines.
+fn corners_of_a_triangle_are_twelve_bytes_in_one_or_two_lines() {
+    // Face f is bytes 12 f to 12 f + 11 of the corners: f5 and f10 cross the end of a line.
     let strip: Vec<[u32; 3]> = (0..16).map(|f| [f, f + 1, f + 2]).collect();
     let strip: Vec<&[u32]> = strip.iter().map(|face| &face[..]).collect();
     let reads = reads_of::<IndexedFaceSet>(&polygons(18, &strip), Relation::FaceVertices);
@@ -61,13 +61,13 @@ fn corners_of_triangles_are_twelve_bytes_and_now_and_then_two_lines() {
     );
     assert_eq!(reads.moved_bytes, 12.0);
     assert_eq!(reads.fetched, 3.0 / 16.0, "each line once");
-    assert_eq!(reads.jumps, 1.0 / 16.0, "the first of the stream");
+    assert_eq!(reads.jumps, 1.0 / 16.0, "the first line of the stream");
     assert_eq!(tables(&reads), [("corners", 4, 3.0)]);
 }
 
 #[test]
 fn both_ends_of_an_edge_are_in_its_two_halves() {
-    // Two halves of 12 bytes: edge e is bytes 24 e to 24 e + 23, and e2 lies across the end of a line.
+    // Two halves of 12 bytes: edge e is bytes 24 e to 24 e + 23, and e2 crosses the end of a line.
     let square = polygons(4, &[&[0, 1, 2], &[0, 2, 3]]);
     let reads = reads_of::<HalfEdgeMesh>(&square, Relation::EdgeVertices);
     assert_eq!((reads.elements, reads.answers), (5, 2.0));
@@ -79,7 +79,7 @@ fn both_ends_of_an_edge_are_in_its_two_halves() {
 }
 
 #[test]
-fn mixed_degrees_read_where_a_face_begins_and_ends() {
+fn mixed_degrees_read_the_offsets_of_a_face() {
     let mixed = polygons(5, &[&[0, 1, 2], &[0, 2, 3, 4]]);
     let reads = reads_of::<IndexedFaceSet>(&mixed, Relation::FaceVertices);
     assert_eq!((reads.answers, reads.reads), (3.5, 2.0 + 3.5));
@@ -94,9 +94,9 @@ fn mixed_degrees_read_where_a_face_begins_and_ends() {
 }
 
 #[test]
-fn at_a_boundary_a_walk_reads_one_half_more_than_faces_and_isolated_vertices_end_it_at_once() {
-    // Each corner of the triangle: `leaving`, and the twins of two spokes, one of them without a face.
-    // The fourth vertex: `leaving`, which is none.
+fn a_boundary_walk_reads_one_half_more_than_faces_and_an_isolated_vertex_reads_no_half() {
+    // Each corner of the triangle: `leaving`, and the twins of two spokes, one of them without a
+    // face. The fourth vertex: only `leaving`, which is empty.
     let triangle = polygons(4, &[&[0, 1, 2]]);
     let reads = reads_of::<HalfEdgeMesh>(&triangle, Relation::VertexFaces);
     assert_eq!((reads.elements, reads.answers), (4, 3.0 / 4.0));
@@ -109,7 +109,7 @@ fn at_a_boundary_a_walk_reads_one_half_more_than_faces_and_isolated_vertices_end
 }
 
 #[test]
-fn what_lists_its_edges_by_a_table_reads_it_for_that() {
+fn listing_edges_by_a_table_counts_as_listing_reads() {
     let tetrahedron = polygons(4, &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]]);
     let reads = reads_of::<CornerTable>(&tetrahedron, Relation::EdgeVertices);
     assert_eq!(
@@ -118,7 +118,7 @@ fn what_lists_its_edges_by_a_table_reads_it_for_that() {
         "all corners, for six edges"
     );
     let queries: f64 = reads.tables.iter().map(|table| table.reads).sum();
-    assert_eq!(queries, reads.reads, "and that is no query");
+    assert_eq!(queries, reads.reads, "listing reads are not query reads");
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn a_scan_is_sampled_and_reads_every_corner() {
     );
     let few = polygons(4, &[&[0, 1, 2], &[0, 2, 3]]);
     let reads = reads_of::<IndexedFaceSet>(&few, Relation::VertexFaces);
-    assert!(!reads.sampled, "no more elements than a sample has");
+    assert!(!reads.sampled, "no more elements than the sample size");
     assert_eq!((reads.answers, reads.reads), (6.0 / 4.0, 6.0));
 }
 
@@ -155,7 +155,7 @@ fn a_sample_is_evenly_spaced() {
 }
 
 #[test]
-fn a_walk_around_very_many_faces_is_sampled_too() {
+fn walks_around_very_many_faces_are_sampled_too() {
     let rim = 2000_u32;
     let fan: Vec<[u32; 3]> = (0..rim).map(|i| [rim, i, (i + 1) % rim]).collect();
     let fan: Vec<&[u32]> = fan.iter().map(|face| &face[..]).collect();
@@ -169,14 +169,14 @@ fn a_walk_around_very_many_faces_is_sampled_too() {
 }
 
 #[test]
-fn the_order_of_a_mesh_changes_what_jumps_and_not_what_is_read() {
+fn the_order_of_a_mesh_changes_jumps_but_not_reads() {
     let given = shapes::triangle_grid(200, 200).expect("a grid");
     let shuffled = Order::Shuffled.of(&given, 3);
     let [given, shuffled] =
         [&given, &shuffled].map(|mesh| reads_of::<FaceVertexMesh>(mesh, Relation::VertexVertices));
     assert_eq!(given.reads, shuffled.reads);
     assert_eq!(given.sweep_lines, shuffled.sweep_lines);
-    assert!(given.lines < shuffled.lines, "faces around lie apart");
+    assert!(given.lines < shuffled.lines, "faces are far apart");
     assert!(
         100.0 * given.jumps < shuffled.jumps,
         "{given:?} {shuffled:?}"
@@ -184,14 +184,14 @@ fn the_order_of_a_mesh_changes_what_jumps_and_not_what_is_read() {
 }
 
 #[test]
-fn told_to_stop_it_says_nothing() {
+fn a_stopped_count_returns_nothing() {
     let mesh = HalfEdgeMesh::from_polygons(&polygons(3, &[&[0, 1, 2]])).expect("held");
     let mut kept = Kept::default();
     count(mesh, &Relation::ALL, &AtomicBool::new(true), &mut kept);
     assert_eq!(kept.0, []);
 }
 
-/// What a log says, with sets: reads, bytes and lines, all queries together.
+/// Reads, bytes and lines per query, computed from a log of all accesses with sets.
 struct ByTheLog<'a>(&'a PolygonMesh);
 
 impl ByTheLog<'_> {
@@ -220,11 +220,17 @@ impl ByTheLog<'_> {
     }
 }
 
-impl Visitor for ByTheLog<'_> {
-    type Output = bool;
+impl ByTheLog<'_> {
+    /// Compares all structures of Sixfold with the log.
+    fn all(&self) -> Vec<bool> {
+        let mut agree = Vec::new();
+        for_each_representation!(M => { agree.push(self.visit::<M>()); });
+        agree
+    }
 
-    /// Whether the structure holds the mesh; if so, all nine relations are as the log has them.
-    fn visit<M: Representation + 'static>(&mut self) -> bool {
+    /// Returns whether the structure holds the mesh. If so, checks all nine relations against the
+    /// log.
+    fn visit<M: Measured>(&self) -> bool {
         let Ok(mesh) = M::from_polygons(self.0) else {
             return false;
         };
@@ -256,7 +262,7 @@ impl Visitor for ByTheLog<'_> {
             assert_eq!(found, expected, "{} on {}", reads.relation, M::NAME);
             let named: f64 = reads.tables.iter().map(|table| table.reads).sum();
             let close = (named - reads.reads).abs() < 1e-9;
-            assert!(close, "{}: a table that memory() leaves out", M::NAME);
+            assert!(close, "{}: a table is missing in memory()", M::NAME);
         }
         assert_eq!(kept.0.len(), 9);
         true
@@ -264,18 +270,13 @@ impl Visitor for ByTheLog<'_> {
 }
 
 #[test]
-fn all_six_read_what_their_logs_say() {
-    // Few enough elements that those who scan are asked everything as well.
+fn counts_of_all_six_structures_equal_their_logs() {
+    // So few elements that structures that scan are not sampled.
     let open = polygons(6, &[&[0, 1, 2], &[0, 2, 3], &[3, 2, 4], &[4, 2, 5]]);
     let mixed = polygons(7, &[&[0, 1, 2], &[0, 2, 3, 4], &[4, 3, 5], &[0, 4, 6, 1]]);
     let isolated = polygons(8, &[&[0, 1, 2], &[2, 1, 3], &[2, 3, 4, 5, 6]]);
-    assert_eq!(visit_all(&mut ByTheLog(&open)), [true; 6]);
-    // Polygons are nothing for a corner table, isolated vertices neither for it nor for a soup.
-    let held = |mesh: &PolygonMesh| {
-        visit_all(&mut ByTheLog(mesh))
-            .into_iter()
-            .filter(|&h| h)
-            .count()
-    };
+    assert_eq!(ByTheLog(&open).all(), [true; 6]);
+    // A corner table holds no polygons; a corner table and a soup hold no isolated vertices.
+    let held = |mesh: &PolygonMesh| ByTheLog(mesh).all().into_iter().filter(|&h| h).count();
     assert_eq!((held(&mixed), held(&isolated)), (5, 4));
 }

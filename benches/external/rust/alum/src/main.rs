@@ -1,4 +1,5 @@
-//! alum: a half-edge structure after OpenMesh, with polygons and 32-bit positions.
+//! The column of alum: a half-edge structure similar to OpenMesh, with polygons and 32-bit
+//! positions.
 
 use std::error::Error;
 
@@ -79,7 +80,7 @@ impl Column for Alum {
     }
     fn set_positions(&mut self, positions: &[[f32; 3]]) {
         let mut points = self.0.points();
-        let mut points = points.try_borrow_mut().expect("nobody else has them");
+        let mut points = points.try_borrow_mut().expect("no other borrow exists");
         for (number, &[x, y, z]) in positions.iter().enumerate() {
             points[VH::from(number as u32)] = Vec3(x, y, z);
         }

@@ -3,20 +3,20 @@
 use std::error::Error;
 use std::fs;
 
-/// Positions and corners, as the file has them.
+/// Positions and corners, as in the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Input {
-    /// Where each vertex is.
+    /// The position of each vertex.
     pub positions: Vec<[f32; 3]>,
-    /// The vertices of all faces, one after the other.
+    /// The vertices of all faces, one face after the other.
     pub corners: Vec<u32>,
-    /// Where each face begins, and the end.
+    /// The index of the first corner of each face, then the number of corners.
     pub starts: Vec<usize>,
 }
 
 impl Input {
-    /// Reads what Sixfold writes for its columns: `v x y z` and `f a b c …`, each on a line. Readers of
-    /// OBJ for the world at large drop vertices that no face has, and these count here.
+    /// Reads the file that Sixfold writes for its columns: lines `v x y z` and `f a b c …`. General
+    /// OBJ readers drop isolated vertices, but these are needed here.
     pub(crate) fn read(path: &str) -> Result<Self, Box<dyn Error>> {
         Self::parse(&fs::read_to_string(path)?)
     }
@@ -33,7 +33,7 @@ impl Input {
                     let mut coordinate = || -> Result<f32, Box<dyn Error>> {
                         Ok(words
                             .next()
-                            .ok_or("a vertex of fewer than three")?
+                            .ok_or("a vertex has fewer than three coordinates")?
                             .parse()?)
                     };
                     input
@@ -43,9 +43,9 @@ impl Input {
                 Some("f") => {
                     for word in words {
                         let number: u32 = word.parse()?;
-                        let corner = number.checked_sub(1).ok_or("vertices count from 1")?;
+                        let corner = number.checked_sub(1).ok_or("vertex numbers start at 1")?;
                         if corner as usize >= input.positions.len() {
-                            return Err(format!("there is no vertex {number}").into());
+                            return Err(format!("no vertex has the number {number}").into());
                         }
                         input.corners.push(corner);
                     }
@@ -57,20 +57,20 @@ impl Input {
         Ok(input)
     }
 
-    /// The vertices of each face.
+    /// Returns the vertices of each face.
     pub fn faces(&self) -> impl Iterator<Item = &[u32]> {
         let ends = self.starts.windows(2);
         ends.map(|ends| &self.corners[ends[0]..ends[1]])
     }
 
-    /// The same, or a refusal where some face is no triangle.
+    /// Returns the vertices of each triangle.
     ///
     /// # Errors
     ///
-    /// A face of another number of corners.
+    /// Returns an error if a face is not a triangle.
     pub fn triangles(&self) -> Result<impl Iterator<Item = [u32; 3]>, String> {
         match self.faces().position(|face| face.len() != 3) {
-            Some(face) => Err(format!("face {face} is no triangle")),
+            Some(face) => Err(format!("face {face} is not a triangle")),
             None => Ok(self.corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]])),
         }
     }
@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn vertices_without_faces_count() {
+    fn isolated_vertices_are_kept() {
         let input = Input::parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nf 1 2 3\n").expect("a mesh");
         assert_eq!((input.positions.len(), input.faces().count()), (4, 1));
         assert_eq!(input.triangles().expect("one").next(), Some([0, 1, 2]));

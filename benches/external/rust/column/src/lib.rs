@@ -1,5 +1,6 @@
-//! A library as a column of `sixfold study`: an adapter says how the library answers, and this crate
-//! speaks the protocol and runs the operations. `../README.md` has both.
+//! Runs a library as a column of `sixfold study`. An adapter implements the queries with the
+//! library; this crate implements the protocol and the operations. `benches/external/README.md`
+//! describes both.
 
 mod input;
 mod operations;
@@ -13,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 pub use input::Input;
 
-/// A structure of a library, holding one mesh. Sinks are called for each neighbour.
+/// A structure of a library that holds one mesh. Queries call `sink` for each result.
 pub trait Column: Sized {
     /// A vertex.
     type Vertex: Copy + PartialEq;
@@ -22,43 +23,43 @@ pub trait Column: Sized {
     /// A face.
     type Face: Copy;
 
-    /// The library and its version.
+    /// The name and the version of the library.
     const LIBRARY: &'static str;
 
-    /// From flat arrays, or why not.
+    /// Builds the structure from flat arrays, or returns the reason why it cannot.
     fn build(input: &Input) -> Result<Self, String>;
 
-    /// All vertices.
+    /// Lists all vertices.
     fn vertices(&self) -> impl Iterator<Item = Self::Vertex>;
-    /// All edges.
+    /// Lists all edges.
     fn edges(&self) -> impl Iterator<Item = Self::Edge>;
-    /// All faces, in the order of the input.
+    /// Lists all faces, in input order.
     fn faces(&self) -> impl Iterator<Item = Self::Face>;
 
-    /// The number of a vertex, below that of all.
+    /// Returns the number of a vertex, less than the number of vertices.
     fn vertex_index(&self, v: Self::Vertex) -> usize;
-    /// Some number of an edge.
+    /// Returns any number that identifies the edge.
     fn edge_index(&self, e: Self::Edge) -> usize;
-    /// The number of a face, in the order of the input.
+    /// Returns the number of a face, in input order.
     fn face_index(&self, f: Self::Face) -> usize;
 
-    /// The vertices beside `v`.
+    /// Queries the vertices adjacent to `v`.
     fn vertex_vertices(&self, v: Self::Vertex, sink: impl FnMut(Self::Vertex));
-    /// The edges that end in `v`.
+    /// Queries the edges that end at `v`.
     fn vertex_edges(&self, v: Self::Vertex, sink: impl FnMut(Self::Edge));
-    /// The faces that have `v`.
+    /// Queries the faces with a corner at `v`.
     fn vertex_faces(&self, v: Self::Vertex, sink: impl FnMut(Self::Face));
-    /// The ends of `e`.
+    /// Returns the ends of `e`.
     fn edge_vertices(&self, e: Self::Edge) -> [Self::Vertex; 2];
-    /// The faces along `e`.
+    /// Queries the faces on `e`.
     fn edge_faces(&self, e: Self::Edge, sink: impl FnMut(Self::Face));
-    /// The corners of `f`, in order.
+    /// Queries the corners of `f`, in order.
     fn face_vertices(&self, f: Self::Face, sink: impl FnMut(Self::Vertex));
-    /// The edges of `f`.
+    /// Queries the edges of `f`.
     fn face_edges(&self, f: Self::Face, sink: impl FnMut(Self::Edge));
-    /// The faces across the edges of `f`.
+    /// Queries the faces across the edges of `f`.
     fn face_faces(&self, f: Self::Face, sink: impl FnMut(Self::Face));
-    /// The edges that share a vertex with `e`.
+    /// Queries the edges that share a vertex with `e`.
     fn edge_edges(&self, e: Self::Edge, mut sink: impl FnMut(Self::Edge)) {
         for v in self.edge_vertices(e) {
             self.vertex_edges(v, |other| {
@@ -69,9 +70,9 @@ pub trait Column: Sized {
         }
     }
 
-    /// Where `v` is.
+    /// Returns the position of `v`.
     fn position(&self, v: Self::Vertex) -> [f32; 3];
-    /// Moves all vertices, by their numbers.
+    /// Sets the positions of all vertices, by vertex number.
     fn set_positions(&mut self, positions: &[[f32; 3]]);
 }
 
@@ -82,7 +83,7 @@ struct Greeting<'a> {
     library: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<String>,
-    /// The allocator, where Sixfold's environment can tell it to keep pages.
+    /// The allocator, if Sixfold can make it keep pages by an environment variable.
     #[serde(skip_serializing_if = "Option::is_none")]
     heap: Option<&'static str>,
 }
@@ -106,15 +107,16 @@ struct Refused<'a> {
     refused: &'a str,
 }
 
-/// The whole program: reads the mesh that it is called with, and answers until its input ends.
+/// Runs the whole program: reads the mesh that the first argument names, and answers until standard
+/// input ends.
 ///
 /// # Errors
 ///
-/// No mesh, one that cannot be read, or a question that is none.
+/// Returns an error if the argument is missing, the mesh cannot be read, or a request is not valid.
 pub fn serve<C: Column>() -> Result<(), Box<dyn Error>> {
-    let path = std::env::args().nth(1).ok_or("say which mesh")?;
+    let path = std::env::args().nth(1).ok_or("the path of a mesh is missing")?;
     let input = Input::read(&path)?;
-    // Some libraries panic at what they cannot hold.
+    // Some libraries panic if they cannot hold the mesh.
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| ()));
     let built = panic::catch_unwind(|| operations::Running::new(input.clone(), C::build(&input)?));
@@ -135,14 +137,14 @@ pub fn serve<C: Column>() -> Result<(), Box<dyn Error>> {
         match running.run(&question.run, question.times) {
             Some(answer) => say(&answer)?,
             None => say(&Refused {
-                refused: "the adapter does not do it",
+                refused: "the adapter does not support the operation",
             })?,
         }
     }
     Ok(())
 }
 
-/// What a panic said.
+/// Returns the message of a panic.
 fn words(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().map(ToString::to_string);
     let text = text.or_else(|| payload.downcast_ref::<String>().cloned());

@@ -1,4 +1,4 @@
-//! The operations, written once for all libraries as Sixfold defines them.
+//! The operations, written once for all libraries, as Sixfold defines them.
 
 use std::collections::{HashSet, VecDeque};
 use std::hint::black_box;
@@ -10,7 +10,7 @@ use crate::{Answer, Column, Input};
 
 type Vector = [f32; 3];
 
-/// A structure, and room for what operations store.
+/// A structure with storage for the results of operations.
 pub(crate) struct Running<C> {
     input: Input,
     structure: C,
@@ -18,11 +18,10 @@ pub(crate) struct Running<C> {
     of_vertices: Vec<Vector>,
 }
 
-/// What one run found, and how many elements it went through.
+/// The checksum of one run, and the number of visited elements.
 type Found = (f64, u64);
 
-/// Counts what it is handed, and adds the numbers up, so that nothing can be counted without being
-/// looked at.
+/// A sink that counts results and adds their numbers, so that the compiler cannot omit a result.
 #[derive(Default)]
 struct Sink {
     count: u64,
@@ -41,7 +40,7 @@ impl Sink {
     }
 }
 
-/// A loop over elements, with a relation asked of each.
+/// A loop over elements that queries one relation of each.
 macro_rules! asked {
     ($structure:expr, $elements:ident, $relation:ident, $index:ident) => {{
         let (mut sink, mut elements) = (Sink::default(), 0);
@@ -54,7 +53,7 @@ macro_rules! asked {
 }
 
 impl<C: Column> Running<C> {
-    /// Refuses a mesh that the structure took and does not hold as it is.
+    /// Makes a runner. Refuses a mesh that the structure accepted but does not represent correctly.
     pub(crate) fn new(input: Input, structure: C) -> Result<Self, String> {
         let running = Self {
             of_faces: vec![[0.0; 3]; input.starts.len() - 1],
@@ -86,7 +85,7 @@ impl<C: Column> Running<C> {
             if found != (answers as u64, elements as u64) {
                 let (wrong, of) = found;
                 return Err(format!(
-                    "it took the mesh, and finds {wrong} answers to {relation} of {of} elements in the place of {answers} of {elements}"
+                    "it accepted the mesh, but {relation} has {wrong} results for {of} elements, expected {answers} for {elements}"
                 ));
             }
         }
@@ -97,18 +96,18 @@ impl<C: Column> Running<C> {
                 answers += 1;
             });
             if around.len() != answers {
-                return Err("it hands out a face twice where two share more than one edge".into());
+                return Err("it returns a face twice if two faces share more than one edge".into());
             }
         }
         Ok(())
     }
 
-    /// Runs `operation` so many times; `None` if there is none of this name.
+    /// Runs `operation` `times` times; `None` if the operation is unknown.
     pub(crate) fn run(&mut self, operation: &str, times: u64) -> Option<Answer> {
         let (mut wall, mut cpu) = (Duration::ZERO, Duration::ZERO);
         let mut found = None;
-        // Positions that are moved are put back outside the timing; all else is timed in one go, for
-        // reading the clocks takes as long as a run on a small mesh.
+        // Moved positions are reset outside the timing. All other operations are timed together,
+        // because reading the clocks takes as long as a run on a small mesh.
         let moves = operation == "vv_smooth";
         let (turns, each) = if moves { (times, 1) } else { (1, times) };
         for _ in 0..turns {
@@ -176,7 +175,7 @@ impl<C: Column> Running<C> {
         })
     }
 
-    /// One relation, asked of every element.
+    /// Queries one relation of every element. Returns the numbers of results and of elements.
     fn ask(&self, relation: &str) -> Option<(u64, u64)> {
         let structure = &self.structure;
         Some(match relation {
@@ -288,7 +287,7 @@ impl<C: Column> Running<C> {
         (boundary as f64, edges)
     }
 
-    /// Breadth first over faces, from the lowest that is not yet seen.
+    /// Traverses faces breadth first, each time from the lowest unvisited face.
     fn ff_bfs(&self) -> Found {
         let structure = &self.structure;
         let faces: Vec<C::Face> = structure.faces().collect();

@@ -1,4 +1,4 @@
-//! lox: its half-edge structure for triangles, positions in a map beside it.
+//! The column of lox: its half-edge structure for triangles, with positions in a separate map.
 
 use std::error::Error;
 

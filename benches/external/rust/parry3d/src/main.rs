@@ -1,5 +1,5 @@
-//! parry3d: a triangle mesh with half-edges beside its tree of boxes. It has the tables and no walks, so
-//! the walks are here.
+//! The column of parry3d: a triangle mesh with half-edges and a bounding volume hierarchy. It has
+//! the half-edge tables but no traversals, so the traversals are here.
 
 use std::error::Error;
 
@@ -7,7 +7,7 @@ use column::{Column, Input};
 use parry3d::math::Vector;
 use parry3d::shape::{TopoHalfEdge, TriMesh, TriMeshFlags};
 
-/// No half-edge across: the boundary.
+/// The twin of a half-edge at the boundary, which has no twin.
 const NONE: u32 = u32::MAX;
 
 struct Parry {
@@ -21,17 +21,17 @@ impl Parry {
         &topology.expect("built with it").half_edges
     }
 
-    /// Those of a triangle stand together, in order.
+    /// Returns the previous half-edge. Those of a triangle have consecutive numbers, in order.
     fn before(half: u32) -> u32 {
         if half % 3 == 0 { half + 2 } else { half - 1 }
     }
 
-    /// An edge is the lesser of its half-edges.
+    /// Returns the edge of a half-edge: the smaller one of the two half-edges.
     fn edge(&self, half: u32) -> u32 {
         half.min(self.half_edges()[half as usize].twin)
     }
 
-    /// The three half-edges of a triangle.
+    /// Returns the three half-edges of a triangle.
     fn sides(&self, f: u32) -> std::ops::Range<u32> {
         let topology = self.mesh.topology().expect("built with it");
         let first = topology.faces[f as usize].half_edge;
@@ -43,8 +43,8 @@ impl Parry {
         half_edges[half_edges[half as usize].next as usize].vertex
     }
 
-    /// Every half-edge that leaves `v`; and at a boundary the one that comes in and has no twin, with
-    /// `true`.
+    /// Visits every half-edge that starts at `v`. At a boundary, also visits the half-edge that
+    /// ends at `v` and has no twin, with `true`.
     fn around(&self, v: u32, mut sink: impl FnMut(u32, bool)) {
         let half_edges = self.half_edges();
         let topology = self.mesh.topology().expect("built with it");
@@ -65,7 +65,7 @@ impl Parry {
                 break;
             }
         }
-        // The other side of the first, up to the boundary.
+        // Continues from the first half-edge in the other direction, up to the boundary.
         let mut across = half_edges[first as usize].twin;
         while across != NONE {
             let next = half_edges[across as usize].next;
@@ -87,7 +87,7 @@ impl Column for Parry {
         let triangles = input.triangles()?.collect();
         let mesh = TriMesh::with_flags(points, triangles, TriMeshFlags::HALF_EDGE_TOPOLOGY);
         let mesh = mesh.map_err(|error| format!("{error:?}"))?;
-        let topology = mesh.topology().ok_or("it found no topology")?;
+        let topology = mesh.topology().ok_or("it has not built the topology")?;
         let halves = topology.half_edges.iter().zip(0..);
         let edges = halves.filter_map(|(half, number)| (number < half.twin).then_some(number));
         let edges = edges.collect();
@@ -160,7 +160,7 @@ impl Column for Parry {
         self.mesh.vertices()[v as usize].into()
     }
     fn set_positions(&mut self, positions: &[[f32; 3]]) {
-        // Its only way to move vertices, which makes its tree anew.
+        // The only way to move vertices in parry3d; it rebuilds the hierarchy.
         self.mesh.update_vertices(|points| {
             for (point, &position) in points.iter_mut().zip(positions) {
                 *point = position.into();

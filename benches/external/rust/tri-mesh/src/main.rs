@@ -1,4 +1,4 @@
-//! tri-mesh: a half-edge structure for triangles, with walkers and 64-bit positions.
+//! The column of tri-mesh: a half-edge structure for triangles, with walkers and 64-bit positions.
 
 use std::error::Error;
 
@@ -12,7 +12,7 @@ struct TriMesh {
 }
 
 impl TriMesh {
-    /// An edge is the lesser of its half-edges.
+    /// Returns the edge of a half-edge: the smaller one of the two half-edges.
     fn edge(&self, half: HalfEdgeID) -> HalfEdgeID {
         let twin = self.mesh.walker_from_halfedge(half).twin_id();
         twin.map_or(half, |twin| twin.min(half))

@@ -1,0 +1,203 @@
+//! Capabilities of a structure as data, and the one check that finds why a structure refuses a
+//! mesh.
+
+use rustc_hash::FxHashMap;
+use serde::{Deserialize, Serialize};
+
+use crate::Point;
+use crate::error::BuildError;
+use crate::incidence::Incidence;
+use crate::pairing::{MAX_CORNERS, MAX_EDGES};
+use crate::polygon_mesh::PolygonMesh;
+
+/// The meshes that a structure can hold beyond closed, oriented triangle manifolds.
+///
+/// The command line prints this table, constructors take their errors from it, and the conformance
+/// suite tests every structure against it. All six structures hold boundaries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct Capabilities {
+    /// Faces of any degree, not only triangles.
+    pub polygons: bool,
+    /// Edges with three or more faces.
+    pub non_manifold_edges: bool,
+    /// Vertices whose faces form more than one fan.
+    pub non_manifold_vertices: bool,
+    /// Two faces that run along an edge in the same direction.
+    pub inconsistent_orientation: bool,
+    /// Vertices without a face.
+    pub isolated_vertices: bool,
+    /// Vertices with equal coordinates stay separate. If false, such vertices become one vertex,
+    /// and a face with two corners at one point is refused.
+    pub coincident_vertices: bool,
+}
+
+impl Capabilities {
+    /// All capabilities: any polygon mesh.
+    pub const ALL: Self = Self {
+        polygons: true,
+        non_manifold_edges: true,
+        non_manifold_vertices: true,
+        inconsistent_orientation: true,
+        isolated_vertices: true,
+        coincident_vertices: true,
+    };
+
+    /// Oriented manifolds of polygons, isolated vertices allowed.
+    pub const ORIENTED_MANIFOLDS: Self = Self {
+        non_manifold_edges: false,
+        non_manifold_vertices: false,
+        inconsistent_orientation: false,
+        ..Self::ALL
+    };
+
+    /// Checks whether a structure with these capabilities can hold `polygons`; O(corners) expected.
+    ///
+    /// # Errors
+    ///
+    /// Returns the first fault, in the order that [`BuildError`] defines.
+    pub fn check(&self, polygons: &PolygonMesh) -> Result<(), BuildError> {
+        if !self.polygons {
+            check_triangles(polygons)?;
+        }
+        let oriented = !self.inconsistent_orientation;
+        if oriented || !self.non_manifold_edges || !self.non_manifold_vertices {
+            if polygons.corner_count() > MAX_CORNERS {
+                return Err(BuildError::TooMany {
+                    elements: "corners",
+                    limit: MAX_CORNERS,
+                });
+            }
+            let faces = polygons.faces();
+            let incidence = Incidence::of(polygons.vertex_count(), faces, |_| true);
+            if incidence.edges().nth(MAX_EDGES).is_some() {
+                return Err(BuildError::TooMany {
+                    elements: "edges",
+                    limit: MAX_EDGES,
+                });
+            }
+            if !self.non_manifold_edges {
+                check_edges(&incidence)?;
+            }
+            if oriented {
+                check_orientation(&incidence)?;
+            }
+            if !self.non_manifold_vertices {
+                check_vertices(polygons, &incidence)?;
+            }
+        }
+        if !self.isolated_vertices {
+            check_isolated(polygons)?;
+        }
+        if !self.coincident_vertices {
+            check_coincident_corners(polygons)?;
+        }
+        Ok(())
+    }
+
+    /// Returns the fault of `polygons`, in which a constructor has found one.
+    ///
+    /// Constructors call this, so that their error is always the one of [`check`](Self::check).
+    ///
+    /// # Panics
+    ///
+    /// Panics if [`check`](Self::check) finds no fault: then the constructor or the check has a
+    /// bug.
+    pub fn refusal(&self, polygons: &PolygonMesh) -> BuildError {
+        match self.check(polygons) {
+            Err(fault) => fault,
+            Ok(()) => panic!("construction found a fault in a mesh that `check` accepts"),
+        }
+    }
+}
+
+fn check_triangles(polygons: &PolygonMesh) -> Result<(), BuildError> {
+    match polygons.first_polygon() {
+        Some((face, degree)) => Err(BuildError::NotATriangle { face, degree }),
+        None => Ok(()),
+    }
+}
+
+fn check_edges(incidence: &Incidence) -> Result<(), BuildError> {
+    match incidence.edges().find(|edge| edge.sides.len() > 2) {
+        Some(edge) => Err(BuildError::NonManifoldEdge {
+            vertices: edge.ends,
+            faces: edge.sides.iter().map(|side| side.face).collect(),
+        }),
+        None => Ok(()),
+    }
+}
+
+fn check_orientation(incidence: &Incidence) -> Result<(), BuildError> {
+    for edge in incidence.edges() {
+        for (i, later) in edge.sides.iter().enumerate() {
+            let earlier = edge.sides[..i]
+                .iter()
+                .find(|s| s.downward == later.downward);
+            if let Some(earlier) = earlier {
+                let [low, high] = edge.ends;
+                let (from, to) = if later.downward {
+                    (high, low)
+                } else {
+                    (low, high)
+                };
+                let (first, second) = (earlier.face, later.face);
+                return Err(BuildError::RepeatedSide {
+                    from,
+                    to,
+                    first,
+                    second,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_vertices(polygons: &PolygonMesh, incidence: &Incidence) -> Result<(), BuildError> {
+    let faults = incidence.several_fans(polygons.faces());
+    match faults.into_iter().min_by_key(|&(vertex, _)| vertex) {
+        Some((vertex, [first, second])) => Err(BuildError::NonManifoldVertex {
+            vertex,
+            first,
+            second,
+        }),
+        None => Ok(()),
+    }
+}
+
+fn check_isolated(polygons: &PolygonMesh) -> Result<(), BuildError> {
+    let mut used = vec![false; polygons.vertex_count()];
+    for v in polygons.faces().corners() {
+        used[v.index()] = true;
+    }
+    let mut isolated = polygons.vertices().filter(|v| !used[v.index()]);
+    match isolated.next() {
+        Some(vertex) => Err(BuildError::IsolatedVertex {
+            vertex,
+            count: 1 + isolated.count(),
+        }),
+        None => Ok(()),
+    }
+}
+
+fn check_coincident_corners(polygons: &PolygonMesh) -> Result<(), BuildError> {
+    let mut at = FxHashMap::default();
+    for (face, corners) in polygons.faces().iter() {
+        at.clear();
+        for &v in corners {
+            if let Some(first) = at.insert(coordinates(polygons.position(v)), v) {
+                return Err(BuildError::CoincidentCorners {
+                    face,
+                    vertices: [first, v],
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Returns the bits of a point's coordinates, with −0 as 0: the identity of a vertex that is its
+/// coordinates.
+fn coordinates(point: Point) -> [u32; 3] {
+    point.to_array().map(|x| (x + 0.0).to_bits())
+}

@@ -1,0 +1,203 @@
+//! Sharpness of edges and vertices under subdivision.
+
+use rustc_hash::FxHashSet;
+
+use crate::error::CreaseError;
+use crate::handle::Pair;
+use crate::polygon_mesh::PolygonMesh;
+use crate::row_id::VertexId;
+
+/// The smallest sharpness that counts as infinite: it does not decrease from level to level.
+pub const SHARP_FOR_EVER: f32 = 10.0;
+
+/// The sharpness of edges and vertices of a [`PolygonMesh`]; 0 for those without an entry.
+///
+/// Sharpness is the number of levels for which an edge or a vertex stays sharp; it may be
+/// fractional. From [`SHARP_FOR_EVER`] on, infinity included, it stays sharp at every level
+/// (DeRose, Kass & Truong 1998).
+///
+/// # Invariants
+///
+/// Edges (lower end first) and vertices are sorted, each at most once. Sharpness is above 0, and
+/// not NaN.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Creases {
+    edges: Vec<(Pair<VertexId>, f32)>,
+    corners: Vec<(VertexId, f32)>,
+}
+
+impl Creases {
+    /// Builds the creases of `polygons` from sharp edges, given by their two ends in either order,
+    /// and sharp vertices; O(corners) expected. A later entry replaces an earlier one of the same
+    /// edge or vertex; sharpness 0 removes it.
+    ///
+    /// # Errors
+    ///
+    /// Returns the first entry that is not a vertex or an edge of `polygons`, or whose sharpness is
+    /// negative or NaN. Edges are checked before vertices.
+    pub fn new(
+        polygons: &PolygonMesh,
+        edges: impl IntoIterator<Item = ([u32; 2], f32)>,
+        corners: impl IntoIterator<Item = (u32, f32)>,
+    ) -> Result<Self, CreaseError> {
+        let vertices = polygons.vertex_count();
+        let check = |entry, vertex: u32, sharpness: f32| {
+            if vertex as usize >= vertices {
+                return Err(CreaseError::MissingVertex {
+                    entry,
+                    vertex,
+                    vertices,
+                });
+            }
+            if sharpness.is_nan() || sharpness < 0.0 {
+                return Err(CreaseError::BadSharpness { entry, sharpness });
+            }
+            Ok(VertexId::new(vertex))
+        };
+        let mut known: Option<FxHashSet<Pair<VertexId>>> = None;
+        let mut creases = Self::default();
+        for (entry, ([a, b], sharpness)) in edges.into_iter().enumerate() {
+            let (a, b) = (check(entry, a, sharpness)?, check(entry, b, sharpness)?);
+            let known = known.get_or_insert_with(|| all_edges(polygons));
+            if !known.contains(&Pair::new(a, b)) {
+                return Err(CreaseError::NotAnEdge {
+                    entry,
+                    ends: [a, b],
+                });
+            }
+            creases.edges.push((Pair::new(a, b), sharpness));
+        }
+        for (entry, (vertex, sharpness)) in corners.into_iter().enumerate() {
+            let vertex = check(entry, vertex, sharpness)?;
+            creases.corners.push((vertex, sharpness));
+        }
+        Ok(Self::sorted(creases.edges, creases.corners))
+    }
+
+    /// Builds creases from entries in any order, which must be edges and vertices of a mesh. The
+    /// last entry of each edge or vertex counts; entries of sharpness 0 are dropped.
+    pub fn sorted(
+        mut edges: Vec<(Pair<VertexId>, f32)>,
+        mut corners: Vec<(VertexId, f32)>,
+    ) -> Self {
+        last_of_each(&mut edges);
+        last_of_each(&mut corners);
+        Self { edges, corners }
+    }
+
+    /// Returns these creases combined with `later`, whose entries replace those of the same edge or
+    /// vertex.
+    pub fn with(&self, later: &Self) -> Self {
+        let edges = [&self.edges[..], &later.edges].concat();
+        Self::sorted(edges, [&self.corners[..], &later.corners].concat())
+    }
+
+    /// Returns whether no edge and no vertex is sharp.
+    pub fn is_empty(&self) -> bool {
+        self.edges.is_empty() && self.corners.is_empty()
+    }
+
+    /// Returns the sharp edges, sorted by their ends.
+    pub fn edges(&self) -> &[(Pair<VertexId>, f32)] {
+        &self.edges
+    }
+
+    /// Returns the sharp vertices, sorted.
+    pub fn corners(&self) -> &[(VertexId, f32)] {
+        &self.corners
+    }
+
+    /// Returns the sharpness of the edge between `a` and `b`; O(log n) for n sharp edges.
+    pub fn edge(&self, a: VertexId, b: VertexId) -> f32 {
+        let pair = Pair::new(a, b);
+        let found = self.edges.binary_search_by_key(&pair, |&(edge, _)| edge);
+        found.map_or(0.0, |at| self.edges[at].1)
+    }
+
+    /// Returns the sharpness of vertex `v`; O(log n) for n sharp vertices.
+    pub fn corner(&self, v: VertexId) -> f32 {
+        let found = self.corners.binary_search_by_key(&v, |&(vertex, _)| vertex);
+        found.map_or(0.0, |at| self.corners[at].1)
+    }
+}
+
+fn all_edges(polygons: &PolygonMesh) -> FxHashSet<Pair<VertexId>> {
+    let faces = polygons.faces().iter();
+    faces
+        .flat_map(|(_, face)| Pair::sides(face.len(), |i| face[i]))
+        .collect()
+}
+
+/// Sorts entries by key, keeps the last entry of each key, and drops entries of sharpness 0.
+fn last_of_each<K: Ord + Copy>(entries: &mut Vec<(K, f32)>) {
+    // Reversed before a stable sort: the last entry of each key comes first, and is kept.
+    entries.reverse();
+    entries.sort_by_key(|&(key, _)| key);
+    entries.dedup_by_key(|&mut (key, _)| key);
+    entries.retain(|&(_, sharpness)| sharpness > 0.0);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Point;
+
+    fn square() -> PolygonMesh {
+        let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y];
+        PolygonMesh::new(corners, [[0, 1, 2, 3]]).expect("valid")
+    }
+
+    #[test]
+    fn a_later_entry_replaces_an_earlier_one_and_zero_removes_it() {
+        let edges = [
+            ([1, 0], 2.0),
+            ([2, 3], 1.0),
+            ([0, 1], 3.0),
+            ([1, 2], f32::INFINITY),
+            ([3, 2], 0.0),
+        ];
+        let creases = Creases::new(&square(), edges, [(3, 0.5), (0, 0.0)]).expect("valid");
+        let [a, b, c, d] = [0, 1, 2, 3].map(VertexId::new);
+        assert_eq!(creases.edge(a, b), 3.0);
+        assert_eq!(creases.edge(c, b), f32::INFINITY);
+        assert_eq!(creases.edge(c, d), 0.0);
+        assert_eq!(creases.edges().len(), 2);
+        assert_eq!(creases.corners(), [(d, 0.5)]);
+        assert_eq!(creases.corner(a), 0.0);
+    }
+
+    #[test]
+    fn each_fault_has_its_error() {
+        let of = |edges: Vec<([u32; 2], f32)>, corners: Vec<(u32, f32)>| {
+            Creases::new(&square(), edges, corners).unwrap_err()
+        };
+        let sharp = ([0, 1], 1.0);
+        assert_eq!(
+            of(vec![sharp, ([0, 2], 1.0)], vec![]),
+            CreaseError::NotAnEdge {
+                entry: 1,
+                ends: [0, 2].map(VertexId::new)
+            }
+        );
+        assert_eq!(
+            of(vec![([0, 4], 1.0)], vec![]),
+            CreaseError::MissingVertex {
+                entry: 0,
+                vertex: 4,
+                vertices: 4
+            }
+        );
+        assert!(matches!(
+            of(vec![sharp], vec![(0, 1.0), (1, -0.5)]),
+            CreaseError::BadSharpness { entry: 1, .. }
+        ));
+        assert!(matches!(
+            of(vec![([0, 1], f32::NAN)], vec![]),
+            CreaseError::BadSharpness { entry: 0, .. }
+        ));
+        assert!(matches!(
+            of(vec![([1, 1], 1.0)], vec![]),
+            CreaseError::NotAnEdge { .. }
+        ));
+    }
+}

@@ -1,0 +1,280 @@
+//! Iterators over distinct items, without hashing while there are few.
+
+use std::hash::Hash;
+
+use rustc_hash::FxHashSet;
+
+use crate::row_id::{RowId, Slot};
+
+/// The largest number of distinct items that are compared one by one; a hash set holds more.
+const FEW: usize = 16;
+
+/// The distinct items of an iterator, each at its first occurrence.
+///
+/// Neighbourhoods are small, so the items seen are stored in an array and compared one by one. From
+/// the 17th distinct item on, a hash set is used: a vertex of valence 100,000 still takes linear
+/// time. The array is filled only when the first item comes, so an empty iterator costs nothing.
+/// O(1) expected per item.
+#[derive(Clone, Debug)]
+pub struct Distinct<I: Iterator> {
+    items: I,
+    few: Option<[I::Item; FEW]>,
+    seen: usize,
+    many: FxHashSet<I::Item>,
+}
+
+/// Adds [`distinct`](IteratorExt::distinct) to every iterator.
+pub trait IteratorExt: Iterator + Sized {
+    /// Returns the distinct items, each at its first occurrence.
+    ///
+    /// ```
+    /// use sixfold_core::IteratorExt;
+    /// assert!([3, 1, 3, 2, 1].into_iter().distinct().eq([3, 1, 2]));
+    /// ```
+    #[inline]
+    fn distinct(self) -> Distinct<Self>
+    where
+        Self::Item: Copy + Eq + Hash,
+    {
+        Distinct {
+            items: self,
+            few: None,
+            seen: 0,
+            many: FxHashSet::default(),
+        }
+    }
+}
+
+impl<I: Iterator> IteratorExt for I {}
+
+impl<I> Distinct<I>
+where
+    I: Iterator,
+    I::Item: Copy + Eq + Hash,
+{
+    /// Records `item`; returns whether it is new.
+    #[inline]
+    fn note(&mut self, item: I::Item) -> bool {
+        let seen = self.seen;
+        if seen > FEW {
+            return self.many.insert(item);
+        }
+        let few = self.few.get_or_insert([item; FEW]);
+        if few[..seen].contains(&item) {
+            return false;
+        }
+        self.seen += 1;
+        if seen < FEW {
+            few[seen] = item;
+        } else {
+            self.many.extend(few.iter().copied().chain([item]));
+        }
+        true
+    }
+}
+
+impl<I> Iterator for Distinct<I>
+where
+    I: Iterator,
+    I::Item: Copy + Eq + Hash,
+{
+    type Item = I::Item;
+
+    #[inline]
+    fn next(&mut self) -> Option<I::Item> {
+        loop {
+            let item = self.items.next()?;
+            if self.note(item) {
+                return Some(item);
+            }
+        }
+    }
+}
+
+/// The number of steps from which on a hash set is used instead of repeating the walk.
+const FEW_STEPS: usize = 32;
+
+/// The distinct items of a walk that can be repeated, each at its first occurrence; empty slots are
+/// skipped.
+///
+/// It is used for the faces across the sides of a face. Two faces may share several sides, so each
+/// item is compared with the earlier ones. The last three items are stored, which is enough for
+/// triangles and quads. For larger faces the walk is repeated, and from 32 steps on a hash set
+/// keeps the total time linear. So the iterator stays in registers, while [`Distinct`] fills an
+/// array in memory. O(1) expected per step.
+///
+/// ```
+/// use sixfold_core::{DistinctWalk, FaceId, Slot};
+/// let faces = [4, 9, 4].map(|f| Slot::some(FaceId::new(f)));
+/// let across = [faces[0], Slot::NONE, faces[1], faces[2]];
+/// let neighbours = DistinctWalk::new(across.into_iter());
+/// assert!(neighbours.eq([4, 9].map(FaceId::new)));
+/// ```
+#[derive(Clone, Debug)]
+pub struct DistinctWalk<W, H: RowId> {
+    start: W,
+    walk: W,
+    /// The number of steps taken.
+    steps: usize,
+    /// The three items found last.
+    last: [Slot<H>; 3],
+    many: Option<FxHashSet<H>>,
+}
+
+impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> DistinctWalk<W, H> {
+    /// Builds the iterator from a walk at its start.
+    #[inline]
+    pub fn new(walk: W) -> Self {
+        Self {
+            start: walk.clone(),
+            walk,
+            steps: 0,
+            last: [Slot::NONE; 3],
+            many: None,
+        }
+    }
+
+    /// Returns the whole walk, if it has exactly three steps and has not begun.
+    #[inline]
+    fn whole_of_three(&self) -> Option<[Slot<H>; 3]> {
+        let mut walk = self.walk.clone();
+        let items = [walk.next()?, walk.next()?, walk.next()?];
+        (self.steps == 0 && walk.next().is_none()).then_some(items)
+    }
+
+    /// Returns whether `item`, found after `steps` steps, differs from all items found before.
+    #[inline]
+    fn is_new(&mut self, item: Slot<H>, steps: usize) -> bool {
+        let [a, b, c] = self.last;
+        if item == a || item == b || item == c {
+            return false;
+        }
+        if steps > self.last.len() {
+            // All but the set is passed by value, so that the walk itself can stay in registers.
+            if !is_new_among_many(self.start.clone(), steps, item, &mut self.many) {
+                return false;
+            }
+        }
+        self.last = [item, a, b];
+        true
+    }
+}
+
+/// Returns whether `item` differs from all items in the first `steps` steps of `walk`.
+#[cold]
+#[inline(never)]
+fn is_new_among_many<H: RowId>(
+    walk: impl Iterator<Item = Slot<H>>,
+    steps: usize,
+    item: Slot<H>,
+    many: &mut Option<FxHashSet<H>>,
+) -> bool {
+    let mut before = walk.take(steps);
+    if steps < FEW_STEPS {
+        return before.all(|other| other != item);
+    }
+    let many = many.get_or_insert_with(|| before.filter_map(Slot::get).collect());
+    item.get().is_some_and(|item| many.insert(item))
+}
+
+impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> Iterator for DistinctWalk<W, H> {
+    type Item = H;
+
+    #[inline]
+    fn next(&mut self) -> Option<H> {
+        loop {
+            let slot = self.walk.next()?;
+            let steps = self.steps;
+            self.steps += 1;
+            if let Some(item) = slot.get()
+                && self.is_new(slot, steps)
+            {
+                return Some(item);
+            }
+        }
+    }
+
+    /// Folds all items at once, which for triangles needs three comparisons and no state. Always
+    /// inlined: if the walk is passed to a function in memory, it takes twice the time, depending
+    /// on the position of the stack.
+    #[inline(always)]
+    fn fold<B, F: FnMut(B, H) -> B>(self, init: B, mut f: F) -> B {
+        let mut folded = init;
+        if let Some([a, b, c]) = self.whole_of_three() {
+            if let Some(item) = a.get() {
+                folded = f(folded, item);
+            }
+            if let Some(item) = b.get().filter(|_| b != a) {
+                folded = f(folded, item);
+            }
+            if let Some(item) = c.get().filter(|_| c != a && c != b) {
+                folded = f(folded, item);
+            }
+            return folded;
+        }
+        fold_by_steps(self, folded, f)
+    }
+}
+
+#[inline(never)]
+fn fold_by_steps<T, B>(items: impl Iterator<Item = T>, init: B, mut f: impl FnMut(B, T) -> B) -> B {
+    let mut folded = init;
+    for item in items {
+        folded = f(folded, item);
+    }
+    folded
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row_id::FaceId;
+
+    #[test]
+    fn a_walk_yields_each_item_once_from_any_step_on() {
+        let few = FEW_STEPS as u32;
+        for distinct in [1, 2, 3, 4, 5, few - 1, few, few + 1, few + 2, 200] {
+            for steps in [0, 1, 2, 3, 4, 5, few, few + 1, 3 * distinct] {
+                // Every fourth step is empty; the others repeat the items.
+                let slot = |i: u32| match i % 4 {
+                    1 => Slot::NONE,
+                    _ => Slot::some(FaceId::new(i * 7 % distinct)),
+                };
+                let slots: Vec<Slot<FaceId>> = (0..steps).map(slot).collect();
+                let mut expected: Vec<FaceId> = Vec::new();
+                for item in slots.iter().copied().filter_map(Slot::get) {
+                    if !expected.contains(&item) {
+                        expected.push(item);
+                    }
+                }
+                let walk = || DistinctWalk::new(slots.iter().copied());
+                for taken in [0, 1, 2, expected.len()] {
+                    let mut rest = walk();
+                    let mut items: Vec<FaceId> = rest.by_ref().take(taken).collect();
+                    rest.for_each(|item| items.push(item));
+                    assert_eq!(items, expected, "{taken} taken of {steps} steps");
+                }
+                let one_by_one: Vec<FaceId> = std::iter::from_fn({
+                    let mut walk = walk();
+                    move || walk.next()
+                })
+                .collect();
+                assert_eq!(one_by_one, expected);
+            }
+        }
+    }
+
+    #[test]
+    fn order_and_content_are_right_before_and_after_the_hash_set() {
+        for distinct in [0, 1, FEW - 1, FEW, FEW + 1, 100] {
+            let items = (0..3 * distinct).map(|i| (i * 7) % distinct.max(1));
+            let mut expected: Vec<usize> = Vec::new();
+            for item in items.clone() {
+                if !expected.contains(&item) {
+                    expected.push(item);
+                }
+            }
+            assert!(items.distinct().eq(expected), "{distinct} distinct items");
+        }
+    }
+}

@@ -1,0 +1,254 @@
+//! Changes of handles by edits: the trait that receives them, a record, and maps that follow it.
+
+use std::fmt;
+
+use crate::handle::{Handle, HandleMap};
+use crate::query::{EdgeMap, FaceMap, MeshQuery, VertexMap};
+
+/// The new handle of each element that existed before [`compact`](crate::MeshEdit::compact); `None`
+/// for rows that were holes. The maps cost as much as the structure's own maps by handle.
+pub struct OldToNew<M: MeshQuery> {
+    /// By old vertex.
+    pub vertices: VertexMap<M, Option<M::Vertex>>,
+    /// By old edge.
+    pub edges: EdgeMap<M, Option<M::Edge>>,
+    /// By old face.
+    pub faces: FaceMap<M, Option<M::Face>>,
+}
+
+impl<M: MeshQuery> EditLog<M> for OldToNew<M> {
+    fn renamed_vertex(&mut self, old: M::Vertex, new: M::Vertex) {
+        self.vertices.insert(old, Some(new));
+    }
+
+    fn renamed_edge(&mut self, old: M::Edge, new: M::Edge) {
+        self.edges.insert(old, Some(new));
+    }
+
+    fn renamed_face(&mut self, old: M::Face, new: M::Face) {
+        self.faces.insert(old, Some(new));
+    }
+}
+
+/// A receiver of what an edit does to elements and their handles.
+///
+/// An edit reports every change, and nothing else. Its result for the handles in use: first all
+/// removed ones disappear, then all renamings happen at once (elements may exchange handles), then
+/// the created ones are added. The order of the calls within one edit is not specified. A refused
+/// edit reports nothing.
+pub trait EditLog<M: MeshQuery> {
+    /// Whether the log uses the reports; if false, structures need not compute what to report.
+    const LISTENS: bool = true;
+
+    /// Reports that `v` was created.
+    fn created_vertex(&mut self, _v: M::Vertex) {}
+    /// Reports that `v` was removed.
+    fn removed_vertex(&mut self, _v: M::Vertex) {}
+    /// Reports that the handle of a vertex changed from `old` to `new`.
+    fn renamed_vertex(&mut self, _old: M::Vertex, _new: M::Vertex) {}
+    /// Reports that `e` was created.
+    fn created_edge(&mut self, _e: M::Edge) {}
+    /// Reports that `e` was removed.
+    fn removed_edge(&mut self, _e: M::Edge) {}
+    /// Reports that the handle of an edge changed from `old` to `new`.
+    fn renamed_edge(&mut self, _old: M::Edge, _new: M::Edge) {}
+    /// Reports that `f` was created.
+    fn created_face(&mut self, _f: M::Face) {}
+    /// Reports that `f` was removed.
+    fn removed_face(&mut self, _f: M::Face) {}
+    /// Reports that the handle of a face changed from `old` to `new`.
+    fn renamed_face(&mut self, _old: M::Face, _new: M::Face) {}
+}
+
+/// A log that ignores all reports.
+impl<M: MeshQuery> EditLog<M> for () {
+    const LISTENS: bool = false;
+}
+
+/// The changes by edits since the record was last cleared, to be read or followed by maps.
+///
+/// ```
+/// # use sixfold_core::{EditRecord, HandleMap, MeshEdit, MeshQuery};
+/// # fn example<M: MeshEdit>(mesh: &mut M, e: M::Edge) -> Result<(), sixfold_core::Refusal<M>> {
+/// let mut sharpness = mesh.edge_map(0.0_f32);
+/// let mut record = EditRecord::new();
+/// mesh.flip_edge(e, &mut record)?;
+/// record.edges.follow(&mut sharpness, &0.0);
+/// # Ok(())
+/// # }
+/// ```
+pub struct EditRecord<M: MeshQuery> {
+    /// Changes of vertices.
+    pub vertices: Changes<M::Vertex>,
+    /// Changes of edges.
+    pub edges: Changes<M::Edge>,
+    /// Changes of faces.
+    pub faces: Changes<M::Face>,
+}
+
+impl<M: MeshQuery> EditRecord<M> {
+    /// Returns an empty record.
+    pub fn new() -> Self {
+        Self {
+            vertices: Changes::default(),
+            edges: Changes::default(),
+            faces: Changes::default(),
+        }
+    }
+
+    /// Removes all changes but keeps the memory, for the next edit.
+    pub fn clear(&mut self) {
+        self.vertices.clear();
+        self.edges.clear();
+        self.faces.clear();
+    }
+}
+
+impl<M: MeshQuery> Default for EditRecord<M> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<M: MeshQuery> fmt::Debug for EditRecord<M> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("EditRecord")
+            .field("vertices", &self.vertices)
+            .field("edges", &self.edges)
+            .field("faces", &self.faces)
+            .finish()
+    }
+}
+
+/// Changes of elements of one kind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Changes<H> {
+    /// The handles of new elements.
+    pub created: Vec<H>,
+    /// The handles of removed elements.
+    pub removed: Vec<H>,
+    /// The old and the new handle of each renamed element.
+    pub renamed: Vec<[H; 2]>,
+}
+
+impl<H> Default for Changes<H> {
+    fn default() -> Self {
+        Self {
+            created: Vec::new(),
+            removed: Vec::new(),
+            renamed: Vec::new(),
+        }
+    }
+}
+
+impl<H: Handle> Changes<H> {
+    fn clear(&mut self) {
+        self.created.clear();
+        self.removed.clear();
+        self.renamed.clear();
+    }
+
+    /// Returns whether there are no changes.
+    pub fn is_empty(&self) -> bool {
+        self.created.is_empty() && self.removed.is_empty() && self.renamed.is_empty()
+    }
+
+    /// Updates `map` after one edit; O(changes). Removed elements lose their data (in a map by row
+    /// it stays until the row is reused), renamed elements keep theirs under the new handle, and
+    /// new elements get `fresh`.
+    ///
+    /// The record must hold the changes of one edit; after several edits, follow their records one
+    /// by one.
+    pub fn follow<T: Clone>(&self, map: &mut H::Map<T>, fresh: &T) {
+        for &old in &self.removed {
+            map.remove(old);
+        }
+        // All at once: the new handle of one element may be the old handle of another.
+        match *self.renamed.as_slice() {
+            [] => {}
+            [[old, new]] => map.rename(old, new),
+            ref renamed => {
+                let values: Vec<T> = renamed.iter().map(|&[old, _]| map[old].clone()).collect();
+                for &[old, _] in renamed {
+                    map.remove(old);
+                }
+                for (&[_, new], value) in renamed.iter().zip(values) {
+                    map.insert(new, value);
+                }
+            }
+        }
+        for &new in &self.created {
+            map.insert(new, fresh.clone());
+        }
+    }
+}
+
+impl<M: MeshQuery> EditLog<M> for EditRecord<M> {
+    fn created_vertex(&mut self, v: M::Vertex) {
+        self.vertices.created.push(v);
+    }
+
+    fn removed_vertex(&mut self, v: M::Vertex) {
+        self.vertices.removed.push(v);
+    }
+
+    fn renamed_vertex(&mut self, old: M::Vertex, new: M::Vertex) {
+        self.vertices.renamed.push([old, new]);
+    }
+
+    fn created_edge(&mut self, e: M::Edge) {
+        self.edges.created.push(e);
+    }
+
+    fn removed_edge(&mut self, e: M::Edge) {
+        self.edges.removed.push(e);
+    }
+
+    fn renamed_edge(&mut self, old: M::Edge, new: M::Edge) {
+        self.edges.renamed.push([old, new]);
+    }
+
+    fn created_face(&mut self, f: M::Face) {
+        self.faces.created.push(f);
+    }
+
+    fn removed_face(&mut self, f: M::Face) {
+        self.faces.removed.push(f);
+    }
+
+    fn renamed_face(&mut self, old: M::Face, new: M::Face) {
+        self.faces.renamed.push([old, new]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::handle::{HashHandleMap, Pair, RowMap};
+    use crate::row_id::{FaceId, VertexId};
+
+    #[test]
+    fn maps_follow_exchanged_handles() {
+        let f = FaceId::new;
+        let changes = Changes {
+            created: vec![f(3)],
+            removed: vec![f(2)],
+            renamed: vec![[f(0), f(1)], [f(1), f(0)]],
+        };
+        let mut rows: RowMap<FaceId, char> = HandleMap::filled(3, '-');
+        (rows[f(0)], rows[f(1)], rows[f(2)]) = ('a', 'b', 'c');
+        changes.follow(&mut rows, &'n');
+        assert_eq!([rows[f(0)], rows[f(1)], rows[f(3)]], ['b', 'a', 'n']);
+
+        let e = |a, b| Pair::new(VertexId::new(a), VertexId::new(b));
+        let mut pairs: HashHandleMap<Pair<VertexId>, char> = HandleMap::filled(0, '-');
+        pairs[e(0, 1)] = 'x';
+        let changes = Changes {
+            created: vec![],
+            removed: vec![],
+            renamed: vec![[e(0, 1), e(2, 3)]],
+        };
+        changes.follow(&mut pairs, &'n');
+        assert_eq!([pairs[e(0, 1)], pairs[e(3, 2)]], ['-', 'x']);
+    }
+}

@@ -1,0 +1,183 @@
+//! Errors of face lists, construction, moves, refinement, creases and invariants.
+
+use crate::refine::Split;
+use crate::row_id::{FaceId, VertexId};
+
+/// The reason why a list of faces is not a [`PolygonMesh`](crate::PolygonMesh).
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum PolygonError {
+    /// A face names a vertex that does not exist.
+    #[error(
+        "face {face} names vertex {vertex}, but there are {vertices} vertices: correct the index"
+    )]
+    VertexOutOfRange {
+        face: FaceId,
+        vertex: VertexId,
+        vertices: usize,
+    },
+    /// A face with fewer than three corners.
+    #[error("face {face} has {corners} corners, and a polygon has at least three: remove the face")]
+    TooFewCorners { face: FaceId, corners: usize },
+    /// A face names one vertex twice.
+    #[error("face {face} names vertex {vertex} twice: remove the face, or split it there")]
+    RepeatedVertex { face: FaceId, vertex: VertexId },
+    /// More elements than a handle can name.
+    #[error("more than {limit} {elements}: split the mesh, handles are 32 bits")]
+    TooMany {
+        elements: &'static str,
+        limit: usize,
+    },
+}
+
+/// The reason why a structure cannot hold a polygon mesh.
+///
+/// Only the first fault is reported, in a fixed order: degree, size, edges with three faces,
+/// orientation, vertices, isolated vertices, coincident corners; for each of these the lowest
+/// element.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum BuildError {
+    /// More elements than a handle can name.
+    #[error("more than {limit} {elements}: split the mesh, handles are 32 bits")]
+    TooMany {
+        elements: &'static str,
+        limit: usize,
+    },
+    /// A polygon, in a structure that holds only triangles.
+    #[error("face {face} has {degree} corners, and only triangles fit: triangulate the mesh")]
+    NotATriangle { face: FaceId, degree: usize },
+    /// Three or more faces along one edge.
+    #[error("edge {0}–{1} has {count} faces ({faces}): split it, or choose a structure that holds non-manifold edges",
+        .vertices[0], .vertices[1], count = .faces.len(), faces = names(.faces))]
+    NonManifoldEdge {
+        vertices: [VertexId; 2],
+        faces: Vec<FaceId>,
+    },
+    /// Two faces run along one edge in the same direction.
+    #[error("faces {first} and {second} both run {from}→{to}: flip one of them, or split the edge")]
+    RepeatedSide {
+        from: VertexId,
+        to: VertexId,
+        first: FaceId,
+        second: FaceId,
+    },
+    /// The faces at a vertex form more than one fan.
+    #[error(
+        "faces {first} and {second} meet at vertex {vertex} but not along edges there: duplicate the vertex"
+    )]
+    NonManifoldVertex {
+        vertex: VertexId,
+        first: FaceId,
+        second: FaceId,
+    },
+    /// A vertex without a face.
+    #[error("vertex {vertex} has no face ({count} in total): remove isolated vertices")]
+    IsolatedVertex { vertex: VertexId, count: usize },
+    /// Two corners of one face at one point, in a structure where a vertex is its coordinates.
+    #[error("corners {0} and {1} of face {face} have the same coordinates: remove the face, or move a vertex", .vertices[0], .vertices[1])]
+    CoincidentCorners {
+        face: FaceId,
+        vertices: [VertexId; 2],
+    },
+}
+
+/// The reason why vertices cannot be moved; no vertex has moved then.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum MoveError {
+    /// Two corners of one face at one point, in a structure where a vertex is its coordinates.
+    #[error(
+        "two corners of face {face} would be at one point, and in this structure a vertex is its coordinates: keep them apart, or choose a structure that shares vertices"
+    )]
+    CoincidentCorners { face: FaceId },
+    /// Positions for a different number of vertices.
+    #[error("{given} positions for {vertices} vertices: the map belongs to another mesh")]
+    OtherMesh { given: usize, vertices: usize },
+}
+
+/// The reason why a structure cannot refine itself; nothing has changed then.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum RefineError {
+    /// A split that the structure does not support.
+    #[error(
+        "{structure} cannot split its own tables into {split}: build it from the refined polygons, or choose another structure"
+    )]
+    Unsupported {
+        structure: &'static str,
+        split: Split,
+    },
+    /// A polygon, for a split of triangles.
+    #[error(
+        "face {face} has {degree} corners, and this split requires triangles: triangulate the mesh"
+    )]
+    NotATriangle { face: FaceId, degree: usize },
+    /// Two triangles with two common edges, whose midpoints or face points the split would join
+    /// twice.
+    #[error(
+        "faces {first} and {second} share two edges, so the refined mesh would have two edges with the same ends: cut one of the two faces first, or choose a structure that holds edges with more than two faces"
+    )]
+    DoubleEdge { first: FaceId, second: FaceId },
+    /// More elements than a handle can name.
+    #[error(
+        "the refined mesh would have {number} {elements}, but 32-bit handles allow at most {limit}: refine fewer levels, or split the mesh"
+    )]
+    TooMany {
+        elements: &'static str,
+        number: usize,
+        limit: usize,
+    },
+}
+
+/// The reason why creases do not fit a mesh; `entry` is the number of the edge, or of the vertex,
+/// in the input, from 0.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum CreaseError {
+    /// A vertex that does not exist.
+    #[error("vertex {vertex} does not exist: the mesh has {vertices}, counted from 0")]
+    MissingVertex {
+        entry: usize,
+        vertex: u32,
+        vertices: usize,
+    },
+    /// Two vertices that are not adjacent corners of a face.
+    #[error("{0} and {1} are not the ends of an edge: name two vertices that follow each other in a face", .ends[0], .ends[1])]
+    NotAnEdge { entry: usize, ends: [VertexId; 2] },
+    /// A sharpness below 0 or NaN.
+    #[error("sharpness {sharpness} is not a number from 0 to inf")]
+    BadSharpness { entry: usize, sharpness: f32 },
+}
+
+/// Lists `faces`, at most eight of them.
+fn names(faces: &[FaceId]) -> String {
+    let shown: Vec<String> = faces.iter().take(8).map(ToString::to_string).collect();
+    let more = if faces.len() > 8 { ", …" } else { "" };
+    shown.join(", ") + more
+}
+
+/// The invariant of a structure that fails, and where: a bug in Sixfold, found by `validate()`.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{invariant} fails: {detail}")]
+pub struct InvariantError {
+    /// The number of the invariant in the structure's documentation (`"I3"`).
+    pub invariant: &'static str,
+    /// The element and what is wrong with it.
+    pub detail: String,
+}
+
+impl InvariantError {
+    /// Builds the error that `invariant` fails, with `detail`.
+    pub fn new(invariant: &'static str, detail: impl Into<String>) -> Self {
+        Self {
+            invariant,
+            detail: detail.into(),
+        }
+    }
+}

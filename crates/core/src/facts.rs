@@ -1,0 +1,287 @@
+//! The exact topology of a list of faces.
+
+use std::collections::BTreeMap;
+
+use rustc_hash::FxHashSet;
+use serde::{Deserialize, Serialize};
+use serde_with::{DisplayFromStr, serde_as};
+
+use crate::error::PolygonError;
+use crate::face_list::FaceList;
+use crate::incidence::{Incidence, corners_at_ends};
+use crate::partition::Partition;
+use crate::polygon_mesh::{PolygonMesh, repeated};
+
+/// The topology of a list of faces; exact, and independent of any structure.
+///
+/// A face that names a vertex twice is degenerate: it counts in `degenerate_faces`, `faces`,
+/// `face_degree` and `isolated_vertices` only. A list of fewer than three corners counts only in
+/// `degenerate_faces`. All other faces, and their vertices, are *used*. A field is `None` if it is
+/// not defined for the mesh.
+///
+/// With vertices cut apart into one per fan, v − e + f = 2(c − g) − h for c components, h boundary
+/// loops and genus g (Euler–Poincaré); `genus` is computed from it.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Facts {
+    /// Vertices, isolated ones included.
+    pub vertices: usize,
+    /// Unordered pairs of vertices that follow each other in some face.
+    pub edges: usize,
+    /// Faces with three corners or more, degenerate ones included.
+    pub faces: usize,
+    /// V − E + F over the used vertices and faces.
+    pub euler_characteristic: i64,
+    /// Classes of used faces that are connected by shared edges.
+    pub components: usize,
+    /// Edges with one face.
+    pub boundary_edges: usize,
+    /// Closed boundary curves, with vertices cut apart into one per fan; `None` if there is a
+    /// non-manifold edge.
+    pub boundary_loops: Option<usize>,
+    /// Edges with three faces or more.
+    pub non_manifold_edges: usize,
+    /// Used vertices with more than one fan, or at the end of a non-manifold edge.
+    pub non_manifold_vertices: usize,
+    /// Edges with two faces that both run along it in the same direction.
+    pub inconsistent_edges: usize,
+    /// Whether there is no inconsistent edge; `None` without faces.
+    pub consistently_oriented: Option<bool>,
+    /// Whether flipping faces can make every edge with two faces consistent; `None` without faces.
+    pub orientable: Option<bool>,
+    /// Whether there are faces, and no boundary edge.
+    pub closed: bool,
+    /// The sum over the components; `None` unless all are orientable and without non-manifold
+    /// edges.
+    pub genus: Option<i64>,
+    /// Vertices that no face names.
+    pub isolated_vertices: usize,
+    /// The number of used faces minus the number of different vertex sets among them.
+    pub duplicate_faces: usize,
+    /// Faces that name a vertex twice, and lists of fewer than three corners.
+    pub degenerate_faces: usize,
+    /// The number of edges at a vertex, over the used vertices.
+    pub valence: Option<Spread>,
+    /// The number of corners of a face.
+    pub face_degree: Option<Spread>,
+}
+
+/// The distribution of a count: its extremes, its mean, and how often each value occurs.
+#[serde_as]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Spread {
+    /// The smallest value.
+    pub min: usize,
+    /// The largest value.
+    pub max: usize,
+    /// The arithmetic mean.
+    pub mean: f64,
+    /// How often each value occurs; `None` if there are more than 64 values.
+    #[serde_as(as = "Option<BTreeMap<DisplayFromStr, _>>")]
+    pub hist: Option<BTreeMap<usize, usize>>,
+}
+
+impl Spread {
+    /// Returns the distribution of `values`; `None` if there are no values.
+    fn of(values: impl Iterator<Item = usize>) -> Option<Self> {
+        let mut hist = BTreeMap::new();
+        for value in values {
+            *hist.entry(value).or_insert(0_usize) += 1;
+        }
+        let count: usize = hist.values().sum();
+        let sum: f64 = hist
+            .iter()
+            .map(|(&value, &times)| value as f64 * times as f64)
+            .sum();
+        Some(Self {
+            min: *hist.first_key_value()?.0,
+            max: *hist.last_key_value()?.0,
+            mean: sum / count as f64,
+            hist: (hist.len() <= 64).then_some(hist),
+        })
+    }
+}
+
+impl Facts {
+    /// Returns the facts of a polygon mesh; O(corners) expected.
+    pub fn of(polygons: &PolygonMesh) -> Self {
+        let (vertices, faces) = (polygons.vertex_count(), polygons.faces());
+        let mut named = vec![false; vertices];
+        for vertex in faces.corners() {
+            named[vertex.index()] = true;
+        }
+        Survey::of(vertices, faces, &vec![true; faces.len()]).facts(&named)
+    }
+
+    /// Returns the facts of faces as in a file, degenerate ones included; O(corners) expected.
+    ///
+    /// # Errors
+    ///
+    /// [`PolygonError::VertexOutOfRange`] for the first corner whose vertex does not exist.
+    pub fn of_faces(vertices: usize, faces: &FaceList) -> Result<Self, PolygonError> {
+        let mut named = vec![false; vertices];
+        for (face, corners) in faces.iter() {
+            for &vertex in corners {
+                let seen = named.get_mut(vertex.index());
+                let seen = seen.ok_or(PolygonError::VertexOutOfRange {
+                    face,
+                    vertex,
+                    vertices,
+                })?;
+                *seen |= corners.len() >= 3;
+            }
+        }
+        let used: Vec<bool> = faces
+            .iter()
+            .map(|(_, f)| f.len() >= 3 && repeated(f).is_none())
+            .collect();
+        Ok(Survey::of(vertices, faces, &used).facts(&named))
+    }
+}
+
+/// The results of one pass over the edges.
+struct Survey<'a> {
+    faces: &'a FaceList,
+    used: &'a [bool],
+    edges: usize,
+    boundary_edges: usize,
+    non_manifold_edges: usize,
+    inconsistent_edges: usize,
+    orientable: bool,
+    /// Classes of faces that are connected by shared edges; each unused face is a class of its own.
+    components: Partition,
+    /// Classes of corners in the same fan; each corner of an unused face is a class of its own.
+    fans: Partition,
+    /// Classes of fans that are joined by boundary edges.
+    loops: Partition,
+    /// One fan of every boundary edge.
+    boundary_fans: Vec<usize>,
+    /// By vertex: the number of edges that end there.
+    valence: Vec<usize>,
+    /// By vertex: whether a non-manifold edge ends there.
+    on_non_manifold_edge: Vec<bool>,
+}
+
+impl<'a> Survey<'a> {
+    fn of(vertices: usize, faces: &'a FaceList, used: &'a [bool]) -> Self {
+        let incidence = Incidence::of(vertices, faces, |f| used[f.index()]);
+        let corners = faces.corners().len();
+        let mut survey = Self {
+            faces,
+            used,
+            edges: 0,
+            boundary_edges: 0,
+            non_manifold_edges: 0,
+            inconsistent_edges: 0,
+            orientable: true,
+            components: Partition::new(faces.len()),
+            fans: incidence.fans(faces),
+            loops: Partition::new(corners),
+            boundary_fans: Vec::new(),
+            valence: vec![0; vertices],
+            on_non_manifold_edge: vec![false; vertices],
+        };
+        // Which faces must be flipped relative to each other; only edges with two faces count.
+        let mut turned = Partition::new(faces.len());
+        for edge in incidence.edges() {
+            survey.edges += 1;
+            for v in edge.ends {
+                survey.valence[v.index()] += 1;
+                survey.on_non_manifold_edge[v.index()] |= edge.sides.len() > 2;
+            }
+            for pair in edge.sides.windows(2) {
+                survey
+                    .components
+                    .join(pair[0].face.index(), pair[1].face.index());
+            }
+            match edge.sides {
+                [side] => {
+                    survey.boundary_edges += 1;
+                    let ends = corners_at_ends(side, faces);
+                    let [a, b] = ends.map(|corner| survey.fans.root(corner).0);
+                    survey.loops.join(a, b);
+                    survey.boundary_fans.push(a);
+                }
+                [a, b] => {
+                    let same = a.downward == b.downward;
+                    survey.inconsistent_edges += usize::from(same);
+                    survey.orientable &= turned.relate(a.face.index(), b.face.index(), same);
+                }
+                _ => survey.non_manifold_edges += 1,
+            }
+        }
+        survey
+    }
+
+    fn facts(mut self, named: &[bool]) -> Facts {
+        let faces = self.faces;
+        let used_faces = self.used.iter().filter(|&&used| used).count();
+        let used_vertices = self.valence.iter().filter(|&&valence| valence > 0).count();
+        let components = self.components.classes() - (faces.len() - used_faces);
+        let unused_corners: usize = faces
+            .iter()
+            .filter(|(f, _)| !self.used[f.index()])
+            .map(|(_, c)| c.len())
+            .sum();
+        let fans = self.fans.classes() - unused_corners;
+        let polygons = faces.iter().filter(|(_, face)| face.len() >= 3);
+        let boundary_loops = (self.non_manifold_edges == 0).then(|| self.boundary_loops());
+        let any = used_faces > 0;
+        let signed = |count: usize| i64::try_from(count).expect("counts fit");
+        let genus = boundary_loops
+            .filter(|_| any && self.orientable)
+            .map(|loops| {
+                let cut = signed(fans) - signed(self.edges) + signed(used_faces);
+                (2 * signed(components) - cut - signed(loops)) / 2
+            });
+        Facts {
+            vertices: named.len(),
+            edges: self.edges,
+            faces: polygons.clone().count(),
+            euler_characteristic: signed(used_vertices) - signed(self.edges) + signed(used_faces),
+            components,
+            boundary_edges: self.boundary_edges,
+            boundary_loops,
+            non_manifold_edges: self.non_manifold_edges,
+            non_manifold_vertices: self.non_manifold_vertices(),
+            inconsistent_edges: self.inconsistent_edges,
+            consistently_oriented: any.then_some(self.inconsistent_edges == 0),
+            orientable: any.then_some(self.orientable),
+            closed: any && self.boundary_edges == 0,
+            genus,
+            isolated_vertices: named.iter().filter(|&&named| !named).count(),
+            duplicate_faces: used_faces - self.distinct_vertex_sets(),
+            degenerate_faces: faces.len() - used_faces,
+            valence: Spread::of(self.valence.iter().copied().filter(|&valence| valence > 0)),
+            face_degree: Spread::of(polygons.map(|(_, face)| face.len())),
+        }
+    }
+
+    /// Returns the number of boundary loops: classes of fans that are joined by boundary edges.
+    fn boundary_loops(&mut self) -> usize {
+        let fans = std::mem::take(&mut self.boundary_fans);
+        let loops = fans.into_iter().map(|fan| self.loops.root(fan).0);
+        loops.collect::<FxHashSet<_>>().len()
+    }
+
+    fn non_manifold_vertices(&mut self) -> usize {
+        let mut fan: Vec<Option<usize>> = vec![None; self.valence.len()];
+        for (f, face) in self.faces.iter().filter(|(f, _)| self.used[f.index()]) {
+            for (corner, v) in self.faces.range(f).zip(face) {
+                let (root, _) = self.fans.root(corner);
+                let first = *fan[v.index()].get_or_insert(root);
+                self.on_non_manifold_edge[v.index()] |= root != first;
+            }
+        }
+        self.on_non_manifold_edge.iter().filter(|&&not| not).count()
+    }
+
+    fn distinct_vertex_sets(&self) -> usize {
+        let mut corners = self.faces.corners().to_vec();
+        for (f, _) in self.faces.iter() {
+            corners[self.faces.range(f)].sort_unstable();
+        }
+        let used = self.faces.iter().filter(|(f, _)| self.used[f.index()]);
+        let sets = used.map(|(f, _)| &corners[self.faces.range(f)]);
+        sets.collect::<FxHashSet<_>>().len()
+    }
+}

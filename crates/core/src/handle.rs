@@ -1,0 +1,239 @@
+//! Handles of elements, and data stored by handle.
+
+use std::fmt::Debug;
+use std::hash::Hash;
+use std::marker::PhantomData;
+use std::ops::{Index, IndexMut};
+
+use rustc_hash::FxHashMap;
+
+use crate::row_id::RowId;
+
+/// A value that names an element of a structure: a row, a pair of vertices, or coordinates.
+///
+/// The type of the handle also decides how data is stored by it ([`Handle::Map`]).
+pub trait Handle: Copy + Eq + Ord + Hash + Debug + Send + Sync + 'static {
+    /// Data by handle: a vector for rows, a hash map otherwise.
+    type Map<T: Clone>: HandleMap<Self, T>;
+}
+
+/// Data for each element of one kind, by handle.
+///
+/// A handle reads the value that the map was filled with until its own value is written.
+pub trait HandleMap<H: Copy, T: Clone>: Index<H, Output = T> + IndexMut<H> + Clone {
+    /// Builds a map that returns `value` for every handle; `rows` is the exclusive upper bound of
+    /// handles that are rows.
+    fn filled(rows: usize, value: T) -> Self;
+
+    /// Reserves memory for `more` handles, if the map allocates for each handle that is written.
+    fn reserve(&mut self, more: usize) {
+        let _ = more;
+    }
+
+    /// Stores `value` for `handle`, which may be new; O(1) amortised. A map by row grows up to the
+    /// row; rows in between, which are not elements yet, also get `value`.
+    fn insert(&mut self, handle: H, value: T);
+
+    /// Removes the value of `handle`, whose element was removed; O(1).
+    fn remove(&mut self, handle: H);
+
+    /// Moves the value of `old` to `new`; O(1) amortised.
+    ///
+    /// This renames one element. If an edit exchanges the handles of several elements,
+    /// [`Changes::follow`](crate::Changes::follow) renames all of them at once.
+    fn rename(&mut self, old: H, new: H) {
+        let value = self[old].clone();
+        self.remove(old);
+        self.insert(new, value);
+    }
+}
+
+/// A [`HandleMap`] for handles that are rows: a vector.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RowMap<H, T> {
+    values: Vec<T>,
+    names: PhantomData<H>,
+}
+
+impl<H, T> RowMap<H, T> {
+    /// Returns the values by row.
+    pub fn values(&self) -> &[T] {
+        &self.values
+    }
+}
+
+impl<H: RowId, T: Clone> HandleMap<H, T> for RowMap<H, T> {
+    fn filled(rows: usize, value: T) -> Self {
+        Self {
+            values: vec![value; rows],
+            names: PhantomData,
+        }
+    }
+
+    #[inline]
+    fn insert(&mut self, handle: H, value: T) {
+        let at = handle.row() as usize;
+        if at >= self.values.len() {
+            self.values.resize(at + 1, value);
+        } else {
+            self.values[at] = value;
+        }
+    }
+
+    /// Does nothing: no other element has the row, and its value stays until it is written.
+    #[inline]
+    fn remove(&mut self, _: H) {}
+}
+
+impl<H: RowId, T> Index<H> for RowMap<H, T> {
+    type Output = T;
+
+    #[inline]
+    fn index(&self, handle: H) -> &T {
+        match self.values.get(handle.row() as usize) {
+            Some(value) => value,
+            None => no_such_row(handle, self.values.len()),
+        }
+    }
+}
+
+impl<H: RowId, T> IndexMut<H> for RowMap<H, T> {
+    #[inline]
+    fn index_mut(&mut self, handle: H) -> &mut T {
+        let rows = self.values.len();
+        match self.values.get_mut(handle.row() as usize) {
+            Some(value) => value,
+            None => no_such_row(handle, rows),
+        }
+    }
+}
+
+/// Takes the handle by value: a reference would keep it in memory on the path that does not panic.
+#[cold]
+#[inline(never)]
+fn no_such_row<H: Debug>(handle: H, rows: usize) -> ! {
+    panic!("no {handle:?} in this map: it has {rows} rows")
+}
+
+/// A [`HandleMap`] for handles that are not rows: a hash map, and one value for all other handles.
+#[derive(Clone, Debug)]
+pub struct HashHandleMap<H, T> {
+    written: FxHashMap<H, T>,
+    otherwise: T,
+}
+
+impl<H: Handle, T: Clone> HandleMap<H, T> for HashHandleMap<H, T> {
+    fn filled(_rows: usize, value: T) -> Self {
+        Self {
+            written: FxHashMap::default(),
+            otherwise: value,
+        }
+    }
+
+    fn reserve(&mut self, more: usize) {
+        self.written.reserve(more);
+    }
+
+    fn insert(&mut self, handle: H, value: T) {
+        self.written.insert(handle, value);
+    }
+
+    fn remove(&mut self, handle: H) {
+        self.written.remove(&handle);
+    }
+}
+
+impl<H: Handle, T> Index<H> for HashHandleMap<H, T> {
+    type Output = T;
+
+    fn index(&self, handle: H) -> &T {
+        self.written.get(&handle).unwrap_or(&self.otherwise)
+    }
+}
+
+impl<H: Handle, T: Clone> IndexMut<H> for HashHandleMap<H, T> {
+    fn index_mut(&mut self, handle: H) -> &mut T {
+        self.written
+            .entry(handle)
+            .or_insert_with(|| self.otherwise.clone())
+    }
+}
+
+/// An edge as the pair of its ends, the lower first: the handle in structures without a table of
+/// edges.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct Pair<V>([V; 2]);
+
+impl<V: Handle> Pair<V> {
+    /// Returns the edge between `a` and `b`, in either order.
+    #[inline]
+    pub fn new(a: V, b: V) -> Self {
+        Self(if a < b { [a, b] } else { [b, a] })
+    }
+
+    /// Returns the sides of a face of `degree` corners: side `i` joins corners `i` and `i + 1`.
+    ///
+    /// ```
+    /// use sixfold_core::{Pair, VertexId};
+    /// let face = [4, 9, 6].map(VertexId::new);
+    /// let mut sides = Pair::sides(face.len(), |i| face[i]);
+    /// assert_eq!(sides.next(), Some(Pair::new(face[0], face[1])));
+    /// assert_eq!(sides.last(), Some(Pair::new(face[2], face[0])));
+    /// ```
+    #[inline]
+    pub fn sides(degree: usize, corner: impl Fn(usize) -> V) -> impl Iterator<Item = Self> {
+        (0..degree).map(move |i| {
+            let next = if i + 1 == degree { 0 } else { i + 1 };
+            Self::new(corner(i), corner(next))
+        })
+    }
+
+    /// Returns the two ends, the lower first.
+    #[inline]
+    pub fn ends(self) -> [V; 2] {
+        self.0
+    }
+
+    /// Returns whether `v` is one of the two ends.
+    #[inline]
+    pub fn has(self, v: V) -> bool {
+        self.0[0] == v || self.0[1] == v
+    }
+}
+
+impl<V: Handle> Handle for Pair<V> {
+    type Map<T: Clone> = HashHandleMap<Self, T>;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row_id::VertexId;
+
+    #[test]
+    fn a_pair_has_no_direction() {
+        let [a, b] = [VertexId::new(9), VertexId::new(4)];
+        assert_eq!(Pair::new(a, b), Pair::new(b, a));
+        assert_eq!(Pair::new(a, b).ends(), [b, a]);
+        assert!(Pair::new(a, b).has(a) && !Pair::new(a, b).has(VertexId::new(5)));
+    }
+
+    #[test]
+    fn maps_return_the_initial_value_until_written() {
+        let v = VertexId::new;
+        let mut rows: RowMap<VertexId, u8> = HandleMap::filled(3, 7);
+        rows[v(1)] = 1;
+        assert_eq!(rows.values(), [7, 1, 7]);
+        let mut pairs: HashHandleMap<Pair<VertexId>, u8> = HandleMap::filled(0, 7);
+        pairs[Pair::new(v(0), v(1))] += 1;
+        assert_eq!(pairs[Pair::new(v(1), v(0))], 8);
+        assert_eq!(pairs[Pair::new(v(1), v(2))], 7);
+    }
+
+    #[test]
+    #[should_panic(expected = "no v3 in this map: it has 3 rows")]
+    fn a_row_beyond_the_map_panics_with_its_handle() {
+        let rows: RowMap<VertexId, u8> = HandleMap::filled(3, 7);
+        let _ = rows[VertexId::new(3)];
+    }
+}

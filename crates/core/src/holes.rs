@@ -1,0 +1,202 @@
+//! Holes: the rows of deleted elements, until a mesh is compacted.
+
+use crate::clone_by_field;
+use crate::editing::HoleSet;
+use crate::memory::TableBytes;
+use crate::probe::{Probe, Untraced};
+use crate::row_id::{RowId, row};
+use crate::table::Table;
+
+/// The number of rows per word of bits.
+const WORD: usize = u64::BITS as usize;
+
+/// The rows of a structure's tables that are holes, one bit per row.
+///
+/// ```text
+/// row     0 1 2 3 4 5 6 7
+/// hole        •     • •        rows() = 0 1 3 4 7     new_rows()[4] = 3
+/// ```
+///
+/// Nothing is stored until the first row is deleted.
+#[derive(Debug)]
+pub struct Holes<P: Probe = Untraced> {
+    /// One word for 64 rows; rows beyond the last word are not holes.
+    words: Table<u64, P>,
+    count: usize,
+}
+
+clone_by_field!(Holes<P: Probe> { words, count });
+
+impl Holes {
+    /// Returns an empty set; `name` is the name of its table of bits, once there is one (`"face
+    /// holes"`).
+    pub fn none(name: &'static str) -> Self {
+        Self {
+            words: Table::new(name, "64 rows", Vec::new()),
+            count: 0,
+        }
+    }
+}
+
+impl<P: Probe> Holes<P> {
+    /// Returns the same holes, observed by `probe`.
+    pub fn probed<Q: Probe>(self, probe: Q) -> Holes<Q> {
+        Holes {
+            words: self.words.probed(probe),
+            count: self.count,
+        }
+    }
+
+    /// Makes `row` a hole; O(1) amortised. If the row is beyond all words, adds words up to it.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the row is already a hole: deleting twice is a bug of the caller.
+    pub fn dig(&mut self, row: usize) {
+        while self.words.len() <= row / WORD {
+            self.words.push(0);
+        }
+        let word = self.words.write(row / WORD);
+        assert_eq!(*word >> (row % WORD) & 1, 0, "row {row} is already a hole");
+        *word |= 1 << (row % WORD);
+        self.count += 1;
+    }
+
+    /// Removes all holes and frees their memory, after compaction.
+    pub fn fill(&mut self) {
+        self.words.clear();
+        self.count = 0;
+    }
+
+    /// Returns the rows below `end` that are not holes, ascending; O(end), not observed.
+    #[inline]
+    pub fn rows(&self, end: usize) -> impl Iterator<Item = u32> + Clone + use<'_, P> {
+        let words = self.words.rows();
+        let is_hole = move |row: u32| {
+            let word = words.get(row as usize / WORD).copied();
+            word.unwrap_or(0) >> (row as usize % WORD) & 1 == 1
+        };
+        let whole = self.count == 0;
+        (0..row(end)).filter(move |&row| whole || !is_hole(row))
+    }
+}
+
+impl<P: Probe> HoleSet<P> for Holes<P> {
+    #[inline]
+    fn len(&self) -> usize {
+        self.count
+    }
+
+    #[inline]
+    fn has(&self, row: usize) -> bool {
+        self.count > 0
+            && row / WORD < self.words.len()
+            && self.words.read(row / WORD) >> (row % WORD) & 1 == 1
+    }
+
+    #[inline]
+    fn handles<H: RowId>(&self, end: usize) -> impl Iterator<Item = H> + Clone {
+        self.rows(end).map(H::from_row)
+    }
+
+    fn bytes(&self) -> Option<TableBytes> {
+        let bytes = self.words.bytes();
+        (bytes.bytes > 0).then_some(bytes)
+    }
+
+    fn check(&self, end: usize) -> Result<(), String> {
+        let words = self.words.rows().iter();
+        let bits: usize = words.map(|word| word.count_ones() as usize).sum();
+        let below = end - self.rows(end).count();
+        if bits != self.count || below != self.count {
+            let name = self.words.bytes().table;
+            return Err(format!(
+                "{name}: the count is {}, but {bits} bits are set, {below} of them below row {end}",
+                self.count
+            ));
+        }
+        Ok(())
+    }
+}
+
+impl<P: Probe> Holes<P> {
+    /// Closes the holes of `table`, whose rows this set describes: the other rows move down in
+    /// order. A table that is less than half used frees its spare memory. O(rows), not observed.
+    pub fn close<T: Copy>(&self, table: &mut Table<T, P>) {
+        let mut to = 0;
+        let end = table.len();
+        if !self.is_empty() {
+            let rows = table.rows_mut();
+            for from in self.rows(end) {
+                rows[to] = rows[from as usize];
+                to += 1;
+            }
+            table.truncate(to);
+        }
+        table.give_back();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_skip_holes_at_all_positions() {
+        for end in [0_usize, 1, 63, 64, 65, 130, 200] {
+            let sets: [&dyn Fn(usize) -> bool; 6] = [
+                &|_| false,
+                &|_| true,
+                &|row| row % 3 == 1,
+                &|row| row < 64,
+                &|row| row >= 64,
+                &|row| row == 0 || row + 1 == end,
+            ];
+            for (i, is_hole) in sets.iter().enumerate() {
+                let mut holes = Holes::none("holes");
+                for row in (0..end).filter(|&row| is_hole(row)).rev() {
+                    holes.dig(row);
+                }
+                let expected: Vec<u32> = (0..end).filter(|&r| !is_hole(r)).map(row).collect();
+                let rows = holes.rows(end);
+                assert_eq!(
+                    rows.clone().collect::<Vec<_>>(),
+                    expected,
+                    "set {i} of {end}"
+                );
+                assert_eq!(
+                    rows.fold(0, |sum, row| sum ^ row),
+                    expected.iter().fold(0, |sum, row| sum ^ row)
+                );
+                assert_eq!(holes.len() + expected.len(), end);
+                assert_eq!(holes.check(end), Ok(()));
+                let new = holes.new_rows(end);
+                let closed: Vec<u32> = expected.iter().map(|&old| new[old as usize]).collect();
+                assert!(closed.into_iter().eq(0..row(expected.len())));
+                let mut table = Table::new("rows", "row", (0..row(end)).collect());
+                holes.close(&mut table);
+                assert_eq!(table.rows(), expected);
+            }
+        }
+    }
+
+    #[test]
+    fn a_row_beyond_all_bits_is_not_a_hole() {
+        let mut holes = Holes::none("holes");
+        assert!(holes.bytes().is_none() && !holes.has(7));
+        holes.dig(3);
+        assert!(holes.has(3) && !holes.has(1000));
+        assert_eq!(holes.rows(6).collect::<Vec<_>>(), [0, 1, 2, 4, 5]);
+        assert!(holes.check(3).is_err(), "a hole beyond the rows");
+        holes.fill();
+        assert!(holes.is_empty() && !holes.has(3));
+    }
+
+    #[test]
+    #[should_panic(expected = "row 3 is already a hole")]
+    fn deleting_a_row_twice_panics() {
+        let mut holes = Holes::none("holes");
+        holes.dig(3);
+        holes.dig(3);
+    }
+}

@@ -1,0 +1,96 @@
+//! Shared vocabulary of Sixfold: the traits and types that all structures, algorithms and tools
+//! use.
+//!
+//! - [`PolygonMesh`]: the neutral input and output; positions, and faces as index lists.
+//! - [`MeshQuery`]: the nine relations of Weiler (1985) and their contract.
+//! - [`Representation`]: one structure; its capabilities, its construction and its memory.
+//! - [`Handle`] and [`HandleMap`]: handles of elements, and data stored by handle.
+//! - [`BuildError`]: why a structure refuses a mesh; [`Capabilities`] checks it in one place.
+//! - [`Table`] and [`Probe`]: storage whose reads and writes can be observed.
+//! - [`Refine`] and [`Split`]: structures that split every face in their own tables.
+//! - [`MeshEdit`], [`EditRecord`] and [`EditError`]: edits in place, the record of created, removed
+//!   and renamed elements, and why an edit is refused; [`Holes`]: the rows of deleted elements.
+//! - [`Whole`] and [`Editable`]: type parameters of meshes without and with deletion.
+//! - [`ScannedFaces`]: queries and edits of structures that find the faces at a vertex by a scan.
+//! - [`Creases`]: the sharpness of edges and vertices under subdivision.
+//! - [`Facts`]: the exact topology of a face list, independent of any structure.
+//!
+//! This crate does not depend on any of the six structures.
+
+mod capability;
+mod clone_by_field;
+mod creases;
+mod distinct;
+mod edit;
+mod edit_error;
+mod edit_log;
+mod editing;
+mod error;
+mod face_list;
+mod face_spans;
+mod facts;
+mod few;
+mod handle;
+mod holes;
+mod incidence;
+mod measured;
+mod memory;
+mod pairing;
+mod partition;
+mod polygon_mesh;
+mod probe;
+mod query;
+mod ranks;
+mod refine;
+mod representation;
+mod row_id;
+mod scan;
+mod scan_edit;
+mod scanned;
+mod sides;
+mod table;
+
+pub use capability::Capabilities;
+pub use creases::{Creases, SHARP_FOR_EVER};
+pub use distinct::{Distinct, DistinctWalk, IteratorExt};
+pub use edit::{Edit, MeshEdit, Refusal};
+pub use edit_error::EditError;
+pub use edit_log::{Changes, EditLog, EditRecord, OldToNew};
+pub use editing::{
+    EDGE_HOLES, Editable, Editing, FACE_HOLES, HoleSet, NoFaces, NoHoles, VERTEX_HOLES, Whole,
+};
+pub use error::{BuildError, CreaseError, InvariantError, MoveError, PolygonError, RefineError};
+pub use face_list::FaceList;
+pub use face_spans::{FaceSpans, ScatteredFaces};
+pub use facts::{Facts, Spread};
+pub use few::{Few, Lookup};
+pub use glam;
+pub use glam::Vec3 as Point;
+pub use handle::{Handle, HandleMap, HashHandleMap, Pair, RowMap};
+pub use holes::Holes;
+pub use incidence::EdgeUse;
+pub use measured::{Counts, Measured};
+pub use memory::{MemoryFootprint, TableBytes};
+pub use pairing::{SideRows, TwinPairs, pair_triangle_sides};
+pub use polygon_mesh::PolygonMesh;
+pub use probe::{Access, AccessKind, Probe, Traced, Untraced};
+pub use query::{EdgeMap, FaceMap, MeshQuery, VertexMap};
+pub use ranks::Ranks;
+pub use refine::{
+    PART, Refine, Split, all_rows, check_split, in_given_parts, in_parts, row_parts, rows_of_part,
+};
+pub use representation::{QueryCost, Relation, Representation};
+pub use row_id::{EdgeId, FaceId, MAX_ROWS, RowId, Slot, VertexId, row};
+pub use scan::hits_in;
+pub use scan_edit::ScannedMesh;
+pub use scanned::{Hit, ScannedFaces, ScannedVertex, Sought};
+pub use table::Table;
+
+/// The imports of a program that uses meshes: the traits with queries, edits and refinement, and
+/// the types in their signatures.
+pub mod prelude {
+    pub use crate::{
+        BuildError, EdgeId, EdgeMap, EditError, EditLog, EditRecord, FaceId, FaceMap, MeshEdit,
+        MeshQuery, Point, PolygonMesh, Refine, Representation, VertexId, VertexMap,
+    };
+}

@@ -1,0 +1,41 @@
+//! The memory of a structure, table by table.
+
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
+
+/// The bytes that one table holds.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct TableBytes {
+    /// The name of the table.
+    pub table: Cow<'static, str>,
+    /// The number of rows.
+    pub rows: usize,
+    /// The bytes allocated for the rows, spare capacity included.
+    pub bytes: usize,
+    /// The bytes of one row; not part of reports.
+    #[serde(skip)]
+    pub row_bytes: usize,
+}
+
+/// The bytes that a structure holds on the heap, table by table, positions included.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+pub struct MemoryFootprint {
+    /// All tables.
+    pub tables: Vec<TableBytes>,
+}
+
+impl MemoryFootprint {
+    /// Returns the sum over all tables, in bytes.
+    pub fn total(&self) -> usize {
+        self.tables.iter().map(|table| table.bytes).sum()
+    }
+}
+
+impl FromIterator<TableBytes> for MemoryFootprint {
+    fn from_iter<I: IntoIterator<Item = TableBytes>>(tables: I) -> Self {
+        Self {
+            tables: tables.into_iter().collect(),
+        }
+    }
+}

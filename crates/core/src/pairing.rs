@@ -1,0 +1,275 @@
+//! Twin pairs: the edges of an oriented manifold, found without hashing.
+
+use crate::face_list::FaceList;
+use crate::row_id::{RowId, VertexId};
+use crate::sides::{Sides, bucket_starts, fill_buckets};
+
+/// The largest number of corners for [`TwinPairs`]: a corner and a direction share 32 bits.
+pub(crate) const MAX_CORNERS: usize = (u32::MAX / 2) as usize;
+
+/// The largest number of edges for [`TwinPairs`]: an edge and the directions found share 32 bits.
+pub(crate) const MAX_EDGES: usize = (u32::MAX / 4) as usize;
+
+/// The half-edge of every corner.
+///
+/// Edge `e` has the half-edges `2e`, from its lower to its higher end, and `2e + 1` in the other
+/// direction. Edges are numbered by their lower end, so that the edges of one vertex are adjacent
+/// in memory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TwinPairs {
+    /// By corner: the half-edge that starts there and runs along the corner's face.
+    pub half_of_corner: Vec<u32>,
+    /// The number of edges; half the number of corners if there is no boundary.
+    pub edge_count: usize,
+}
+
+impl TwinPairs {
+    /// Pairs the sides of `faces`; O(corners + vertices).
+    ///
+    /// Sides are put into buckets by their lower end (a counting sort); within a bucket, a scratch
+    /// row for each higher end finds the partner. Returns `None` if two sides run along one edge in
+    /// the same direction, as is always so if an edge has three faces, or if there are too many
+    /// corners or edges; [`Capabilities::check`](crate::Capabilities::check) returns the reason.
+    ///
+    /// Scratch: 8 bytes per corner and 8 bytes per vertex; [`with_rows`](Self::with_rows) needs
+    /// less.
+    pub fn of(vertices: usize, faces: &FaceList) -> Option<Self> {
+        let mut rows = vec![(0_u32, 0_u32); faces.corners().len()];
+        Self::with_rows(vertices, faces, &mut rows[..])
+    }
+
+    /// Pairs sides like [`of`](Self::of), but stores the sorted sides in `rows`, with one place per
+    /// corner: a table of the result that is not filled yet. The rows are not meaningful
+    /// afterwards.
+    ///
+    /// # Panics
+    ///
+    /// Panics if there are fewer places than corners.
+    #[inline(always)]
+    pub fn with_rows<R: SideRows + ?Sized>(
+        vertices: usize,
+        faces: &FaceList,
+        rows: &mut R,
+    ) -> Option<Self> {
+        let corners = faces.corners().len();
+        if corners > MAX_CORNERS {
+            return None;
+        }
+        let (mut ends, _) = bucket_starts(vertices, faces);
+        fill_buckets(faces, &mut ends, |at, a, b, corner| {
+            rows.write(at, a.max(b), tag(a, b, corner));
+        });
+        // By higher end: the last edge that ends there, and the directions found for it; 0 if there
+        // is no edge yet. Edges of earlier buckets have lower numbers, so they are recognised as
+        // old.
+        let mut last = vec![0_u32; vertices];
+        let mut half_of_corner = vec![0_u32; corners];
+        let (mut edges, mut clash, mut start) = (0_u32, 0, 0);
+        for end in ends {
+            let end = end as usize;
+            let first = (edges << 2).max(1);
+            for at in start..end {
+                let (high, tag) = rows.read(at);
+                let row = &mut last[high.index()];
+                let (corner, direction) = (tag >> 1, tag & 1);
+                let new = *row < first;
+                // No branch: half of all sides are new, in unpredictable order.
+                let known = if new { edges << 2 } else { *row };
+                let seen = 1 << direction;
+                clash |= known & seen;
+                *row = known | seen;
+                edges += u32::from(new);
+                half_of_corner[corner as usize] = known >> 2 << 1 | direction;
+            }
+            start = end;
+            if edges as usize > MAX_EDGES {
+                return None;
+            }
+        }
+        let edge_count = edges as usize;
+        (clash == 0).then_some(Self {
+            half_of_corner,
+            edge_count,
+        })
+    }
+}
+
+/// Places for the sorted sides of faces, one per corner.
+///
+/// A constructor implements it for rows of its result that are not filled yet, so that the sides
+/// need no memory of their own.
+pub trait SideRows {
+    /// Writes the higher end of a side and a tag, which is never `u32::MAX`, to place `at`.
+    fn write(&mut self, at: usize, high: VertexId, tag: u32);
+
+    /// Returns the higher end and the tag at place `at`.
+    fn read(&self, at: usize) -> (VertexId, u32);
+}
+
+impl SideRows for [(u32, u32)] {
+    #[inline(always)]
+    fn write(&mut self, at: usize, high: VertexId, tag: u32) {
+        self[at] = (high.row(), tag);
+    }
+
+    #[inline(always)]
+    fn read(&self, at: usize) -> (VertexId, u32) {
+        let (high, tag) = self[at];
+        (VertexId::new(high), tag)
+    }
+}
+
+/// Pairs the sides of triangles without numbering their edges; O(corners + vertices).
+///
+/// A side is identified by its opposite corner. Calls `pair` once for each side, with the side and
+/// its partner: the partner of the first side of an edge is the side itself, so a boundary side is
+/// paired only with itself; the partner of the second side is the first. `highs` is scratch with a
+/// row per corner: a table of the result that is not filled yet. Returns scratch of 4 bytes per
+/// corner, which the caller can reuse, and the number of edges; `None` in the cases of
+/// [`TwinPairs::of`].
+///
+/// # Panics
+///
+/// Panics if a face is not a triangle, or if `highs` has fewer rows than there are corners.
+#[inline(always)]
+pub fn pair_triangle_sides(
+    vertices: usize,
+    faces: &FaceList,
+    highs: &mut [VertexId],
+    mut pair: impl FnMut(u32, u32),
+) -> Option<(Vec<u32>, usize)> {
+    let corners = faces.corners();
+    if corners.len() > MAX_CORNERS {
+        return None;
+    }
+    assert!(faces.is_empty() || faces.uniform_degree() == Some(3));
+    let faces = FacedSides(corners);
+    let (mut ends, sides) = bucket_starts(vertices, &faces);
+    let mut tags = vec![0_u32; sides];
+    fill_buckets(&faces, &mut ends, |at, a, b, corner| {
+        highs[at] = a.max(b);
+        tags[at] = tag(a, b, corner);
+    });
+    // By higher end: 1 + the place of the first side of the last edge that ends there.
+    let mut last = vec![0_u32; vertices];
+    let (mut edges, mut clash, mut start) = (0, false, 0);
+    for end in ends {
+        for at in start..end {
+            let tag = tags[at as usize];
+            let row = &mut last[highs[at as usize].index()];
+            // No branch: see `TwinPairs::with_rows`.
+            let new = *row <= start;
+            let first_at = if new { at } else { *row - 1 };
+            *row = first_at + 1;
+            let first = &mut tags[first_at as usize];
+            if *first == PAIRED {
+                // A third side along one edge; rare, so a branch is cheap.
+                return None;
+            }
+            clash |= !new & ((*first ^ tag) & 1 == 0);
+            let twin = std::mem::replace(first, if new { tag } else { PAIRED });
+            edges += usize::from(new);
+            pair(tag >> 1, twin >> 1);
+        }
+        start = end;
+    }
+    (!clash && edges <= MAX_EDGES).then_some((tags, edges))
+}
+
+/// The tag of an edge whose two sides were both found; the tag of a corner is always smaller.
+const PAIRED: u32 = u32::MAX;
+
+/// Returns twice the corner of a side, plus one if the side runs from the higher end to the lower.
+#[inline(always)]
+fn tag(a: VertexId, b: VertexId, corner: u32) -> u32 {
+    corner << 1 | u32::from(a > b)
+}
+
+/// The sides of triangles, each with its opposite corner.
+struct FacedSides<'a>(&'a [VertexId]);
+
+impl Sides for FacedSides<'_> {
+    #[inline(always)]
+    fn for_each_side(&self, mut visit: impl FnMut(VertexId, VertexId, u32)) {
+        let mut first = 0;
+        for &[a, b, c] in self.0.as_chunks::<3>().0 {
+            visit(a, b, first + 2);
+            visit(b, c, first);
+            visit(c, a, first + 1);
+            first += 3;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pairs(vertices: usize, faces: &[&[u32]]) -> Option<TwinPairs> {
+        let mut list = FaceList::default();
+        for face in faces {
+            list.push(face.iter().copied().map(VertexId::new))
+                .expect("small");
+        }
+        TwinPairs::of(vertices, &list)
+    }
+
+    #[test]
+    fn half_edges_are_numbered_by_the_lower_end() {
+        // Edges: e0 = v0–v1 (twice), e1 = v0–v2, e2 = v0–v3; e3 = v1–v2, e4 = v1–v3.
+        let two = pairs(4, &[&[0, 1, 2], &[1, 0, 3]]).expect("manifold");
+        assert_eq!(two.edge_count, 5);
+        assert_eq!(two.half_of_corner[0] ^ 1, two.half_of_corner[3]);
+        assert_eq!(two.half_of_corner, [0, 6, 3, 1, 4, 9]);
+    }
+
+    #[test]
+    fn a_repeated_direction_is_refused() {
+        assert_eq!(pairs(4, &[&[0, 1, 2], &[0, 1, 3]]), None);
+        for order in [[0, 1, 2], [1, 0, 2], [1, 2, 0], [2, 0, 1]] {
+            let book: [&[u32]; 3] = [&[0, 1, 2], &[1, 0, 3], &[0, 1, 4]];
+            let pages: Vec<&[u32]> = order.iter().map(|&page| book[page]).collect();
+            assert_eq!(pairs(5, &pages), None, "pages {order:?}");
+        }
+    }
+
+    #[test]
+    fn mixed_degrees_pair_like_uniform_ones() {
+        let mixed = pairs(5, &[&[0, 1, 2, 3], &[1, 0, 4]]).expect("manifold");
+        assert_eq!(mixed.edge_count, 6);
+        assert_eq!(mixed.half_of_corner[0] ^ 1, mixed.half_of_corner[4]);
+        assert_eq!(pairs(0, &[]).expect("empty").edge_count, 0);
+    }
+    /// Returns the partner of each side of these triangles, where sides are given by their opposite
+    /// corners.
+    fn paired(vertices: usize, faces: &[[u32; 3]]) -> Option<Vec<u32>> {
+        let corners: Vec<VertexId> = faces.iter().flatten().map(|&v| VertexId::new(v)).collect();
+        let list = FaceList::uniform(3, corners).expect("small");
+        let mut highs = vec![VertexId::new(0); list.corners().len()];
+        let mut partners = vec![u32::MAX; list.corners().len()];
+        let done = pair_triangle_sides(vertices, &list, &mut highs, |side, other| {
+            partners[side as usize] = other;
+            partners[other as usize] = side;
+        });
+        let (scratch, edges) = done?;
+        assert_eq!(scratch.len(), partners.len());
+        let pairs = TwinPairs::of(vertices, &list).expect("a manifold for both");
+        assert_eq!(edges, pairs.edge_count);
+        Some(partners)
+    }
+
+    #[test]
+    fn sides_of_triangles_are_paired_by_opposite_corners() {
+        // Edge v0–v1 is opposite the third corner of both triangles; the other edges are on the
+        // boundary.
+        let two = paired(4, &[[0, 1, 2], [1, 0, 3]]).expect("manifold");
+        assert_eq!(two, [0, 1, 5, 3, 4, 2]);
+        assert_eq!(paired(4, &[[0, 1, 2], [0, 1, 3]]), None, "one direction");
+        for order in [[0, 1, 2], [1, 0, 2], [1, 2, 0], [2, 0, 1]] {
+            let book = [[0, 1, 2], [1, 0, 3], [0, 1, 4]];
+            let pages = order.map(|page: usize| book[page]);
+            assert_eq!(paired(5, &pages), None, "three faces: {order:?}");
+        }
+        assert_eq!(paired(0, &[]), Some(vec![]));
+    }
+}

@@ -1,0 +1,349 @@
+//! The neutral mesh: the input and output of every structure.
+
+use crate::Point;
+use crate::distinct::IteratorExt;
+use crate::error::PolygonError;
+use crate::face_list::FaceList;
+use crate::incidence::{EdgeUse, Incidence};
+use crate::measured::Counts;
+use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
+
+/// Positions and polygons: the mesh as a list of faces, independent of any structure.
+///
+/// # Invariants
+///
+/// - I1  Every face names at least three vertices; each of them exists and is named once.
+/// - I2  There are at most [`MAX_ROWS`] vertices, faces and corners.
+///
+/// Nothing else is guaranteed: edges with three faces, inconsistently oriented faces, and isolated
+/// or coincident vertices are allowed. The capabilities of each structure state what it can hold.
+///
+/// # Examples
+///
+/// ```
+/// use sixfold_core::{Point, PolygonMesh};
+///
+/// let corners = [Point::ZERO, Point::X, Point::Y, Point::Z];
+/// let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+/// let tetrahedron = PolygonMesh::new(corners, faces)?;
+/// assert_eq!(tetrahedron.face_count(), 4);
+/// assert!(PolygonMesh::new(corners, [[0, 1, 1]]).is_err());
+/// # Ok::<(), sixfold_core::PolygonError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PolygonMesh {
+    positions: Vec<Point>,
+    faces: FaceList,
+}
+
+impl PolygonMesh {
+    /// Builds a mesh from `positions` and `faces`, each a list of vertex numbers from 0;
+    /// O(corners).
+    ///
+    /// # Errors
+    ///
+    /// Returns the first face that violates I1, or the elements whose number violates I2.
+    pub fn new<F: AsRef<[u32]>>(
+        positions: impl Into<Vec<Point>>,
+        faces: impl IntoIterator<Item = F>,
+    ) -> Result<Self, PolygonError> {
+        let mut list = FaceList::default();
+        for face in faces {
+            list.push(face.as_ref().iter().copied().map(VertexId::new))?;
+        }
+        Self::from_faces(positions.into(), list)
+    }
+
+    /// Builds a mesh from `positions` and an existing list of faces; O(corners), without copying.
+    ///
+    /// # Errors
+    ///
+    /// Returns the first face that violates I1, or the elements whose number violates I2.
+    pub fn from_faces(positions: Vec<Point>, faces: FaceList) -> Result<Self, PolygonError> {
+        if positions.len() > MAX_ROWS {
+            return Err(PolygonError::TooMany {
+                elements: "vertices",
+                limit: MAX_ROWS,
+            });
+        }
+        let sound = match faces.uniform_degree() {
+            Some(3) => all_sound::<3>(faces.corners(), positions.len()),
+            Some(4) => all_sound::<4>(faces.corners(), positions.len()),
+            _ => false,
+        };
+        if !sound {
+            for (f, face) in faces.iter() {
+                check_face(f, face, positions.len())?;
+            }
+        }
+        Ok(Self { positions, faces })
+    }
+
+    /// Returns the number of vertices, isolated ones included.
+    pub fn vertex_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Returns the number of faces.
+    pub fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Returns the number of corners of all faces.
+    pub fn corner_count(&self) -> usize {
+        self.faces.corners().len()
+    }
+
+    /// Returns the sizes that determine the memory of a structure; the caller provides the number
+    /// of `edges`. O(1).
+    pub fn counts(&self, edges: usize) -> Counts {
+        Counts {
+            vertices: self.vertex_count(),
+            edges,
+            faces: self.face_count(),
+            corners: self.corner_count(),
+            uniform: self.faces.is_empty() || self.faces.uniform_degree().is_some(),
+        }
+    }
+
+    /// Returns every vertex.
+    pub fn vertices(&self) -> impl ExactSizeIterator<Item = VertexId> + Clone {
+        let vertices = row(self.positions.len());
+        (0..vertices).map(VertexId::new)
+    }
+
+    /// Returns the position of each vertex.
+    pub fn positions(&self) -> &[Point] {
+        &self.positions
+    }
+
+    /// Returns the position of `v`.
+    ///
+    /// # Panics
+    ///
+    /// Panics if there is no such vertex.
+    pub fn position(&self, v: VertexId) -> Point {
+        self.positions[v.index()]
+    }
+
+    /// Returns the faces as lists of vertices.
+    pub fn faces(&self) -> &FaceList {
+        &self.faces
+    }
+
+    /// Returns the first face that is not a triangle, and its degree; O(faces), O(1) if all faces
+    /// have one degree.
+    pub fn first_polygon(&self) -> Option<(FaceId, usize)> {
+        if self.faces.uniform_degree() == Some(3) {
+            return None;
+        }
+        let mut degrees = self.faces.iter().map(|(f, corners)| (f, corners.len()));
+        degrees.find(|&(_, degree)| degree != 3)
+    }
+
+    /// Returns the vertices whose faces form more than one fan, ascending; O(corners) expected.
+    ///
+    /// Two faces are in one fan if a chain of faces leads from one to the other, each step across
+    /// an edge at the vertex. Orientation does not matter.
+    pub fn vertices_of_several_fans(&self) -> Vec<VertexId> {
+        let incidence = Incidence::of(self.vertex_count(), &self.faces, |_| true);
+        let fans = incidence.several_fans(&self.faces).into_iter();
+        let mut vertices: Vec<VertexId> = fans.map(|(v, _)| v).collect();
+        vertices.sort_unstable();
+        vertices
+    }
+
+    /// Returns every edge once, ordered by its ends; O(corners) expected.
+    pub fn edge_uses(&self) -> Vec<EdgeUse> {
+        let incidence = Incidence::of(self.vertex_count(), &self.faces, |_| true);
+        incidence.edges().map(EdgeUse::of).collect()
+    }
+
+    /// Returns the mesh with vertex `v` renumbered as `names[v]`; the faces keep their order.
+    ///
+    /// # Panics
+    ///
+    /// Panics if `names` is not a permutation of the vertices.
+    pub fn renamed(&self, names: &[u32]) -> Self {
+        assert_eq!(
+            names.len(),
+            self.vertex_count(),
+            "`names` needs one number for each vertex"
+        );
+        let mut positions = vec![None; names.len()];
+        for (&name, &position) in names.iter().zip(&self.positions) {
+            let before = positions[name as usize].replace(position);
+            assert!(before.is_none(), "two vertices get the number {name}");
+        }
+        let positions = positions
+            .into_iter()
+            .map(|p| p.expect("a permutation"))
+            .collect();
+        let mut faces = FaceList::with_capacity(self.corner_count());
+        for (_, face) in self.faces.iter() {
+            let renamed = face.iter().map(|v| VertexId::new(names[v.index()]));
+            faces.push(renamed).expect("as many corners as before");
+        }
+        Self { positions, faces }
+    }
+
+    /// Returns the mesh with every polygon cut into a fan of triangles from its first corner;
+    /// O(corners).
+    ///
+    /// This suits convex faces. For other faces the triangles may overlap, and two polygons that
+    /// share two corners may be cut along the same edge. The vertices are unchanged.
+    ///
+    /// # Errors
+    ///
+    /// [`PolygonError::TooMany`] if the triangles have more than [`MAX_ROWS`] corners.
+    pub fn fan_triangulated(&self) -> Result<Self, PolygonError> {
+        let mut faces = FaceList::with_capacity(self.corner_count());
+        for (_, face) in self.faces.iter() {
+            for pair in face[1..].windows(2) {
+                let triangle = [face[0], pair[0], pair[1]];
+                faces.push(triangle)?;
+            }
+        }
+        Ok(Self {
+            positions: self.positions.clone(),
+            faces,
+        })
+    }
+}
+
+/// Returns whether all faces satisfy I1; their degree is known to the compiler.
+fn all_sound<const DEGREE: usize>(corners: &[VertexId], vertices: usize) -> bool {
+    corners.as_chunks::<DEGREE>().0.iter().all(|face| {
+        // No early exit: it would almost never be taken.
+        let mut sound = true;
+        for (i, a) in face.iter().enumerate() {
+            sound &= a.index() < vertices;
+            for b in &face[..i] {
+                sound &= a != b;
+            }
+        }
+        sound
+    })
+}
+
+/// Checks I1 for one face.
+fn check_face(face: FaceId, corners: &[VertexId], vertices: usize) -> Result<(), PolygonError> {
+    if corners.len() < 3 {
+        return Err(PolygonError::TooFewCorners {
+            face,
+            corners: corners.len(),
+        });
+    }
+    if let Some(&vertex) = corners.iter().find(|v| v.index() >= vertices) {
+        return Err(PolygonError::VertexOutOfRange {
+            face,
+            vertex,
+            vertices,
+        });
+    }
+    match repeated(corners) {
+        Some(vertex) => Err(PolygonError::RepeatedVertex { face, vertex }),
+        None => Ok(()),
+    }
+}
+
+/// Returns a vertex that `corners` name twice.
+pub(crate) fn repeated(corners: &[VertexId]) -> Option<VertexId> {
+    if let &[a, b, c] = corners {
+        return match (a == b || a == c, b == c) {
+            (true, _) => Some(a),
+            (_, true) => Some(b),
+            _ => None,
+        };
+    }
+    let mut once = corners.iter().copied().distinct();
+    corners.iter().copied().find(|&v| once.next() != Some(v))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: [Point; 4] = [Point::ZERO, Point::X, Point::ONE, Point::Y];
+
+    #[test]
+    fn each_fault_has_its_error() {
+        let fault = |face: &[u32]| PolygonMesh::new(SQUARE, [&[0, 1, 2][..], face]).unwrap_err();
+        let face = FaceId::new(1);
+        assert_eq!(
+            fault(&[0, 1]),
+            PolygonError::TooFewCorners { face, corners: 2 }
+        );
+        let vertex = VertexId::new(4);
+        assert_eq!(
+            fault(&[0, 1, 4]),
+            PolygonError::VertexOutOfRange {
+                face,
+                vertex,
+                vertices: 4
+            }
+        );
+        for corners in [
+            &[3, 0, 3][..],
+            &[3, 3, 0],
+            &[0, 3, 3],
+            &[0, 3, 1, 3],
+            &[0, 1, 3, 2, 3],
+        ] {
+            let vertex = VertexId::new(3);
+            assert_eq!(
+                fault(corners),
+                PolygonError::RepeatedVertex { face, vertex }
+            );
+        }
+    }
+
+    #[test]
+    fn a_fan_has_two_triangles_fewer_than_corners() {
+        let square = PolygonMesh::new(SQUARE, [[0, 1, 2, 3]]).expect("valid");
+        let fan = PolygonMesh::new(SQUARE, [[0, 1, 2], [0, 2, 3]]).expect("valid");
+        assert_eq!(square.fan_triangulated(), Ok(fan));
+    }
+
+    #[test]
+    fn edge_uses_count_faces_and_compare_directions() {
+        let corners = [0.0, 1.0, 2.0, 3.0, 4.0].map(Point::splat);
+        let mesh = PolygonMesh::new(corners, [[0, 1, 2], [1, 0, 3], [0, 2, 4]]).expect("valid");
+        let uses = mesh.edge_uses();
+        assert_eq!(uses.len(), 7);
+        let of = |a: u32, b: u32| {
+            let ends = [a, b].map(VertexId::new);
+            let found = uses.iter().find(|edge| edge.ends == ends).expect("an edge");
+            (found.faces, found.is_manifold())
+        };
+        assert_eq!(
+            [of(0, 1), of(0, 3), of(0, 2)],
+            [(2, true), (1, true), (2, true)]
+        );
+        let book = PolygonMesh::new(corners, [[0, 1, 2], [1, 0, 3], [0, 1, 4]]).expect("valid");
+        let spine = book.edge_uses()[0];
+        assert_eq!((spine.faces, spine.is_manifold()), (3, false));
+        let turned = PolygonMesh::new(corners, [[0, 1, 2], [0, 1, 3]]).expect("valid");
+        assert!(!turned.edge_uses()[0].is_manifold());
+    }
+
+    #[test]
+    fn a_vertex_of_several_fans_is_found_for_any_orientation() {
+        let corners = [0.0, 1.0, 2.0, 3.0, 4.0].map(Point::splat);
+        let mesh = |faces: &[[u32; 3]]| PolygonMesh::new(corners, faces).expect("valid");
+        let fans = |faces: &[[u32; 3]]| mesh(faces).vertices_of_several_fans();
+        assert_eq!(fans(&[[0, 1, 2], [0, 3, 4]]), [VertexId::new(0)]);
+        assert_eq!(fans(&[[0, 1, 2], [0, 1, 3]]), []);
+    }
+
+    #[test]
+    fn renumbering_changes_positions_and_corners() {
+        let square = PolygonMesh::new(SQUARE, [[0, 1, 2]]).expect("valid");
+        let renamed = square.renamed(&[3, 0, 1, 2]);
+        assert_eq!(
+            renamed.faces().face(FaceId::new(0)),
+            [3, 0, 1].map(VertexId::new)
+        );
+        assert_eq!(renamed.position(VertexId::new(3)), Point::ZERO);
+    }
+}

@@ -1,0 +1,87 @@
+//! Observation of the reads and writes of queries and edits.
+
+use std::fmt::Debug;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// An observer of the reads and writes of a [`Table`](crate::Table).
+pub trait Probe: Clone + Debug + Send + Sync {
+    /// Records that `bytes` bytes of row `row` of `table` are read.
+    fn read(&self, table: &'static str, row: usize, bytes: usize);
+
+    /// Records that `bytes` bytes of row `row` of `table` are written.
+    fn write(&self, table: &'static str, row: usize, bytes: usize);
+}
+
+/// Observes nothing and compiles to nothing: the probe for normal use.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Untraced;
+
+impl Probe for Untraced {
+    #[inline(always)]
+    fn read(&self, _: &'static str, _: usize, _: usize) {}
+
+    #[inline(always)]
+    fn write(&self, _: &'static str, _: usize, _: usize) {}
+}
+
+/// Whether an [`Access`] reads or writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum AccessKind {
+    /// The row is read.
+    Read,
+    /// The row is written.
+    Write,
+}
+
+/// One read or write of one row of one table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Access {
+    /// Read or write.
+    pub kind: AccessKind,
+    /// The name of the table.
+    pub table: &'static str,
+    /// The row.
+    pub row: usize,
+    /// The number of bytes read or written.
+    pub bytes: usize,
+}
+
+/// Records every access in order, in a log that its clones share.
+#[derive(Clone, Debug, Default)]
+pub struct Traced {
+    log: Arc<Mutex<Vec<Access>>>,
+}
+
+impl Traced {
+    /// Returns the accesses since the last call, in order, and empties the log.
+    pub fn take(&self) -> Vec<Access> {
+        std::mem::take(&mut *self.log.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn push(&self, access: Access) {
+        let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
+        log.push(access);
+    }
+}
+
+impl Probe for Traced {
+    fn read(&self, table: &'static str, row: usize, bytes: usize) {
+        let kind = AccessKind::Read;
+        self.push(Access {
+            kind,
+            table,
+            row,
+            bytes,
+        });
+    }
+
+    fn write(&self, table: &'static str, row: usize, bytes: usize) {
+        let kind = AccessKind::Write;
+        self.push(Access {
+            kind,
+            table,
+            row,
+            bytes,
+        });
+    }
+}

@@ -1,0 +1,283 @@
+//! The query trait.
+
+use crate::Point;
+use crate::handle::{Handle, HandleMap};
+
+/// Data by vertex of `M`.
+pub type VertexMap<M, T> = <<M as MeshQuery>::Vertex as Handle>::Map<T>;
+/// Data by edge of `M`.
+pub type EdgeMap<M, T> = <<M as MeshQuery>::Edge as Handle>::Map<T>;
+/// Data by face of `M`.
+pub type FaceMap<M, T> = <<M as MeshQuery>::Face as Handle>::Map<T>;
+
+/// The nine relations between vertices, edges and faces (Weiler 1985).
+///
+/// ```text
+///            vertices V        edges E          faces F
+/// of a V   vertex_vertices   vertex_edges     vertex_faces
+/// of an E  edge_vertices     edge_edges       edge_faces
+/// of an F  face_vertices     face_edges       face_faces
+/// ```
+///
+/// # Contract
+///
+/// - **Elements.** An edge is an unordered pair of vertices that follow each other in some face; no
+///   two edges have the same ends. A face names at least three vertices, each once.
+/// - **Once.** A relation yields each element once, and never the element that is queried: two
+///   faces that share two edges are one neighbour of each other, and so are two faces with the same
+///   corners. An isolated vertex has empty relations.
+/// - **Symmetry.** `f ∈ VF(v)` exactly if `v ∈ FV(f)`; likewise VE/EV, EF/FE, VV, EE and FF.
+/// - **Order.** FV and FE run counter-clockwise in the order of the input, from any start; side `i`
+///   joins corners `i` and `i + 1`. The other seven are sets, in no guaranteed order.
+/// - **No cache.** Each result is computed from the stored tables alone; nothing is kept between
+///   calls. If this requires a scan of all faces, the query scans.
+/// - **Handles.** A handle is valid until the next edit. A handle that is out of range, or of a
+///   deleted element, panics, and the message names it. A handle of another mesh may panic or give
+///   a wrong result; it is always memory-safe.
+///
+/// # Panics
+///
+/// Every method that takes a handle panics if the mesh has no such element. If a vertex *is* its
+/// coordinates or an edge *is* its ends, a handle without an element has empty relations instead.
+pub trait MeshQuery {
+    /// The handle of a vertex: a row, or the coordinates.
+    type Vertex: Handle;
+    /// The handle of an edge: a row, or the pair of its ends.
+    type Edge: Handle;
+    /// The handle of a face.
+    type Face: Handle;
+
+    /// Yields every vertex once.
+    fn vertices(&self) -> impl Iterator<Item = Self::Vertex>;
+    /// Yields every edge once.
+    fn edges(&self) -> impl Iterator<Item = Self::Edge>;
+    /// Yields every face once, in the order of the input.
+    fn faces(&self) -> impl Iterator<Item = Self::Face>;
+
+    /// Returns the number of vertices.
+    fn vertex_count(&self) -> usize {
+        self.vertices().count()
+    }
+    /// Returns the number of edges.
+    fn edge_count(&self) -> usize {
+        self.edges().count()
+    }
+    /// Returns the number of faces; O(1).
+    fn face_count(&self) -> usize;
+
+    /// Returns the position of `v`.
+    fn position(&self, v: Self::Vertex) -> Point;
+
+    /// VV: yields the other ends of the edges at `v`, its one-ring.
+    fn vertex_vertices(&self, v: Self::Vertex) -> impl Iterator<Item = Self::Vertex>;
+    /// VE: yields the edges that end at `v`; their number is the valence.
+    fn vertex_edges(&self, v: Self::Vertex) -> impl Iterator<Item = Self::Edge>;
+    /// VF: yields the faces with a corner at `v`.
+    fn vertex_faces(&self, v: Self::Vertex) -> impl Iterator<Item = Self::Face>;
+    /// EV: returns the two ends of `e`.
+    fn edge_vertices(&self, e: Self::Edge) -> [Self::Vertex; 2];
+    /// EE: yields the edges that share an end with `e`.
+    fn edge_edges(&self, e: Self::Edge) -> impl Iterator<Item = Self::Edge>;
+    /// EF: yields the faces along `e`; a boundary edge has one.
+    fn edge_faces(&self, e: Self::Edge) -> impl Iterator<Item = Self::Face>;
+    /// FV: yields the corners of `f`. The other eight relations follow from this one.
+    fn face_vertices(&self, f: Self::Face) -> impl Iterator<Item = Self::Vertex>;
+    /// FE: yields the sides of `f`.
+    fn face_edges(&self, f: Self::Face) -> impl Iterator<Item = Self::Edge>;
+    /// FF: yields the faces that share an edge with `f`.
+    fn face_faces(&self, f: Self::Face) -> impl Iterator<Item = Self::Face>;
+
+    /// Returns the edge between `a` and `b`, if there is one; the cost of VE and EV.
+    fn edge_between(&self, a: Self::Vertex, b: Self::Vertex) -> Option<Self::Edge> {
+        self.vertex_edges(a)
+            .find(|&e| self.edge_vertices(e).contains(&b) && a != b)
+    }
+
+    /// Returns a face with corners at both `a` and `b`, if there is one; the cost of VF and FV. If
+    /// there are several, returns any of them. The face need not have an edge between the two
+    /// vertices.
+    fn common_face(&self, a: Self::Vertex, b: Self::Vertex) -> Option<Self::Face> {
+        self.vertex_faces(a)
+            .find(|&f| self.face_vertices(f).any(|v| v == b))
+    }
+
+    /// Returns the vertex of triangle `f` that is not an end of `e`; the cost of EV and FV. `None`
+    /// if `f` is not a triangle, or `e` is not one of its sides.
+    fn opposite_vertex(&self, f: Self::Face, e: Self::Edge) -> Option<Self::Vertex> {
+        let ends = self.edge_vertices(e);
+        let mut corners = self.face_vertices(f);
+        let three = [corners.next()?, corners.next()?, corners.next()?];
+        let is_triangle = corners.next().is_none() && ends.iter().all(|end| three.contains(end));
+        is_triangle.then(|| three.into_iter().find(|v| !ends.contains(v)))?
+    }
+
+    /// Returns the number of edges at `v`; the cost of VE.
+    fn valence(&self, v: Self::Vertex) -> usize {
+        self.vertex_edges(v).count()
+    }
+
+    /// Returns the number of corners of `f`; the cost of FV.
+    fn degree(&self, f: Self::Face) -> usize {
+        self.face_vertices(f).count()
+    }
+
+    /// Returns whether exactly one face lies along `e`; the cost of EF.
+    fn is_boundary_edge(&self, e: Self::Edge) -> bool {
+        let mut faces = self.edge_faces(e);
+        faces.next().is_some() && faces.next().is_none()
+    }
+
+    /// Returns whether a boundary edge ends at `v`; the cost of VE, and of EF for each edge.
+    fn is_boundary_vertex(&self, v: Self::Vertex) -> bool {
+        self.vertex_edges(v).any(|e| self.is_boundary_edge(e))
+    }
+
+    /// Returns whether `v` is a vertex of this mesh: false after it was deleted or renamed.
+    ///
+    /// O(1) if vertices are rows; the cost of VF if a vertex is its coordinates.
+    fn contains_vertex(&self, v: Self::Vertex) -> bool {
+        self.vertices().any(|vertex| vertex == v)
+    }
+
+    /// Returns whether `e` is an edge of this mesh: false after it was deleted or renamed.
+    ///
+    /// This can check lists of edges that were made before edits. If the row of a deleted edge is
+    /// reused for a new edge, this returns true.
+    ///
+    /// O(1) if edges are rows or corners; the cost of VE if an edge is the pair of its ends.
+    fn contains_edge(&self, e: Self::Edge) -> bool {
+        self.edges().any(|edge| edge == e)
+    }
+
+    /// Returns whether `f` is a face of this mesh: false after it was deleted. O(1).
+    fn contains_face(&self, f: Self::Face) -> bool {
+        self.faces().any(|face| face == f)
+    }
+
+    /// Returns the exclusive upper bound of the vertex handles that are rows; O(1).
+    fn vertex_rows(&self) -> usize;
+    /// Returns the exclusive upper bound of the edge handles that are rows; O(1).
+    fn edge_rows(&self) -> usize;
+    /// Returns the exclusive upper bound of the face handles that are rows; O(1).
+    fn face_rows(&self) -> usize;
+
+    /// Returns a map that holds `value` for every vertex.
+    fn vertex_map<T: Clone>(&self, value: T) -> VertexMap<Self, T> {
+        HandleMap::filled(self.vertex_rows(), value)
+    }
+    /// Returns a map that holds `value` for every edge.
+    fn edge_map<T: Clone>(&self, value: T) -> EdgeMap<Self, T> {
+        HandleMap::filled(self.edge_rows(), value)
+    }
+    /// Returns a map that holds `value` for every face.
+    fn face_map<T: Clone>(&self, value: T) -> FaceMap<Self, T> {
+        HandleMap::filled(self.face_rows(), value)
+    }
+
+    /// Returns the neighbours of a manifold vertex, counter-clockwise: from one boundary edge to
+    /// the other if there is a boundary, otherwise from any start.
+    ///
+    /// `None` if the faces at `v` are not one consistently oriented fan. The ring of an isolated
+    /// vertex is empty. O(valence log valence) in addition to the cost of VF and FV; structures
+    /// that store the order override this.
+    ///
+    /// ```text
+    ///      c ───── b        faces (v, a, b), (v, b, c):  a, b, c
+    ///       \    / │
+    ///        \  /  │
+    ///         v ── a
+    /// ```
+    fn one_ring(&self, v: Self::Vertex) -> Option<impl Iterator<Item = Self::Vertex>> {
+        let spokes = self
+            .vertex_faces(v)
+            .map(|f| spoke(self.face_vertices(f), v));
+        ring(spokes.collect()).map(Vec::into_iter)
+    }
+}
+
+/// Returns the corners after and before `v` in a face that has `v`.
+fn spoke<V: Eq + Copy>(corners: impl Iterator<Item = V>, v: V) -> [V; 2] {
+    let (mut first, mut last) = (None, None);
+    let (mut after, mut before) = (None, None);
+    for corner in corners {
+        first.get_or_insert(corner);
+        if corner == v {
+            before = last;
+        }
+        if last == Some(v) {
+            after = Some(corner);
+        }
+        last = Some(corner);
+    }
+    let (after, before) = (after.or(first), before.or(last));
+    after
+        .zip(before)
+        .map(|(a, b)| [a, b])
+        .expect("a face has corners")
+}
+
+/// Chains spokes `[after, before]`, each from its first to its second vertex, into one ring; `None`
+/// if they form more than one chain or cycle.
+pub(crate) fn ring<V: Ord + Copy>(mut spokes: Vec<[V; 2]>) -> Option<Vec<V>> {
+    let Some(&[any, _]) = spokes.first() else {
+        return Some(Vec::new());
+    };
+    spokes.sort_unstable();
+    let mut targets: Vec<V> = spokes.iter().map(|&[_, to]| to).collect();
+    targets.sort_unstable();
+    let repeats = |sorted: &[V]| sorted.windows(2).any(|pair| pair[0] == pair[1]);
+    if repeats(&targets) || spokes.windows(2).any(|pair| pair[0][0] == pair[1][0]) {
+        return None;
+    }
+    let mut starts = spokes
+        .iter()
+        .map(|&[from, _]| from)
+        .filter(|from| targets.binary_search(from).is_err());
+    let open = starts.next();
+    let start = open.unwrap_or(any);
+    let mut ring = vec![start];
+    let mut at = start;
+    while let Ok(next) = spokes.binary_search_by_key(&at, |&[from, _]| from) {
+        at = spokes[next][1];
+        if at == start {
+            break;
+        }
+        ring.push(at);
+    }
+    let spokes_used = if open.is_some() {
+        ring.len() - 1
+    } else {
+        ring.len()
+    };
+    (spokes_used == spokes.len()).then_some(ring)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spokes_wrap_around_the_face() {
+        assert_eq!(spoke([7, 1, 2].into_iter(), 7), [1, 2]);
+        assert_eq!(spoke([1, 7, 2].into_iter(), 7), [2, 1]);
+        assert_eq!(spoke([1, 2, 7].into_iter(), 7), [1, 2]);
+        assert_eq!(spoke([5, 1, 7, 2, 6].into_iter(), 7), [2, 1]);
+    }
+
+    #[test]
+    fn a_ring_is_one_chain_or_one_cycle() {
+        assert_eq!(ring::<u8>(vec![]), Some(vec![]));
+        assert_eq!(ring(vec![[3, 1], [1, 2]]), Some(vec![3, 1, 2]));
+        let closed = ring(vec![[2, 3], [1, 2], [3, 1]]).expect("one cycle");
+        assert_eq!(closed.len(), 3);
+        for faulty in [
+            vec![[1, 2], [3, 4]],                 // two fans
+            vec![[1, 2], [2, 1], [3, 4], [4, 3]], // two cycles
+            vec![[1, 2], [2, 1], [3, 4]],         // a cycle and a fan
+            vec![[1, 2], [1, 3]],                 // an edge used twice outwards
+            vec![[1, 2], [3, 2]],                 // an edge used twice inwards
+        ] {
+            assert_eq!(ring(faulty), None);
+        }
+    }
+}

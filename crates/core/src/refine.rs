@@ -1,0 +1,368 @@
+//! Connectivity refinement: a step of subdivision in a structure's own tables.
+
+use std::fmt;
+use std::ops::Range;
+
+use serde::Serialize;
+
+use crate::Point;
+use crate::error::RefineError;
+use crate::measured::Counts;
+use crate::representation::Representation;
+use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
+
+/// A way to split every face of a mesh at once; it does not define positions.
+///
+/// ```text
+///   Quads                    Triangles                Sqrt3
+///   d────m────c              c                        c───────d       c───────d
+///   │    │    │              │╲                       │╲   f2╱        │╲     ╱│
+///   m────f────m              m──m                     │  ╲ ╱          │ f1──f2│
+///   │    │    │              │╲ │╲                    │f1 ╱╲          │╱     ╲│
+///   a────m────b              a──m──b                  a───────b       a───────b
+/// ```
+///
+/// The vertices of the refined mesh have a fixed order: the old vertices in their order, then a
+/// face point for each face in the order of `faces()` (not for [`Triangles`](Self::Triangles)),
+/// then the points of edges in the order of `edges()`: one for each edge, except for
+/// [`Sqrt3`](Self::Sqrt3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Split {
+    /// Splits every face of degree n into n quads, by a face point and edge points (Catmull & Clark
+    /// 1978).
+    Quads,
+    /// Splits every triangle into four, by edge points (Loop 1987).
+    Triangles,
+    /// Splits every triangle into three, by a face point; then flips every old inner edge (Kobbelt
+    /// 2000). Boundary edges are unchanged, or are cut in three if `trisect` is set. Then the two
+    /// points of each boundary edge come last, in the order of `edges()`; the first is the one
+    /// nearer to the origin of the face's side.
+    Sqrt3 {
+        /// Whether boundary edges are cut in three.
+        trisect: bool,
+    },
+}
+
+impl Split {
+    /// Returns the name for users: `quads`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Quads => "quads",
+            Self::Triangles => "triangles",
+            Self::Sqrt3 { .. } => "sqrt3",
+        }
+    }
+
+    /// Returns whether it splits only triangles.
+    pub const fn needs_triangles(self) -> bool {
+        !matches!(self, Self::Quads)
+    }
+
+    /// Returns the sizes of the refined mesh, in closed form. `boundary` is the number of edges
+    /// with one face; only the √3 split with `trisect` uses it. Sizes beyond `usize` saturate.
+    ///
+    /// For quads and triangles, the sizes are correct even if edges have three or more faces.
+    pub const fn grown(self, counts: &Counts, boundary: usize) -> Counts {
+        let &Counts {
+            vertices: v,
+            edges: e,
+            faces: f,
+            corners,
+            uniform: _,
+        } = counts;
+        let (vertices, edges, faces, degree) = match self {
+            Self::Quads => (
+                v.saturating_add(f).saturating_add(e),
+                e.saturating_mul(2).saturating_add(corners),
+                corners,
+                4,
+            ),
+            Self::Triangles => (
+                v.saturating_add(e),
+                e.saturating_mul(2).saturating_add(f.saturating_mul(3)),
+                f.saturating_mul(4),
+                3,
+            ),
+            Self::Sqrt3 { trisect } => {
+                let cut = if trisect { boundary } else { 0 };
+                let more = cut.saturating_mul(2);
+                (
+                    v.saturating_add(f).saturating_add(more),
+                    e.saturating_add(f.saturating_mul(3))
+                        .saturating_add(more.saturating_mul(2)),
+                    f.saturating_mul(3).saturating_add(more),
+                    3,
+                )
+            }
+        };
+        Counts {
+            vertices,
+            edges,
+            faces,
+            corners: faces.saturating_mul(degree),
+            uniform: true,
+        }
+    }
+}
+
+impl fmt::Display for Split {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A structure that can refine its own tables: it splits every face, in closed form, without
+/// rebuilding.
+///
+/// The structure computes only the connectivity. The subdivision scheme computes the positions: it
+/// queries the nine relations of the parent mesh and writes the child's
+/// [`positions_mut`](Self::positions_mut).
+///
+/// # Contract
+///
+/// - The child is the mesh that [`Split`] defines: same faces, same orientation, vertices in that
+///   fixed order. It satisfies every invariant of the structure. Each structure defines the order
+///   of its faces and edges; [`parent`](Self::parent) returns the parent of a face.
+/// - The tables of the child are overwritten in place if they are large enough: repeated refinement
+///   into one mesh allocates nothing.
+/// - The work runs on the threads of the current rayon pool, and gives the same bytes on any number
+///   of them.
+/// - In addition to the two meshes it needs at most a tenth of their bytes. It uses no hash table,
+///   no [`from_polygons`](Representation::from_polygons) and no intermediate `PolygonMesh`.
+pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
+    /// The splits that the structure supports. `Sqrt3` stands for both values of `trisect`.
+    const SPLITS: &'static [Split];
+
+    /// The numbers of the edges, computed once per mesh; the memory is reused for the next mesh. A
+    /// table by corner, or, if edges are rows, only what `split_into` and `parent` look up.
+    type EdgeNumbers: Default + Send + Sync;
+
+    /// Returns a mesh without elements, to be refined into.
+    fn empty() -> Self;
+
+    /// Numbers the edges in the order of `edges()`; O(corners) or less.
+    fn number_edges(&self, numbers: &mut Self::EdgeNumbers);
+
+    /// Returns the division of the numbered edges into parts of a few thousand, for parallel
+    /// passes: the first number of each part, and at the end the number of edges. `[0]` for a mesh
+    /// without edges.
+    fn edge_parts(&self, numbers: &Self::EdgeNumbers) -> Vec<usize>;
+
+    /// Returns the edges of one part, in the order of their numbers.
+    fn edges_of_part(
+        &self,
+        numbers: &Self::EdgeNumbers,
+        part: usize,
+    ) -> impl Iterator<Item = Self::Edge>;
+
+    /// Returns the number of `e`: its place in `edges()`. O(1), or O(valence) if edges are not
+    /// rows.
+    fn edge_number(&self, numbers: &Self::EdgeNumbers, e: Self::Edge) -> usize;
+
+    /// Overwrites `child` with the split mesh; the caller must write the positions of the child.
+    ///
+    /// `numbers` are those of this mesh.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`RefineError`] and leaves `child` unchanged if the split is not in
+    /// [`SPLITS`](Self::SPLITS), if a face is not a triangle but must be, if two triangles share
+    /// two edges and edges can have at most two faces, or if the child would have too many elements
+    /// for its handles. The last is checked before anything is allocated.
+    fn split_into(
+        &self,
+        split: Split,
+        numbers: &Self::EdgeNumbers,
+        child: &mut Self,
+    ) -> Result<(), RefineError>;
+
+    /// Returns the face of this mesh of which `child`, a face of the mesh after `split`, is a part;
+    /// O(1), or O(log faces) if degrees are mixed or there is a boundary. A triangle of the √3
+    /// split across an old inner edge belongs to the face whose side along that edge starts at the
+    /// triangle's old vertex. `numbers` are those of this mesh.
+    fn parent(&self, numbers: &Self::EdgeNumbers, split: Split, child: FaceId) -> FaceId;
+
+    /// Returns all positions by vertex, for writing.
+    fn positions_mut(&mut self) -> &mut [Point];
+
+    /// Returns all positions by vertex.
+    fn position_rows(&self) -> &[Point];
+}
+
+/// Checks the split and the size of the child, as the first step of every [`Refine::split_into`];
+/// returns the sizes of the child.
+///
+/// # Errors
+///
+/// Returns an unsupported split, or too many elements.
+pub fn check_split<M: Refine>(
+    split: Split,
+    counts: &Counts,
+    boundary: usize,
+) -> Result<Counts, RefineError> {
+    let known = M::SPLITS.iter().any(|known| known.name() == split.name());
+    if !known {
+        let structure = M::NAME;
+        return Err(RefineError::Unsupported { structure, split });
+    }
+    let grown = split.grown(counts, boundary);
+    // Half-edges and corners are rows, so twice the edges and all corners must fit handles too.
+    for (elements, number) in [
+        ("vertices", grown.vertices),
+        ("half-edges", grown.edges.saturating_mul(2)),
+        ("corners", grown.corners),
+    ] {
+        if number > MAX_ROWS {
+            return Err(RefineError::TooMany {
+                elements,
+                number,
+                limit: MAX_ROWS,
+            });
+        }
+    }
+    Ok(grown)
+}
+
+/// The number of rows that a thread takes at a time: few enough to share evenly, enough to outweigh
+/// the overhead.
+pub const PART: usize = 4096;
+
+/// Returns the starts of parts of [`PART`] rows, and at the end the number of rows: the
+/// [`edge_parts`](Refine::edge_parts) of structures whose edges are rows.
+pub fn row_parts(rows: usize) -> Vec<usize> {
+    (0..rows).step_by(PART).chain([rows]).collect()
+}
+
+/// Returns the rows of one part of [`row_parts`].
+pub fn rows_of_part(rows: usize, part: usize) -> Range<u32> {
+    let start = (part * PART).min(rows);
+    row(start)..row((start + PART).min(rows))
+}
+
+/// Calls `work` with every part of `rows` and the number of its first row; parts have `part` rows,
+/// the last may have fewer. The threads of the current rayon pool share the parts.
+///
+/// On one thread it is a plain loop. What `work` writes must depend only on the rows, not on their
+/// part: then the result is the same on any number of threads.
+pub fn in_parts<T: Send>(rows: &mut [T], part: usize, work: impl Fn(usize, &mut [T]) + Sync) {
+    use rayon::prelude::*;
+    if rows.len() <= part || rayon::current_num_threads() == 1 {
+        for (number, rows) in rows.chunks_mut(part).enumerate() {
+            work(number * part, rows);
+        }
+    } else {
+        let parts = rows.par_chunks_mut(part).enumerate();
+        parts.for_each(|(number, rows)| work(number * part, rows));
+    }
+}
+
+/// Calls `work` like [`in_parts`], for parts of different lengths: part `i` has the rows
+/// `starts[i]..starts[i + 1]`. `work` gets the number of the part; its results are returned in the
+/// order of the parts.
+///
+/// # Panics
+///
+/// Panics if `starts` do not ascend from 0 to the number of rows.
+pub fn in_given_parts<T: Send, R: Send>(
+    rows: &mut [T],
+    starts: &[usize],
+    work: impl Fn(usize, Range<usize>, &mut [T]) -> R + Sync,
+) -> Vec<R> {
+    use rayon::prelude::*;
+    let mut parts = Vec::with_capacity(starts.len());
+    let mut rest = rows;
+    for (number, bounds) in starts.windows(2).enumerate() {
+        let (part, after) = rest.split_at_mut(bounds[1] - bounds[0]);
+        parts.push((number, bounds[0]..bounds[1], part));
+        rest = after;
+    }
+    assert!(
+        rest.is_empty(),
+        "the parts do not cover the last {} rows",
+        rest.len()
+    );
+    let work = |(number, range, rows)| work(number, range, rows);
+    if parts.len() == 1 || rayon::current_num_threads() == 1 {
+        parts.into_iter().map(work).collect()
+    } else {
+        parts.into_par_iter().map(work).collect()
+    }
+}
+
+/// Returns whether `is` holds for all `rows`, which the threads of the current rayon pool share.
+///
+/// There is no early exit inside a part of [`PART`] rows, so that the loop can be vectorised.
+pub fn all_rows<T: Sync>(rows: &[T], is: impl Fn(&T) -> bool + Sync) -> bool {
+    use rayon::prelude::*;
+    let whole = |rows: &[T]| rows.iter().fold(true, |all, row| all & is(row));
+    if rows.len() <= PART || rayon::current_num_threads() == 1 {
+        rows.chunks(PART).all(whole)
+    } else {
+        rows.par_chunks(PART).all(whole)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cube: 8 vertices, 12 edges, 6 faces.
+    const CUBE: Counts = Counts {
+        vertices: 8,
+        edges: 12,
+        faces: 6,
+        corners: 24,
+        uniform: true,
+    };
+
+    /// One triangle.
+    const TRIANGLE: Counts = Counts {
+        vertices: 3,
+        edges: 3,
+        faces: 1,
+        corners: 3,
+        uniform: true,
+    };
+
+    #[test]
+    fn counts_grow_in_closed_form() {
+        let sizes = |c: Counts| [c.vertices, c.edges, c.faces, c.corners];
+        assert_eq!(sizes(Split::Quads.grown(&CUBE, 0)), [26, 48, 24, 96]);
+        assert_eq!(sizes(Split::Triangles.grown(&TRIANGLE, 3)), [6, 9, 4, 12]);
+        let sqrt3 = |trisect| sizes(Split::Sqrt3 { trisect }.grown(&TRIANGLE, 3));
+        assert_eq!(sqrt3(false), [4, 6, 3, 9]);
+        assert_eq!(sqrt3(true), [10, 18, 9, 27]);
+        let huge = Counts {
+            faces: usize::MAX / 2,
+            ..TRIANGLE
+        };
+        assert_eq!(Split::Triangles.grown(&huge, 0).faces, usize::MAX);
+    }
+
+    #[test]
+    fn parts_cover_every_row_once() {
+        for rows in [0, 1, PART, PART + 1, 3 * PART] {
+            let starts = row_parts(rows);
+            let parts = (0..starts.len() - 1).flat_map(|part| rows_of_part(rows, part));
+            assert!(parts.eq(0..rows as u32));
+            assert_eq!(starts.last(), Some(&rows));
+        }
+        for rows in [0, 1, 7, 8, 9, 100] {
+            let mut seen = vec![0_usize; rows];
+            in_parts(&mut seen, 8, |first, rows| {
+                for (i, row) in rows.iter_mut().enumerate() {
+                    *row += first + i + 1;
+                }
+            });
+            assert!(seen.iter().enumerate().all(|(i, &row)| row == i + 1));
+        }
+        let mut seen = vec![0; 6];
+        in_given_parts(&mut seen, &[0, 1, 1, 4, 6], |part, range, rows| {
+            assert_eq!(range.len(), rows.len());
+            rows.fill(part);
+        });
+        assert_eq!(seen, [0, 2, 2, 2, 3, 3]);
+        in_given_parts(&mut [0; 0], &[0], |_, _, _| unreachable!("no parts"));
+    }
+}

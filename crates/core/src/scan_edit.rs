@@ -1,0 +1,160 @@
+//! The edits of structures that scan: their legality, their effect on the faces, and their reports.
+//!
+//! Each edit gets the handle of a new vertex as an argument, checks everything, and then changes
+//! only the faces; the structure updates its table of vertices, if it has one. The hits of a scan
+//! are kept for that one edit, on the stack if they are few.
+//!
+//! If the log ignores reports, an edit of one face reads only that face: whether other faces have
+//! its sides and corners is then not computed, because these structures do not need it.
+
+mod collapse;
+mod edges;
+mod faces;
+mod split_vertex;
+
+use crate::edit_error::EditError;
+use crate::edit_log::EditLog;
+use crate::editing::Editable;
+use crate::few::Few;
+use crate::handle::Pair;
+use crate::probe::Probe;
+use crate::query::MeshQuery;
+use crate::row_id::{FaceId, MAX_ROWS};
+use crate::scanned::{Hit, ScannedFaces, ScannedVertex, Sought};
+
+type Refusal<V> = EditError<V, Pair<V>, FaceId>;
+
+/// A mesh with the handle types of [`ScannedFaces`].
+pub trait ScannedMesh<V>: MeshQuery<Vertex = V, Edge = Pair<V>, Face = FaceId> {}
+
+impl<V, M: MeshQuery<Vertex = V, Edge = Pair<V>, Face = FaceId>> ScannedMesh<V> for M {}
+
+/// Returns whether the log uses what is reported to it.
+const fn listens<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
+    L::LISTENS
+}
+
+/// Steps that several edits share.
+impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
+    /// Returns `f` if it exists.
+    fn existing(&self, f: FaceId) -> Result<FaceId, Refusal<V>> {
+        if self.has(f) {
+            Ok(f)
+        } else {
+            Err(EditError::NoSuchFace { face: f })
+        }
+    }
+
+    fn degree(&self, f: FaceId) -> usize {
+        self.spans.range(f).len()
+    }
+
+    /// Checks that handles can name this many more faces and corners. A face that grows moves, and
+    /// takes new rows for all its corners.
+    fn room(&self, faces: usize, corners: usize) -> Result<(), Refusal<V>> {
+        let full = |elements| EditError::TooMany {
+            elements,
+            limit: MAX_ROWS,
+        };
+        if self.spans.len() + faces > MAX_ROWS {
+            return Err(full("faces"));
+        }
+        if self.corners.len() + corners > MAX_ROWS {
+            return Err(full("corners"));
+        }
+        Ok(())
+    }
+
+    /// Returns whether a corner is at `v`; one scan.
+    pub fn has_vertex(&self, v: V) -> bool {
+        self.scan(Sought::One(v)).next().is_some()
+    }
+
+    /// Returns the corners at `v`. If a vertex is its coordinates, the same scan checks that the
+    /// position `m` is free.
+    fn around(&self, v: V, m: V) -> Result<Few<Hit<V>>, Refusal<V>> {
+        let sought = if V::IS_PLACE {
+            Sought::Two([v, m])
+        } else {
+            Sought::One(v)
+        };
+        let (mut around, mut occupied) = (Few::new(), false);
+        for hit in self.hits(sought) {
+            occupied |= hit.at == m;
+            if hit.at == v {
+                around.push(hit);
+            }
+        }
+        if V::IS_PLACE && around.is_empty() {
+            return Err(EditError::NoSuchVertex { vertex: v });
+        }
+        if occupied {
+            return Err(EditError::Occupied { vertex: m });
+        }
+        Ok(around)
+    }
+
+    /// Returns all corners of `f`, starting at `corner`.
+    fn corners_from(&self, f: FaceId, corner: usize) -> impl Iterator<Item = V::Corner> {
+        let range = self.spans.range(f);
+        let round = (corner..range.end).chain(range.start..corner);
+        round.map(|corner| *self.corners.read(corner))
+    }
+
+    fn push(&mut self, face: &[V::Corner]) -> FaceId {
+        self.spans.push(&mut self.corners, face)
+    }
+
+    fn push_triangle(&mut self, triangle: [V; 3]) -> FaceId {
+        self.push(&triangle.map(V::corner))
+    }
+
+    fn rewrite(&mut self, f: FaceId, face: &[V::Corner]) {
+        self.spans
+            .rewrite(&mut self.corners, f, face, V::BLANK.corner());
+    }
+
+    /// Moves one corner to another vertex.
+    fn retarget(&mut self, corner: usize, v: V) {
+        *self.corners.write(corner) = v.corner();
+    }
+
+    fn delete(&mut self, f: FaceId) {
+        self.spans.blank(&mut self.corners, f, V::BLANK.corner());
+        self.holes.dig(f.index());
+    }
+
+    /// Closes the gaps of deleted faces; O(corners). The structure reports its own vertices and
+    /// edges.
+    pub fn compact<M: ScannedMesh<V>>(&mut self, log: &mut impl EditLog<M>) {
+        if listens(log) {
+            for (new, old) in (0..).map(FaceId::new).zip(self.handles()) {
+                if new != old {
+                    log.renamed_face(old, new);
+                }
+            }
+        }
+        self.spans.compact(&mut self.corners, &self.holes);
+        self.holes.fill();
+    }
+}
+
+/// Returns an item that the list contains twice; O(n²) up to 16 items, otherwise O(n log n).
+fn repeated<T: Ord + Copy>(items: &[T]) -> Option<T> {
+    if items.len() <= 16 {
+        let mut later = items.iter().enumerate();
+        return later.find_map(|(i, item)| items[..i].contains(item).then_some(*item));
+    }
+    let mut sorted = items.to_vec();
+    sorted.sort_unstable();
+    let mut pairs = sorted.windows(2);
+    pairs.find(|pair| pair[0] == pair[1]).map(|pair| pair[0])
+}
+
+/// Returns the items sorted, each once.
+fn sorted_once<T: Ord>(items: impl Iterator<Item = T>) -> Vec<T> {
+    let mut items: Vec<T> = items.collect();
+    items.sort_unstable();
+    items.dedup();
+    items
+}

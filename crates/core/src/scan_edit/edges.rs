@@ -1,0 +1,245 @@
+//! Edits of an edge and its faces.
+
+use super::{Refusal, ScannedMesh, listens, repeated};
+use crate::distinct::IteratorExt;
+use crate::edit_error::EditError;
+use crate::edit_log::EditLog;
+use crate::editing::Editable;
+use crate::few::Few;
+use crate::handle::Pair;
+use crate::probe::Probe;
+use crate::row_id::FaceId;
+use crate::scanned::{Hit, ScannedFaces, ScannedVertex, Sought};
+
+/// A side: an edge as one face runs along it.
+#[derive(Clone, Copy)]
+struct Run<V> {
+    face: FaceId,
+    /// The corners where the side starts and ends.
+    corners: [usize; 2],
+    /// The vertices at these corners.
+    ends: [V; 2],
+    /// The other neighbour of the edge's lower end in the face: in a triangle, the third corner.
+    apex: V,
+}
+
+impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
+    /// Returns the side of the hit's face between the hit corner and `b`, if there is one.
+    fn run(&self, hit: &Hit<V>, b: V) -> Option<Run<V>> {
+        let leaves = hit.after == b;
+        if !leaves && hit.before != b {
+            return None;
+        }
+        let (face, [before, at, after]) = self.spans.around(hit.corner);
+        Some(if leaves {
+            Run {
+                face,
+                corners: [at, after],
+                ends: [hit.at, b],
+                apex: hit.before,
+            }
+        } else {
+            Run {
+                face,
+                corners: [before, at],
+                ends: [b, hit.at],
+                apex: hit.after,
+            }
+        })
+    }
+
+    /// Returns the side along `e` of each of its faces; one scan, which also checks that `m` is
+    /// free if a vertex is its coordinates.
+    fn along(&self, e: Pair<V>, m: Option<V>) -> Result<Few<Run<V>>, Refusal<V>> {
+        let (mut along, mut occupied) = (Few::new(), false);
+        let [a, b] = e.ends();
+        if e.has(V::BLANK) {
+            return Err(EditError::NoSuchEdge { edge: e });
+        }
+        let m = m.filter(|_| V::IS_PLACE);
+        let sought = m.map_or(Sought::One(a), |m| Sought::Two([a, m]));
+        for hit in self.hits(sought) {
+            occupied |= Some(hit.at) == m;
+            if hit.at == a
+                && let Some(run) = self.run(&hit, b)
+            {
+                along.push(run);
+            }
+        }
+        if along.is_empty() {
+            return Err(EditError::NoSuchEdge { edge: e });
+        }
+        match m.filter(|_| occupied) {
+            Some(vertex) => Err(EditError::Occupied { vertex }),
+            None => Ok(along),
+        }
+    }
+
+    /// Returns the sides of the two faces of `e`, which must run in opposite directions.
+    fn opposed(e: Pair<V>, along: &[Run<V>]) -> Result<[Run<V>; 2], Refusal<V>> {
+        match *along {
+            [] => Err(EditError::NoSuchEdge { edge: e }),
+            [f, g] if f.ends == g.ends => Err(EditError::SameDirection { edge: e }),
+            [f, g] => Ok([f, g]),
+            _ => Err(EditError::NotTwoFaces {
+                edge: e,
+                faces: along.len(),
+            }),
+        }
+    }
+
+    fn check_triangle(&self, face: FaceId) -> Result<(), Refusal<V>> {
+        match self.degree(face) {
+            3 => Ok(()),
+            degree => Err(EditError::NotATriangle { face, degree }),
+        }
+    }
+
+    /// Inserts `m`, a new vertex, into `e` and each of its faces; one scan.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a missing edge, and an occupied position.
+    pub fn split_edge<M: ScannedMesh<V>>(
+        &mut self,
+        e: Pair<V>,
+        m: V,
+        log: &mut impl EditLog<M>,
+    ) -> Result<(), Refusal<V>> {
+        let along = self.along(e, Some(m))?;
+        let grown = along.iter().map(|run| self.degree(run.face) + 1);
+        self.room(0, grown.sum())?;
+        for run in along.iter() {
+            // All corners from the end of the side around to its start, then m.
+            let mut face: Few<V::Corner> = self.corners_from(run.face, run.corners[1]).collect();
+            face.push(m.corner());
+            self.rewrite(run.face, &face);
+        }
+        log.created_vertex(m);
+        let [a, b] = e.ends();
+        log.renamed_edge(e, Pair::new(a, m));
+        log.created_edge(Pair::new(m, b));
+        Ok(())
+    }
+
+    /// Inserts `m`, a new vertex, into `e` and cuts the triangles of `e` in two there; one scan.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a missing edge, a face of it that is not a triangle, and an occupied position.
+    pub fn bisect_edge<M: ScannedMesh<V>>(
+        &mut self,
+        e: Pair<V>,
+        m: V,
+        log: &mut impl EditLog<M>,
+    ) -> Result<(), Refusal<V>> {
+        let along = self.along(e, Some(m))?;
+        for run in along.iter() {
+            self.check_triangle(run.face)?;
+        }
+        self.room(along.len(), 3 * along.len())?;
+        for run in along.iter() {
+            self.retarget(run.corners[1], m);
+            log.created_face(self.push_triangle([m, run.ends[1], run.apex]));
+        }
+        if listens(log) {
+            log.created_vertex(m);
+            let [a, b] = e.ends();
+            log.renamed_edge(e, Pair::new(a, m));
+            let ends = along.iter().map(|run| run.apex).distinct();
+            for end in ends.chain([b]) {
+                log.created_edge(Pair::new(m, end));
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes `e` and merges its two faces into the first of them in the table; one scan.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a missing edge, one without exactly two faces, and faces that run along it in the
+    /// same direction or share another vertex.
+    pub fn dissolve_edge<M: ScannedMesh<V>>(
+        &mut self,
+        e: Pair<V>,
+        log: &mut impl EditLog<M>,
+    ) -> Result<FaceId, Refusal<V>> {
+        let [one, other] = Self::opposed(e, &self.along(e, None)?)?;
+        // All corners of the first face from the end of its side around to its start, then those of
+        // the second face without the two ends.
+        let mut merged: Few<V> = self
+            .corners_from(one.face, one.corners[1])
+            .map(V::of)
+            .collect();
+        let beyond = self.corners_from(other.face, other.corners[1]);
+        let between = self.degree(other.face) - 2;
+        merged.extend(beyond.map(V::of).skip(1).take(between));
+        if let Some(vertex) = repeated(&merged) {
+            return Err(EditError::RepeatedVertex { vertex });
+        }
+        self.room(0, merged.len())?;
+        let merged: Few<V::Corner> = merged.iter().map(|v| v.corner()).collect();
+        self.rewrite(one.face, &merged);
+        self.delete(other.face);
+        log.removed_edge(e);
+        log.removed_face(other.face);
+        Ok(one.face)
+    }
+
+    /// Flips `e` within the quad of its two triangles; two scans.
+    ///
+    /// ```text
+    ///      c            c
+    ///     ╱f╲          ╱│╲
+    ///    a───b   →    a f│g b      one corner of each face changes: b of f, a of g
+    ///     ╲g╱          ╲│╱
+    ///      d            d
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Refuses a missing edge, and what [`MeshEdit::flip_edge`](crate::MeshEdit::flip_edge)
+    /// refuses.
+    pub fn flip_edge<M: ScannedMesh<V>>(
+        &mut self,
+        e: Pair<V>,
+        log: &mut impl EditLog<M>,
+    ) -> Result<Pair<V>, Refusal<V>> {
+        let [a, b] = e.ends();
+        if e.has(V::BLANK) {
+            return Err(EditError::NoSuchEdge { edge: e });
+        }
+        let at_a: Few<Hit<V>> = self.hits(Sought::One(a)).collect();
+        let along: Few<Run<V>> = at_a.iter().filter_map(|hit| self.run(hit, b)).collect();
+        let [f, g] = Self::opposed(e, &along)?;
+        self.check_triangle(f.face)?;
+        self.check_triangle(g.face)?;
+        let (c, d) = (f.apex, g.apex);
+        if c == d {
+            return Err(EditError::SameApex { edge: e, vertex: c });
+        }
+        // The second scan: whether edge c–d exists, and the corners at b.
+        let mut at_b = Few::new();
+        for hit in self.hits(Sought::Two([b, c])) {
+            if hit.at == b {
+                at_b.push(hit);
+            } else if hit.is_beside(d) {
+                return Err(EditError::EdgeExists { ends: [c, d] });
+            }
+        }
+        for (vertex, hits) in [(a, &at_a), (b, &at_b)] {
+            if let [_, _, _] = hits[..] {
+                let ring = hits.iter().flat_map(|hit| [hit.before, hit.after]);
+                if ring.distinct().count() == 3 {
+                    return Err(EditError::LowValence { vertex });
+                }
+            }
+        }
+        self.retarget(f.corners[1], d);
+        self.retarget(g.corners[1], c);
+        let turned = Pair::new(c, d);
+        log.renamed_edge(e, turned);
+        Ok(turned)
+    }
+}

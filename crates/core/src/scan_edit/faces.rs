@@ -1,0 +1,200 @@
+//! Edits of whole faces.
+
+use super::{Refusal, ScannedMesh, listens, repeated, sorted_once};
+use crate::edit_error::EditError;
+use crate::edit_log::EditLog;
+use crate::editing::Editable;
+use crate::few::Few;
+use crate::handle::Pair;
+use crate::probe::Probe;
+use crate::row_id::FaceId;
+use crate::scanned::{ScannedFaces, ScannedVertex, Sought};
+
+impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
+    /// Adds a face with these `corners`, which are vertices already or positions of new ones:
+    /// O(degree), and a scan for sides that exist already if the log uses reports.
+    ///
+    /// # Errors
+    ///
+    /// Refuses fewer than three corners, and a repeated corner.
+    pub fn add_face<M: ScannedMesh<V>>(
+        &mut self,
+        corners: &[V],
+        log: &mut impl EditLog<M>,
+    ) -> Result<FaceId, Refusal<V>> {
+        if corners.len() < 3 {
+            let corners = corners.len();
+            return Err(EditError::TooFewCorners { corners });
+        }
+        if let Some(vertex) = repeated(corners) {
+            return Err(EditError::RepeatedVertex { vertex });
+        }
+        self.room(1, corners.len())?;
+        if listens(log) {
+            let sides = Pair::sides(corners.len(), |i| corners[i]);
+            let (vertices, edges) = self.strangers(corners.iter().copied(), sides, &[]);
+            if V::IS_PLACE {
+                vertices.into_iter().for_each(|v| log.created_vertex(v));
+            }
+            edges.into_iter().for_each(|e| log.created_edge(e));
+        }
+        let face: Few<V::Corner> = corners.iter().map(|v| v.corner()).collect();
+        let f = self.push(&face);
+        log.created_face(f);
+        Ok(f)
+    }
+
+    /// Removes `f`: O(degree), and a scan for the sides that other faces have if the log uses
+    /// reports. If a vertex is its coordinates, corners without a face are removed.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a missing face.
+    pub fn remove_face<M: ScannedMesh<V>>(
+        &mut self,
+        f: FaceId,
+        log: &mut impl EditLog<M>,
+    ) -> Result<(), Refusal<V>> {
+        self.existing(f)?;
+        self.remove_faces(&[f], log);
+        Ok(())
+    }
+
+    /// Removes the faces at `v`; one scan, and another for the sides that other faces have if the
+    /// log uses reports.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a vertex without faces if a vertex is its coordinates.
+    pub fn remove_faces_at<M: ScannedMesh<V>>(
+        &mut self,
+        v: V,
+        log: &mut impl EditLog<M>,
+    ) -> Result<(), Refusal<V>> {
+        let mut faces: Few<FaceId> = self.vertex_faces(v).collect();
+        if V::IS_PLACE && faces.is_empty() {
+            return Err(EditError::NoSuchVertex { vertex: v });
+        }
+        faces.sort_unstable();
+        self.remove_faces(&faces, log);
+        Ok(())
+    }
+
+    /// Removes `faces`, which must be sorted.
+    fn remove_faces<M: ScannedMesh<V>>(&mut self, faces: &[FaceId], log: &mut impl EditLog<M>) {
+        if listens(log) {
+            let corners = faces.iter().flat_map(|&f| self.face_vertices(f));
+            let sides = faces.iter().flat_map(|&f| self.face_edges(f));
+            let (vertices, edges) = self.strangers(corners, sides, faces);
+            if V::IS_PLACE {
+                vertices.into_iter().for_each(|v| log.removed_vertex(v));
+            }
+            edges.into_iter().for_each(|e| log.removed_edge(e));
+        }
+        for &f in faces {
+            self.delete(f);
+            log.removed_face(f);
+        }
+    }
+
+    /// Returns the given vertices and sides that no face has, apart from the faces in the sorted
+    /// list `except`; one scan.
+    fn strangers(
+        &self,
+        vertices: impl Iterator<Item = V>,
+        sides: impl Iterator<Item = Pair<V>>,
+        except: &[FaceId],
+    ) -> (Vec<V>, Vec<Pair<V>>) {
+        let (mut vertices, mut sides) = (sorted_once(vertices), sorted_once(sides));
+        if vertices.is_empty() {
+            return (vertices, sides);
+        }
+        let mut known = (vec![false; vertices.len()], vec![false; sides.len()]);
+        let hits = self.hits(Sought::all(&vertices));
+        for hit in hits.filter(|hit| except.binary_search(&hit.face).is_err()) {
+            if let Ok(i) = vertices.binary_search(&hit.at) {
+                known.0[i] = true;
+            }
+            for side in hit.sides() {
+                if let Ok(i) = sides.binary_search(&side) {
+                    known.1[i] = true;
+                }
+            }
+        }
+        let (mut vertex, mut side) = (known.0.into_iter(), known.1.into_iter());
+        vertices.retain(|_| vertex.next() == Some(false));
+        sides.retain(|_| side.next() == Some(false));
+        (vertices, sides)
+    }
+
+    /// Cuts `f` into triangles around `m`, a new vertex; `f` becomes the one at its first side.
+    /// O(degree), and a scan for `m` if a vertex is its coordinates.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a missing face, and an occupied position.
+    pub fn poke_face<M: ScannedMesh<V>>(
+        &mut self,
+        f: FaceId,
+        m: V,
+        log: &mut impl EditLog<M>,
+    ) -> Result<(), Refusal<V>> {
+        let corners = self.spans.range(self.existing(f)?);
+        if V::IS_PLACE && self.has_vertex(m) {
+            return Err(EditError::Occupied { vertex: m });
+        }
+        self.room(corners.len() - 1, 3 * corners.len())?;
+        log.created_vertex(m);
+        // The corners of `f` stay in place until it is rewritten at the end, whatever is pushed
+        // before.
+        let start = corners.start;
+        let [first, second] = [start, start + 1].map(|corner| V::of(*self.corners.read(corner)));
+        let mut a = second;
+        for corner in corners.skip(2) {
+            let b = V::of(*self.corners.read(corner));
+            log.created_face(self.push_triangle([a, b, m]));
+            log.created_edge(Pair::new(a, m));
+            a = b;
+        }
+        log.created_face(self.push_triangle([a, first, m]));
+        log.created_edge(Pair::new(a, m));
+        self.rewrite(f, &[first, second, m].map(V::corner));
+        log.created_edge(Pair::new(first, m));
+        Ok(())
+    }
+
+    /// Cuts `f` in two between `ends`; `f` becomes the part from the earlier corner to the later.
+    /// O(degree), and a scan for an edge between them in other faces if the log uses reports.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a missing face, and `ends` that are not corners of it, are equal, or are adjacent in
+    /// it.
+    pub fn split_face<M: ScannedMesh<V>>(
+        &mut self,
+        f: FaceId,
+        ends: [V; 2],
+        log: &mut impl EditLog<M>,
+    ) -> Result<Pair<V>, Refusal<V>> {
+        self.existing(f)?;
+        let face: Few<V::Corner> = self.face(f).iter().copied().collect();
+        let mut at = [0; 2];
+        for (at, vertex) in at.iter_mut().zip(ends) {
+            let found = face.iter().position(|corner| vertex.is_at(corner));
+            *at = found.ok_or(EditError::NotACorner { face: f, vertex })?;
+        }
+        let (i, j) = (at[0].min(at[1]), at[0].max(at[1]));
+        if j - i < 2 || j - i + 2 > face.len() {
+            return Err(EditError::NothingBetween { face: f, ends });
+        }
+        self.room(1, face.len() + 2)?;
+        let edge = Pair::new(ends[0], ends[1]);
+        if listens(log) && self.edge_faces(edge).next().is_none() {
+            log.created_edge(edge);
+        }
+        let beyond: Few<V::Corner> = face[j..].iter().chain(&face[..=i]).copied().collect();
+        self.rewrite(f, &face[i..=j]);
+        log.created_face(self.push(&beyond));
+        Ok(edge)
+    }
+}

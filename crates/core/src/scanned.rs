@@ -1,0 +1,478 @@
+//! Faces as lists of corners, without links from a vertex to its faces.
+
+use crate::clone_by_field;
+use crate::distinct::IteratorExt;
+use crate::editing::{Editable, Editing, FACE_HOLES, HoleSet, NoHoles, Whole};
+use crate::face_spans::FaceSpans;
+use crate::handle::{Handle, Pair};
+use crate::memory::TableBytes;
+use crate::probe::{Probe, Untraced};
+use crate::row_id::{FaceId, VertexId};
+use crate::scan::hits_in;
+use crate::table::Table;
+
+/// The handle of a vertex in a structure that scans, and its form in the table of corners.
+pub trait ScannedVertex: Handle {
+    /// The content of a row of the table of corners.
+    type Corner: Copy;
+    /// A set of vertices, to test whether a corner is at one of them.
+    type Set;
+    /// A handle that no vertex has: corners of deleted faces have it, and no scan searches for it.
+    const BLANK: Self;
+    /// Whether a vertex is its coordinates: then it exists as long as a face has it, and no two
+    /// vertices are at one position.
+    const IS_PLACE: bool;
+
+    /// Returns the vertex of a corner.
+    fn of(corner: Self::Corner) -> Self;
+    /// Returns the vertex in the form of a corner.
+    fn corner(self) -> Self::Corner;
+    /// Returns whether `corner` is at this vertex.
+    fn is_at(self, corner: &Self::Corner) -> bool;
+    /// Builds a set of vertices.
+    fn set(vertices: impl Iterator<Item = Self>) -> Self::Set;
+    /// Returns whether `corner` is at one of the vertices of `set`.
+    fn is_in(corner: &Self::Corner, set: &Self::Set) -> bool;
+}
+
+/// A corner is the handle of its vertex.
+impl ScannedVertex for VertexId {
+    type Corner = Self;
+    /// One bit for each row up to the highest member.
+    type Set = Vec<u64>;
+    const BLANK: Self = Self::new(u32::MAX);
+    const IS_PLACE: bool = false;
+
+    #[inline]
+    fn of(corner: Self) -> Self {
+        corner
+    }
+
+    #[inline]
+    fn corner(self) -> Self {
+        self
+    }
+
+    #[inline]
+    fn is_at(self, corner: &Self) -> bool {
+        *corner == self
+    }
+
+    fn set(vertices: impl Iterator<Item = Self>) -> Vec<u64> {
+        let mut words = Vec::new();
+        for v in vertices {
+            let word = v.index() / 64;
+            if word >= words.len() {
+                words.resize(word + 1, 0);
+            }
+            words[word] |= 1 << (v.index() % 64);
+        }
+        words
+    }
+
+    #[inline]
+    fn is_in(corner: &Self, words: &Vec<u64>) -> bool {
+        let word = words.get(corner.index() / 64);
+        word.is_some_and(|word| word >> (corner.index() % 64) & 1 == 1)
+    }
+}
+
+/// The vertices that a scan searches for.
+#[derive(Clone, Debug)]
+pub enum Sought<V, S> {
+    /// One vertex.
+    One(V),
+    /// Two vertices.
+    Two([V; 2]),
+    /// Up to four vertices, some possibly repeated.
+    Four([V; 4]),
+    /// Any number of vertices.
+    Many(S),
+}
+
+impl<V: ScannedVertex> Sought<V, V::Set> {
+    /// Builds the search for all of `vertices`, which must not be empty.
+    #[inline]
+    pub fn all(vertices: &[V]) -> Self {
+        match *vertices {
+            [a] => Self::One(a),
+            [a, b] => Self::Two([a, b]),
+            [a, b, c] => Self::Four([a, b, c, c]),
+            [a, b, c, d] => Self::Four([a, b, c, d]),
+            _ => Self::Many(V::set(vertices.iter().copied())),
+        }
+    }
+
+    /// Builds the search for every second corner of a face: each of its sides ends at one of them.
+    pub fn every_second(face: &[V::Corner]) -> Self {
+        match *face {
+            [a, _, c] | [a, _, c, _] => Self::Two([a, c].map(V::of)),
+            [a, _, c, _, e] | [a, _, c, _, e, _] => Self::Four([a, c, e, e].map(V::of)),
+            [a, _, c, _, e, _, g] | [a, _, c, _, e, _, g, _] => Self::Four([a, c, e, g].map(V::of)),
+            _ => Self::Many(V::set(face.iter().step_by(2).map(|&corner| V::of(corner)))),
+        }
+    }
+
+    /// Returns the corners of a block that are at one of the vertices, as bits.
+    #[inline]
+    fn hits(&self, block: &[V::Corner]) -> u64 {
+        match self {
+            Self::One(v) => hits_in(block, |c| v.is_at(c)),
+            Self::Two([a, b]) => hits_in(block, |c| a.is_at(c) | b.is_at(c)),
+            Self::Four([a, b, c, d]) => hits_in(block, |x| {
+                (a.is_at(x) | b.is_at(x)) | (c.is_at(x) | d.is_at(x))
+            }),
+            Self::Many(set) => hits_in(block, |c| V::is_in(c, set)),
+        }
+    }
+}
+
+/// A corner that a scan found.
+#[derive(Clone, Copy, Debug)]
+pub struct Hit<V> {
+    /// Its row.
+    pub corner: usize,
+    /// Its face.
+    pub face: FaceId,
+    /// The vertex before it in the face.
+    pub before: V,
+    /// Its vertex.
+    pub at: V,
+    /// The vertex after it in the face.
+    pub after: V,
+}
+
+impl<V: Handle> Hit<V> {
+    /// Returns whether `v` is the vertex before or after the corner.
+    #[inline]
+    pub fn is_beside(&self, v: V) -> bool {
+        self.before == v || self.after == v
+    }
+
+    /// Returns the two sides that end at the corner.
+    #[inline]
+    pub fn sides(&self) -> [Pair<V>; 2] {
+        [self.before, self.after].map(|end| Pair::new(end, self.at))
+    }
+}
+
+/// The faces of a structure that stores no other connectivity: lists of corners, one after another.
+///
+/// Every query and every edit scans all corners to find the faces at a vertex or along an edge.
+/// Corners without a face, because it was deleted or moved to another place in the table, are
+/// blank: no scan finds them.
+#[derive(Debug)]
+pub struct ScannedFaces<V: ScannedVertex, P: Probe = Untraced, E: Editing = Whole> {
+    /// The corners, face by face.
+    pub corners: Table<V::Corner, P>,
+    /// The division of the corners into faces, deleted ones included.
+    pub spans: FaceSpans<P, E>,
+    /// The rows of deleted faces.
+    pub holes: E::Holes<P>,
+}
+
+clone_by_field!(ScannedFaces<V: ScannedVertex, P: Probe, E: Editing> { corners, spans, holes });
+
+impl<V: ScannedVertex, E: Editing> ScannedFaces<V, Untraced, E> {
+    /// Builds the faces that `spans` define in `corners`.
+    pub fn new(corners: Vec<V::Corner>, spans: FaceSpans) -> Self {
+        Self {
+            corners: Table::new("corners", "corner", corners),
+            spans: E::spans(spans),
+            holes: E::no_holes(FACE_HOLES, Untraced),
+        }
+    }
+}
+
+impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
+    /// Converts to faces without deletion; `None` if they have not been compacted.
+    pub fn into_whole(self) -> Option<ScannedFaces<V, P>> {
+        let spans = self.spans.into_whole().filter(|_| self.holes.is_empty())?;
+        Some(ScannedFaces {
+            corners: self.corners,
+            spans,
+            holes: NoHoles,
+        })
+    }
+}
+
+impl<V: ScannedVertex, P: Probe> From<ScannedFaces<V, P>> for ScannedFaces<V, P, Editable> {
+    fn from(faces: ScannedFaces<V, P>) -> Self {
+        Self {
+            holes: Editable::no_holes(FACE_HOLES, faces.corners.probe()),
+            corners: faces.corners,
+            spans: faces.spans.into(),
+        }
+    }
+}
+
+impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
+    /// Returns the same faces, observed by `probe`.
+    pub fn probed<Q: Probe>(self, probe: Q) -> ScannedFaces<V, Q, E> {
+        ScannedFaces {
+            corners: self.corners.probed(probe.clone()),
+            spans: self.spans.probed(probe.clone()),
+            holes: E::probed_holes(self.holes, probe),
+        }
+    }
+
+    /// Returns the number of faces; O(1).
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.spans.len() - self.holes.len()
+    }
+
+    /// Returns whether there are no faces; O(1).
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Returns every face, in order.
+    #[inline]
+    pub fn handles(&self) -> impl Iterator<Item = FaceId> {
+        self.holes.handles(self.spans.len())
+    }
+
+    /// Returns whether `f` exists; O(1).
+    #[inline]
+    pub fn has(&self, f: FaceId) -> bool {
+        f.index() < self.spans.len() && !self.holes.has(f.index())
+    }
+
+    /// Returns the corners of `f`, in order.
+    ///
+    /// # Panics
+    ///
+    /// Panics if there is no such face, or if it was deleted.
+    #[inline]
+    pub fn face(&self, f: FaceId) -> &[V::Corner] {
+        let corners = self.corners.read_range(self.spans.range(f));
+        // Checks the holes and not whether the first corner is blank: a loop over faces reads the
+        // number of holes only once.
+        if self.holes.has(f.index()) {
+            deleted(f);
+        }
+        corners
+    }
+
+    /// Returns the vertices of `f`, in order.
+    #[inline]
+    pub fn face_vertices(&self, f: FaceId) -> impl Iterator<Item = V> {
+        self.face(f).iter().map(|&corner| V::of(corner))
+    }
+
+    /// Returns the sides of `f`, in order.
+    #[inline]
+    pub fn face_edges(&self, f: FaceId) -> impl Iterator<Item = Pair<V>> + use<'_, V, P, E> {
+        let corners = self.face(f);
+        Pair::sides(corners.len(), |i| V::of(corners[i]))
+    }
+
+    /// Scans all corners for those at a vertex in `sought`, in order.
+    #[inline]
+    pub fn scan(
+        &self,
+        sought: Sought<V, V::Set>,
+    ) -> impl Iterator<Item = usize> + use<'_, V, P, E> {
+        self.corners.scan(move |block| sought.hits(block))
+    }
+
+    /// Scans like [`scan`](Self::scan); returns each corner with its face and the vertices before
+    /// and after it.
+    #[inline]
+    pub fn hits(
+        &self,
+        sought: Sought<V, V::Set>,
+    ) -> impl Iterator<Item = Hit<V>> + use<'_, V, P, E> {
+        self.scan(sought).map(|corner| {
+            let (face, corners) = self.spans.around(corner);
+            let [before, at, after] = corners.map(|corner| V::of(*self.corners.read(corner)));
+            Hit {
+                corner,
+                face,
+                before,
+                at,
+                after,
+            }
+        })
+    }
+
+    /// VV; one scan.
+    pub fn vertex_vertices(&self, v: V) -> impl Iterator<Item = V> {
+        let hits = self.hits(Sought::One(v));
+        hits.flat_map(|hit| [hit.before, hit.after]).distinct()
+    }
+
+    /// VF; one scan. A face has at most one corner at `v`, so no face is yielded twice.
+    #[inline]
+    pub fn vertex_faces(&self, v: V) -> impl Iterator<Item = FaceId> {
+        let corners = self.scan(Sought::One(v));
+        corners.map(|corner| self.spans.face_of(corner))
+    }
+
+    /// EE; one scan. The result is collected, because only the end of the scan shows whether `e`
+    /// exists.
+    pub fn edge_edges(&self, e: Pair<V>) -> impl Iterator<Item = Pair<V>> + use<V, P, E> {
+        let mut edges = Vec::new();
+        if !e.has(V::BLANK) {
+            let hits = self.hits(Sought::Two(e.ends()));
+            edges.extend(hits.flat_map(|hit| hit.sides()).distinct());
+        }
+        match edges.iter().position(|&edge| edge == e) {
+            Some(itself) => drop(edges.swap_remove(itself)),
+            None => edges.clear(),
+        }
+        edges.into_iter()
+    }
+
+    /// EF; one scan. A face has at most one corner at the first end, so no face is yielded twice.
+    pub fn edge_faces(&self, e: Pair<V>) -> impl Iterator<Item = FaceId> {
+        let [a, b] = e.ends();
+        let corners = self.scan(Sought::One(a));
+        let corners = corners.take_while(move |_| a != V::BLANK);
+        corners.filter_map(move |corner| {
+            let (face, [before, _, after]) = self.spans.around(corner);
+            let is_other = |corner| V::of(*self.corners.read(corner)) == b;
+            (is_other(before) || is_other(after)).then_some(face)
+        })
+    }
+
+    /// FF; one scan for every second corner of `f`, because each side of `f` ends at one of them.
+    pub fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
+        let sought = Sought::every_second(self.face(f));
+        let mut sides: Vec<Pair<V>> = self.face_edges(f).collect();
+        sides.sort_unstable();
+        let is_side = move |side: Pair<V>| sides.binary_search(&side).is_ok();
+        let hits = self.hits(sought).filter_map(move |hit| {
+            let across = hit.face != f && hit.sides().into_iter().any(&is_side);
+            across.then_some(hit.face)
+        });
+        hits.distinct()
+    }
+
+    /// Returns the bytes of all tables.
+    pub fn bytes(&self) -> impl Iterator<Item = TableBytes> {
+        let corners = std::iter::once(self.corners.bytes());
+        corners.chain(self.spans.bytes()).chain(self.holes.bytes())
+    }
+
+    /// Checks that the holes are faces, and that the blank corners are exactly those of deleted
+    /// faces and those between faces. Requires that the spans pass their own
+    /// [check](FaceSpans::check).
+    ///
+    /// # Errors
+    ///
+    /// Returns a description of the fault.
+    pub fn check_holes(&self) -> Result<(), String> {
+        self.holes.check(self.spans.len())?;
+        let corners = self.corners.rows();
+        let mut blank = vec![true; corners.len()];
+        for f in self.handles() {
+            blank[self.spans.range(f)].fill(false);
+        }
+        for (row, (corner, blank)) in corners.iter().zip(blank).enumerate() {
+            if V::BLANK.is_at(corner) != blank {
+                let (is, has) = if blank { ("is not", "no") } else { ("is", "a") };
+                return Err(format!("corner {row} {is} blank, but {has} face has it"));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn deleted(f: FaceId) -> ! {
+    panic!("no face {f}: it was deleted")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::face_list::FaceList;
+
+    fn faces(lists: &[&[u32]]) -> ScannedFaces<VertexId> {
+        let mut faces = FaceList::default();
+        for list in lists {
+            let face = list.iter().copied().map(VertexId::new);
+            faces.push(face).expect("small");
+        }
+        ScannedFaces::new(faces.corners().to_vec(), faces.spans())
+    }
+
+    #[test]
+    fn a_scan_finds_what_a_search_finds_at_every_block_boundary() {
+        for count in [1, 20, 21, 22, 42, 43, 64, 65] {
+            let strip: Vec<[u32; 3]> = (0..count).map(|f| [f, f + 1, f + 2]).collect();
+            let strip: Vec<&[u32]> = strip.iter().map(|face| &face[..]).collect();
+            let mesh = faces(&strip);
+            let v = |i: u32| VertexId::new(i % (count + 2));
+            for i in 0..count + 2 {
+                let some = [i, i + 7, i + 1, i + 30, i + 31, i + 2].map(v);
+                for sought in (1..=some.len()).map(|n| &some[..n]) {
+                    let all = 0..mesh.corners.len();
+                    let expected = all.filter(|&c| sought.contains(&mesh.corners.rows()[c]));
+                    assert!(
+                        mesh.scan(Sought::all(sought)).eq(expected),
+                        "{sought:?} of {count} faces"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_side_ends_at_one_of_every_second_corner() {
+        let face: Vec<VertexId> = (0..20).map(VertexId::new).collect();
+        for degree in 3..=face.len() {
+            let face = &face[..degree];
+            let hits = Sought::<VertexId, _>::every_second(face).hits(face);
+            let is_hit = |v: VertexId| hits >> v.index() & 1 == 1;
+            let mut sides = Pair::sides(degree, |i| face[i]).map(Pair::ends);
+            assert!(
+                sides.all(|[a, b]| is_hit(a) || is_hit(b)),
+                "degree {degree}"
+            );
+            let expected = degree.div_ceil(2);
+            assert_eq!(hits.count_ones() as usize, expected, "degree {degree}");
+        }
+    }
+
+    #[test]
+    fn scans_skip_blank_corners() {
+        let mut mesh = ScannedFaces::from(faces(&[&[0, 1, 2, 3], &[2, 1, 4], &[0, 3, 5]]));
+        let f = FaceId::new;
+        mesh.spans.rewrite(
+            &mut mesh.corners,
+            f(0),
+            &[0, 1, 2].map(VertexId::new),
+            VertexId::BLANK,
+        );
+        mesh.spans.blank(&mut mesh.corners, f(1), VertexId::BLANK);
+        assert!(mesh.check_holes().is_err(), "blank, but no hole");
+        mesh.holes.dig(1);
+        assert_eq!(mesh.check_holes(), Ok(()));
+        let blank = VertexId::BLANK;
+        for other in [VertexId::new(0), blank] {
+            let e = Pair::new(other, blank);
+            assert_eq!(mesh.edge_faces(e).next(), None);
+            assert_eq!(mesh.edge_edges(e).next(), None);
+        }
+        // The blank corners are beyond the words of the set.
+        let many: Vec<VertexId> = (0..6).map(VertexId::new).collect();
+        assert_eq!(mesh.scan(Sought::all(&many)).count(), 6);
+        mesh.corners.rows_mut()[3] = many[3];
+        let wrong = mesh.check_holes().unwrap_err();
+        assert_eq!(wrong, "corner 3 is not blank, but no face has it");
+    }
+
+    #[test]
+    #[should_panic(expected = "no face f1: it was deleted")]
+    fn a_deleted_face_panics_with_its_handle() {
+        let mut mesh = ScannedFaces::from(faces(&[&[0, 1, 2, 3], &[2, 1, 4]]));
+        mesh.spans
+            .blank(&mut mesh.corners, FaceId::new(1), VertexId::BLANK);
+        mesh.holes.dig(1);
+        mesh.face(FaceId::new(1));
+    }
+}

@@ -1,0 +1,230 @@
+//! The sides of all faces, in buckets by their lower end, to find edges without hashing.
+
+use crate::editing::{Editing, HoleSet};
+use crate::face_list::FaceList;
+use crate::face_spans::FaceSpans;
+use crate::handle::Pair;
+
+use crate::probe::Probe;
+use crate::row_id::{VertexId, row};
+use crate::table::Table;
+
+/// Faces whose sides can be visited repeatedly.
+pub(crate) trait Sides {
+    /// Calls `visit` with the two ends of every side and the corner where it starts.
+    fn for_each_side(&self, visit: impl FnMut(VertexId, VertexId, u32));
+}
+
+impl Sides for FaceList {
+    #[inline(always)]
+    fn for_each_side(&self, visit: impl FnMut(VertexId, VertexId, u32)) {
+        match self.uniform_degree() {
+            Some(3) => sides_of_uniform::<3>(self.corners(), visit),
+            Some(4) => sides_of_uniform::<4>(self.corners(), visit),
+            _ => sides_of_each(
+                self.iter().map(|(f, face)| (self.range(f).start, face)),
+                visit,
+            ),
+        }
+    }
+}
+
+/// Spans, the corners that they divide, and the faces that are holes.
+type Parts<'a, P, E> = (
+    &'a FaceSpans<P, E>,
+    &'a Table<VertexId, P>,
+    &'a <E as Editing>::Holes<P>,
+);
+
+impl<P: Probe, E: Editing> Sides for Parts<'_, P, E> {
+    #[inline(always)]
+    fn for_each_side(&self, visit: impl FnMut(VertexId, VertexId, u32)) {
+        let (spans, corners, holes) = *self;
+        let all = || corners.read_range(0..corners.len());
+        match spans {
+            FaceSpans::Uniform { degree: 3, .. } if holes.is_empty() => {
+                sides_of_uniform::<3>(all(), visit);
+            }
+            FaceSpans::Uniform { degree: 4, .. } if holes.is_empty() => {
+                sides_of_uniform::<4>(all(), visit);
+            }
+            _ => {
+                let ranges = holes.handles(spans.len()).map(|f| spans.range(f));
+                let faces = ranges.map(|range| (range.start, corners.read_range(range)));
+                sides_of_each(faces, visit);
+            }
+        }
+    }
+}
+
+/// Visits the sides of one face after another; each face comes with its first corner. Side `i`
+/// joins corners `i` and `i + 1`.
+#[inline(always)]
+fn sides_of_each<'a>(
+    faces: impl Iterator<Item = (usize, &'a [VertexId])>,
+    mut visit: impl FnMut(VertexId, VertexId, u32),
+) {
+    for (start, face) in faces {
+        for (i, (corner, &a)) in (row(start)..).zip(face).enumerate() {
+            let b = face[if i + 1 == face.len() { 0 } else { i + 1 }];
+            visit(a, b, corner);
+        }
+    }
+}
+
+/// Visits sides like `sides_of_each`, with a degree known to the compiler, which unrolls the face.
+#[inline(always)]
+fn sides_of_uniform<const DEGREE: usize>(
+    corners: &[VertexId],
+    mut visit: impl FnMut(VertexId, VertexId, u32),
+) {
+    let mut corner = 0;
+    for face in corners.as_chunks::<DEGREE>().0 {
+        for i in 0..DEGREE {
+            visit(face[i], face[(i + 1) % DEGREE], corner);
+            corner += 1;
+        }
+    }
+}
+
+/// One entry for each side, in buckets by the lower end: a counting sort.
+pub(crate) struct Buckets<T> {
+    pub(crate) entries: Vec<T>,
+    /// By vertex: the end of its bucket.
+    pub(crate) ends: Vec<u32>,
+}
+
+impl<T: Copy + Default> Buckets<T> {
+    /// Visits the sides twice: to count them, and to place the result of `entry` for the two ends
+    /// and the corner of each side; O(corners + vertices).
+    #[inline(always)]
+    pub(crate) fn of(
+        vertices: usize,
+        faces: &impl Sides,
+        entry: impl Fn(VertexId, VertexId, u32) -> T,
+    ) -> Self {
+        let (mut ends, total) = bucket_starts(vertices, faces);
+        let mut entries = vec![T::default(); total];
+        fill_buckets(faces, &mut ends, |at, a, b, corner| {
+            entries[at] = entry(a, b, corner);
+        });
+        Self { entries, ends }
+    }
+}
+
+/// Counts the sides by their lower end; returns the start of the bucket of each vertex, and the
+/// number of sides.
+#[inline(always)]
+pub(crate) fn bucket_starts(vertices: usize, faces: &impl Sides) -> (Vec<u32>, usize) {
+    let mut starts = vec![0_u32; vertices];
+    faces.for_each_side(|a, b, _| starts[a.min(b).index()] += 1);
+    let mut total = 0;
+    for start in &mut starts {
+        total += std::mem::replace(start, total);
+    }
+    (starts, total as usize)
+}
+
+/// Calls `place` with the row of each side in the bucket of its lower end, and with the side's two
+/// ends and corner. Moves each start in `starts` to the end of its bucket.
+#[inline(always)]
+pub(crate) fn fill_buckets(
+    faces: &impl Sides,
+    starts: &mut [u32],
+    mut place: impl FnMut(usize, VertexId, VertexId, u32),
+) {
+    faces.for_each_side(|a, b, corner| {
+        let at = &mut starts[a.min(b).index()];
+        place(*at as usize, a, b, corner);
+        *at += 1;
+    });
+}
+
+impl<P: Probe, E: Editing> FaceSpans<P, E> {
+    /// Returns every edge of the faces that have these corners and are not holes, once, by the
+    /// lower end.
+    ///
+    /// The higher ends are put into one bucket for each lower end (a counting sort over all sides);
+    /// in a bucket, each is yielded when it first occurs. O(corners + vertices). No face is
+    /// searched, so a face with very many corners costs no more than its corners.
+    ///
+    /// # Panics
+    ///
+    /// Panics if a corner names a vertex that is not below `vertices`.
+    pub fn edges(
+        &self,
+        corners: &Table<VertexId, P>,
+        holes: &E::Holes<P>,
+        vertices: usize,
+    ) -> impl Iterator<Item = Pair<VertexId>> + use<P, E> {
+        let higher_end = |a: VertexId, b: VertexId, _| a.max(b).index() as u32;
+        let Buckets { entries, ends } = Buckets::of(vertices, &(self, corners, holes), higher_end);
+        // By higher end: the lower end of the last edge found there; at first the vertex itself,
+        // which is never its own lower end.
+        let mut met: Vec<u32> = (0..row(vertices)).collect();
+        let (mut low, mut at) = (0_u32, 0);
+        std::iter::from_fn(move || {
+            loop {
+                let high = *entries.get(at)?;
+                while ends[low as usize] as usize == at {
+                    low += 1;
+                }
+                at += 1;
+                if std::mem::replace(&mut met[high as usize], low) != low {
+                    return Some(Pair::new(VertexId::new(low), VertexId::new(high)));
+                }
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editing::NoHoles;
+    use crate::probe::Traced;
+
+    /// Returns the edges of these faces, and the number of reads of their corners.
+    fn edges(vertices: usize, faces: &[&[u32]]) -> (Vec<[usize; 2]>, usize) {
+        let mut list = FaceList::default();
+        for face in faces {
+            list.push(face.iter().copied().map(VertexId::new))
+                .expect("small");
+        }
+        let probe = Traced::default();
+        let corners = Table::new("corners", "corner", list.corners().to_vec());
+        let (spans, corners) = (
+            list.spans().probed(probe.clone()),
+            corners.probed(probe.clone()),
+        );
+        let edges = spans.edges(&corners, &NoHoles, vertices);
+        let ends = edges.map(|edge| edge.ends().map(VertexId::index)).collect();
+        let log = probe.take();
+        (
+            ends,
+            log.iter().filter(|read| read.table == "corners").count(),
+        )
+    }
+
+    #[test]
+    fn every_edge_is_returned_once_for_all_degrees() {
+        let triangles = edges(6, &[&[4, 1, 2], &[2, 1, 4], &[1, 4, 5]]);
+        let expected = vec![[1, 2], [1, 4], [1, 5], [2, 4], [4, 5]];
+        assert_eq!(sorted(triangles.0), expected, "v0 and v3 are isolated");
+        assert_eq!(triangles.1, 2 * 9, "one read to count, one to place");
+        let quads = edges(4, &[&[0, 1, 2, 3], &[3, 2, 1, 0]]);
+        assert_eq!(sorted(quads.0), [[0, 1], [0, 3], [1, 2], [2, 3]]);
+        let mixed = edges(5, &[&[0, 1, 2, 3], &[1, 0, 4]]);
+        let expected = [[0, 1], [0, 3], [0, 4], [1, 2], [1, 4], [2, 3]];
+        assert_eq!(sorted(mixed.0), expected);
+        assert_eq!(mixed.1, 2 * 7);
+        assert_eq!(edges(2, &[]), (vec![], 0));
+    }
+
+    /// Checks that the edges are ordered by lower end, and returns them sorted.
+    fn sorted(mut edges: Vec<[usize; 2]>) -> Vec<[usize; 2]> {
+        assert!(edges.is_sorted_by_key(|&[low, _]| low), "{edges:?}");
+        edges.sort_unstable();
+        edges
+    }
+}

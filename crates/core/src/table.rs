@@ -1,0 +1,307 @@
+//! Rows of one kind, observed by a probe.
+
+use std::fmt;
+use std::ops::Range;
+
+use crate::Point;
+use crate::error::MoveError;
+use crate::handle::RowMap;
+use crate::memory::TableBytes;
+use crate::probe::{Probe, Untraced};
+use crate::row_id::VertexId;
+
+/// The rows of one column of a structure; every access in query and edit code uses it.
+///
+/// With the probe [`Untraced`] a read is only a bounds-checked index (the benchmark group
+/// `zero_cost` compares it with bare slices). Each table stores its name and the kind of its rows,
+/// for traces, memory reports and the panic message of a missing row.
+pub struct Table<T, P: Probe = Untraced> {
+    rows: Vec<T>,
+    name: &'static str,
+    element: &'static str,
+    probe: P,
+}
+
+impl<T> Table<T> {
+    /// Builds a table called `name` with one row per `element` (`"vertex"`, `"half-edge"`).
+    pub fn new(name: &'static str, element: &'static str, rows: Vec<T>) -> Self {
+        Self {
+            rows,
+            name,
+            element,
+            probe: Untraced,
+        }
+    }
+}
+
+impl<T, P: Probe> Table<T, P> {
+    /// Returns the same rows, observed by `probe`.
+    pub fn probed<Q: Probe>(self, probe: Q) -> Table<T, Q> {
+        let Self {
+            rows,
+            name,
+            element,
+            ..
+        } = self;
+        Table {
+            rows,
+            name,
+            element,
+            probe,
+        }
+    }
+
+    /// Returns the number of rows.
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Returns whether there are no rows.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Reads row `row`.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the table has no such row; the message names the table, the element and the row.
+    #[inline]
+    pub fn read(&self, row: usize) -> &T {
+        self.probe.read(self.name, row, size_of::<T>());
+        match self.rows.get(row) {
+            Some(value) => value,
+            None => self.no_such_row(row),
+        }
+    }
+
+    /// Reads rows `2 * pair` and `2 * pair + 1`, with one bounds check for both.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the table lacks one of them; the message names the table, the element and the row.
+    #[inline]
+    pub fn read_pair(&self, pair: usize) -> &[T; 2] {
+        self.probe.read(self.name, 2 * pair, size_of::<T>());
+        self.probe.read(self.name, 2 * pair + 1, size_of::<T>());
+        match self.rows.as_chunks().0.get(pair) {
+            Some(rows) => rows,
+            None => self.no_such_row(2 * pair),
+        }
+    }
+
+    /// Reads the rows of `range`.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the table lacks one of them.
+    #[inline]
+    pub fn read_range(&self, range: Range<usize>) -> &[T] {
+        for row in range.clone() {
+            self.probe.read(self.name, row, size_of::<T>());
+        }
+        match self.rows.get(range.clone()) {
+            Some(values) => values,
+            None => self.no_such_row(range.end.max(range.start + 1) - 1),
+        }
+    }
+
+    /// Returns row `row` for writing.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the table has no such row; the message names the table, the element and the row.
+    #[inline]
+    pub fn write(&mut self, row: usize) -> &mut T {
+        self.probe.write(self.name, row, size_of::<T>());
+        if row >= self.rows.len() {
+            self.no_such_row(row);
+        }
+        &mut self.rows[row]
+    }
+
+    /// Adds a row at the end; O(1) amortised.
+    ///
+    /// The caller checks beforehand that there may be one more row: see
+    /// [`MAX_ROWS`](crate::MAX_ROWS).
+    #[inline]
+    pub fn push(&mut self, value: T) {
+        self.probe.write(self.name, self.rows.len(), size_of::<T>());
+        self.rows.push(value);
+    }
+
+    /// Adds rows at the end; O(rows) amortised.
+    #[inline]
+    pub fn extend(&mut self, values: impl IntoIterator<Item = T>) {
+        for value in values {
+            self.push(value);
+        }
+    }
+
+    /// Returns a table of other rows, observed by the same probe.
+    pub fn beside<U>(
+        &self,
+        name: &'static str,
+        element: &'static str,
+        rows: Vec<U>,
+    ) -> Table<U, P> {
+        Table {
+            rows,
+            name,
+            element,
+            probe: self.probe.clone(),
+        }
+    }
+
+    /// Returns the probe.
+    pub fn probe(&self) -> P {
+        self.probe.clone()
+    }
+
+    /// Replaces all rows. Not observed.
+    pub fn replace(&mut self, rows: Vec<T>) {
+        self.rows = rows;
+    }
+
+    /// Drops the rows from `len` on. Not observed.
+    pub fn truncate(&mut self, len: usize) {
+        self.rows.truncate(len);
+    }
+
+    /// Drops all rows and frees their memory. Not observed.
+    pub fn clear(&mut self) {
+        self.rows = Vec::new();
+    }
+
+    /// Frees spare memory if less than half of the capacity is used. Not observed.
+    pub fn give_back(&mut self) {
+        if self.rows.len() < self.rows.capacity() / 2 {
+            self.rows.shrink_to_fit();
+        }
+    }
+
+    /// Returns all rows, not observed: for passes over the whole table and for raw access.
+    #[inline]
+    pub fn rows(&self) -> &[T] {
+        &self.rows
+    }
+
+    /// Returns all rows for writing in place, not observed.
+    #[inline]
+    pub fn rows_mut(&mut self) -> &mut [T] {
+        &mut self.rows
+    }
+
+    /// Changes the number of rows to `len`, to be overwritten: their content is arbitrary. Does not
+    /// move a table that is large enough. Not observed.
+    pub fn resize(&mut self, len: usize, blank: T)
+    where
+        T: Copy,
+    {
+        if len > self.rows.capacity() {
+            // The old rows are not needed: free them before the new ones are allocated.
+            self.rows = Vec::new();
+            self.rows.reserve_exact(len);
+        }
+        self.rows.resize(len, blank);
+    }
+
+    /// Returns the name and the bytes held, spare capacity included.
+    pub fn bytes(&self) -> TableBytes {
+        TableBytes {
+            table: self.name.into(),
+            rows: self.rows.len(),
+            bytes: self.rows.capacity() * size_of::<T>(),
+            row_bytes: size_of::<T>(),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn no_such_row(&self, row: usize) -> ! {
+        let Self { name, element, .. } = self;
+        panic!(
+            "no {element} {row}: table `{name}` has {} rows",
+            self.rows.len()
+        )
+    }
+}
+
+impl<P: Probe> Table<Point, P> {
+    /// Moves every vertex to its position in `positions`: the implementation of
+    /// [`set_positions`](crate::Representation::set_positions) for structures with a table of
+    /// positions. O(vertices), not observed.
+    ///
+    /// # Errors
+    ///
+    /// [`MoveError::OtherMesh`] if the numbers of vertices differ.
+    pub fn set_positions(&mut self, positions: &RowMap<VertexId, Point>) -> Result<(), MoveError> {
+        let (given, vertices) = (positions.values().len(), self.rows.len());
+        if given != vertices {
+            return Err(MoveError::OtherMesh { given, vertices });
+        }
+        self.rows.copy_from_slice(positions.values());
+        Ok(())
+    }
+}
+
+impl<T: Clone, P: Probe> Clone for Table<T, P> {
+    fn clone(&self) -> Self {
+        Self {
+            rows: self.rows.clone(),
+            name: self.name,
+            element: self.element,
+            probe: self.probe.clone(),
+        }
+    }
+
+    /// Copies the rows into the memory of this table: allocates only if they do not fit, and keeps
+    /// spare capacity.
+    fn clone_from(&mut self, source: &Self) {
+        self.rows.clone_from(&source.rows);
+        self.name = source.name;
+        self.element = source.element;
+        self.probe.clone_from(&source.probe);
+    }
+}
+
+impl<T: fmt::Debug, P: Probe> fmt::Debug for Table<T, P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: ", self.name)?;
+        f.debug_list().entries(&self.rows).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::probe::{Access, AccessKind, Traced};
+
+    #[test]
+    fn a_traced_table_logs_each_access() {
+        let probe = Traced::default();
+        let mut table = Table::new("next", "half-edge", vec![5_u32, 6, 7]).probed(probe.clone());
+        assert_eq!(*table.read(2), 7);
+        assert_eq!(table.read_range(0..2), [5, 6]);
+        *table.write(1) = 9;
+        let touched = |kind, row| Access {
+            kind,
+            table: "next",
+            row,
+            bytes: 4,
+        };
+        let reads = [2, 0, 1].map(|row| touched(AccessKind::Read, row));
+        let log = probe.take();
+        assert_eq!(log[..3], reads);
+        assert_eq!(log[3..], [touched(AccessKind::Write, 1)]);
+        assert!(probe.take().is_empty());
+    }
+
+    #[test]
+    #[should_panic(expected = "no half-edge 3: table `next` has 3 rows")]
+    fn a_missing_row_panics_with_table_and_row() {
+        Table::new("next", "half-edge", vec![5_u32, 6, 7]).read(3);
+    }
+}

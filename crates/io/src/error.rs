@@ -1,0 +1,132 @@
+//! Errors in OBJ files.
+
+use std::fmt;
+use std::io;
+
+use crate::tags::TagFault;
+
+/// A line of a file; printed as `bunny.obj:17`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Name of the file, as given by the caller.
+    pub file: String,
+    /// Line, counted from 1; for a continued statement, its first line.
+    pub line: u32,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.file, self.line)
+    }
+}
+
+/// The reason why a file is not a valid mesh, with its place and a way to correct it.
+///
+/// The first fault of the file is reported. Some faults can be detected only at the end of the
+/// file: first faces with a vertex number that is too high, then coordinates that are not finite,
+/// then tags of missing vertices and edges.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message shows the meaning of each field")]
+pub enum ObjError {
+    /// The file cannot be opened.
+    #[error("{file}: cannot be opened ({cause}): check the path")]
+    Open { file: String, cause: io::Error },
+    /// The path is a directory.
+    #[error("{file}: is a directory: choose a file in it")]
+    Directory { file: String },
+    /// Reading fails before the end of the file.
+    #[error("{at}: cannot be read further ({cause}): copy the file again")]
+    Read { at: Place, cause: io::Error },
+    /// The text has a byte order mark of UTF-16.
+    #[error("{at}: the text is UTF-16: save it as UTF-8")]
+    Utf16 { at: Place },
+    /// A vertex, face or tag is not valid text.
+    #[error("{at}: the statement is not UTF-8 text: save the file as UTF-8, or correct the line")]
+    NotUtf8 { at: Place },
+    /// The file has no vertex and no face.
+    #[error("{file}: no vertex and no face: check that it is an OBJ file")]
+    Empty { file: String },
+    /// There are more elements than handles, or more lines than can be counted.
+    #[error("{at}: more than {limit} {elements}: split the mesh, because handles have 32 bits")]
+    TooMany {
+        at: Place,
+        elements: &'static str,
+        limit: usize,
+    },
+    /// A vertex has fewer than three coordinates.
+    #[error("{at}: vertex {vertex} has {found} of three coordinates: add the missing ones")]
+    TooFewCoordinates {
+        at: Place,
+        vertex: usize,
+        found: usize,
+    },
+    /// A coordinate is not a number.
+    #[error(
+        "{at}: coordinate {text:?} of vertex {vertex} is not a number: write it like 0.5 or -2e-3"
+    )]
+    BadNumber {
+        at: Place,
+        vertex: usize,
+        text: String,
+    },
+    /// A coordinate is infinite, NaN, or too large for 32 bits.
+    #[error(
+        "{at}: coordinate {coordinate} of vertex {vertex} is not finite: keep coordinates below 3.4e38"
+    )]
+    NonFinite {
+        at: Place,
+        vertex: usize,
+        coordinate: char,
+    },
+    /// A corner is not a vertex number, or its number is too large for a vertex.
+    #[error(
+        "{at}: face corner {text:?} is not a vertex number: use whole numbers that count from 1, or backwards from -1"
+    )]
+    BadCorner { at: Place, text: String },
+    /// A corner has vertex number 0.
+    #[error("{at}: face names vertex 0, but OBJ counts from 1: add 1 to the indices of the file")]
+    IndexZero { at: Place },
+    /// A face has the number of a vertex that is not in the file.
+    #[error("{at}: face names vertex {index}, but there {count}: correct the index", count = there_are(*vertices))]
+    IndexOutOfRange {
+        at: Place,
+        index: u32,
+        vertices: usize,
+    },
+    /// A face counts backwards beyond the first vertex.
+    #[error("{at}: face names vertex {index}, but before it there {count}: correct the index", count = there_are(*before))]
+    RelativeIndexOutOfRange {
+        at: Place,
+        index: i64,
+        before: usize,
+    },
+    /// A `t crease` or `t corner` tag is invalid.
+    #[error("{at}: {fault}")]
+    Tag { at: Place, fault: TagFault },
+    /// The parser rejects a statement for a reason that the normaliser does not detect.
+    #[error("{at}: the parser rejects {text:?} ({reason}): write the line in a simpler form")]
+    Refused {
+        at: Place,
+        text: String,
+        reason: String,
+    },
+}
+
+/// Formats a number of vertices as `is 1 vertex` or `are 12 vertices`.
+fn there_are(vertices: usize) -> String {
+    match vertices {
+        0 => "is no vertex".to_owned(),
+        1 => "is 1 vertex".to_owned(),
+        _ => format!("are {vertices} vertices"),
+    }
+}
+
+/// Shortens `text` to a length that fits into a message.
+pub(crate) fn shown(text: &str) -> String {
+    const LONGEST: usize = 40;
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}

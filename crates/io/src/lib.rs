@@ -1,0 +1,72 @@
+//! Reads and writes Wavefront OBJ: positions, polygons and creases, with the numbering of the file.
+//!
+//! Start with [`read_obj`] or [`parse_obj`]. [`ObjMesh::into_polygons`] returns the mesh from which
+//! structures are built, and the faces that it left out. [`ObjMesh::creases`] returns the sharpness
+//! of edges and vertices. [`write_obj`] writes a mesh. Creases can also be stored in a separate
+//! file: [`read_creases`] and [`write_creases`].
+//!
+//! # What is read
+//!
+//! `v` and `f` (also under its old name `fo`). A vertex may have a weight or a colour. A corner may
+//! have texture and normal numbers (`7/1/3`). An index may count backwards, and a face may precede
+//! its vertices. Lines end in LF, CRLF or CR; `\` at the end continues a line; `#` starts a
+//! comment, which is never continued. The tags `t crease` and `t corner` of OpenSubdiv's shapes are
+//! read too. Their vertices count from 0, although faces count from 1:
+//!
+//! ```text
+//! t crease 2/1/0 5 9 4.7          the edge between vertices 5 and 9; 2 vertices, 1 sharpness, 0 words
+//! t crease 4/3/0 7 2 5 9 1 0.5 4  three edges in a row, each with its own sharpness
+//! t corner 2/1/0 5 9 inf          two vertices that stay sharp at all levels
+//! ```
+//!
+//! Everything else is ignored, counted, and reported as a [`Notice`]. This includes other tags: the
+//! boundary rule and similar settings are options of this project, not part of a mesh. A fault is
+//! returned as an [`ObjError`] with file and line; the reader never panics.
+//!
+//! # Crease files
+//!
+//! One entry per line, `edge a b sharpness` or `corner v sharpness`; vertices count from 0.
+//! Sharpness is the number of levels for which the edge or vertex is kept sharp: a number from 0,
+//! possibly with a fraction, or `inf` for all levels. [`parse_creases`] documents the rules. A
+//! fault is returned as a [`CreaseFileError`] with file and line.
+//!
+//! # Why there is a normaliser in front of `tobj`
+//!
+//! ```text
+//! bytes ──► lines ──────► normaliser ───────────► tobj ─────────► parse_obj
+//!           BOM, CR,      one `v x y z` or        numbers,        numbering of the file,
+//!           `\`, `#`      `f i j k` at a time     index checks    check for finite values
+//! ```
+//!
+//! `tobj` parses its dialect of OBJ well. But used alone, it drops vertices without a face, and
+//! with them the numbering of the file. It splits a mesh at every `o`, `g` and `usemtl`, and each
+//! part gets its own copy of a shared vertex. It divides by a fourth value of a vertex and rejects
+//! a fifth. It misreads lone CR, continued lines and byte order marks. Its errors contain no line
+//! number.
+//!
+//! Therefore the normaliser is a `BufRead` that passes one object in plain statements to `tobj`,
+//! one statement at a time. If `tobj` returns an error, its cause is the last statement that was
+//! passed, and the line of that statement is known. The final statement is a polygon through all
+//! vertices in file order. Its corners show which number `tobj` gave to each vertex of the file,
+//! used or not. The whole text is never in memory. The alternative, a separate scanner beside
+//! `tobj`, would read every file twice and would need the same rules for lines, and the two could
+//! disagree on the numbering.
+
+mod crease_file;
+mod error;
+mod lines;
+mod normaliser;
+mod notice;
+mod obj_mesh;
+mod read;
+mod sharpness;
+mod tags;
+mod write;
+
+pub use crease_file::{CreaseFileError, parse_creases, read_creases, write_creases};
+pub use error::{ObjError, Place};
+pub use notice::{Notice, Passed};
+pub use obj_mesh::{LeftOut, LeftOutReason, ObjMesh, ShortFace};
+pub use read::{parse_obj, read_obj};
+pub use tags::{CornerTag, CreaseTag, LooseCrease, Tag, TagFault};
+pub use write::{write_obj, write_obj_with_normals};

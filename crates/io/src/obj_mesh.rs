@@ -1,0 +1,173 @@
+//! The contents of an OBJ file, and their conversion to a mesh.
+
+use std::fmt;
+
+use sixfold_core::{Creases, FaceList, Facts, IteratorExt, Point, PolygonMesh, VertexId};
+
+use crate::notice::Notice;
+use crate::tags::{CornerTag, CreaseTag, LooseCrease, on_polygons};
+
+/// The vertices and faces of a file, with the numbering of the file.
+///
+/// `VertexId` counts from 0 and the file counts from 1: `v0` is vertex 1 of the file.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ObjMesh {
+    /// Positions of all vertices of the file, used or not.
+    pub positions: Vec<Point>,
+    /// All faces of three corners or more, including faces that use a vertex twice.
+    pub faces: FaceList,
+    /// Line of each face, counted from 1.
+    pub face_lines: Vec<u32>,
+    /// Faces of fewer than three corners.
+    pub short_faces: Vec<ShortFace>,
+    /// Edges that `t crease` tags make sharp, in file order. Each is a side of a face, possibly of
+    /// a degenerate or short one.
+    pub crease_tags: Vec<CreaseTag>,
+    /// Vertices that `t corner` tags make sharp, in file order.
+    pub corner_tags: Vec<CornerTag>,
+    /// Ignored statements, one entry per kind, ordered by first occurrence.
+    pub notices: Vec<Notice>,
+}
+
+/// A face of fewer than three corners.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShortFace {
+    /// Line of the face, counted from 1.
+    pub line: u32,
+    /// Vertices of the face, at most two.
+    pub corners: Vec<VertexId>,
+}
+
+/// A face that is not a valid polygon; printed as `line 23: face 1 1 2 names vertex 1 twice`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Line of the face, counted from 1.
+    pub line: u32,
+    /// Vertices of the face in the numbering of the file, from 1.
+    pub vertices: Vec<u32>,
+    /// Reason why the face is left out.
+    pub reason: LeftOutReason,
+}
+
+/// The reason why a face is not a valid polygon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LeftOutReason {
+    /// The face has fewer than three corners.
+    TooFewCorners,
+    /// The face uses this vertex twice; counted from 1.
+    RepeatedVertex(u32),
+}
+
+impl ObjMesh {
+    /// Returns the topology of the file; short faces count as degenerate. O(corners) expected.
+    ///
+    /// # Panics
+    ///
+    /// Panics if `faces` was changed and uses a vertex that does not exist.
+    pub fn facts(&self) -> Facts {
+        let facts = Facts::of_faces(self.positions.len(), &self.faces);
+        let mut facts = facts.unwrap_or_else(|error| panic!("{error}"));
+        facts.degenerate_faces += self.short_faces.len();
+        facts
+    }
+
+    /// Returns the sharpness of the edges and vertices of [`into_polygons`](Self::into_polygons),
+    /// which keeps all vertices and their numbers. Also returns the creases that have no edge in
+    /// that mesh, because degenerate and short faces are left out. If two tags apply to one
+    /// element, the later one is used.
+    ///
+    /// O(corners · log tags), or O(1) without tags.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nt crease 3/1/0 2 0 1 4.7\nt corner 1/1/0 1 inf\n";
+    /// let obj = sixfold_io::parse_obj("triangle.obj", text.as_bytes())?;
+    /// let (creases, loose) = obj.creases();
+    /// assert_eq!((creases.edges().len(), creases.corners().len(), loose.len()), (2, 1, 0));
+    /// # Ok::<(), sixfold_io::ObjError>(())
+    /// ```
+    pub fn creases(&self) -> (Creases, Vec<LooseCrease>) {
+        on_polygons(&self.crease_tags, &self.corner_tags, &self.faces)
+    }
+
+    /// Returns the mesh without its degenerate and short faces, and these faces sorted by line;
+    /// O(corners).
+    ///
+    /// # Panics
+    ///
+    /// Panics if `faces` was changed and uses a vertex that does not exist, or if `face_lines` is
+    /// too short.
+    pub fn into_polygons(self) -> (PolygonMesh, Vec<LeftOut>) {
+        let mut left_out: Vec<LeftOut> = Vec::new();
+        for short in &self.short_faces {
+            let reason = LeftOutReason::TooFewCorners;
+            left_out.push(LeftOut::new(short.line, &short.corners, reason));
+        }
+        for (f, face) in self.faces.iter() {
+            if let Some(vertex) = repeated(face) {
+                let reason = LeftOutReason::RepeatedVertex(number(vertex));
+                left_out.push(LeftOut::new(self.face_lines[f.index()], face, reason));
+            }
+        }
+        left_out.sort_by_key(|left_out| left_out.line);
+        let faces = if left_out.len() == self.short_faces.len() {
+            self.faces
+        } else {
+            let mut kept = FaceList::with_capacity(self.faces.corners().len());
+            for (_, face) in self
+                .faces
+                .iter()
+                .filter(|(_, face)| repeated(face).is_none())
+            {
+                let face = face.iter().copied();
+                kept.push(face).expect("fewer faces than before");
+            }
+            kept
+        };
+        let polygons = PolygonMesh::from_faces(self.positions, faces);
+        (polygons.unwrap_or_else(|error| panic!("{error}")), left_out)
+    }
+}
+
+impl LeftOut {
+    fn new(line: u32, corners: &[VertexId], reason: LeftOutReason) -> Self {
+        let vertices = corners.iter().copied().map(number).collect();
+        Self {
+            line,
+            vertices,
+            reason,
+        }
+    }
+}
+
+impl fmt::Display for LeftOut {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        /// Maximum number of corners that are printed.
+        const MOST: usize = 8;
+        write!(f, "line {}: face", self.line)?;
+        for vertex in self.vertices.iter().take(MOST) {
+            write!(f, " {vertex}")?;
+        }
+        if self.vertices.len() > MOST {
+            write!(f, " …")?;
+        }
+        match self.reason {
+            LeftOutReason::TooFewCorners => write!(f, " has fewer than three corners"),
+            LeftOutReason::RepeatedVertex(vertex) => write!(f, " names vertex {vertex} twice"),
+        }
+    }
+}
+
+/// Returns the number of `vertex` in the file.
+fn number(vertex: VertexId) -> u32 {
+    sixfold_core::row(vertex.index() + 1)
+}
+
+/// Returns the first vertex that repeats an earlier corner of `face`; O(corners) expected.
+pub(crate) fn repeated(face: &[VertexId]) -> Option<VertexId> {
+    let mut distinct = face.iter().copied().distinct();
+    face.iter().copied().find(|&v| distinct.next() != Some(v))
+}

@@ -1,0 +1,315 @@
+//! Sharpness from the tags of an OBJ file.
+
+use std::fmt;
+
+use sixfold_core::{CreaseError, Creases, FaceList, MAX_ROWS, Pair, VertexId, row};
+
+use crate::error::shown;
+use crate::obj_mesh::{ShortFace, repeated};
+use crate::sharpness::sharpness;
+
+/// One edge of a `t crease` tag. A tag through several vertices gives one entry for each edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CreaseTag {
+    /// Line of the tag, counted from 1.
+    pub line: u32,
+    /// Ends of the edge, in the order of the tag; tags count from 0, unlike faces.
+    pub ends: [VertexId; 2],
+    /// Sharpness, from 0 to infinity.
+    pub sharpness: f32,
+}
+
+/// One vertex of a `t corner` tag.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CornerTag {
+    /// Line of the tag, counted from 1.
+    pub line: u32,
+    /// The sharp vertex; tags count from 0, unlike faces.
+    pub vertex: VertexId,
+    /// Sharpness, from 0 to infinity.
+    pub sharpness: f32,
+}
+
+/// A crease whose edge belongs only to faces that are left out; printed as
+/// `line 40: crease 3 7 lies only on faces that are left out`. Its vertices count from 0, as in the
+/// tag.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LooseCrease {
+    /// Line of the tag, counted from 1.
+    pub line: u32,
+    /// Ends of the edge.
+    pub ends: [VertexId; 2],
+}
+
+impl fmt::Display for LooseCrease {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [a, b] = self.ends.map(VertexId::index);
+        let line = self.line;
+        write!(
+            f,
+            "line {line}: crease {a} {b} lies only on faces that are left out"
+        )
+    }
+}
+
+/// A fault in a `t crease` or `t corner` tag.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message shows the meaning of each field")]
+pub enum TagFault {
+    /// The tag does not start with three counts.
+    #[error("tag {tag} has invalid counts {text:?}: write it like `t {tag} {}`", tag.example())]
+    Counts { tag: Tag, text: String },
+    /// The number of values does not match the counts.
+    #[error(
+        "the counts of tag {tag} require {promised} values, found {found}: correct the counts or the values"
+    )]
+    Length {
+        tag: Tag,
+        promised: usize,
+        found: usize,
+    },
+    /// The numbers of vertices and sharpnesses do not match, or the tag has words.
+    #[error("counts {counts} do not fit tag {tag}: write it like `t {tag} {}`; {}", tag.example(), tag.rule())]
+    Shape { tag: Tag, counts: String },
+    /// A value is not the number of a vertex.
+    #[error("{text:?} in tag {tag} is not a vertex number: use whole numbers that count from 0")]
+    Vertex { tag: Tag, text: String },
+    /// A value is not a sharpness.
+    #[error(
+        "sharpness {text:?} in tag {tag} is not a number from 0 to inf: write it like 2, 0.5 or inf"
+    )]
+    Sharpness { tag: Tag, text: String },
+    /// The file does not have this vertex or edge.
+    #[error("tag {tag}: {cause}")]
+    Mesh { tag: Tag, cause: CreaseError },
+}
+
+/// A kind of tag that sets sharpness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tag {
+    /// Edges.
+    Crease,
+    /// Vertices.
+    Corner,
+}
+
+impl Tag {
+    /// Returns the tag with this name, if it sets sharpness.
+    pub(crate) fn named(name: &[u8]) -> Option<Self> {
+        match name {
+            b"crease" => Some(Self::Crease),
+            b"corner" => Some(Self::Corner),
+            _ => None,
+        }
+    }
+
+    const fn example(self) -> &'static str {
+        match self {
+            Self::Crease => "2/1/0 0 1 2.5",
+            Self::Corner => "1/1/0 0 2.5",
+        }
+    }
+
+    const fn rule(self) -> &'static str {
+        match self {
+            Self::Crease => "n vertices in a row need 1 or n - 1 sharpness values",
+            Self::Corner => "n vertices need 1 or n sharpness values",
+        }
+    }
+}
+
+impl fmt::Display for Tag {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Crease => "crease",
+            Self::Corner => "corner",
+        })
+    }
+}
+
+/// The sharpness tags of a file.
+///
+/// The format is that of the shapes in OpenSubdiv, `t name counts values`. It follows the tags of a
+/// subdivision mesh in the RenderMan interface:
+///
+/// ```text
+/// t crease 4/3/0 7 2 5 9 1 0.5 inf       7 ─1─ 2 ─0.5─ 5 ─inf─ 9
+///          │ │ └ no words
+///          │ └── one sharpness for all edges, or one for each
+///          └──── vertices that follow each other, counted from 0
+/// ```
+#[derive(Default)]
+pub(crate) struct Tags {
+    pub(crate) creases: Vec<CreaseTag>,
+    pub(crate) corners: Vec<CornerTag>,
+}
+
+impl Tags {
+    /// Returns the number of tagged edges and vertices.
+    pub(crate) fn len(&self) -> usize {
+        self.creases.len() + self.corners.len()
+    }
+
+    /// Parses `values`, the text after the name of a tag at `line`.
+    pub(crate) fn read(&mut self, tag: Tag, values: &str, line: u32) -> Result<(), TagFault> {
+        let mut words = values.split_whitespace();
+        let counts = words.next().unwrap_or("");
+        let of_counts = || TagFault::Counts {
+            tag,
+            text: shown(counts),
+        };
+        let [vertices, sharpnesses, other] = three_numbers(counts).ok_or_else(of_counts)?;
+        let promised = vertices
+            .checked_add(sharpnesses)
+            .and_then(|sum| sum.checked_add(other))
+            .ok_or_else(of_counts)?;
+        let words: Vec<&str> = words.collect();
+        if words.len() != promised {
+            let found = words.len();
+            return Err(TagFault::Length {
+                tag,
+                promised,
+                found,
+            });
+        }
+        let places = match tag {
+            Tag::Crease => vertices.saturating_sub(1),
+            Tag::Corner => vertices,
+        };
+        if other > 0 || places == 0 || (sharpnesses != 1 && sharpnesses != places) {
+            let counts = shown(counts);
+            return Err(TagFault::Shape { tag, counts });
+        }
+        let (names, numbers) = words.split_at(vertices);
+        let names = names.iter().map(|word| vertex(tag, word));
+        let names = names.collect::<Result<Vec<VertexId>, TagFault>>()?;
+        let numbers = numbers.iter().map(|word| {
+            sharpness(word).ok_or_else(|| TagFault::Sharpness {
+                tag,
+                text: shown(word),
+            })
+        });
+        let numbers = numbers.collect::<Result<Vec<f32>, TagFault>>()?;
+        let numbers = numbers.into_iter().cycle();
+        match tag {
+            Tag::Crease => {
+                let edges = names.windows(2).zip(numbers);
+                self.creases
+                    .extend(edges.map(|(ends, sharpness)| CreaseTag {
+                        line,
+                        ends: [ends[0], ends[1]],
+                        sharpness,
+                    }));
+            }
+            Tag::Corner => {
+                let corners = names.into_iter().zip(numbers);
+                self.corners
+                    .extend(corners.map(|(vertex, sharpness)| CornerTag {
+                        line,
+                        vertex,
+                        sharpness,
+                    }));
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the first tag with a vertex or edge that the file does not have, and its line.
+    /// O(corners · log tags), or O(1) without tags.
+    pub(crate) fn check(
+        &self,
+        vertices: usize,
+        faces: &FaceList,
+        short_faces: &[ShortFace],
+    ) -> Result<(), (u32, TagFault)> {
+        let missing = |entry, v: VertexId| {
+            (v.index() >= vertices).then(|| CreaseError::MissingVertex {
+                entry,
+                vertex: row(v.index()),
+                vertices,
+            })
+        };
+        let all_faces = faces.iter().map(|(_, face)| face);
+        let all_faces = all_faces.chain(short_faces.iter().map(|face| face.corners.as_slice()));
+        let on_sides = on_sides(&self.creases, all_faces);
+        let edges = self.creases.iter().zip(on_sides).enumerate();
+        let mut edges = edges.filter_map(|(entry, (tag, there))| {
+            let ends = tag.ends;
+            let no_edge = || (!there).then_some(CreaseError::NotAnEdge { entry, ends });
+            let cause = missing(entry, ends[0]).or_else(|| missing(entry, ends[1]));
+            Some((tag.line, Tag::Crease, cause.or_else(no_edge)?))
+        });
+        let corners = self.corners.iter().enumerate();
+        let mut corners = corners
+            .filter_map(|(entry, tag)| Some((tag.line, Tag::Corner, missing(entry, tag.vertex)?)));
+        let faults = edges.next().into_iter().chain(corners.next());
+        match faults.min_by_key(|&(line, ..)| line) {
+            Some((line, tag, cause)) => Err((line, TagFault::Mesh { tag, cause })),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Returns the creases of these tags on faces that are valid polygons, and the creases that lie on
+/// other faces only.
+pub(crate) fn on_polygons(
+    creases: &[CreaseTag],
+    corners: &[CornerTag],
+    faces: &FaceList,
+) -> (Creases, Vec<LooseCrease>) {
+    let polygons = faces.iter().map(|(_, face)| face);
+    let kept = on_sides(creases, polygons.filter(|face| repeated(face).is_none()));
+    let mut edges = Vec::new();
+    let mut loose = Vec::new();
+    for (tag, kept) in creases.iter().zip(kept) {
+        let CreaseTag { line, ends, .. } = *tag;
+        if kept {
+            edges.push((Pair::new(ends[0], ends[1]), tag.sharpness));
+        } else {
+            loose.push(LooseCrease { line, ends });
+        }
+    }
+    let corners = corners.iter().map(|tag| (tag.vertex, tag.sharpness));
+    (Creases::sorted(edges, corners.collect()), loose)
+}
+
+/// Returns for each tag whether its edge is a side of one of `faces`. O(corners · log tags).
+fn on_sides<'a>(tags: &[CreaseTag], faces: impl Iterator<Item = &'a [VertexId]>) -> Vec<bool> {
+    let pair = |tag: &CreaseTag| Pair::new(tag.ends[0], tag.ends[1]);
+    let mut wanted: Vec<Pair<VertexId>> = tags.iter().map(pair).collect();
+    // A face that uses a vertex twice in a row has a side with two equal ends; this is not an edge.
+    wanted.retain(|pair| pair.ends()[0] != pair.ends()[1]);
+    wanted.sort_unstable();
+    wanted.dedup();
+    let mut found = vec![false; wanted.len()];
+    if !wanted.is_empty() {
+        for face in faces {
+            for side in Pair::sides(face.len(), |i| face[i]) {
+                if let Ok(at) = wanted.binary_search(&side) {
+                    found[at] = true;
+                }
+            }
+        }
+    }
+    let place = |tag| wanted.binary_search(&pair(tag));
+    tags.iter()
+        .map(|tag| place(tag).is_ok_and(|at| found[at]))
+        .collect()
+}
+
+/// Parses three counts such as `2/1/0`.
+fn three_numbers(counts: &str) -> Option<[usize; 3]> {
+    let mut numbers = counts.split('/').map(|number| number.parse().ok());
+    let three = [numbers.next()??, numbers.next()??, numbers.next()??];
+    numbers.next().is_none().then_some(three)
+}
+
+fn vertex(tag: Tag, word: &str) -> Result<VertexId, TagFault> {
+    let number = word.parse().ok();
+    let number = number.filter(|&number: &u32| (number as usize) < MAX_ROWS);
+    number.map(VertexId::new).ok_or_else(|| TagFault::Vertex {
+        tag,
+        text: shown(word),
+    })
+}

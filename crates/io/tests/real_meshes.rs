@@ -1,0 +1,212 @@
+//! Every real mesh loads, and its facts are those of `truth.json`.
+//!
+//! The variable `SIXFOLD_MESHES` contains the path of the folder. If it is not set, these tests
+//! pass without checks; if it is set, a missing file is a failure.
+
+use std::collections::BTreeSet;
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+use sixfold_core::{Facts, Spread};
+use sixfold_io::{ObjMesh, read_obj};
+
+const FOLDERS: [&str; 3] = ["tiny", "fetched", "derived"];
+
+fn folder() -> Option<PathBuf> {
+    env::var_os("SIXFOLD_MESHES").map(PathBuf::from)
+}
+
+/// Returns the `.obj` files in `folder`, with the names that `truth.json` uses.
+fn files(folder: &Path) -> BTreeSet<String> {
+    let mut files = BTreeSet::new();
+    for sub in FOLDERS {
+        for entry in fs::read_dir(folder.join(sub)).expect("a folder of meshes") {
+            let name = entry.expect("readable").file_name();
+            let name = name.to_str().expect("a name in UTF-8");
+            if name.ends_with(".obj") {
+                files.insert(format!("{sub}/{name}"));
+            }
+        }
+    }
+    files
+}
+
+fn load(folder: &Path, name: &str) -> ObjMesh {
+    read_obj(&folder.join(name)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Converts a spread to the format of `truth.json`.
+fn spread(spread: &Option<Spread>) -> Value {
+    let Some(spread) = spread else {
+        return Value::Null;
+    };
+    let Spread { min, max, mean, .. } = *spread;
+    let hist = spread.hist.as_ref().map(histogram);
+    json!({"min": min, "max": max, "mean": mean, "hist": hist})
+}
+
+fn histogram(hist: &std::collections::BTreeMap<usize, usize>) -> Value {
+    hist.iter()
+        .map(|(value, times)| (value.to_string(), json!(times)))
+        .collect()
+}
+
+/// Returns `facts` under the names, and in the format, of `truth.json`.
+fn as_truth(facts: &Facts) -> [(&'static str, Value); 18] {
+    [
+        ("V", json!(facts.vertices)),
+        ("E", json!(facts.edges)),
+        ("F", json!(facts.faces)),
+        ("euler", json!(facts.euler_characteristic)),
+        ("components_edge", json!(facts.components)),
+        ("boundary_edges", json!(facts.boundary_edges)),
+        ("boundary_loops", json!(facts.boundary_loops)),
+        ("nonmanifold_edges", json!(facts.non_manifold_edges)),
+        ("nonmanifold_vertices", json!(facts.non_manifold_vertices)),
+        ("inconsistent_edges", json!(facts.inconsistent_edges)),
+        ("consistently_oriented", json!(facts.consistently_oriented)),
+        ("orientable", json!(facts.orientable)),
+        ("closed", json!(facts.closed)),
+        ("genus", json!(facts.genus)),
+        ("V_unreferenced", json!(facts.isolated_vertices)),
+        ("duplicate_faces", json!(facts.duplicate_faces)),
+        ("F_repeated_index", json!(facts.degenerate_faces)),
+        ("valence", spread(&facts.valence)),
+    ]
+}
+
+#[test]
+fn facts_are_those_of_the_truth_file() {
+    let Some(folder) = folder() else { return };
+    let truth = fs::read_to_string(folder.join("truth.json")).expect("truth.json");
+    let truth: Value = serde_json::from_str(&truth).expect("JSON");
+    let known = truth.as_object().expect("a map of files").keys();
+    let known: BTreeSet<String> = known
+        .filter(|name| name.ends_with(".obj"))
+        .cloned()
+        .collect();
+    assert_eq!(files(&folder), known);
+    assert!(known.len() > 50, "{known:?}");
+
+    let mut wrong = Vec::new();
+    for name in &known {
+        let (truth, facts) = (&truth[name], load(&folder, name).facts());
+        assert_eq!(truth["status"], "ok", "{name}");
+        for (field, ours) in as_truth(&facts) {
+            let theirs = truth["file"].get(field).expect(field);
+            if *theirs != ours {
+                wrong.push(format!("{name}: {field} is {theirs}, found {ours}"));
+            }
+        }
+        let hist = facts.face_degree.and_then(|degrees| degrees.hist);
+        let sizes = histogram(&hist.unwrap_or_default());
+        if truth["face_sizes"] != sizes {
+            let theirs = &truth["face_sizes"];
+            wrong.push(format!("{name}: face_sizes are {theirs}, found {sizes}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn exactly_the_degenerate_faces_are_left_out() {
+    let Some(folder) = folder() else { return };
+    for name in files(&folder) {
+        let obj = load(&folder, &name);
+        let (before, faces) = (obj.facts(), obj.faces.len());
+        let (polygons, left_out) = obj.into_polygons();
+        assert_eq!(left_out.len(), before.degenerate_faces, "{name}");
+        assert_eq!(polygons.face_count(), faces - left_out.len(), "{name}");
+        let after = Facts::of(&polygons);
+        assert_eq!(after.edges, before.edges, "{name}");
+        assert_eq!(after.degenerate_faces, 0, "{name}");
+    }
+}
+
+/// Where `tobj` alone reads a file correctly, it gives the same mesh, except for its numbering.
+#[test]
+fn tobj_alone_agrees_where_it_is_right() {
+    let Some(folder) = folder() else { return };
+    let as_it_is = tobj::LoadOptions::default();
+    let mut agreed = 0;
+    for name in files(&folder) {
+        let Ok((models, _)) = tobj::load_obj(folder.join(&name), &as_it_is) else {
+            continue;
+        };
+        let ours = load(&folder, &name);
+        // If there are several objects, or vertices are missing, `tobj` has not read the file
+        // correctly.
+        let [model] = models.as_slice() else { continue };
+        let used = ours.positions.len() - ours.facts().isolated_vertices;
+        let passed = |p| ours.notices.iter().any(|notice| notice.passed == p);
+        if model.mesh.positions.len() != 3 * used || passed(sixfold_io::Passed::Lines) {
+            continue;
+        }
+        agreed += 1;
+        let mut names = vec![None; ours.positions.len()];
+        let mut positions = Vec::new();
+        let mut indices = Vec::new();
+        for v in ours.faces.corners() {
+            let next = positions.len() as u32 / 3;
+            indices.push(*names[v.index()].get_or_insert_with(|| {
+                positions.extend(ours.positions[v.index()].to_array());
+                next
+            }));
+        }
+        assert_eq!(model.mesh.indices, indices, "{name}");
+        assert_eq!(model.mesh.positions, positions, "{name}");
+        let degrees = ours.faces.iter().map(|(_, face)| face.len() as u32);
+        let arities = &model.mesh.face_arities;
+        assert!(
+            arities.iter().copied().eq(degrees.clone())
+                || arities.is_empty() && degrees.clone().all(|degree| degree == 3),
+            "{name}"
+        );
+    }
+    assert!(agreed > 50, "only {agreed} files to compare");
+}
+
+#[test]
+fn notices_list_what_is_ignored() {
+    let Some(folder) = folder() else { return };
+    let notices = |name| {
+        let notices = load(&folder, name).notices;
+        notices.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    let pizza = notices("fetched/pizza.obj");
+    assert_eq!(pizza.len(), 1, "{pizza:?}");
+    assert!(pizza[0].starts_with("ignored 48612 texture coordinates (first at line "));
+    assert_eq!(
+        notices("tiny/format_negative_groups.obj"),
+        [
+            "ignored 3 material statements (first at line 2)",
+            "ignored 2 object names (first at line 3)",
+            "ignored 2 groups (first at line 4)",
+            "ignored 4 texture coordinates (first at line 13)",
+            "ignored 6 normals (first at line 17)",
+            "ignored 2 smoothing groups (first at line 24)",
+            "ignored 8 vertex weights or colours (first at line 35)",
+        ]
+    );
+    assert_eq!(
+        notices("tiny/format_lines_points.obj"),
+        [
+            "ignored 1 line (line 9)",
+            "ignored 1 point statement (line 10)",
+            "ignored 1 free-form statement (line 14)",
+        ]
+    );
+    assert_eq!(notices("tiny/degenerate_faces.obj"), [""; 0]);
+    let left_out = load(&folder, "tiny/degenerate_faces.obj").into_polygons().1;
+    let left_out: Vec<String> = left_out.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        left_out,
+        [
+            "line 24: face 1 1 2 names vertex 1 twice",
+            "line 26: face 4 4 4 names vertex 4 twice",
+            "line 27: face 5 6 6 8 names vertex 6 twice",
+        ]
+    );
+}
