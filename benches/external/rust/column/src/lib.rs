@@ -114,7 +114,9 @@ struct Refused<'a> {
 ///
 /// Returns an error if the argument is missing, the mesh cannot be read, or a request is not valid.
 pub fn serve<C: Column>() -> Result<(), Box<dyn Error>> {
-    let path = std::env::args().nth(1).ok_or("the path of a mesh is missing")?;
+    let path = std::env::args()
+        .nth(1)
+        .ok_or("the path of a mesh is missing")?;
     let input = Input::read(&path)?;
     // Some libraries panic if they cannot hold the mesh.
     let hook = panic::take_hook();
