@@ -13,7 +13,7 @@ fn main() {
     if let Some(commit) = git(&["describe", "--always", "--dirty", "--abbrev=12"]) {
         println!("cargo::rustc-env=STUDY_COMMIT={commit}");
     }
-    // It is written whenever HEAD moves; outside a repository there is none to be watched.
+    // It is written whenever HEAD moves; outside a repository this file does not exist.
     if let Some(log) = git(&[
         "rev-parse",
         "--path-format=absolute",

@@ -261,7 +261,7 @@ impl<P: Probe, E: Editing> EdgeEdges<'_, P, E> {
         Some((edge_between(at, across), across.get()))
     }
 
-    /// Starts the next walk; returns false if there is none.
+    /// Starts the next walk. Returns false if all walks are finished.
     #[inline]
     fn begin_next_walk(&mut self) -> bool {
         // A walk that returned to the edge has visited the whole fan; one that met a boundary has

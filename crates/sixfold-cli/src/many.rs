@@ -31,7 +31,7 @@ use folder::{Folder, Piece};
 use meshes::{Mesh, found};
 
 /// The reason if a mesh loads but cannot be studied.
-const NOBODY: &str = "none of the selected backends can hold it";
+const NONE_HOLDS: &str = "none of the selected backends can hold it";
 
 /// Studies the selected meshes, except those that are finished already. Lists meshes that do not
 /// load, and continues with the rest.
@@ -128,8 +128,8 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
     if collection.studies.is_empty() && !interrupted && arguments.shard.is_none() {
         written?;
         let mut reasons = collection.failures.iter().map(|failed| &failed.reason);
-        return Err(match reasons.all(|reason| reason == NOBODY) {
-            true => Failure::unsupported(format!("all meshes failed: {NOBODY}")),
+        return Err(match reasons.all(|reason| reason == NONE_HOLDS) {
+            true => Failure::unsupported(format!("all meshes failed: {NONE_HOLDS}")),
             false => Failure::usage("none of the meshes could be studied"),
         });
     }
@@ -183,7 +183,7 @@ fn one(
             report.environment.command = Some(typed());
             Some(Ok(report))
         }
-        Err(StudyError::NoneHolds { .. }) => Some(Err(NOBODY.into())),
+        Err(StudyError::NoneHolds { .. }) => Some(Err(NONE_HOLDS.into())),
         Err(error) => Some(Err(error.to_string())),
     }
 }

@@ -217,7 +217,7 @@ fn invalid_input_is_refused_before_anything_is_written() {
         &format!("{TETRAHEDRON}t crease 2/1/0 0 1 2\n"),
     );
     for (file, line, says) in [
-        ("nobody", "edge 0 9 1", "vertex 9 does not exist"),
+        ("missing", "edge 0 9 1", "vertex 9 does not exist"),
         ("negative", "edge 0 1 -1", "from 0 to inf"),
         ("nan", "corner 0 nan", "from 0 to inf"),
         ("short", "edge 0 1", "edge a b sharpness"),

@@ -18,7 +18,7 @@ pub(crate) struct Median {
 }
 
 impl Median {
-    /// Returns the median of `samples`; `None` if there are none.
+    /// Returns the median of `samples`; `None` if `samples` is empty.
     ///
     /// The interval is the percentile bootstrap of the median (Efron 1979), expanded for few
     /// samples (Hesterberg 2015): the samples are drawn with replacement, [`RESAMPLES`] times from

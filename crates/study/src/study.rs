@@ -300,8 +300,8 @@ pub(crate) fn needed_bytes(backends: &[Backend], operations: &[Operation], count
     all + most * if makes { 10 } else { 3 }
 }
 
-/// Returns whether some vertex or face has so many neighbours that walking around it once for each
-/// of them may exceed any budget.
+/// Returns whether a vertex or face has so high a valence or degree that one walk around it for each
+/// of its neighbours can exceed any budget.
 pub(crate) fn is_skewed(facts: &Facts) -> bool {
     let most = |spread: &Option<Spread>| spread.as_ref().map_or(0, |s| s.max);
     most(&facts.valence).max(most(&facts.face_degree)) > MOST_NEIGHBOURS

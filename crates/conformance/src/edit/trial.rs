@@ -123,8 +123,8 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
         faces_by_place(&one) == faces_by_place(&two) && places(&one) == places(&two)
     }
 
-    /// Compares all relations of the mesh, which may have holes, with its faces. Checks that
-    /// removed handles are invalid.
+    /// Compares all relations of the mesh, which may have holes, with its faces. Checks that the mesh
+    /// contains its own elements, and that removed handles are invalid.
     ///
     /// # Panics
     ///
@@ -133,6 +133,15 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
         relations_hold(&self.mesh, M::NAME);
         self.move_all();
         self.make_whole();
+        let mesh = &self.mesh;
+        let contained = mesh.vertices().all(|v| mesh.contains_vertex(v))
+            && mesh.edges().all(|e| mesh.contains_edge(e))
+            && mesh.faces().all(|f| mesh.contains_face(f));
+        assert!(
+            contained,
+            "{}: does not contain an element of its own",
+            M::NAME
+        );
         for &removed in &self.removed {
             let (shown, asked, edited) = match removed {
                 Removed::Vertex(v) => (
@@ -155,6 +164,15 @@ impl<M: Representation + MeshEdit + Debug> Trial<M> {
                 continue;
             }
             let name = M::NAME;
+            let contained = caught(|| match removed {
+                Removed::Vertex(v) => self.mesh.contains_vertex(v),
+                Removed::Edge(e) => self.mesh.contains_edge(e),
+                Removed::Face(f) => self.mesh.contains_face(f),
+            });
+            assert!(
+                contained.is_ok_and(|contained| !contained),
+                "{name}: {shown} was removed, but contains_… does not return false"
+            );
             match asked {
                 // If the handle is not a row, a removed element has empty relations.
                 Ok(0) if Self::is_made_of_others(removed) => {}

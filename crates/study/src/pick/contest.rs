@@ -591,7 +591,7 @@ impl Contest<'_> {
     }
 }
 
-/// Returns the time of the shortest sample of mixed turns, in nanoseconds; `None` if there is none.
+/// Returns the time of the shortest sample of mixed turns, in nanoseconds; `None` without samples.
 fn shortest(entrant: &Entrant<'_>, slices: Slices, script: &Script) -> Option<f64> {
     if entrant.scans() || script.on_elements <= 0.0 {
         return None;
