@@ -3,12 +3,12 @@
 use criterion::Criterion;
 use sixfold_study::Operation;
 
-use crate::input::{every_backend, inputs};
+use crate::input::{bench_backends, inputs};
 
 pub(crate) fn define(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("build");
     for input in &inputs() {
-        every_backend(&mut group, Operation::Build, input);
+        bench_backends(&mut group, Operation::Build, input);
     }
     group.finish();
 }

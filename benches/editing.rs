@@ -8,7 +8,7 @@ use std::time::Duration;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput};
 use sixfold::{Edit, QueryCost, roster, shapes};
-use sixfold_study::{Editing, Editor, MachineClock, Series, SingleEdit};
+use sixfold_study::{EditPass, Editor, MachineClock, Series, SingleEdit};
 
 use crate::input::inputs;
 
@@ -16,9 +16,9 @@ use crate::input::inputs;
 const SIDES: [usize; 3] = [23, 71, 224];
 
 /// Maximum number of faces for single edits on a structure that scans.
-const MOST_SCANNED: usize = 20_000;
+const MAX_SCANNED_FACES: usize = 20_000;
 /// Maximum number of faces for edit workloads on a structure that scans.
-const MOST_SCANNED_BY_WORKLOADS: usize = 2_000;
+const MAX_WORKLOAD_SCANNED_FACES: usize = 2_000;
 
 pub(crate) fn define(criterion: &mut Criterion) {
     edits(criterion);
@@ -35,18 +35,18 @@ fn edits(criterion: &mut Criterion) {
                     continue; // it does not support the edit
                 };
                 let scans = cost == QueryCost::Scan;
-                if scans && polygons.face_count() > MOST_SCANNED {
+                if scans && polygons.face_count() > MAX_SCANNED_FACES {
                     continue;
                 }
                 let places = if scans { 8 } else { 256 };
                 let job = SingleEdit { edit, places };
-                let Some(Ok(mut editor)) = job.on(backend.name, &polygons) else {
+                let Some(Ok(mut editor)) = job.prepare(backend.name, &polygons) else {
                     continue;
                 };
                 editor.time(&Series::once(&MachineClock::start()));
                 let edits = editor.result().elements.max(1);
                 let id = BenchmarkId::new(backend.name, polygons.face_count());
-                timed(&mut group, id, editor.as_mut(), edits);
+                bench_editor(&mut group, id, editor.as_mut(), edits);
             }
         }
         group.finish();
@@ -54,25 +54,25 @@ fn edits(criterion: &mut Criterion) {
 }
 
 fn workloads(criterion: &mut Criterion) {
-    for editing in Editing::ALL {
-        let mut group = criterion.benchmark_group(format!("editing/{editing}"));
+    for pass in EditPass::ALL {
+        let mut group = criterion.benchmark_group(format!("editing/{pass}"));
         for input in inputs() {
             for backend in roster() {
                 let collapse = backend.edits[Edit::CollapseEdge as usize];
-                let most = match collapse {
-                    Some(QueryCost::Scan) => MOST_SCANNED_BY_WORKLOADS,
+                let max_faces = match collapse {
+                    Some(QueryCost::Scan) => MAX_WORKLOAD_SCANNED_FACES,
                     _ => usize::MAX,
                 };
-                if input.mesh.face_count() > most {
+                if input.mesh.face_count() > max_faces {
                     continue;
                 }
-                let Some(Ok(mut editor)) = editing.on(backend.name, &input.mesh) else {
+                let Some(Ok(mut editor)) = pass.prepare(backend.name, &input.mesh) else {
                     continue;
                 };
                 editor.time(&Series::once(&MachineClock::start()));
                 group.throughput(Throughput::Elements(editor.result().elements));
                 let id = BenchmarkId::new(backend.name, &input.name);
-                timed(&mut group, id, editor.as_mut(), 1);
+                bench_editor(&mut group, id, editor.as_mut(), 1);
             }
         }
         group.finish();
@@ -80,7 +80,7 @@ fn workloads(criterion: &mut Criterion) {
 }
 
 /// Measures runs on a copy that is reset before each run; the reported time is divided by `parts`.
-fn timed(
+fn bench_editor(
     group: &mut BenchmarkGroup<'_, WallTime>,
     id: BenchmarkId,
     editor: &mut dyn Editor,
@@ -90,7 +90,7 @@ fn timed(
     group.bench_function(id, |bench| {
         bench.iter_custom(|runs| {
             let runs = u32::try_from(runs).unwrap_or(u32::MAX);
-            let time = editor.time(&Series::of_runs(runs, &clock).after(1));
+            let time = editor.time(&Series::with_runs(runs, &clock).with_untimed(1));
             Duration::from_nanos((time.wall_ns / parts as f64) as u64)
         });
     });

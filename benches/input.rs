@@ -5,7 +5,7 @@ use std::time::Duration;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Throughput};
 use sixfold::{Facts, PolygonMesh, roster, shapes};
-use sixfold_study::{MachineClock, Operation, Solo};
+use sixfold_study::{BackendRunner, MachineClock, Operation};
 
 /// Frequencies of the geodesic spheres: 320, 1,280 and 5,120 triangles.
 const FREQUENCIES: [usize; 3] = [4, 8, 16];
@@ -43,32 +43,32 @@ pub(crate) fn inputs() -> Vec<Input> {
 
 /// Builds a closed surface of about `faces` triangles with varying valences.
 fn irregular(faces: usize) -> PolygonMesh {
-    let blobs = shapes::recipe("blobs").expect("the shape exists");
+    let blobs = shapes::generator("blobs").expect("the shape exists");
     let mesh = blobs
-        .make(&[("faces", faces as f64)])
+        .build(&[("faces", faces as f64)])
         .expect("a size within its range");
-    let valence = Facts::of(&mesh).valence.expect("edges");
+    let valence = Facts::from_polygons(&mesh).valence.expect("edges");
     assert!(valence.max > valence.min + 2, "{valence:?} is regular");
     mesh
 }
 
 /// Times `operation` on every backend that holds `input`, with the same code as a study.
-pub(crate) fn every_backend(
+pub(crate) fn bench_backends(
     group: &mut BenchmarkGroup<'_, WallTime>,
     operation: Operation,
     input: &Input,
 ) {
     let clock = MachineClock::start();
     for backend in roster() {
-        let Ok(mut solo) = Solo::new(backend.name, &input.mesh) else {
+        let Ok(mut runner) = BackendRunner::new(backend.name, &input.mesh) else {
             continue; // it cannot hold the mesh; the conformance tests check that this is right
         };
-        let elements = solo.run(operation, &clock).elements;
+        let elements = runner.run(operation, &clock).elements;
         group.throughput(Throughput::Elements(elements));
         group.bench_function(BenchmarkId::new(backend.name, &input.name), |bench| {
             bench.iter_custom(|runs| {
                 let times = u32::try_from(runs).unwrap_or(u32::MAX);
-                let run = solo.run_times(operation, times, &clock);
+                let run = runner.run_times(operation, times, &clock);
                 Duration::from_nanos((run.time.wall_ns * runs as f64) as u64)
             });
         });

@@ -39,7 +39,7 @@ fn polygons() -> PolygonMesh {
 
 /// Sets the limits of a loop: at most `instructions`, and at most 2 % more than in the previous
 /// run.
-fn at_most(instructions: u64) -> LibraryBenchmarkConfig {
+fn limits(instructions: u64) -> LibraryBenchmarkConfig {
     let mut callgrind = Callgrind::default();
     callgrind.soft_limits([(EventKind::Ir, 2.0)]);
     if cfg!(target_arch = "x86_64") {
@@ -51,7 +51,7 @@ fn at_most(instructions: u64) -> LibraryBenchmarkConfig {
 }
 
 /// Builds the mesh for a loop. It is never freed, because freeing would be counted too.
-fn built<M: Representation>() -> &'static M {
+fn leaked_mesh<M: Representation>() -> &'static M {
     let mesh = M::from_polygons(&polygons()).expect("a closed manifold of triangles");
     Box::leak(Box::new(mesh))
 }
@@ -102,46 +102,46 @@ fn scan_vertex_faces<M: MeshQuery<Face = FaceId>>(mesh: &M) -> usize {
     sum
 }
 
-#[library_benchmark(config = at_most(340_000))]
-#[bench::sphere(built())]
+#[library_benchmark(config = limits(340_000))]
+#[bench::sphere(leaked_mesh())]
 fn half_edge_vertex_vertices(mesh: &HalfEdgeMesh) -> Point {
     black_box(sweep_vertex_vertices(black_box(mesh)))
 }
 
-#[library_benchmark(config = at_most(480_000))]
-#[bench::sphere(built())]
+#[library_benchmark(config = limits(480_000))]
+#[bench::sphere(leaked_mesh())]
 fn winged_edge_vertex_vertices(mesh: &WingedEdgeMesh) -> Point {
     black_box(sweep_vertex_vertices(black_box(mesh)))
 }
 
-#[library_benchmark(config = at_most(530_000))]
-#[bench::sphere(built())]
+#[library_benchmark(config = limits(530_000))]
+#[bench::sphere(leaked_mesh())]
 fn corner_table_vertex_vertices(mesh: &CornerTable) -> Point {
     black_box(sweep_vertex_vertices(black_box(mesh)))
 }
 
-#[library_benchmark(config = at_most(550_000))]
-#[bench::sphere(built())]
+#[library_benchmark(config = limits(550_000))]
+#[bench::sphere(leaked_mesh())]
 fn half_edge_face_faces(mesh: &HalfEdgeMesh) -> usize {
     black_box(sweep_face_faces(black_box(mesh)))
 }
 
-#[library_benchmark(config = at_most(1_060_000))]
-#[bench::sphere(built())]
+#[library_benchmark(config = limits(1_060_000))]
+#[bench::sphere(leaked_mesh())]
 fn half_edge_vertex_normal(mesh: &HalfEdgeMesh) -> Point {
     black_box(vertex_normals(black_box(mesh)))
 }
 
-#[library_benchmark(config = at_most(2_600_000))]
-#[bench::sphere(built())]
+#[library_benchmark(config = limits(2_600_000))]
+#[bench::sphere(leaked_mesh())]
 fn polygon_soup_vertex_faces(mesh: &PolygonSoup) -> usize {
     black_box(scan_vertex_faces(black_box(mesh)))
 }
 
-#[library_benchmark(config = at_most(1_600_000))]
+#[library_benchmark(config = limits(1_600_000))]
 #[bench::sphere(polygons())]
 fn twin_pairs(polygons: PolygonMesh) -> (PolygonMesh, Option<TwinPairs>) {
-    let pairs = TwinPairs::of(polygons.vertex_count(), black_box(polygons.faces()));
+    let pairs = TwinPairs::new(polygons.vertex_count(), black_box(polygons.faces()));
     black_box((polygons, pairs))
 }
 

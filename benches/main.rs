@@ -19,8 +19,8 @@ use sixfold_study::{Policy, pages};
 /// Configures criterion. Freed pages stay in the process, as in a study, so that allocations cause
 /// no page faults. Measurements are short: there are hundreds of benchmarks, and the ratios within
 /// a group become stable early.
-fn short() -> Criterion {
-    pages::put_in_force(Policy::Kept);
+fn short_runs() -> Criterion {
+    pages::set_policy(Policy::Kept);
     Criterion::default()
         .sample_size(20)
         .warm_up_time(Duration::from_millis(100))
@@ -30,7 +30,7 @@ fn short() -> Criterion {
 
 criterion_group! {
     name = all;
-    config = short();
+    config = short_runs();
     targets = zero_cost::define, construction::define, workload::define, query::define,
         subdivision::define, editing::define
 }

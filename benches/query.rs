@@ -5,14 +5,14 @@ use criterion::Criterion;
 use sixfold::Relation;
 use sixfold_study::Operation;
 
-use crate::input::{every_backend, inputs};
+use crate::input::{bench_backends, inputs};
 
 pub(crate) fn define(criterion: &mut Criterion) {
     let inputs = inputs();
     for relation in Relation::ALL {
         let mut group = criterion.benchmark_group(format!("query/{relation}"));
         for input in &inputs {
-            every_backend(&mut group, Operation::Relation(relation), input);
+            bench_backends(&mut group, Operation::Relation(relation), input);
         }
         group.finish();
     }

@@ -9,7 +9,7 @@ use criterion::{BenchmarkId, Criterion, Throughput};
 use rayon::ThreadPoolBuilder;
 use sixfold::subdivision::{Method, Scheme};
 use sixfold::{Creases, roster, shapes};
-use sixfold_study::{Refining, Way};
+use sixfold_study::{SubdivisionJob, Way};
 
 /// Maximum number of levels: the last has about 300,000 triangles, or 250,000 quads.
 const LEVELS: u32 = 3;
@@ -21,15 +21,15 @@ pub(crate) fn define(criterion: &mut Criterion) {
         for way in Way::ALL {
             for level in 1..=LEVELS {
                 for backend in roster() {
-                    if searches(backend.name, way) {
+                    if scans_faces(backend.name, way) {
                         continue;
                     }
-                    let job = Refining::new(scheme, way, level);
-                    let ready = job.on(backend.name, &polygons, &Creases::default());
+                    let job = SubdivisionJob::new(scheme, way, level);
+                    let ready = job.prepare(backend.name, &polygons, &Creases::default());
                     let Some(Ok(mut refiner)) = ready else {
                         continue;
                     };
-                    for threads in threads_of(way) {
+                    for threads in thread_counts(way) {
                         let pool = ThreadPoolBuilder::new().num_threads(*threads).build();
                         let pool = pool.expect("two threads can be started");
                         // Skips subdivisions that the structure or the scheme refuses.
@@ -52,11 +52,11 @@ pub(crate) fn define(criterion: &mut Criterion) {
 
 /// Returns whether the way makes queries for which the structure scans all faces. A run would take
 /// seconds; the report of a study shows it on a smaller mesh.
-fn searches(backend: &str, way: Way) -> bool {
+fn scans_faces(backend: &str, way: Way) -> bool {
     way == Way::Gather && matches!(backend, "polygon-soup" | "indexed-face-set")
 }
 
-fn threads_of(way: Way) -> &'static [usize] {
+fn thread_counts(way: Way) -> &'static [usize] {
     match way.method() {
         Method::Native => &[1, 2],
         _ => &[1],

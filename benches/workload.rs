@@ -3,7 +3,7 @@
 use criterion::Criterion;
 use sixfold_study::Operation;
 
-use crate::input::{every_backend, inputs};
+use crate::input::{bench_backends, inputs};
 
 const WORKLOADS: [Operation; 8] = [
     Operation::Circulate,
@@ -22,7 +22,7 @@ pub(crate) fn define(criterion: &mut Criterion) {
     for operation in WORKLOADS {
         let mut group = criterion.benchmark_group(format!("workload/{}", operation.name()));
         for input in &inputs {
-            every_backend(&mut group, operation, input);
+            bench_backends(&mut group, operation, input);
         }
         group.finish();
     }

@@ -69,14 +69,14 @@ impl Fan {
 }
 
 /// The same two operations as hand-written loops.
-trait ByHand: Representation<Vertex = VertexId, Face = FaceId> {
+trait HandWritten: Representation<Vertex = VertexId, Face = FaceId> {
     /// Computes the same as [`means`].
     fn means_by_hand(&self, means: &mut [Point]);
     /// Computes the same as [`normals`].
     fn normals_by_hand(&self, by_face: &mut [Point], by_vertex: &mut [Point]);
 }
 
-impl ByHand for HalfEdgeMesh {
+impl HandWritten for HalfEdgeMesh {
     fn means_by_hand(&self, means: &mut [Point]) {
         let (positions, halves) = (self.positions(), self.half_rows());
         for (mean, leaving) in means.iter_mut().zip(self.leaving_rows()) {
@@ -127,7 +127,7 @@ impl ByHand for HalfEdgeMesh {
     }
 }
 
-impl ByHand for CornerTable {
+impl HandWritten for CornerTable {
     fn means_by_hand(&self, means: &mut [Point]) {
         let (positions, vertex) = (self.positions(), CornerTable::corner_vertices(self));
         let opposite = self.opposite_corners();
@@ -140,7 +140,7 @@ impl ByHand for CornerTable {
                 sum += positions[vertex[n.index()].index()];
                 valence += 1;
                 match opposite[n.index()].get().map(|c| c.prev()) {
-                    Some(turned) if turned != first => n = turned,
+                    Some(next) if next != first => n = next,
                     Some(_) => break,
                     None => {
                         // An open fan has one more neighbour than faces.
@@ -172,7 +172,7 @@ impl ByHand for CornerTable {
             loop {
                 sum += by_face[n.triangle().index()];
                 match opposite[n.index()].get().map(|c| c.prev()) {
-                    Some(turned) if turned != first => n = turned,
+                    Some(next) if next != first => n = next,
                     _ => break,
                 }
             }
@@ -181,7 +181,7 @@ impl ByHand for CornerTable {
     }
 }
 
-impl ByHand for WingedEdgeMesh {
+impl HandWritten for WingedEdgeMesh {
     fn means_by_hand(&self, means: &mut [Point]) {
         let (positions, edges) = (self.positions(), self.edge_records());
         for (v, (mean, spoke)) in means.iter_mut().zip(self.spoke_rows()).enumerate() {
@@ -239,7 +239,7 @@ impl ByHand for WingedEdgeMesh {
 
 fn compare<M>(criterion: &mut Criterion, order: &str, polygons: &PolygonMesh)
 where
-    M: ByHand + MeshQuery<Vertex = VertexId, Face = FaceId>,
+    M: HandWritten + MeshQuery<Vertex = VertexId, Face = FaceId>,
 {
     let mesh = M::from_polygons(polygons).expect("a closed manifold of triangles");
     let vertices = polygons.vertex_count();
@@ -249,24 +249,25 @@ where
     let mut raw_vertex = vec![Point::ZERO; vertices];
     let group = |workload| format!("zero_cost/{}/{workload}/{order}", M::NAME);
 
-    let mut group_of = criterion.benchmark_group(group("vv_smooth"));
-    group_of.throughput(Throughput::Elements(vertices as u64));
-    in_turn(
-        &mut group_of,
+    let mut benchmark = criterion.benchmark_group(group("vv_smooth"));
+    benchmark.throughput(Throughput::Elements(vertices as u64));
+    compare_alternating(
+        &mut benchmark,
         || means(black_box(&mesh), black_box(&mut by_vertex)),
         || black_box(&mesh).means_by_hand(black_box(&mut raw_vertex)),
     );
-    group_of.finish();
-    let alike = |a: &[Point], b: &[Point]| a.iter().zip(b).all(|(a, b)| a.abs_diff_eq(*b, 1e-6));
+    benchmark.finish();
+    let nearly_equal =
+        |a: &[Point], b: &[Point]| a.iter().zip(b).all(|(a, b)| a.abs_diff_eq(*b, 1e-6));
     assert!(
-        alike(by_vertex.values(), &raw_vertex),
+        nearly_equal(by_vertex.values(), &raw_vertex),
         "both did the same work"
     );
 
-    let mut group_of = criterion.benchmark_group(group("vertex_normal"));
-    group_of.throughput(Throughput::Elements(vertices as u64));
-    in_turn(
-        &mut group_of,
+    let mut benchmark = criterion.benchmark_group(group("vertex_normal"));
+    benchmark.throughput(Throughput::Elements(vertices as u64));
+    compare_alternating(
+        &mut benchmark,
         || {
             normals(
                 black_box(&mesh),
@@ -276,16 +277,16 @@ where
         },
         || black_box(&mesh).normals_by_hand(black_box(&mut raw_face), black_box(&mut raw_vertex)),
     );
-    group_of.finish();
+    benchmark.finish();
     assert!(
-        alike(by_vertex.values(), &raw_vertex),
+        nearly_equal(by_vertex.values(), &raw_vertex),
         "both did the same work"
     );
 }
 
 /// Measures both with criterion. Then runs both alternately, for a ratio that is robust against
 /// noise.
-fn in_turn(
+fn compare_alternating(
     group: &mut BenchmarkGroup<'_, WallTime>,
     mut generic: impl FnMut(),
     mut by_hand: impl FnMut(),
@@ -301,9 +302,9 @@ fn in_turn(
                 generic();
                 let between = Instant::now();
                 by_hand();
-                let [one, other] = [between - start, between.elapsed()];
-                ratios.push(one.as_secs_f64() / other.as_secs_f64());
-                total += one + other;
+                let [generic_time, by_hand_time] = [between - start, between.elapsed()];
+                ratios.push(generic_time.as_secs_f64() / by_hand_time.as_secs_f64());
+                total += generic_time + by_hand_time;
             }
             total
         });

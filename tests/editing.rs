@@ -10,7 +10,7 @@ use sixfold::{
     EditableCornerTable, EditableFaceVertexMesh, EditableHalfEdgeMesh, EditableIndexedFaceSet,
     EditablePolygonSoup, EditableWingedEdgeMesh,
 };
-use sixfold_conformance::edit::{Action, Model, Rules, Step, Trial, script};
+use sixfold_conformance::edit::{Action, Model, ModelTest, Rules, Step, script};
 use sixfold_conformance::strategy::{any_mesh, manifold_mesh};
 use sixfold_core::{Edit, MeshEdit, PolygonMesh, Representation};
 
@@ -19,142 +19,147 @@ const SCRIPTS: u32 = 40;
 /// Number of steps of a script.
 const STEPS: usize = 240;
 
-/// A structure of any type that runs a script.
-trait Player {
+/// A model test of any structure.
+trait AnyTest {
     fn name(&self) -> &'static str;
     fn rules(&self) -> Rules;
     fn model(&self) -> &Model;
-    fn legal(&self, action: &Action) -> bool;
-    /// Does the action on a copy, only to run the checks.
-    fn try_out(&self, action: &Action) -> bool;
-    fn take(&mut self, action: &Action) -> bool;
-    fn inspect(&mut self);
+    fn is_legal(&self, action: &Action) -> bool;
+    /// Applies the action to a copy, only to run the checks.
+    fn apply_to_copy(&self, action: &Action) -> bool;
+    fn apply(&mut self, action: &Action) -> bool;
+    fn check_all(&mut self);
 }
 
-struct Named<M: MeshEdit>(Trial<M>);
+struct Wrapped<M: MeshEdit>(ModelTest<M>);
 
-impl<M: Representation + MeshEdit + Debug> Player for Named<M> {
+impl<M: Representation + MeshEdit + Debug> AnyTest for Wrapped<M> {
     fn name(&self) -> &'static str {
         M::NAME
     }
     fn rules(&self) -> Rules {
-        Rules::of::<M>()
+        Rules::new::<M>()
     }
     fn model(&self) -> &Model {
         &self.0.model
     }
-    fn legal(&self, action: &Action) -> bool {
+    fn is_legal(&self, action: &Action) -> bool {
         self.0.is_legal(action)
     }
-    fn try_out(&self, action: &Action) -> bool {
-        self.0.clone().take(action)
+    fn apply_to_copy(&self, action: &Action) -> bool {
+        self.0.clone().apply(action)
     }
-    fn take(&mut self, action: &Action) -> bool {
-        self.0.take(action)
+    fn apply(&mut self, action: &Action) -> bool {
+        self.0.apply(action)
     }
-    fn inspect(&mut self) {
-        self.0.inspect();
+    fn check_all(&mut self) {
+        self.0.check_all();
     }
 }
 
 /// Returns the structures that hold `start`. The soup takes part only if no vertex is isolated,
 /// because it would lose such a vertex.
-fn players(start: &PolygonMesh) -> Vec<Box<dyn Player>> {
-    fn player<M: Representation + MeshEdit + Debug + 'static>(
+fn tests(start: &PolygonMesh) -> Vec<Box<dyn AnyTest>> {
+    fn test<M: Representation + MeshEdit + Debug + 'static>(
         start: &PolygonMesh,
-    ) -> Option<Box<dyn Player>> {
-        Some(Box::new(Named(Trial::<M>::of(start)?)) as Box<dyn Player>)
+    ) -> Option<Box<dyn AnyTest>> {
+        Some(Box::new(Wrapped(ModelTest::<M>::from_polygons(start)?)) as Box<dyn AnyTest>)
     }
     let all = [
-        player::<EditablePolygonSoup>(start),
-        player::<EditableIndexedFaceSet>(start),
-        player::<EditableFaceVertexMesh>(start),
-        player::<EditableWingedEdgeMesh>(start),
-        player::<EditableHalfEdgeMesh>(start),
-        player::<EditableCornerTable>(start),
+        test::<EditablePolygonSoup>(start),
+        test::<EditableIndexedFaceSet>(start),
+        test::<EditableFaceVertexMesh>(start),
+        test::<EditableWingedEdgeMesh>(start),
+        test::<EditableHalfEdgeMesh>(start),
+        test::<EditableCornerTable>(start),
     ];
     all.into_iter().flatten().collect()
 }
 
 /// The counts of all scripts.
 #[derive(Default)]
-struct Shares {
-    /// By edit: the numbers of steps that all structures did, and that not all did.
+struct Counts {
+    /// By edit: the number of steps that all structures accepted, and the number of the others.
     steps: [[usize; 2]; Edit::ALL.len()],
     /// By script: the number of structures that took part.
-    players: Vec<usize>,
+    tests: Vec<usize>,
 }
 
-/// Runs a script on all structures that hold `start`. If one of them refuses a step, the others do
-/// it only on copies, so that all continue with the same mesh.
-fn play(start: &PolygonMesh, steps: &[Step], shares: &mut Shares) -> Result<(), String> {
-    let mut players = players(start);
-    shares.players.push(players.len());
-    let mut told = String::new();
+/// Runs a script on all structures that hold `start`. If one of them refuses a step, the others
+/// apply it only to copies, so that all continue with the same mesh.
+fn run_script(start: &PolygonMesh, steps: &[Step], counts: &mut Counts) -> Result<(), String> {
+    let mut tests = tests(start);
+    counts.tests.push(tests.len());
+    let mut history = String::new();
     for (number, step) in steps.iter().enumerate() {
-        let Some(first) = players.first() else {
+        let Some(first) = tests.first() else {
             return Ok(());
         };
         let Some(action) = step.action(first.model(), number) else {
             continue;
         };
-        let verdicts: Vec<bool> = players.iter().map(|player| player.legal(&action)).collect();
-        agree(&players, &verdicts, &action)?;
-        let all = verdicts.iter().all(|&legal| legal);
-        shares.steps[action.edit() as usize][usize::from(!all)] += 1;
-        for player in &mut players {
-            let name = player.name();
-            let done = catch_unwind(AssertUnwindSafe(|| match all {
-                true => player.take(&action),
-                false => player.try_out(&action),
+        let legality: Vec<bool> = tests.iter().map(|test| test.is_legal(&action)).collect();
+        check_legality(&tests, &legality, &action)?;
+        let all = legality.iter().all(|&legal| legal);
+        counts.steps[action.edit() as usize][usize::from(!all)] += 1;
+        for test in &mut tests {
+            let name = test.name();
+            let result = catch_unwind(AssertUnwindSafe(|| match all {
+                true => test.apply(&action),
+                false => test.apply_to_copy(&action),
             }));
-            done.map_err(|fault| {
+            result.map_err(|fault| {
                 let fault = fault.downcast_ref::<String>().cloned().unwrap_or_default();
-                format!("{name} fails at {action:?} after{told}\n{fault}")
+                format!("{name} fails at {action:?} after{history}\n{fault}")
             })?;
         }
         let mark = if all { "" } else { "(not by all) " };
-        let _ = write!(told, "\n  {mark}{action:?}");
+        let _ = write!(history, "\n  {mark}{action:?}");
         if number % 40 == 39 {
-            players.iter_mut().for_each(|player| player.inspect());
+            tests.iter_mut().for_each(|test| test.check_all());
         }
     }
-    players.iter_mut().for_each(|player| player.inspect());
+    tests.iter_mut().for_each(|test| test.check_all());
     Ok(())
 }
 
-/// Checks the verdicts. The three manifold structures give the same verdict, except on actions that
-/// the corner table does not support. The others accept every action that a manifold structure
-/// accepts, unless they do not support it, merge coincident vertices, or hold only triangles.
-fn agree(players: &[Box<dyn Player>], verdicts: &[bool], action: &Action) -> Result<(), String> {
-    let judged = players.iter().zip(verdicts);
-    let manifold = judged
+/// Checks which structures accept an action. The three manifold structures give the same answer,
+/// except on actions that the corner table does not support. The others accept every action that a
+/// manifold structure accepts, unless they do not support it, merge coincident vertices, or hold
+/// only triangles.
+fn check_legality(
+    tests: &[Box<dyn AnyTest>],
+    legality: &[bool],
+    action: &Action,
+) -> Result<(), String> {
+    let answers = tests.iter().zip(legality);
+    let manifold = answers
         .clone()
         .filter(|(p, _)| !p.rules().capabilities.non_manifold_edges);
     let mut accepted_by_manifold = None;
-    for (player, &legal) in manifold {
-        let rules = player.rules();
-        let whole = rules.capabilities.polygons || is_offered_to_triangles(action, &rules);
+    for (test, &legal) in manifold {
+        let rules = test.rules();
+        let is_comparable = rules.capabilities.polygons || is_offered_to_triangles(action, &rules);
         match accepted_by_manifold {
-            Some(others) if others != legal && whole => {
+            Some(others) if others != legal && is_comparable => {
                 return Err(format!(
-                    "{} gives another verdict on {action:?} than the other manifold structures",
-                    player.name()
+                    "{} gives another answer for {action:?} than the other manifold structures",
+                    test.name()
                 ));
             }
-            None if whole => accepted_by_manifold = Some(legal),
+            None if is_comparable => accepted_by_manifold = Some(legal),
             _ => {}
         }
     }
-    for (player, &legal) in judged {
-        let rules = player.rules();
-        let excused = !rules.offers[action.edit() as usize]
+    for (test, &legal) in answers {
+        let rules = test.rules();
+        let is_exempt = !rules.supported[action.edit() as usize]
             || !rules.capabilities.coincident_vertices
             || !rules.capabilities.polygons;
-        if accepted_by_manifold == Some(true) && !legal && !excused {
+        if accepted_by_manifold == Some(true) && !legal && !is_exempt {
             return Err(format!(
                 "{} refuses {action:?}, which a manifold structure accepts",
-                player.name()
+                test.name()
             ));
         }
     }
@@ -165,17 +170,18 @@ fn agree(players: &[Box<dyn Player>], verdicts: &[bool], action: &Action) -> Res
 /// triangles.
 fn is_offered_to_triangles(action: &Action, rules: &Rules) -> bool {
     let makes_polygons = matches!(action, Action::AddFace { corners } if corners.len() > 3);
-    rules.offers[action.edit() as usize] && !makes_polygons
+    rules.supported[action.edit() as usize] && !makes_polygons
 }
 
-/// Runs random scripts on meshes from `starts`. Checks that `wanted` structures take part in more
-/// than a fifth of the scripts, and that all of them do more than one step in `one_in` of each
-/// edit. (A third of the scripts was too much: it was missed by chance, with 13 of 40.)
-fn play_all(
+/// Runs random scripts on meshes from `starts`. Checks that `structures` of them take part in
+/// more than a fifth of the scripts, and that all of them accept more than one step in
+/// `steps_per_accepted` of each edit. (A third of the scripts was too much: it was missed by chance,
+/// with 13 of 40.)
+fn run_scripts(
     starts: impl Strategy<Value = PolygonMesh>,
     edits: &[Edit],
-    wanted: usize,
-    one_in: usize,
+    structures: usize,
+    steps_per_accepted: usize,
 ) {
     let mut config = Config {
         failure_persistence: None,
@@ -185,51 +191,54 @@ fn play_all(
     if std::env::var_os("PROPTEST_CASES").is_none() {
         config.cases = SCRIPTS;
     }
-    let shares = std::cell::RefCell::new(Shares::default());
+    let counts = std::cell::RefCell::new(Counts::default());
     let cases = (starts, script(edits, STEPS));
-    let cases = cases.prop_map(|(start, steps)| (Printed(start), Steps(steps)));
+    let cases = cases.prop_map(|(start, steps)| (OneLineDebug(start), ShortDebug(steps)));
     let outcome = TestRunner::new(config).run(&cases, |(start, steps)| {
-        play(&start.0, &steps.0, &mut shares.borrow_mut()).map_err(TestCaseError::fail)
+        run_script(&start.0, &steps.0, &mut counts.borrow_mut()).map_err(TestCaseError::fail)
     });
     if let Err(error) = outcome {
         panic!("{error}");
     }
-    let Shares { steps, players } = shares.into_inner();
-    let whole = players.iter().filter(|&&count| count == wanted).count();
+    let Counts { steps, tests } = counts.into_inner();
+    let complete = tests.iter().filter(|&&count| count == structures).count();
     assert!(
-        5 * whole > players.len(),
-        "{wanted} take part in {whole} of {} scripts",
-        players.len()
+        5 * complete > tests.len(),
+        "{structures} take part in {complete} of {} scripts",
+        tests.len()
     );
-    for (edit, [done, left]) in Edit::ALL.into_iter().zip(steps) {
-        println!("{edit}: {done} of {} done by all", done + left);
-        if edits.contains(&edit) && done + left > 100 {
+    for (edit, [accepted, others]) in Edit::ALL.into_iter().zip(steps) {
+        println!(
+            "{edit}: {accepted} of {} accepted by all",
+            accepted + others
+        );
+        if edits.contains(&edit) && accepted + others > 100 {
             assert!(
-                done * one_in > done + left,
-                "{edit}: {done} done by all, {left} not"
+                accepted * steps_per_accepted > accepted + others,
+                "{edit}: {accepted} accepted by all, {others} not"
             );
         }
     }
 }
 
-struct Printed(PolygonMesh);
+struct OneLineDebug(PolygonMesh);
 
-impl Debug for Printed {
+impl Debug for OneLineDebug {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&sixfold_conformance::compact(&self.0))
+        f.write_str(&sixfold_conformance::one_line(&self.0))
     }
 }
 
-struct Steps(Vec<Step>);
+struct ShortDebug(Vec<Step>);
 
-impl Debug for Steps {
+impl Debug for ShortDebug {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{} steps", self.0.len())
     }
 }
 
 /// The edits that make triangles from triangles and that every structure supports.
-const OF_TRIANGLES: [Edit; 11] = [
+const TRIANGLE_EDITS: [Edit; 11] = [
     Edit::SetPosition,
     Edit::AddFace,
     Edit::RemoveFace,
@@ -244,21 +253,22 @@ const OF_TRIANGLES: [Edit; 11] = [
 ];
 
 /// Returns the mesh without isolated vertices, which a soup would lose.
-fn used(polygons: &PolygonMesh) -> PolygonMesh {
+fn without_isolated(polygons: &PolygonMesh) -> PolygonMesh {
     sixfold_conformance::welded(polygons).expect("a manifold has distinct positions")
 }
 
 #[test]
 fn all_six_agree_on_triangles() {
-    let starts = manifold_mesh().prop_map(|m| used(&m).fan_triangulated().expect("small"));
-    play_all(starts, &OF_TRIANGLES, 6, 8);
+    let starts =
+        manifold_mesh().prop_map(|m| without_isolated(&m).fan_triangulated().expect("small"));
+    run_scripts(starts, &TRIANGLE_EDITS, 6, 8);
 }
 
 #[test]
 fn five_agree_on_polygons() {
     // A corner table cannot hold quads.
     let starts = manifold_mesh().prop_filter_map("only triangles", |mesh| {
-        let mesh = used(&mesh);
+        let mesh = without_isolated(&mesh);
         let polygons = mesh.faces().iter().any(|(_, face)| face.len() > 3);
         polygons.then_some(mesh)
     });
@@ -266,7 +276,7 @@ fn five_agree_on_polygons() {
         .into_iter()
         .filter(|&e| e != Edit::AddVertex)
         .collect();
-    play_all(starts, &edits, 5, 12);
+    run_scripts(starts, &edits, 5, 12);
 }
 
 #[test]
@@ -278,5 +288,5 @@ fn three_agree_on_non_manifold_meshes() {
         .into_iter()
         .filter(|&e| e != Edit::AddVertex)
         .collect();
-    play_all(starts, &edits, 3, 20);
+    run_scripts(starts, &edits, 3, 20);
 }

@@ -4,36 +4,36 @@
 use proptest::prelude::*;
 use sixfold::{PolygonMesh, Representation, for_each_representation};
 use sixfold_conformance::strategy::{any_mesh, faulty_mesh, manifold_mesh};
-use sixfold_conformance::{answers, compact, gallery, verdict, welded};
+use sixfold_conformance::{answers, expected_check, gallery, one_line, welded};
 
 /// Checks that every refusal is the one that brute force finds, and that the structures that hold
 /// the mesh give the same answer to every query.
 ///
 /// Structures that keep coincident vertices apart are compared on the mesh itself. All structures
 /// are compared on the welded mesh, whose vertices are numbered in the order that the soup uses.
-pub(crate) fn agree(polygons: &PolygonMesh) {
+pub(crate) fn compare_structures(polygons: &PolygonMesh) {
     for_each_representation!(M => {
-        let expected = verdict(&M::CAPABILITIES, polygons).err();
+        let expected = expected_check(&M::CAPABILITIES, polygons).err();
         let refusal = M::from_polygons(polygons).err();
-        assert_eq!(refusal, expected, "{} on {}", M::NAME, compact(polygons));
+        assert_eq!(refusal, expected, "{} on {}", M::NAME, one_line(polygons));
     });
-    answer_alike(polygons, false);
+    compare_answers(polygons, false);
     if let Ok(welded) = welded(polygons) {
-        answer_alike(&welded, true);
+        compare_answers(&welded, true);
     }
 }
 
 /// Compares the answers of each structure that holds `polygons` with those of the first one.
-fn answer_alike(polygons: &PolygonMesh, welded: bool) {
+fn compare_answers(polygons: &PolygonMesh, welded: bool) {
     let mut first = None;
     for_each_representation!(M => {
         if (welded || M::CAPABILITIES.coincident_vertices)
             && let Some(got) = answers::<M>(polygons)
         {
             let (name, expected) = first.get_or_insert_with(|| (M::NAME, got.clone()));
-            for (question, answer) in expected.iter() {
-                let mesh = compact(polygons);
-                assert_eq!(got.get(question), Some(answer), "{question}, {} against {name}, on {mesh}", M::NAME);
+            for (query, answer) in expected.iter() {
+                let mesh = one_line(polygons);
+                assert_eq!(got.get(query), Some(answer), "{query}, {} against {name}, on {mesh}", M::NAME);
             }
             assert_eq!(got.len(), expected.len(), "rings, {} against {name}", M::NAME);
         }
@@ -42,8 +42,8 @@ fn answer_alike(polygons: &PolygonMesh, welded: bool) {
 
 #[test]
 fn all_give_the_same_answers_on_the_gallery() {
-    for specimen in gallery() {
-        agree(&specimen.polygons);
+    for entry in gallery() {
+        compare_structures(&entry.polygons);
     }
 }
 
@@ -51,13 +51,13 @@ fn all_give_the_same_answers_on_the_gallery() {
 #[test]
 fn every_representation_holds_a_closed_triangle_mesh() {
     let icosahedron = sixfold::shapes::icosahedron();
-    let mut held = 0;
+    let mut structures = 0;
     for_each_representation!(M => {
         assert!(answers::<M>(&icosahedron).is_some(), "{}", M::NAME);
-        held += 1;
+        structures += 1;
     });
-    assert_eq!(held, sixfold::roster().len());
-    assert!(held >= 3);
+    assert_eq!(structures, sixfold::roster().len());
+    assert!(structures >= 3);
 }
 
 proptest! {
@@ -65,16 +65,16 @@ proptest! {
 
     #[test]
     fn all_give_the_same_answers_on_manifolds(polygons in manifold_mesh()) {
-        agree(&polygons);
+        compare_structures(&polygons);
     }
 
     #[test]
     fn all_give_the_same_answers_or_refusals_on_faulty_meshes(faulty in faulty_mesh()) {
-        agree(&faulty.polygons);
+        compare_structures(&faulty.polygons);
     }
 
     #[test]
     fn all_give_the_same_answers_or_refusals_on_any_mesh(polygons in any_mesh()) {
-        agree(&polygons);
+        compare_structures(&polygons);
     }
 }

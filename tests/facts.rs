@@ -6,19 +6,24 @@ mod brute_force;
 use proptest::prelude::*;
 use sixfold::{Facts, PolygonMesh};
 use sixfold_conformance::strategy::{any_mesh, faulty_mesh, manifold_mesh};
-use sixfold_conformance::{compact, gallery};
+use sixfold_conformance::{gallery, one_line};
 
-fn same(polygons: &PolygonMesh) {
+fn compare_with_brute_force(polygons: &PolygonMesh) {
     let expected = brute_force::facts(polygons);
-    assert_eq!(Facts::of(polygons), expected, "{}", compact(polygons));
-    let of_faces = Facts::of_faces(polygons.vertex_count(), polygons.faces());
-    assert_eq!(of_faces.as_ref(), Ok(&expected), "{}", compact(polygons));
+    assert_eq!(
+        Facts::from_polygons(polygons),
+        expected,
+        "{}",
+        one_line(polygons)
+    );
+    let of_faces = Facts::from_faces(polygons.vertex_count(), polygons.faces());
+    assert_eq!(of_faces.as_ref(), Ok(&expected), "{}", one_line(polygons));
 }
 
 #[test]
 fn facts_of_the_gallery_equal_brute_force() {
-    for specimen in gallery() {
-        same(&specimen.polygons);
+    for entry in gallery() {
+        compare_with_brute_force(&entry.polygons);
     }
 }
 
@@ -27,16 +32,16 @@ proptest! {
 
     #[test]
     fn facts_of_manifolds_equal_brute_force(polygons in manifold_mesh()) {
-        same(&polygons);
+        compare_with_brute_force(&polygons);
     }
 
     #[test]
     fn facts_of_faulty_meshes_equal_brute_force(faulty in faulty_mesh()) {
-        same(&faulty.polygons);
+        compare_with_brute_force(&faulty.polygons);
     }
 
     #[test]
     fn facts_of_any_mesh_equal_brute_force(polygons in any_mesh()) {
-        same(&polygons);
+        compare_with_brute_force(&polygons);
     }
 }

@@ -7,6 +7,6 @@ mod opensubdiv;
 mod operators;
 mod real_meshes;
 mod remeshing;
-mod seventh;
+mod seventh_structure;
 mod subdivision;
 mod subdivision_laws;

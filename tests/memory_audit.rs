@@ -13,7 +13,7 @@ use sixfold::{
     Measured, MeshEdit, MeshQuery, Point, PolygonMesh, Representation, for_each_editable, io,
     roster, shapes,
 };
-use sixfold_study::{Audit, Backend, Heap, Specimen, audit};
+use sixfold_study::{Audit, Backend, Heap, StudyMesh, audit};
 
 #[path = "../crates/conformance/tests/all/face_and_edge_lists.rs"]
 mod face_and_edge_lists;
@@ -45,7 +45,7 @@ impl Heap for Counters {
 }
 
 fn main() {
-    the_counters_count();
+    counters_are_correct();
     reported_bytes_are_right_on_generated_shapes();
     reported_bytes_are_right_on_the_gallery();
     reported_bytes_are_right_on_real_meshes();
@@ -54,7 +54,7 @@ fn main() {
     tables_report_all_bytes_after_edits();
 }
 
-fn the_counters_count() {
+fn counters_are_correct() {
     let heap = Counters::default();
     let before = heap.live();
     heap.restart_peak();
@@ -66,27 +66,27 @@ fn the_counters_count() {
     assert_eq!(heap.live() - before, 1);
 }
 
-fn audited(name: &str, polygons: PolygonMesh) -> Audit {
-    let specimen = Specimen::new(name, polygons);
+fn run_audit(name: &str, polygons: PolygonMesh) -> Audit {
+    let study_mesh = StudyMesh::new(name, polygons);
     let heap = Counters::default();
-    audit(&specimen, &Backend::roster(), &heap, &mut |_| ())
+    audit(&study_mesh, &Backend::roster(), &heap, &mut |_| ())
 }
 
 /// Checks that the bytes agree in three ways for each structure that holds the mesh. Returns the
 /// number of these structures.
-fn weighed(name: &str, polygons: &PolygonMesh) -> usize {
-    let audit = audited(name, polygons.clone());
+fn check_audit(name: &str, polygons: &PolygonMesh) -> usize {
+    let audit = run_audit(name, polygons.clone());
     assert_eq!(audit.faults(), Vec::<String>::new(), "{name}");
-    let mut held = 0;
-    for (one, known) in audit.backends.iter().zip(roster()) {
-        let backend = &one.backend.name;
-        let holds = known.verdict(polygons).is_ok();
-        assert_eq!(one.backend.holds, holds, "{backend} on {name}");
-        assert_eq!(one.agrees, holds.then_some(true), "{backend} on {name}");
-        let (Some(counted), Some(peak)) = (one.counted_bytes, one.peak_bytes) else {
+    let mut structures = 0;
+    for (row, known) in audit.backends.iter().zip(roster()) {
+        let backend = &row.backend.name;
+        let holds = known.check(polygons).is_ok();
+        assert_eq!(row.backend.holds, holds, "{backend} on {name}");
+        assert_eq!(row.agrees, holds.then_some(true), "{backend} on {name}");
+        let (Some(counted), Some(peak)) = (row.counted_bytes, row.peak_bytes) else {
             continue;
         };
-        held += 1;
+        structures += 1;
         assert!(peak >= counted, "{backend} on {name}: {peak} < {counted}");
         // While building, there may also be a copy of the positions, marks, and the sides of all
         // corners, but never a second mesh. For small meshes a scratch list may be larger.
@@ -96,36 +96,36 @@ fn weighed(name: &str, polygons: &PolygonMesh) -> usize {
             "{backend} on {name}: {peak} bytes to make {counted}"
         );
     }
-    held
+    structures
 }
 
 fn reported_bytes_are_right_on_generated_shapes() {
     for size in [3, 10, 37, 150] {
-        let made = "a shape of this size";
-        let closed = shapes::geodesic(size).expect(made);
-        let open = shapes::triangle_grid(size, size + 1).expect(made);
-        let mixed = shapes::mixed_grid(size, size + 1).expect(made);
+        let message = "a shape of this size";
+        let closed = shapes::geodesic(size).expect(message);
+        let open = shapes::triangle_grid(size, size + 1).expect(message);
+        let mixed = shapes::mixed_grid(size, size + 1).expect(message);
         let fin = with_fin(&open);
         for (name, polygons, holders) in [
             ("closed", &closed, 6),
             ("open", &open, 6),
-            ("quads", &shapes::torus(size, size).expect(made), 5),
+            ("quads", &shapes::torus(size, size).expect(message), 5),
             ("mixed degrees", &mixed, 5),
             (
                 "a hole",
-                &shapes::grid_with_hole(size, size).expect(made),
+                &shapes::grid_with_hole(size, size).expect(message),
                 5,
             ),
-            ("one-sided", &shapes::moebius(size).expect(made), 3),
+            ("one-sided", &shapes::moebius(size).expect(message), 3),
             ("isolated, closed", &with_isolated(&closed), 5),
             ("isolated, open", &with_isolated(&open), 5),
             ("isolated, mixed", &with_isolated(&mixed), 4),
             ("a non-manifold edge", &fin, 3),
             ("the same, isolated", &with_isolated(&fin), 2),
-            ("loose faces", &loose(&open), 6),
+            ("loose faces", &separate_faces(&open), 6),
         ] {
             let name = format!("{name}, size {size}");
-            assert_eq!(weighed(&name, polygons), holders, "{name}");
+            assert_eq!(check_audit(&name, polygons), holders, "{name}");
         }
     }
 }
@@ -154,18 +154,18 @@ fn with_fin(mesh: &PolygonMesh) -> PolygonMesh {
         }
     }
     let [a, b] = inner.expect("an edge of two faces");
-    let tip = mesh.vertex_count() as u32;
+    let apex = mesh.vertex_count() as u32;
     let positions = mesh.positions().iter().copied().chain([Point::splat(9.0)]);
     let faces = mesh.faces().iter().map(|(_, face)| face.to_vec());
     let faces: Vec<Vec<u32>> = faces
         .map(|face| face.iter().map(|v| v.index() as u32).collect())
-        .chain([vec![a.index() as u32, b.index() as u32, tip]])
+        .chain([vec![a.index() as u32, b.index() as u32, apex]])
         .collect();
     PolygonMesh::new(positions.collect::<Vec<_>>(), &faces).expect("valid")
 }
 
 /// Returns the same faces, each with its own vertices. A soup merges these and has the same size.
-fn loose(mesh: &PolygonMesh) -> PolygonMesh {
+fn separate_faces(mesh: &PolygonMesh) -> PolygonMesh {
     let corners = mesh.faces().corners().iter();
     let positions: Vec<Point> = corners.map(|&v| mesh.position(v)).collect();
     let triangles = (0..mesh.face_count() as u32).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]);
@@ -173,11 +173,14 @@ fn loose(mesh: &PolygonMesh) -> PolygonMesh {
 }
 
 fn reported_bytes_are_right_on_the_gallery() {
-    let mut held = 0;
-    for specimen in sixfold_conformance::gallery() {
-        held += weighed(specimen.name, &specimen.polygons);
+    let mut structures = 0;
+    for entry in sixfold_conformance::gallery() {
+        structures += check_audit(entry.name, &entry.polygons);
     }
-    assert!(held > 150, "only {held} structures were measured");
+    assert!(
+        structures > 150,
+        "only {structures} structures were measured"
+    );
 }
 
 /// Checks the meshes in the folder that `SIXFOLD_MESHES` names, if it is set.
@@ -193,8 +196,8 @@ fn reported_bytes_are_right_on_real_meshes() {
                 continue;
             }
             let mesh = io::read_obj(&file).unwrap_or_else(|error| panic!("{error}"));
-            let held = weighed(&file.display().to_string(), &mesh.into_polygons().0);
-            meshes += usize::from(held > 0);
+            let structures = check_audit(&file.display().to_string(), &mesh.into_polygons().0);
+            meshes += usize::from(structures > 0);
         }
     }
     assert!(meshes > 50, "only {meshes} meshes");
@@ -204,28 +207,28 @@ fn reported_bytes_are_right_on_real_meshes() {
 /// Checks a large closed triangle mesh. Face-vertex stores the length of each list beside its
 /// start, so it has one word per vertex more than in the literature.
 fn words_per_vertex_equal_the_literature() {
-    let audit = audited("closed", shapes::geodesic(100).expect("200,000 triangles"));
+    let audit = run_audit("closed", shapes::geodesic(100).expect("200,000 triangles"));
     let words = [18.0, 9.0, 17.0, 30.0, 24.0, 16.0];
     assert_eq!(audit.backends.len(), words.len());
-    for (one, words) in audit.backends.iter().zip(words) {
-        let name = &one.backend.name;
-        assert_eq!(one.closed_triangles_words_per_vertex, words, "{name}");
-        let here = one.layout_words_per_vertex.expect("all hold it");
-        assert!((here - words).abs() < 0.001, "{name}: {here}");
+    for (row, words) in audit.backends.iter().zip(words) {
+        let name = &row.backend.name;
+        assert_eq!(row.closed_triangles_words_per_vertex, words, "{name}");
+        let got = row.layout_words_per_vertex.expect("all hold it");
+        assert!((got - words).abs() < 0.001, "{name}: {got}");
     }
 }
 
 /// Checks a seventh structure, and that bytes which its layout formula leaves out are reported.
 fn bytes_outside_the_formula_are_found() {
-    let torus = || Specimen::new("torus", shapes::triangle_torus(20, 15).expect("a torus"));
-    let seventh = Backend::of::<FaceAndEdgeLists>();
+    let torus = || StudyMesh::new("torus", shapes::triangle_torus(20, 15).expect("a torus"));
+    let seventh = Backend::new::<FaceAndEdgeLists>();
     let heap = Counters::default();
     let audit_of = |backend: Backend| audit(&torus(), &[backend], &heap, &mut |_| ());
     assert_eq!(audit_of(seventh).faults(), Vec::<String>::new());
 
-    let mut forgetful = seventh;
-    forgetful.layout_bytes = |counts| FaceAndEdgeLists::layout_bytes(counts) - 8 * counts.edges;
-    let audit = audit_of(forgetful);
+    let mut incomplete = seventh;
+    incomplete.layout_bytes = |counts| FaceAndEdgeLists::layout_bytes(counts) - 8 * counts.edges;
+    let audit = audit_of(incomplete);
     assert_eq!(audit.backends[0].agrees, Some(false));
     // 300 vertices, 900 edges, 600 faces; the formula leaves out the ends of the edges.
     let expected = "its tables hold 18000 bytes, 7200 bytes more than its layout formula (10800)";

@@ -18,7 +18,7 @@ fn peak_of_a_step<M: Refine>(scheme: Scheme, polygons: &PolygonMesh) -> Option<f
         return None;
     }
     let mesh = M::from_polygons(polygons).ok()?;
-    let creases = subdivision.control(&mesh, polygons, &Creases::default());
+    let creases = subdivision.control_creases(&mesh, polygons, &Creases::default());
     let creases = creases.expect("no creases");
     let before = HEAP.current_usage();
     HEAP.reset_peak_usage();

@@ -9,7 +9,7 @@ use std::{env, fs};
 
 use sixfold::{PolygonMesh, Representation, for_each_representation, io};
 
-use crate::equivalence::agree;
+use crate::equivalence::compare_structures;
 
 /// Reads each OBJ file of the folder, without its degenerate faces. Returns names and meshes.
 fn meshes() -> Vec<(String, PolygonMesh)> {
@@ -37,8 +37,8 @@ fn building_fails_with_the_error_of_the_check() {
     for (name, polygons) in meshes() {
         for_each_representation!(M => {
             let built = M::from_polygons(&polygons);
-            let verdict = M::CAPABILITIES.check(&polygons);
-            assert_eq!(built.as_ref().err(), verdict.as_ref().err(), "{} on {name}", M::NAME);
+            let check = M::CAPABILITIES.check(&polygons);
+            assert_eq!(built.as_ref().err(), check.as_ref().err(), "{} on {name}", M::NAME);
             if let Ok(mesh) = built {
                 assert_eq!(mesh.validate(), Ok(()), "{} on {name}", M::NAME);
             }
@@ -51,7 +51,7 @@ fn building_fails_with_the_error_of_the_check() {
 fn all_give_the_same_answers_on_small_meshes() {
     for (_, polygons) in meshes() {
         if polygons.face_count() <= 200 {
-            agree(&polygons);
+            compare_structures(&polygons);
         }
     }
 }

@@ -10,16 +10,16 @@ use sixfold_core::{MeshEdit, Point, PolygonMesh, Representation};
 /// Returns closed and open surfaces. One is a rough surface with corners, where collapses near the
 /// boundary are among the cheapest.
 fn surfaces() -> [PolygonMesh; 4] {
-    let sized = "a small shape";
-    let flat = shapes::triangle_grid(12, 12).expect(sized);
+    let message = "a small shape";
+    let flat = shapes::triangle_grid(12, 12).expect(message);
     let rough = flat.positions().iter().map(|p| {
         let height = (p.x * p.y) as u32 % 3;
         Point::new(p.x, p.y, height as f32)
     });
     let rough = PolygonMesh::from_faces(rough.collect(), flat.faces().clone());
     [
-        shapes::geodesic(4).expect(sized),
-        shapes::triangle_torus(11, 7).expect(sized),
+        shapes::geodesic(4).expect(message),
+        shapes::triangle_torus(11, 7).expect(message),
         flat,
         rough.expect("the same faces"),
     ]
@@ -45,18 +45,18 @@ fn faces(polygons: &PolygonMesh) -> Vec<Vec<[u32; 3]>> {
 }
 
 /// An operator that can be run on any structure.
-trait Work {
+trait Operator {
     fn run<M: MeshEdit + Representation>(&self, mesh: &mut M);
 }
 
-impl Work for Decimation {
+impl Operator for Decimation {
     fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) {
         let report = decimate(mesh, self).expect("triangles");
         assert!(report.collapses > 10, "{report:?}");
     }
 }
 
-impl Work for Remeshing {
+impl Operator for Remeshing {
     fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) {
         let report = remesh(mesh, self).expect("triangles");
         assert!(report.splits + report.collapses > 10, "{report:?}");
@@ -65,20 +65,20 @@ impl Work for Remeshing {
 
 struct Delaunay;
 
-impl Work for Delaunay {
+impl Operator for Delaunay {
     fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) {
         flip_to_delaunay(mesh).expect("triangles");
     }
 }
 
-fn same_on_all(work: &impl Work, polygons: &PolygonMesh, what: &str) {
+fn compare_structures(operator: &impl Operator, polygons: &PolygonMesh, what: &str) {
     let mut first: Option<Vec<Vec<[u32; 3]>>> = None;
     for_each_editable!(M => {
         let mut mesh = M::from_polygons(polygons).expect("all hold a triangle manifold");
-        work.run(&mut mesh);
+        operator.run(&mut mesh);
         assert_eq!(mesh.validate(), Ok(()));
-        let made = faces(&mesh.to_polygons());
-        let same = first.get_or_insert_with(|| made.clone()) == &made;
+        let got = faces(&mesh.to_polygons());
+        let same = first.get_or_insert_with(|| got.clone()) == &got;
         assert!(same, "{what} on {} gives another mesh", M::NAME);
     });
 }
@@ -89,8 +89,8 @@ fn decimation_is_the_same_on_all() {
         for boundary in [Boundary::Follow, Boundary::Fixed] {
             for ratio in [0.6, 0.3, 0.1] {
                 let target = Target::Ratio(ratio);
-                let work = Decimation { target, boundary };
-                same_on_all(&work, polygons, &format!("{work:?} of surface {i}"));
+                let operator = Decimation { target, boundary };
+                compare_structures(&operator, polygons, &format!("{operator:?} of surface {i}"));
             }
         }
     }
@@ -101,17 +101,17 @@ fn remeshing_is_the_same_on_all() {
     let lengths = [0.2, 0.25, 1.6, 0.9];
     for (polygons, length) in surfaces().iter().zip(lengths) {
         let iterations = 3;
-        let work = Remeshing {
+        let operator = Remeshing {
             iterations,
-            ..Remeshing::to(length)
+            ..Remeshing::with_edge_length(length)
         };
-        same_on_all(&work, polygons, &format!("{work:?}"));
+        compare_structures(&operator, polygons, &format!("{operator:?}"));
     }
 }
 
 #[test]
 fn delaunay_flips_are_the_same_on_all() {
     for (i, polygons) in surfaces().iter().enumerate() {
-        same_on_all(&Delaunay, polygons, &format!("flips of surface {i}"));
+        compare_structures(&Delaunay, polygons, &format!("flips of surface {i}"));
     }
 }

@@ -9,15 +9,15 @@ use sixfold::{
     for_each_representation,
 };
 use sixfold_conformance::strategy::{any_mesh, manifold_mesh};
-use sixfold_conformance::{compact, gallery, welded};
+use sixfold_conformance::{gallery, one_line, welded};
 
 /// Maximum distance of two points that count as equal, relative to the size of the mesh: a few
 /// ulps.
-const NEAR: f32 = 4e-6;
+const TOLERANCE: f32 = 4e-6;
 
 /// Runs one step by one method on a structure. Returns `None` if the structure cannot hold the
 /// mesh, or the scheme does not support the method.
-fn rebuilt<M: Representation>(
+fn step_by_polygons<M: Representation>(
     subdivision: &Subdivision,
     method: Method,
     polygons: &PolygonMesh,
@@ -25,7 +25,7 @@ fn rebuilt<M: Representation>(
     level: u32,
 ) -> Option<Result<Step, String>> {
     let mesh = M::from_polygons(polygons).ok()?;
-    let creases = match subdivision.control(&mesh, polygons, creases) {
+    let creases = match subdivision.control_creases(&mesh, polygons, creases) {
         Ok(creases) => creases,
         Err(refusal) => return Some(Err(refusal.to_string())),
     };
@@ -50,7 +50,7 @@ fn native<M: Refine>(
     }
     let mesh = M::from_polygons(polygons).ok()?;
     let refined = || {
-        let creases = subdivision.control(&mesh, polygons, creases);
+        let creases = subdivision.control_creases(&mesh, polygons, creases);
         let creases = creases.map_err(|refusal| refusal.to_string())?;
         let (mut numbers, mut child) = (M::EdgeNumbers::default(), M::empty());
         let creases = subdivision
@@ -68,16 +68,16 @@ fn native<M: Refine>(
 
 /// Returns `step` with vertices renumbered as in `first`, matched by position; `None` if two
 /// vertices of `first` have the same position.
-fn called_alike(step: &Step, first: &Step) -> Option<Step> {
+fn renumbered_like(step: &Step, first: &Step) -> Option<Step> {
     let size = extent(&first.polygons);
-    let near = |a: Point, b: Point| a.distance(b) <= NEAR * size;
+    let near = |a: Point, b: Point| a.distance(b) <= TOLERANCE * size;
     let places = first.polygons.positions();
-    let mut names = Vec::new();
+    let mut numbers = Vec::new();
     for &point in step.polygons.positions() {
         let mut at = (0_u32..)
             .zip(places)
             .filter(|&(_, &place)| near(point, place));
-        let (name, _) = at.next().unwrap_or_else(|| {
+        let (number, _) = at.next().unwrap_or_else(|| {
             let least = places
                 .iter()
                 .map(|p| p.distance(point))
@@ -87,14 +87,14 @@ fn called_alike(step: &Step, first: &Step) -> Option<Step> {
         if at.next().is_some() {
             return None;
         }
-        names.push(name);
+        numbers.push(number);
     }
     let edges = step.creases.edges().iter();
-    let name = |v: VertexId| names[v.index()];
-    let edges = edges.map(|&(ends, sharpness)| (ends.ends().map(name), sharpness));
+    let number = |v: VertexId| numbers[v.index()];
+    let edges = edges.map(|&(ends, sharpness)| (ends.ends().map(number), sharpness));
     let corners = step.creases.corners().iter();
-    let corners = corners.map(|&(v, sharpness)| (name(v), sharpness));
-    let polygons = step.polygons.renamed(&names);
+    let corners = corners.map(|&(v, sharpness)| (number(v), sharpness));
+    let polygons = step.polygons.renumbered(&numbers);
     let creases = Creases::new(&polygons, edges, corners).expect("creases of the mesh");
     Some(Step { polygons, creases })
 }
@@ -106,23 +106,23 @@ fn extent(polygons: &PolygonMesh) -> f32 {
 
 /// Returns the faces, each starting at its lowest vertex, sorted.
 fn faces(polygons: &PolygonMesh) -> Vec<Vec<VertexId>> {
-    let from_the_lowest = |face: &[VertexId]| {
+    let rotate_to_lowest = |face: &[VertexId]| {
         let lowest = (0..face.len()).min_by_key(|&i| face[i]).unwrap_or(0);
         let mut face = face.to_vec();
         face.rotate_left(lowest);
         face
     };
     let all = polygons.faces().iter();
-    let mut all: Vec<_> = all.map(|(_, face)| from_the_lowest(face)).collect();
+    let mut all: Vec<_> = all.map(|(_, face)| rotate_to_lowest(face)).collect();
     all.sort();
     all
 }
 
 /// Checks that `step` equals `first`, which another structure or method made from the same mesh.
-fn same(step: &Step, first: &Step, what: &str) {
+fn assert_same_step(step: &Step, first: &Step, what: &str) {
     let sizes = |step: &Step| (step.polygons.vertex_count(), step.polygons.face_count());
     assert_eq!(sizes(step), sizes(first), "{what}");
-    let Some(step) = called_alike(step, first) else {
+    let Some(step) = renumbered_like(step, first) else {
         return;
     };
     assert_eq!(
@@ -137,14 +137,14 @@ fn same(step: &Step, first: &Step, what: &str) {
     };
     assert_eq!(keys(&step), keys(first), "creases, {what}");
     for (a, b) in step.creases.edges().iter().zip(first.creases.edges()) {
-        let apart = (a.1 - b.1).abs();
-        assert!(a.1 == b.1 || apart < 1e-5, "{a:?} and {b:?}, {what}");
+        let difference = (a.1 - b.1).abs();
+        assert!(a.1 == b.1 || difference < 1e-5, "{a:?} and {b:?}, {what}");
     }
 }
 
 /// Runs `levels` steps by all methods on all structures, and compares the results of each step.
 /// Each step starts from the first result of the previous step. Returns the number of comparisons.
-fn agree(
+fn compare_methods(
     subdivision: &Subdivision,
     polygons: &PolygonMesh,
     creases: &Creases,
@@ -161,11 +161,11 @@ fn agree(
         }
         let mut first: Option<(Step, String)> = None;
         let (mut refused, mut made) = (0, 0);
-        let mut hold = |name: &str, method: Method, done: Option<Result<Step, String>>| {
+        let mut compare = |name: &str, method: Method, done: Option<Result<Step, String>>| {
             let what = format!(
                 "{} by {method} on {name}, level {level}, of {}",
                 subdivision.scheme,
-                compact(&polygons)
+                one_line(&polygons)
             );
             match (done, &first) {
                 (None, _) => {}
@@ -176,23 +176,23 @@ fn agree(
                 (Some(Err(_)), _) => refused += 1,
                 (Some(Ok(step)), None) => first = Some((step, what)),
                 (Some(Ok(step)), Some((other, before))) => {
-                    same(&step, other, &format!("{what}, against {before}"));
+                    assert_same_step(&step, other, &format!("{what}, against {before}"));
                     made += 1;
                 }
             }
         };
         for method in [Method::Gather, Method::Scatter] {
             for_each_representation!(M => {
-                hold(M::NAME, method, rebuilt::<M>(subdivision, method, &polygons, &creases, level));
+                compare(M::NAME, method, step_by_polygons::<M>(subdivision, method, &polygons, &creases, level));
             });
         }
         for_each_refinable!(M => {
-            hold(M::NAME, Method::Native, native::<M>(subdivision, &polygons, &creases, level));
+            compare(M::NAME, Method::Native, native::<M>(subdivision, &polygons, &creases, level));
         });
         assert!(
             refused == 0 || first.is_none(),
             "{}: some refuse, others do not",
-            compact(&polygons)
+            one_line(&polygons)
         );
         compared += made;
         let Some((step, _)) = first else { break };
@@ -249,7 +249,7 @@ pub(crate) fn creases_on(polygons: &PolygonMesh, choices: &[(Index, Index, f32)]
 
 /// Returns the mesh for a scheme: triangulated if the scheme takes only triangles, and with
 /// vertices in the order that a soup uses.
-fn fitting(scheme: Scheme, polygons: &PolygonMesh) -> Option<PolygonMesh> {
+fn for_scheme(scheme: Scheme, polygons: &PolygonMesh) -> Option<PolygonMesh> {
     let polygons = match scheme.kind().takes {
         "triangles" => polygons.fan_triangulated().ok()?,
         _ => polygons.clone(),
@@ -273,9 +273,9 @@ fn all_methods_agree_on_the_gallery() {
     for scheme in Scheme::ALL {
         let subdivision = Subdivision::new(scheme);
         let mut compared = 0;
-        for specimen in gallery() {
-            if let Some(polygons) = fitting(scheme, &specimen.polygons) {
-                compared += agree(&subdivision, &polygons, &Creases::default(), 2);
+        for entry in gallery() {
+            if let Some(polygons) = for_scheme(scheme, &entry.polygons) {
+                compared += compare_methods(&subdivision, &polygons, &Creases::default(), 2);
             }
         }
         assert!(compared > 50, "{scheme}: only {compared} compared");
@@ -291,12 +291,12 @@ proptest! {
         polygons in manifold_mesh(),
         choices in sharpness(),
     ) {
-        if let Some(polygons) = fitting(subdivision.scheme, &polygons) {
+        if let Some(polygons) = for_scheme(subdivision.scheme, &polygons) {
             let creases = match subdivision.scheme.kind().creases {
                 true => creases_on(&polygons, &choices),
                 false => Creases::default(),
             };
-            agree(&subdivision, &polygons, &creases, 3);
+            compare_methods(&subdivision, &polygons, &creases, 3);
         }
     }
 
@@ -306,12 +306,12 @@ proptest! {
         polygons in any_mesh(),
         choices in sharpness(),
     ) {
-        if let Some(polygons) = fitting(subdivision.scheme, &polygons) {
+        if let Some(polygons) = for_scheme(subdivision.scheme, &polygons) {
             let creases = match subdivision.scheme.kind().creases {
                 true => creases_on(&polygons, &choices),
                 false => Creases::default(),
             };
-            agree(&subdivision, &polygons, &creases, 2);
+            compare_methods(&subdivision, &polygons, &creases, 2);
         }
     }
 }

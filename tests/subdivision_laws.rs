@@ -18,19 +18,19 @@ use sixfold_conformance::strategy::manifold_mesh;
 use crate::subdivision::{creases_on, sharpness};
 
 /// Maximum distance of two points that count as equal, relative to the size of the mesh.
-const NEAR: f32 = 1e-5;
+const TOLERANCE: f32 = 1e-5;
 
 /// A subdivision and a mesh that it accepts, with creases if the scheme supports them.
 #[derive(Clone, Debug)]
-struct Try {
+struct Case {
     subdivision: Subdivision,
     polygons: PolygonMesh,
     creases: Creases,
 }
 
-impl Try {
-    fn after(&self, levels: u32) -> Step {
-        after(&self.subdivision, &self.polygons, &self.creases, levels)
+impl Case {
+    fn subdivided(&self, levels: u32) -> Step {
+        subdivided(&self.subdivision, &self.polygons, &self.creases, levels)
     }
 
     fn scheme(&self) -> Scheme {
@@ -38,7 +38,7 @@ impl Try {
     }
 }
 
-fn after(
+fn subdivided(
     subdivision: &Subdivision,
     polygons: &PolygonMesh,
     creases: &Creases,
@@ -50,7 +50,7 @@ fn after(
     step.expect("the scheme accepts the mesh")
 }
 
-fn tries_of(schemes: &[Scheme], boundaries: &[Boundary]) -> impl Strategy<Value = Try> + use<> {
+fn cases_with(schemes: &[Scheme], boundaries: &[Boundary]) -> impl Strategy<Value = Case> + use<> {
     let options = (
         select(schemes.to_vec()),
         select(boundaries.to_vec()),
@@ -61,7 +61,7 @@ fn tries_of(schemes: &[Scheme], boundaries: &[Boundary]) -> impl Strategy<Value 
     parts.prop_filter_map(
         "triangulation can give one edge to two polygons",
         |((scheme, boundary, creasing, loop_weights), polygons, choices)| {
-            let polygons = fitting(scheme, polygons)?;
+            let polygons = for_scheme(scheme, polygons)?;
             let creases = creases_for(scheme, &polygons, &choices);
             let subdivision = Subdivision {
                 scheme,
@@ -69,7 +69,7 @@ fn tries_of(schemes: &[Scheme], boundaries: &[Boundary]) -> impl Strategy<Value 
                 creasing,
                 loop_weights,
             };
-            Some(Try {
+            Some(Case {
                 subdivision,
                 polygons,
                 creases,
@@ -78,8 +78,8 @@ fn tries_of(schemes: &[Scheme], boundaries: &[Boundary]) -> impl Strategy<Value 
     )
 }
 
-fn tries() -> impl Strategy<Value = Try> {
-    tries_of(&Scheme::ALL, &Boundary::ALL)
+fn cases() -> impl Strategy<Value = Case> {
+    cases_with(&Scheme::ALL, &Boundary::ALL)
 }
 
 fn creases_for(scheme: Scheme, polygons: &PolygonMesh, choices: &[(Index, Index, f32)]) -> Creases {
@@ -91,7 +91,7 @@ fn creases_for(scheme: Scheme, polygons: &PolygonMesh, choices: &[(Index, Index,
 
 /// Triangulates the mesh if the scheme takes only triangles. Returns `None` if the result is not a
 /// manifold, or two triangles have the same corners.
-fn fitting(scheme: Scheme, polygons: PolygonMesh) -> Option<PolygonMesh> {
+fn for_scheme(scheme: Scheme, polygons: PolygonMesh) -> Option<PolygonMesh> {
     if scheme.kind().takes != "triangles" {
         return Some(polygons);
     }
@@ -100,12 +100,12 @@ fn fitting(scheme: Scheme, polygons: PolygonMesh) -> Option<PolygonMesh> {
 }
 
 fn is_plain_manifold(polygons: &PolygonMesh) -> bool {
-    let has_twins = Facts::of(polygons).duplicate_faces > 0;
-    !has_twins && HalfEdgeMesh::from_polygons(polygons).is_ok()
+    let has_duplicates = Facts::from_polygons(polygons).duplicate_faces > 0;
+    !has_duplicates && HalfEdgeMesh::from_polygons(polygons).is_ok()
 }
 
 /// Returns the same faces with positions mapped by `place`.
-fn moved(polygons: &PolygonMesh, place: impl Fn(Point) -> Point) -> PolygonMesh {
+fn map_positions(polygons: &PolygonMesh, place: impl Fn(Point) -> Point) -> PolygonMesh {
     let positions = polygons.positions().iter().copied().map(place).collect();
     PolygonMesh::from_faces(positions, polygons.faces().clone()).expect("the same faces")
 }
@@ -140,8 +140,8 @@ fn valences(polygons: &PolygonMesh) -> Vec<(usize, bool)> {
 /// ```
 ///
 /// Doo–Sabin turns an inner vertex of valence 2 into an edge instead of a face.
-fn grown(scheme: Scheme, polygons: &PolygonMesh, level: u32) -> [usize; 3] {
-    let facts = Facts::of(polygons);
+fn expected_counts(scheme: Scheme, polygons: &PolygonMesh, level: u32) -> [usize; 3] {
+    let facts = Facts::from_polygons(polygons);
     let (v, e, f) = (facts.vertices, facts.edges, facts.faces);
     let (c, b) = (polygons.corner_count(), facts.boundary_edges);
     match scheme {
@@ -166,18 +166,18 @@ proptest! {
     /// Without `Boundary::None`, which removes faces at the boundary and so changes the counts.
     #[test]
     fn topology_is_kept_and_counts_follow_the_formulas(
-        start in tries_of(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
+        start in cases_with(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
     ) {
-        let before = Facts::of(&start.polygons);
-        let (mut parent, mut extent) = (start.polygons.clone(), Extent::of(&start.polygons));
+        let before = Facts::from_polygons(&start.polygons);
+        let (mut parent, mut extent) = (start.polygons.clone(), Extent::from_polygons(&start.polygons));
         for level in 0..2 {
-            let child = start.after(level + 1).polygons;
-            let facts = Facts::of(&child);
-            let told = grown(start.scheme(), &parent, level);
-            prop_assert_eq!([facts.vertices, facts.edges, facts.faces], told);
-            extent = start.subdivision.grown(&extent, level);
+            let child = start.subdivided(level + 1).polygons;
+            let facts = Facts::from_polygons(&child);
+            let expected = expected_counts(start.scheme(), &parent, level);
+            prop_assert_eq!([facts.vertices, facts.edges, facts.faces], expected);
+            extent = start.subdivision.refined_extent(&extent, level);
             let Extent { counts, .. } = extent;
-            prop_assert_eq!([counts.vertices, counts.edges, counts.faces], told);
+            prop_assert_eq!([counts.vertices, counts.edges, counts.faces], expected);
             prop_assert_eq!(counts.corners, child.corner_count());
             prop_assert_eq!(extent.boundary_edges, facts.boundary_edges);
             prop_assert_eq!(facts.euler_characteristic, before.euler_characteristic);
@@ -202,9 +202,9 @@ proptest! {
     /// mesh.
     #[test]
     fn valences_are_kept(
-        start in tries_of(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
+        start in cases_with(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
     ) {
-        let (old, new) = (valences(&start.polygons), valences(&start.after(1).polygons));
+        let (old, new) = (valences(&start.polygons), valences(&start.subdivided(1).polygons));
         let (vertices, faces) = (old.len(), start.polygons.face_count());
         let kept = old.iter().zip(&new);
         let regular = |from: usize, inside: usize, rim: usize| {
@@ -225,8 +225,8 @@ proptest! {
             }
             // One edge to each face at the vertex: at the boundary that is one more than before.
             Scheme::Sqrt3 => {
-                let grown = |&(valence, is_open): &(usize, bool)| (valence + usize::from(is_open), is_open);
-                prop_assert!(kept.clone().all(|(old, new)| grown(old) == *new));
+                let expected_valence = |&(valence, is_open): &(usize, bool)| (valence + usize::from(is_open), is_open);
+                prop_assert!(kept.clone().all(|(old, new)| expected_valence(old) == *new));
                 // Three corners, and one face point across each side that is not a boundary edge.
                 prop_assert!(new[vertices..].iter().all(|&(valence, _)| (3..=6).contains(&valence)));
             }
@@ -242,68 +242,68 @@ proptest! {
 
     #[test]
     fn affine_maps_commute(
-        start in tries(),
+        start in cases(),
         matrix in prop::array::uniform3(prop::array::uniform3(-2.0_f32..2.0)),
         shift in prop::array::uniform3(-5.0_f32..5.0),
     ) {
         let [x, y, z] = matrix.map(Point::from);
         let map = |p: Point| Point::new(x.dot(p), y.dot(p), z.dot(p)) + Point::from(shift);
-        let first = moved(&start.polygons, map);
-        let first = after(&start.subdivision, &first, &start.creases, 2);
-        let step = start.after(2);
-        let last = moved(&step.polygons, map);
+        let first = map_positions(&start.polygons, map);
+        let first = subdivided(&start.subdivision, &first, &start.creases, 2);
+        let step = start.subdivided(2);
+        let last = map_positions(&step.polygons, map);
         prop_assert_eq!(first.polygons.faces(), last.faces());
         prop_assert_eq!(first.creases, step.creases);
         let size = 10.0 + 6.0 * size(&start.polygons);
         for (v, (a, b)) in first.polygons.positions().iter().zip(last.positions()).enumerate() {
-            prop_assert!(a.distance(*b) <= NEAR * size, "v{}: {} and {}", v, a, b);
+            prop_assert!(a.distance(*b) <= TOLERANCE * size, "v{}: {} and {}", v, a, b);
         }
     }
 
     /// The weights of every stencil add up to 1: if all points are equal, they do not move.
     #[test]
-    fn weights_are_a_partition_of_unity(start in tries()) {
+    fn weights_are_a_partition_of_unity(start in cases()) {
         let place = Point::new(1.0, -3.0, 0.7);
-        let all = moved(&start.polygons, |_| place);
-        let step = after(&start.subdivision, &all, &start.creases, 2);
+        let all = map_positions(&start.polygons, |_| place);
+        let step = subdivided(&start.subdivision, &all, &start.creases, 2);
         for (v, p) in step.polygons.positions().iter().enumerate() {
             prop_assert!((*p - place).abs().max_element() < 2e-6, "v{}: {}", v, p);
         }
     }
 
     #[test]
-    fn planar_stays_planar(start in tries()) {
-        let flat = moved(&start.polygons, |p| Point::new(p.x, p.y, 0.0));
-        let step = after(&start.subdivision, &flat, &start.creases, 2);
+    fn planar_meshes_stay_planar(start in cases()) {
+        let flat = map_positions(&start.polygons, |p| Point::new(p.x, p.y, 0.0));
+        let step = subdivided(&start.subdivision, &flat, &start.creases, 2);
         prop_assert!(step.polygons.positions().iter().all(|p| p.z == 0.0));
     }
 
     #[test]
-    fn symmetric_stays_symmetric(start in tries()) {
-        let Some((double, mirror)) = doubled(&start) else { return Ok(()) };
-        let step = after(&double.subdivision, &double.polygons, &double.creases, 2);
+    fn symmetric_meshes_stay_symmetric(start in cases()) {
+        let Some((double, mirror)) = mirrored_double(&start) else { return Ok(()) };
+        let step = subdivided(&double.subdivision, &double.polygons, &double.creases, 2);
         let points = step.polygons.positions();
-        let near = NEAR * size(&double.polygons);
+        let tolerance = TOLERANCE * size(&double.polygons);
         let other_side = |p: Point| Point::new(-p.x, p.y, p.z);
         if start.scheme() != Scheme::DooSabin {
             for (v, &mirrored) in mirror.iter().enumerate() {
-                let off = other_side(points[v]).distance(points[mirrored]);
-                prop_assert!(off <= near, "v{} at {}, v{} at {}", v, points[v], mirrored, points[mirrored]);
+                let distance = other_side(points[v]).distance(points[mirrored]);
+                prop_assert!(distance <= tolerance, "v{} at {}, v{} at {}", v, points[v], mirrored, points[mirrored]);
             }
         }
         for &p in points {
             let expected = other_side(p);
-            prop_assert!(points.iter().any(|p| p.distance(expected) <= near), "no point at {}", expected);
+            prop_assert!(points.iter().any(|p| p.distance(expected) <= tolerance), "no point at {}", expected);
         }
     }
 
     #[test]
     fn interpolating_schemes_keep_old_vertices(
-        start in tries_of(&[Scheme::Butterfly, Scheme::Midpoint, Scheme::Bilinear], &Boundary::ALL),
+        start in cases_with(&[Scheme::Butterfly, Scheme::Midpoint, Scheme::Bilinear], &Boundary::ALL),
         levels in 1..3_u32,
     ) {
         prop_assert!(start.scheme().kind().interpolating);
-        let step = start.after(levels);
+        let step = start.subdivided(levels);
         let bits = |p: &Point| p.to_array().map(f32::to_bits);
         let (old, new) = (start.polygons.positions(), step.polygons.positions());
         prop_assert!(old.iter().zip(new).all(|(old, new)| bits(old) == bits(new)));
@@ -311,9 +311,9 @@ proptest! {
 
     #[test]
     fn zero_levels_give_the_mesh_itself(
-        start in tries_of(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
+        start in cases_with(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
     ) {
-        let Try { subdivision, polygons, creases } = &start;
+        let Case { subdivision, polygons, creases } = &start;
         let itself = Step { polygons: polygons.clone(), creases: creases.clone() };
         for method in [Method::Gather, Method::Scatter] {
             let step = subdivide::<IndexedFaceSet>(subdivision, method, polygons, creases, 0, |_, _| ());
@@ -333,7 +333,7 @@ proptest! {
 ///    │      │     │
 ///    b′ ─── p ─── b
 /// ```
-fn doubled(start: &Try) -> Option<(Try, Vec<usize>)> {
+fn mirrored_double(start: &Case) -> Option<(Case, Vec<usize>)> {
     let half = &start.polygons;
     let is_open: Vec<bool> = valences(half).iter().map(|&(_, is_open)| is_open).collect();
     let mut points: Vec<Point> = Vec::new();
@@ -351,9 +351,9 @@ fn doubled(start: &Try) -> Option<(Try, Vec<usize>)> {
     let number = |v: &VertexId| v.index() as u32;
     let mirrored = |v: &VertexId| mirror[v.index()] as u32;
     let faces = half.faces().iter().flat_map(|(_, face)| {
-        let there: Vec<u32> = face.iter().map(number).collect();
-        let here: Vec<u32> = face.iter().rev().map(mirrored).collect();
-        [there, here]
+        let original: Vec<u32> = face.iter().map(number).collect();
+        let reflected: Vec<u32> = face.iter().rev().map(mirrored).collect();
+        [original, reflected]
     });
     let polygons = PolygonMesh::new(points, faces.collect::<Vec<_>>()).ok()?;
     if !is_plain_manifold(&polygons) {
@@ -370,7 +370,7 @@ fn doubled(start: &Try) -> Option<(Try, Vec<usize>)> {
     let corners = corners.flat_map(|(v, s)| [(number(v), *s), (mirrored(v), *s)]);
     let creases = Creases::new(&polygons, edges, corners).expect("edges of both halves");
     let subdivision = start.subdivision;
-    let double = Try {
+    let double = Case {
         subdivision,
         polygons,
         creases,

@@ -37,8 +37,8 @@ def field_sum(points):
 
 
 def build(mesh):
-    made = Mesh(mesh.positions, mesh.faces)
-    return len(made.positions) + len(made.faces), len(made.faces)
+    rebuilt = Mesh(mesh.positions, mesh.faces)
+    return len(rebuilt.positions) + len(rebuilt.faces), len(rebuilt.faces)
 
 
 def vertex_faces(mesh):
@@ -75,10 +75,10 @@ def face_normal(points):
 
 
 def vertex_normal(mesh):
-    flat = [face_normal([mesh.positions[vertex] for vertex in corners]) for corners in mesh.faces]
+    face_normals = [face_normal([mesh.positions[vertex] for vertex in corners]) for corners in mesh.faces]
     normals = []
     for faces in mesh.faces_of:
-        total = [sum(flat[face][axis] for face in faces) for axis in range(3)]
+        total = [sum(face_normals[face][axis] for face in faces) for axis in range(3)]
         length = math.hypot(*total) or 1.0
         normals.append([part / length for part in total])
     return field_sum(normals), len(normals)
@@ -90,12 +90,12 @@ OPERATIONS = {
 }
 
 
-def answer(mesh, question):
-    run = OPERATIONS.get(question["run"])
+def respond(mesh, request):
+    run = OPERATIONS.get(request["run"])
     if run is None:
         return {"refused": "this example does not support the operation"}
     wall, cpu = time.perf_counter_ns(), time.thread_time_ns()
-    for _ in range(question["times"]):
+    for _ in range(request["times"]):
         checksum, elements = run(mesh)
     wall, cpu = time.perf_counter_ns() - wall, time.thread_time_ns() - cpu
     return {"wall_ns": wall, "cpu_ns": cpu, "checksum": checksum, "elements": elements}
@@ -105,7 +105,7 @@ def main():
     mesh = Mesh(*read(sys.argv[1]))
     print(json.dumps({"protocol": 1, "holds": True, "library": "lists of Python"}), flush=True)
     for line in sys.stdin:
-        print(json.dumps(answer(mesh, json.loads(line))), flush=True)
+        print(json.dumps(respond(mesh, json.loads(line))), flush=True)
 
 
 main()

@@ -1,4 +1,4 @@
-//! Tells the report from which commit, by which compiler and with which flags it was built.
+//! Records the commit, the compiler and its flags for the report.
 
 use std::env;
 use std::path::Path;
@@ -13,7 +13,7 @@ fn main() {
     if let Some(commit) = git(&["describe", "--always", "--dirty", "--abbrev=12"]) {
         println!("cargo::rustc-env=STUDY_COMMIT={commit}");
     }
-    // It is written whenever HEAD moves; outside a repository this file does not exist.
+    // Git writes this file when HEAD moves. Outside a repository it does not exist.
     if let Some(log) = git(&[
         "rev-parse",
         "--path-format=absolute",
@@ -27,7 +27,7 @@ fn main() {
         let value = env::var(name).unwrap_or_else(|_| "unknown".into());
         println!("cargo::rustc-env=STUDY_{name}={value}");
     }
-    // Cargo parts the flags by an unprintable character.
+    // Cargo separates the flags by the character U+001F.
     let flags = env::var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default();
     println!(
         "cargo::rustc-env=STUDY_RUSTFLAGS={}",
@@ -36,7 +36,7 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
 }
 
-/// What git says, on one line; `None` where there is no git or no repository.
+/// Returns the output of git, on one line; `None` without git or a repository.
 fn git(arguments: &[&str]) -> Option<String> {
     let output = Command::new("git").args(arguments).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;

@@ -2,13 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use sixfold::{FaceId, Facts, PolygonMesh, Relation, Spread, VertexId};
+use sixfold::{Distribution, FaceId, Facts, PolygonMesh, Relation, VertexId};
 use sixfold_conformance::{Element, Oracle};
 
-/// Returns the expected result of [`Facts::of`] for `polygons`.
+/// Returns the expected result of [`Facts::from_polygons`] for `polygons`.
 pub(crate) fn facts(polygons: &PolygonMesh) -> Facts {
-    let oracle = Oracle::of(polygons);
-    let mesh = Small::of(&oracle);
+    let oracle = Oracle::new(polygons);
+    let mesh = Incidence::new(&oracle);
     let faces: Vec<FaceId> = oracle.faces().collect();
     let edges: Vec<Element> = oracle.edges().collect();
     let vertices: Vec<VertexId> = oracle.vertices().collect();
@@ -22,10 +22,10 @@ pub(crate) fn facts(polygons: &PolygonMesh) -> Facts {
         .copied()
         .filter(|&v| valence(v) > 0)
         .collect();
-    let edges_of = |many: fn(usize) -> bool| {
+    let edges_of = |has_count: fn(usize) -> bool| {
         let chosen = edges.iter().copied();
         chosen
-            .filter(|&e| many(mesh.along(e).len()))
+            .filter(|&e| has_count(mesh.faces_on(e).len()))
             .collect::<Vec<_>>()
     };
     let boundary = edges_of(|faces| faces == 1);
@@ -33,10 +33,10 @@ pub(crate) fn facts(polygons: &PolygonMesh) -> Facts {
     let touches = |v: VertexId, e: &Element| matches!(e, Element::Edge(a, b) if *a == v || *b == v);
     let not_manifold =
         |v: &VertexId| mesh.fans[v].len() > 1 || non_manifold.iter().any(|e| touches(*v, e));
-    let inconsistent = edges.iter().filter(|&&e| mesh.inconsistent(e)).count();
+    let inconsistent = edges.iter().filter(|&&e| mesh.is_inconsistent(e)).count();
     let any = !faces.is_empty();
     let components = mesh.components();
-    let orientable = mesh.orientable(&components);
+    let orientable = mesh.is_orientable(&components);
     let loops = non_manifold.is_empty().then(|| mesh.loops(&boundary));
     let genus = loops.as_ref().filter(|_| any && orientable).map(|loops| {
         let genera = components
@@ -71,16 +71,16 @@ pub(crate) fn facts(polygons: &PolygonMesh) -> Facts {
     }
 }
 
-/// A mesh that is small enough for nested loops.
-struct Small<'a> {
+/// The faces at the edges and vertices of a mesh, found by nested loops.
+struct Incidence<'a> {
     oracle: &'a Oracle,
     /// By vertex: the faces there, in classes. Faces that share an edge at the vertex are in one
     /// class.
     fans: BTreeMap<VertexId, Vec<Vec<FaceId>>>,
 }
 
-impl<'a> Small<'a> {
-    fn of(oracle: &'a Oracle) -> Self {
+impl<'a> Incidence<'a> {
+    fn new(oracle: &'a Oracle) -> Self {
         let mut mesh = Self {
             oracle,
             fans: BTreeMap::new(),
@@ -90,7 +90,7 @@ impl<'a> Small<'a> {
     }
 
     /// Returns the faces on `e`.
-    fn along(&self, e: Element) -> Vec<FaceId> {
+    fn faces_on(&self, e: Element) -> Vec<FaceId> {
         faces_of(self.oracle.answer(Relation::EdgeFaces, e))
     }
 
@@ -98,7 +98,7 @@ impl<'a> Small<'a> {
         let vertex = Element::Vertex(v);
         let faces = faces_of(self.oracle.answer(Relation::VertexFaces, vertex));
         let edges = self.oracle.answer(Relation::VertexEdges, vertex);
-        let along: Vec<Vec<FaceId>> = edges.iter().map(|&e| self.along(e)).collect();
+        let along: Vec<Vec<FaceId>> = edges.iter().map(|&e| self.faces_on(e)).collect();
         classes(&faces, |f, g| {
             let mut along = along.iter();
             along.any(|faces| faces.contains(&f) && faces.contains(&g))
@@ -115,7 +115,7 @@ impl<'a> Small<'a> {
     }
 
     /// Returns whether `f` runs along the edge from its lower to its higher end.
-    fn runs_up(&self, f: FaceId, edge: Element) -> bool {
+    fn runs_upwards(&self, f: FaceId, edge: Element) -> bool {
         let corners = self.oracle.corners(f);
         (0..corners.len()).any(|i| {
             let next = corners[(i + 1) % corners.len()];
@@ -124,36 +124,36 @@ impl<'a> Small<'a> {
     }
 
     /// Returns whether `e` has exactly two faces and both run along it in the same direction.
-    fn inconsistent(&self, e: Element) -> bool {
-        match self.along(e)[..] {
-            [f, g] => self.runs_up(f, e) == self.runs_up(g, e),
+    fn is_inconsistent(&self, e: Element) -> bool {
+        match self.faces_on(e)[..] {
+            [f, g] => self.runs_upwards(f, e) == self.runs_upwards(g, e),
             _ => false,
         }
     }
 
     /// Returns whether faces can be flipped so that no edge with two faces is inconsistent.
-    fn orientable(&self, components: &[Vec<FaceId>]) -> bool {
+    fn is_orientable(&self, components: &[Vec<FaceId>]) -> bool {
         let pairs: Vec<([FaceId; 2], bool)> = self
             .oracle
             .edges()
-            .filter_map(|e| match self.along(e)[..] {
-                [f, g] => Some(([f, g], self.inconsistent(e))),
+            .filter_map(|e| match self.faces_on(e)[..] {
+                [f, g] => Some(([f, g], self.is_inconsistent(e))),
                 _ => None,
             })
             .collect();
-        let mut turned: BTreeMap<FaceId, bool> = BTreeMap::new();
+        let mut is_reversed: BTreeMap<FaceId, bool> = BTreeMap::new();
         for &start in components.iter().flatten() {
             // A face that was not reached before is not flipped. Propagate until nothing changes.
-            turned.entry(start).or_insert(false);
+            is_reversed.entry(start).or_insert(false);
             let mut changed = true;
             while changed {
                 changed = false;
                 for &([f, g], differ) in &pairs {
                     for (f, g) in [(f, g), (g, f)] {
-                        if let Some(&side) = turned.get(&f)
-                            && !turned.contains_key(&g)
+                        if let Some(&reversed) = is_reversed.get(&f)
+                            && !is_reversed.contains_key(&g)
                         {
-                            turned.insert(g, side ^ differ);
+                            is_reversed.insert(g, reversed ^ differ);
                             changed = true;
                         }
                     }
@@ -162,7 +162,7 @@ impl<'a> Small<'a> {
         }
         pairs
             .iter()
-            .all(|&([f, g], differ)| turned[&f] ^ turned[&g] == differ)
+            .all(|&([f, g], differ)| is_reversed[&f] ^ is_reversed[&g] == differ)
     }
 
     /// Returns the boundary edges in classes; two edges are adjacent if they meet in one fan.
@@ -173,9 +173,9 @@ impl<'a> Small<'a> {
             };
             let ends = [a, b].into_iter().filter(|v| [c, d].contains(v));
             ends.into_iter().any(|v| {
-                let both =
-                    |fan: &Vec<FaceId>| [e, g].iter().all(|&e| fan.contains(&self.along(e)[0]));
-                self.fans[&v].iter().any(both)
+                let contains_both =
+                    |fan: &Vec<FaceId>| [e, g].iter().all(|&e| fan.contains(&self.faces_on(e)[0]));
+                self.fans[&v].iter().any(contains_both)
             })
         })
     }
@@ -189,15 +189,15 @@ impl<'a> Small<'a> {
         let edges = self
             .oracle
             .edges()
-            .filter(|&e| inside(&self.along(e)[0]))
+            .filter(|&e| inside(&self.faces_on(e)[0]))
             .count() as i64;
         let loops = loops
             .iter()
-            .filter(|l| inside(&self.along(l[0])[0]))
+            .filter(|l| inside(&self.faces_on(l[0])[0]))
             .count() as i64;
-        let twice = 2 - (fans - edges + component.len() as i64) - loops;
-        assert_eq!(twice % 2, 0, "the genus must be an integer");
-        twice / 2
+        let double_genus = 2 - (fans - edges + component.len() as i64) - loops;
+        assert_eq!(double_genus % 2, 0, "the genus must be an integer");
+        double_genus / 2
     }
 }
 
@@ -227,12 +227,12 @@ fn classes<T: Copy + PartialEq>(items: &[T], linked: impl Fn(T, T) -> bool) -> V
     classes
 }
 
-fn spread(values: Vec<usize>) -> Option<Spread> {
+fn spread(values: Vec<usize>) -> Option<Distribution> {
     let mut hist = BTreeMap::new();
     for &value in &values {
         *hist.entry(value).or_insert(0) += 1;
     }
-    Some(Spread {
+    Some(Distribution {
         min: *values.iter().min()?,
         max: *values.iter().max()?,
         mean: values.iter().sum::<usize>() as f64 / values.len() as f64,

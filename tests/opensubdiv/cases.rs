@@ -10,45 +10,45 @@ use sixfold::subdivision::{Boundary, Creasing, Scheme, Subdivision};
 use sixfold::{Creases, Point, PolygonMesh, shapes};
 use sixfold_conformance::strategy::{any_mesh, manifold_mesh};
 
-use super::judge::Case;
+use super::reference::Case;
 use crate::subdivision::{creases_on, sharpness};
 
 /// Maximum number of corners of the finest mesh. Larger meshes only take more time.
-const ENOUGH: usize = 12_000;
+const MAX_CORNERS: usize = 12_000;
 
 /// Generates manifolds, open and closed, of mixed degrees.
 pub(crate) fn manifold() -> impl Strategy<Value = Case> {
-    case_of(manifold_mesh())
+    cases_on(manifold_mesh())
 }
 
 /// Generates meshes with edges of three faces, vertices with several fans, flipped faces, and
 /// arbitrary meshes.
 pub(crate) fn non_manifold() -> impl Strategy<Value = Case> {
-    let made = prop_oneof![
+    let meshes = prop_oneof![
         (3..6_u32, 2..4_u32).prop_map(|(pages, length)| book(pages, length)),
         (2..5_u32, 3..6_u32).prop_map(|(fans, degree)| bow_tie(fans, degree)),
         (3..6_u32).prop_map(two_cones),
         (0..12_usize).prop_map(with_fin),
     ];
-    let parts = (made, vec(any::<Index>(), 0..2), vec(any::<Index>(), 0..3));
-    let torn = parts.prop_map(|(mesh, lost, turned)| torn(&mesh, &lost, &turned));
-    let chaos = any_mesh().prop_filter("no faces", |mesh| mesh.face_count() > 0);
-    case_of(prop_oneof![2 => torn, 1 => chaos])
+    let parts = (meshes, vec(any::<Index>(), 0..2), vec(any::<Index>(), 0..3));
+    let damaged = parts.prop_map(|(mesh, removed, reversed)| damaged(&mesh, &removed, &reversed));
+    let arbitrary = any_mesh().prop_filter("no faces", |mesh| mesh.face_count() > 0);
+    cases_on(prop_oneof![2 => damaged, 1 => arbitrary])
 }
 
-fn case_of(mesh: impl Strategy<Value = PolygonMesh>) -> impl Strategy<Value = Case> {
+fn cases_on(mesh: impl Strategy<Value = PolygonMesh>) -> impl Strategy<Value = Case> {
     let scheme = prop::sample::select(vec![Scheme::CatmullClark, Scheme::Loop]);
     let boundary = prop::sample::select(Boundary::ALL.to_vec());
     let creasing = prop::sample::select(Creasing::ALL.to_vec());
     let options = (scheme, boundary, creasing, 1..4_u32);
-    let creases = (sharpness(), sharpness()).prop_map(|(some, more)| [some, more].concat());
+    let creases = (sharpness(), sharpness()).prop_map(|(first, second)| [first, second].concat());
     let parts = (options, mesh, creases);
     parts.prop_map(
         |((scheme, boundary, creasing, levels), polygons, choices)| {
-            let polygons = fitting(scheme, polygons);
+            let polygons = for_scheme(scheme, polygons);
             let creases = creases_on(&polygons, &choices);
             let corners = polygons.corner_count();
-            let fits = |&levels: &u32| corners << (2 * levels) <= ENOUGH;
+            let fits = |&levels: &u32| corners << (2 * levels) <= MAX_CORNERS;
             Case {
                 subdivision: Subdivision {
                     boundary,
@@ -63,7 +63,7 @@ fn case_of(mesh: impl Strategy<Value = PolygonMesh>) -> impl Strategy<Value = Ca
     )
 }
 
-fn fitting(scheme: Scheme, polygons: PolygonMesh) -> PolygonMesh {
+fn for_scheme(scheme: Scheme, polygons: PolygonMesh) -> PolygonMesh {
     match scheme {
         Scheme::Loop => polygons.fan_triangulated().expect("few corners"),
         _ => polygons,
@@ -134,14 +134,14 @@ fn all_options() -> impl Iterator<Item = (Scheme, Boundary, Creasing)> {
         .flat_map(|(scheme, boundary)| Creasing::ALL.map(|creasing| (scheme, boundary, creasing)))
 }
 
-fn around(i: u32, n: u32, z: f32) -> Point {
+fn on_circle(i: u32, n: u32, z: f32) -> Point {
     let (sin, cos) = (TAU * i as f32 / n as f32).sin_cos();
     Point::new(cos, sin, z)
 }
 
 /// Builds triangles around vertex 0; if `is_closed` is false, one of them is missing.
 fn wheel(n: u32, is_closed: bool) -> PolygonMesh {
-    let rim = (0..n).map(|i| around(i, n, (i % 3) as f32 * 0.25));
+    let rim = (0..n).map(|i| on_circle(i, n, (i % 3) as f32 * 0.25));
     let points: Vec<Point> = std::iter::once(Point::Z).chain(rim).collect();
     let sectors = if is_closed { n } else { n - 1 };
     let faces: Vec<[u32; 3]> = (0..sectors).map(|i| [0, 1 + i, 1 + (i + 1) % n]).collect();
@@ -159,7 +159,8 @@ fn wheel(n: u32, is_closed: bool) -> PolygonMesh {
 /// ```
 fn book(pages: u32, length: u32) -> PolygonMesh {
     let spine = (0..=length).map(|k| Point::Z * k as f32);
-    let rims = (0..pages).flat_map(|page| (0..=length).map(move |k| around(page, pages, k as f32)));
+    let rims =
+        (0..pages).flat_map(|page| (0..=length).map(move |k| on_circle(page, pages, k as f32)));
     let points: Vec<Point> = spine.chain(rims).collect();
     let quads = (1..=pages).flat_map(|page| {
         let rim = page * (length + 1);
@@ -171,7 +172,7 @@ fn book(pages: u32, length: u32) -> PolygonMesh {
 /// Builds polygons of one degree that share only vertex 0.
 fn bow_tie(fans: u32, degree: u32) -> PolygonMesh {
     let rim = fans * (degree - 1);
-    let points = (0..rim).map(|i| around(i, rim, (i % 2) as f32 * 0.5));
+    let points = (0..rim).map(|i| on_circle(i, rim, (i % 2) as f32 * 0.5));
     let points: Vec<Point> = std::iter::once(Point::ZERO).chain(points).collect();
     let faces = (0..fans).map(|fan| {
         let own = (1..degree).map(|k| fan * (degree - 1) + k);
@@ -182,7 +183,7 @@ fn bow_tie(fans: u32, degree: u32) -> PolygonMesh {
 
 /// Builds two closed pyramids that share their apex, vertex 0.
 fn two_cones(n: u32) -> PolygonMesh {
-    let rings = (0..2 * n).map(|i| around(i, n, if i < n { 1.0 } else { -1.0 }));
+    let rings = (0..2 * n).map(|i| on_circle(i, n, if i < n { 1.0 } else { -1.0 }));
     let points: Vec<Point> = std::iter::once(Point::ZERO).chain(rings).collect();
     let mut faces = Vec::new();
     for first in [1, 1 + n] {
@@ -200,23 +201,23 @@ fn with_fin(edge: usize) -> PolygonMesh {
     let uses = grid.edge_uses();
     let inner: Vec<_> = uses.iter().filter(|edge| !edge.is_boundary()).collect();
     let [a, b] = inner[edge % inner.len()].ends;
-    let tips = [b, a].map(|v| grid.position(v) + Point::Z);
+    let apexes = [b, a].map(|v| grid.position(v) + Point::Z);
     let first = grid.vertex_count() as u32;
-    let points = [grid.positions(), &tips].concat();
+    let points = [grid.positions(), &apexes].concat();
     let mut faces = face_rows(&grid);
     faces.push(vec![a.index() as u32, b.index() as u32, first, first + 1]);
     PolygonMesh::new(points, faces).expect("a grid with a fin")
 }
 
 /// Removes some faces of the mesh (at least one stays) and flips some others.
-fn torn(mesh: &PolygonMesh, lost: &[Index], turned: &[Index]) -> PolygonMesh {
+fn damaged(mesh: &PolygonMesh, removed: &[Index], reversed: &[Index]) -> PolygonMesh {
     let mut faces = face_rows(mesh);
-    for index in lost {
+    for index in removed {
         if faces.len() > 1 {
             faces.remove(index.index(faces.len()));
         }
     }
-    for index in turned {
+    for index in reversed {
         let face = index.index(faces.len());
         faces[face].reverse();
     }

@@ -38,7 +38,7 @@ struct Case {
     bool limit = false;
     std::vector<Point> positions;
     std::vector<int> degrees, corners;      // face by face
-    std::vector<int> crease_ends, cornered; // two ends per edge; one vertex per corner
+    std::vector<int> crease_ends, corner_vertices; // two ends per edge; one vertex per corner
     std::vector<float> crease_sharpness, corner_sharpness;
 };
 
@@ -95,7 +95,7 @@ static void read_line(Case& c, const std::string& keyword, std::istringstream& w
         words >> word;
         c.crease_sharpness.push_back(sharpness(word));
     } else if (keyword == "corner") {
-        c.cornered.push_back(integer());
+        c.corner_vertices.push_back(integer());
         words >> word;
         c.corner_sharpness.push_back(sharpness(word));
     } else {
@@ -108,7 +108,7 @@ static void read_line(Case& c, const std::string& keyword, std::istringstream& w
 // Refuses cases in which OpenSubdiv would read out of bounds.
 static void check(const Case& c) {
     if (c.degrees.empty()) throw Refusal("no faces");
-    for (auto* list : {&c.corners, &c.crease_ends, &c.cornered})
+    for (auto* list : {&c.corners, &c.crease_ends, &c.corner_vertices})
         for (int v : *list)
             if (v < 0 || v >= int(c.positions.size())) throw Refusal("no vertex " + std::to_string(v));
     size_t first = 0;
@@ -135,10 +135,10 @@ static Case read_case(std::istream& in) {
 // --- refining
 
 // The first message of OpenSubdiv, which reports to a callback and then continues or returns null.
-static std::string complaint;
-static void complain(const char* message) {
-    if (complaint.empty()) complaint = message;
-    for (char& letter : complaint)
+static std::string first_message;
+static void report(const char* message) {
+    if (first_message.empty()) first_message = message;
+    for (char& letter : first_message)
         if (letter == '\n') letter = ' ';
 }
 
@@ -152,14 +152,14 @@ static std::unique_ptr<far::TopologyRefiner> refiner(const Case& c) {
     d.numCreases = int(c.crease_sharpness.size());
     d.creaseVertexIndexPairs = c.crease_ends.data();
     d.creaseWeights = c.crease_sharpness.data();
-    d.numCorners = int(c.cornered.size());
-    d.cornerVertexIndices = c.cornered.data();
+    d.numCorners = int(c.corner_vertices.size());
+    d.cornerVertexIndices = c.corner_vertices.data();
     d.cornerWeights = c.corner_sharpness.data();
     Factory::Options options(c.scheme, c.options);
     options.validateFullTopology = true;
     std::unique_ptr<far::TopologyRefiner> r(Factory::Create(d, options));
-    if (!r) throw Refusal(complaint.empty() ? "topology" : complaint);
-    if (!complaint.empty()) throw Refusal(complaint);
+    if (!r) throw Refusal(first_message.empty() ? "topology" : first_message);
+    if (!first_message.empty()) throw Refusal(first_message);
     far::TopologyRefiner::UniformOptions uniform(c.levels);
     uniform.fullTopologyInLastLevel = true;
     if (c.levels > 0) r->RefineUniform(uniform);
@@ -246,8 +246,8 @@ static void refine(const Case& c) {
 }
 
 int main() {
-    far::SetErrorCallback([](far::ErrorType, const char* message) { complain(message); });
-    far::SetWarningCallback([](const char* message) { complain(message); });
+    far::SetErrorCallback([](far::ErrorType, const char* message) { report(message); });
+    far::SetWarningCallback([](const char* message) { report(message); });
     try {
         refine(read_case(std::cin));
     } catch (const Refusal& why) {

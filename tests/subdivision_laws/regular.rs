@@ -9,7 +9,7 @@ use proptest::sample::select;
 use sixfold::subdivision::{ControlGrid, Ends, Scheme, Subdivision};
 use sixfold::{Creases, Facts, Point, VertexId, shapes};
 
-use super::{NEAR, after, size};
+use super::{TOLERANCE, size, subdivided};
 
 fn control_grids() -> impl Strategy<Value = ControlGrid> {
     let all = vec![Ends::Closed, Ends::Kept, Ends::Dropped];
@@ -40,7 +40,7 @@ proptest! {
         let across = if grid.ends()[0] == Ends::Closed { columns } else { columns - 1 };
         let mut compared = BTreeMap::new();
         for levels in 0..=4 {
-            let refined = after(&subdivision, &polygons, &Creases::default(), levels).polygons;
+            let refined = subdivided(&subdivision, &polygons, &Creases::default(), levels).polygons;
             // Control vertices keep their numbers in later levels, and so do the first face points.
             let old = (0..vertices).map(|v| (v, (v % columns) as f64, (v / columns) as f64, levels));
             let faces = (0..polygons.face_count()).filter(|_| levels > 0).map(|f| {
@@ -50,9 +50,9 @@ proptest! {
             for (v, i, j, steps) in old.chain(faces) {
                 let Some(limit) = grid.evaluate(i, j) else { continue };
                 let off = (refined.positions()[v] - limit).abs().max_element();
-                let far = 4.0 / 3.0 * 0.25_f32.powi(steps as i32)
+                let bound = 4.0 / 3.0 * 0.25_f32.powi(steps as i32)
                     + 4.0 / 9.0 * 0.0625_f32.powi(steps as i32);
-                prop_assert!(off <= far + 1e-6, "{} {} after {} steps: off {}", i, j, steps, off);
+                prop_assert!(off <= bound + 1e-6, "{} {} after {} steps: off {}", i, j, steps, off);
                 *compared.entry(levels).or_insert(0) += 1;
             }
         }
@@ -64,13 +64,13 @@ proptest! {
 #[test]
 fn a_regular_torus_keeps_its_symmetry() {
     let torus = shapes::torus(6, 5).expect("a small torus");
-    let step = after(
+    let step = subdivided(
         &Subdivision::new(Scheme::CatmullClark),
         &torus,
         &Creases::default(),
         2,
     );
-    let facts = Facts::of(&step.polygons);
+    let facts = Facts::from_polygons(&step.polygons);
     assert_eq!([facts.vertices, facts.faces], [480, 480]);
     assert_eq!(facts.genus, Some(1));
     // A rotation by a sixth of a turn maps it to itself.
@@ -82,7 +82,7 @@ fn a_regular_torus_keeps_its_symmetry() {
         let turned = Point::new(cos * p.x - sin * p.y, sin * p.x + cos * p.y, p.z);
         let off = points.iter().map(|q| q.distance(turned));
         assert!(
-            off.fold(f32::MAX, f32::min) <= NEAR * size,
+            off.fold(f32::MAX, f32::min) <= TOLERANCE * size,
             "no point at {turned}"
         );
     }
@@ -108,7 +108,7 @@ fn sharpness_of_ten_stays_and_less_decreases() {
         ] {
             let creases = Creases::new(&mesh, [([a, b], given)], [(a, given)]).expect("an edge");
             let subdivision = Subdivision::new(scheme);
-            let step = after(&subdivision, &mesh, &creases, 1);
+            let step = subdivided(&subdivision, &mesh, &creases, 1);
             let a = VertexId::new(a);
             let halves: Vec<f32> = step.creases.edges().iter().map(|&(_, s)| s).collect();
             let expected = if left > 0.0 { vec![left; 2] } else { vec![] };

@@ -74,7 +74,7 @@ struct Input {
     }
 };
 
-struct Found {
+struct RunResult {
     double checksum;
     uint64_t elements;
 };
@@ -89,30 +89,30 @@ inline uint64_t nanoseconds(clockid_t clock) {
 }
 
 template <class Adapter>
-class Running {
+class Runner {
   public:
-    Running(const Input& input)
-        : input(input), adapter(std::make_unique<Adapter>(input)), of_faces(input.faces()), of_vertices(input.positions) {
+    Runner(const Input& input)
+        : input(input), adapter(std::make_unique<Adapter>(input)), face_values(input.faces()), vertex_values(input.positions) {
         check();
     }
 
     // Returns the time of `times` runs and the result of one, or a refusal if the operation is unknown.
     nlohmann::json run(const std::string& name, uint64_t times) {
         uint64_t wall = 0, cpu = 0;
-        std::optional<Found> found;
+        std::optional<RunResult> found;
         // Moved positions are reset outside the timing. All other operations are timed together, because
         // reading the clocks takes as long as a run on a small mesh.
         const bool moves = name == "vv_smooth";
-        const uint64_t turns = moves ? times : 1, each = moves ? 1 : times;
-        for (uint64_t turn = 0; turn < turns; ++turn) {
+        const uint64_t batches = moves ? times : 1, runs = moves ? 1 : times;
+        for (uint64_t batch = 0; batch < batches; ++batch) {
             const uint64_t start[] = {nanoseconds(CLOCK_MONOTONIC), nanoseconds(CLOCK_THREAD_CPUTIME_ID)};
-            for (uint64_t i = 0; i < each; ++i) {
-                found = once(name);
+            for (uint64_t i = 0; i < runs; ++i) {
+                found = run_once(name);
                 if (!found) return {{"refused", "the adapter does not support the operation"}};
             }
             cpu += nanoseconds(CLOCK_THREAD_CPUTIME_ID) - start[1];
             wall += nanoseconds(CLOCK_MONOTONIC) - start[0];
-            if (moves) put(input.positions);
+            if (moves) set_positions(input.positions);
         }
         if (!found) return {{"refused", "zero runs were requested"}};
         return {{"wall_ns", wall}, {"cpu_ns", cpu}, {"checksum", found->checksum}, {"elements", found->elements}};
@@ -125,7 +125,7 @@ class Running {
 
     const Input& input;
     std::unique_ptr<Adapter> adapter;
-    std::vector<Vector> of_faces, of_vertices;
+    std::vector<Vector> face_values, vertex_values;
 
     // Refuses a mesh that the structure accepted but does not represent correctly.
     void check() {
@@ -137,7 +137,7 @@ class Running {
         }
         const uint64_t vertices = input.positions.size(), corners = input.corners.size(), edges = sides.size();
         auto expect = [&](const char* relation, uint64_t answers, uint64_t elements) {
-            const auto found = *ask(relation);
+            const auto found = *query_relation(relation);
             if (found.first != answers || found.second != elements)
                 throw std::runtime_error(std::string("it accepted the mesh, but ") + relation + " has " + std::to_string(found.first) +
                                          " results for " + std::to_string(found.second) + " elements, expected " +
@@ -150,28 +150,28 @@ class Running {
         expect("face_vertices", corners, input.faces());
         expect("face_edges", corners, input.faces());
         adapter->each_face([&](Face f) {
-            std::set<size_t> around;
+            std::set<size_t> distinct;
             size_t answers = 0;
-            adapter->face_faces(f, [&](Face g) { around.insert(adapter->index(g)); ++answers; });
-            if (around.size() != answers) throw std::runtime_error("it returns a face twice if two faces share more than one edge");
+            adapter->face_faces(f, [&](Face g) { distinct.insert(adapter->index(g)); ++answers; });
+            if (distinct.size() != answers) throw std::runtime_error("it returns a face twice if two faces share more than one edge");
         });
     }
 
-    std::optional<Found> once(const std::string& name) {
+    std::optional<RunResult> run_once(const std::string& name) {
         if (name == "build") {
             Adapter built(input);
-            return Found{double(input.positions.size() + input.faces()), uint64_t(input.faces())};
+            return RunResult{double(input.positions.size() + input.faces()), uint64_t(input.faces())};
         }
         if (name == "circulate") {
-            const uint64_t all = ask("vertex_faces")->first + ask("face_vertices")->first;
-            return Found{double(all), all};
+            const uint64_t all = query_relation("vertex_faces")->first + query_relation("face_vertices")->first;
+            return RunResult{double(all), all};
         }
         if (name == "all_queries") {
             uint64_t all = 0;
             for (const char* relation : {"vertex_vertices", "vertex_edges", "vertex_faces", "edge_vertices", "edge_edges",
                                          "edge_faces", "face_vertices", "face_edges", "face_faces"})
-                all += ask(relation)->first;
-            return Found{double(all), all};
+                all += query_relation(relation)->first;
+            return RunResult{double(all), all};
         }
         if (name == "face_barycenter") return face_barycenter();
         if (name == "vertex_normal") return vertex_normal();
@@ -179,36 +179,36 @@ class Running {
         if (name == "edge_length") return edge_length();
         if (name == "boundary") return boundary();
         if (name == "ff_bfs") return ff_bfs();
-        const auto asked = ask(name);
-        if (!asked) return std::nullopt;
-        return Found{double(asked->first), asked->second};
+        const auto counts = query_relation(name);
+        if (!counts) return std::nullopt;
+        return RunResult{double(counts->first), counts->second};
     }
 
     // Queries one relation of every element. Returns the numbers of results and of elements.
-    std::optional<std::pair<uint64_t, uint64_t>> ask(const std::string& relation) {
+    std::optional<std::pair<uint64_t, uint64_t>> query_relation(const std::string& relation) {
         const Adapter& a = *adapter;
         uint64_t count = 0, sum = 0, elements = 0;
-        auto take = [&](auto handle) {
+        auto add = [&](auto handle) {
             ++count;
             sum += a.index(handle);
         };
         auto vertices = [&](auto query) { a.each_vertex([&](Vertex v) { ++elements; query(v); }); };
         auto edges = [&](auto query) { a.each_edge([&](Edge e) { ++elements; query(e); }); };
         auto faces = [&](auto query) { a.each_face([&](Face f) { ++elements; query(f); }); };
-        if (relation == "vertex_vertices") vertices([&](Vertex v) { a.vertex_vertices(v, take); });
-        else if (relation == "vertex_edges") vertices([&](Vertex v) { a.vertex_edges(v, take); });
-        else if (relation == "vertex_faces") vertices([&](Vertex v) { a.vertex_faces(v, take); });
-        else if (relation == "edge_vertices") edges([&](Edge e) { const auto ends = a.edge_ends(e); take(ends.first); take(ends.second); });
+        if (relation == "vertex_vertices") vertices([&](Vertex v) { a.vertex_vertices(v, add); });
+        else if (relation == "vertex_edges") vertices([&](Vertex v) { a.vertex_edges(v, add); });
+        else if (relation == "vertex_faces") vertices([&](Vertex v) { a.vertex_faces(v, add); });
+        else if (relation == "edge_vertices") edges([&](Edge e) { const auto ends = a.edge_ends(e); add(ends.first); add(ends.second); });
         else if (relation == "edge_edges") edges([&](Edge e) {
             const auto ends = a.edge_ends(e);
-            auto other = [&](Edge x) { if (a.index(x) != a.index(e)) take(x); };
+            auto other = [&](Edge x) { if (a.index(x) != a.index(e)) add(x); };
             a.vertex_edges(ends.first, other);
             a.vertex_edges(ends.second, other);
         });
-        else if (relation == "edge_faces") edges([&](Edge e) { a.edge_faces(e, take); });
-        else if (relation == "face_vertices") faces([&](Face f) { a.face_vertices(f, take); });
-        else if (relation == "face_edges") faces([&](Face f) { a.face_edges(f, take); });
-        else if (relation == "face_faces") faces([&](Face f) { a.face_faces(f, take); });
+        else if (relation == "edge_faces") edges([&](Edge e) { a.edge_faces(e, add); });
+        else if (relation == "face_vertices") faces([&](Face f) { a.face_vertices(f, add); });
+        else if (relation == "face_edges") faces([&](Face f) { a.face_edges(f, add); });
+        else if (relation == "face_faces") faces([&](Face f) { a.face_faces(f, add); });
         else return std::nullopt;
         sink = sum;
         return std::make_pair(count, elements);
@@ -220,54 +220,54 @@ class Running {
         return sum;
     }
 
-    Found face_barycenter() {
+    RunResult face_barycenter() {
         adapter->each_face([&](Face f) {
             Vector sum;
             int corners = 0;
             adapter->face_vertices(f, [&](Vertex v) { sum = sum + adapter->position(v); ++corners; });
-            of_faces[adapter->index(f)] = sum * (1.0f / float(corners));
+            face_values[adapter->index(f)] = sum * (1.0f / float(corners));
         });
-        return {field_sum(of_faces), of_faces.size()};
+        return {field_sum(face_values), face_values.size()};
     }
 
-    Found vertex_normal() {
+    RunResult vertex_normal() {
         adapter->each_face([&](Face f) {
             Vector first, last, normal;
             int seen = 0;
             adapter->face_vertices(f, [&](Vertex v) {
-                const Vector here = adapter->position(v);
-                if (seen == 0) first = here;
-                if (seen > 1) normal = normal + cross(last - first, here - first);
-                last = here;
+                const Vector position = adapter->position(v);
+                if (seen == 0) first = position;
+                if (seen > 1) normal = normal + cross(last - first, position - first);
+                last = position;
                 ++seen;
             });
-            of_faces[adapter->index(f)] = normal;
+            face_values[adapter->index(f)] = normal;
         });
         adapter->each_vertex([&](Vertex v) {
             Vector sum;
-            adapter->vertex_faces(v, [&](Face f) { sum = sum + of_faces[adapter->index(f)]; });
+            adapter->vertex_faces(v, [&](Face f) { sum = sum + face_values[adapter->index(f)]; });
             const float size = length(sum);
-            of_vertices[adapter->index(v)] = size > 0 ? sum * (1.0f / size) : sum;
+            vertex_values[adapter->index(v)] = size > 0 ? sum * (1.0f / size) : sum;
         });
-        return {field_sum(of_vertices), of_vertices.size()};
+        return {field_sum(vertex_values), vertex_values.size()};
     }
 
-    Found vv_smooth() {
+    RunResult vv_smooth() {
         adapter->each_vertex([&](Vertex v) {
             Vector sum;
             int valence = 0;
             adapter->vertex_vertices(v, [&](Vertex w) { sum = sum + adapter->position(w); ++valence; });
-            of_vertices[adapter->index(v)] = valence > 0 ? sum * (1.0f / float(valence)) : adapter->position(v);
+            vertex_values[adapter->index(v)] = valence > 0 ? sum * (1.0f / float(valence)) : adapter->position(v);
         });
-        put(of_vertices);
-        return {field_sum(of_vertices), of_vertices.size()};
+        set_positions(vertex_values);
+        return {field_sum(vertex_values), vertex_values.size()};
     }
 
-    void put(const std::vector<Vector>& positions) {
+    void set_positions(const std::vector<Vector>& positions) {
         adapter->each_vertex([&](Vertex v) { adapter->set_position(v, positions[adapter->index(v)]); });
     }
 
-    Found edge_length() {
+    RunResult edge_length() {
         double sum = 0;
         uint64_t edges = 0;
         adapter->each_edge([&](Edge e) {
@@ -278,7 +278,7 @@ class Running {
         return {sum, edges};
     }
 
-    Found boundary() {
+    RunResult boundary() {
         uint64_t boundary = 0, edges = 0;
         adapter->each_edge([&](Edge e) {
             int faces = 0;
@@ -290,8 +290,8 @@ class Running {
     }
 
     // Traverses faces breadth first, each time from the lowest unvisited face.
-    Found ff_bfs() {
-        std::vector<uint32_t> depths(of_faces.size(), UINT32_MAX);
+    RunResult ff_bfs() {
+        std::vector<uint32_t> depths(face_values.size(), UINT32_MAX);
         std::deque<Face> queue;
         uint64_t sum = 0;
         for (size_t seed = 0; seed < depths.size(); ++seed) {
@@ -304,9 +304,9 @@ class Running {
                 const uint32_t depth = depths[adapter->index(f)];
                 sum += depth;
                 adapter->face_faces(f, [&](Face g) {
-                    uint32_t& place = depths[adapter->index(g)];
-                    if (place != UINT32_MAX) return;
-                    place = depth + 1;
+                    uint32_t& entry = depths[adapter->index(g)];
+                    if (entry != UINT32_MAX) return;
+                    entry = depth + 1;
                     queue.push_back(g);
                 });
             }
@@ -315,7 +315,7 @@ class Running {
     }
 };
 
-inline void say(const nlohmann::json& what) { std::cout << what.dump() << std::endl; }
+inline void write_line(const nlohmann::json& what) { std::cout << what.dump() << std::endl; }
 
 // Runs the whole program: reads the mesh that the first argument names, and answers until standard input ends.
 template <class Adapter>
@@ -323,22 +323,22 @@ int serve(int argc, char** argv) {
     try {
         if (argc < 2) throw std::runtime_error("the path of a mesh is missing");
         const Input input(argv[1]);
-        std::unique_ptr<Running<Adapter>> running;
+        std::unique_ptr<Runner<Adapter>> runner;
         try {
-            running = std::make_unique<Running<Adapter>>(input);
+            runner = std::make_unique<Runner<Adapter>>(input);
         } catch (const std::runtime_error& refusal) {
-            say({{"protocol", 1}, {"holds", false}, {"library", Adapter::library()}, {"reason", refusal.what()}});
+            write_line({{"protocol", 1}, {"holds", false}, {"library", Adapter::library()}, {"reason", refusal.what()}});
             return 0;
         }
         // The allocator of the GNU C library: Sixfold can make it keep pages by an environment variable.
 #ifdef __GLIBC__
-        say({{"protocol", 1}, {"holds", true}, {"library", Adapter::library()}, {"heap", "glibc"}});
+        write_line({{"protocol", 1}, {"holds", true}, {"library", Adapter::library()}, {"heap", "glibc"}});
 #else
-        say({{"protocol", 1}, {"holds", true}, {"library", Adapter::library()}});
+        write_line({{"protocol", 1}, {"holds", true}, {"library", Adapter::library()}});
 #endif
         for (std::string line; std::getline(std::cin, line);) {
-            const auto question = nlohmann::json::parse(line);
-            say(running->run(question.at("run"), question.at("times")));
+            const auto request = nlohmann::json::parse(line);
+            write_line(runner->run(request.at("run"), request.at("times")));
         }
         return 0;
     } catch (const std::exception& error) {

@@ -16,23 +16,23 @@ use crate::subject::Subject;
 pub fn answers<M: Representation>(
     polygons: &PolygonMesh,
 ) -> Option<BTreeMap<String, Vec<Element>>> {
-    let subject = Subject::<M>::of(polygons)?;
+    let subject = Subject::<M>::from_polygons(polygons)?;
     let mut answers = BTreeMap::new();
     for relation in Relation::ALL {
         for element in subject.oracle.domain(relation) {
-            let mut answer = subject.ask(relation, element);
+            let mut answer = subject.query(relation, element);
             match relation {
-                Relation::FaceVertices | Relation::FaceEdges => lowest_first(&mut answer),
+                Relation::FaceVertices | Relation::FaceEdges => rotate_to_lowest(&mut answer),
                 _ => answer.sort(),
             }
             answers.insert(format!("{relation} {element}"), answer);
         }
     }
     for v in subject.oracle.vertices() {
-        if let Some(ring) = subject.names.ring(&subject.mesh, v) {
+        if let Some(ring) = subject.handles.ring(&subject.mesh, v) {
             let mut ring: Vec<_> = ring.into_iter().map(Element::Vertex).collect();
             if !subject.oracle.is_boundary(v) {
-                lowest_first(&mut ring);
+                rotate_to_lowest(&mut ring);
             }
             answers.insert(format!("one_ring {v}"), ring);
         }
@@ -41,7 +41,7 @@ pub fn answers<M: Representation>(
 }
 
 /// Rotates a cycle so that its lowest element is first.
-fn lowest_first(cycle: &mut [Element]) {
+fn rotate_to_lowest(cycle: &mut [Element]) {
     let lowest = (0..cycle.len()).min_by_key(|&i| cycle[i]);
     cycle.rotate_left(lowest.unwrap_or(0));
 }

@@ -7,11 +7,11 @@
 
 mod action;
 mod model;
+mod model_test;
 mod relations;
 mod script;
-mod trial;
 
 pub use action::Action;
 pub use model::{Model, Rules};
+pub use model_test::ModelTest;
 pub use script::{Step, script};
-pub use trial::Trial;

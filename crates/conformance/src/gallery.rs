@@ -6,14 +6,14 @@ mod lectures;
 mod make;
 
 use make::{
-    closed_bow_tie, coincident_corners, klein_bottle, loose, mesh, minus_nought, numbers, place_at,
-    sized, union, voxels,
+    closed_bow_tie, coincident_corners, corner_numbers, disjoint_union, expect_shape, klein_bottle,
+    mesh, negative_zero, separate_faces, voxels, with_positions,
 };
-pub(crate) use make::{double_cone, spot, strip};
+pub(crate) use make::{distinct_position, double_cone, strip};
 
-/// A mesh with a name.
+/// A mesh of the gallery, with its name.
 #[derive(Clone, Debug)]
-pub struct Specimen {
+pub struct GalleryMesh {
     /// Name, which describes the special case.
     pub name: &'static str,
     /// The mesh.
@@ -22,7 +22,7 @@ pub struct Specimen {
 
 /// Returns all meshes: solids, surfaces of every kind, corner cases of the contract, faulty meshes,
 /// and the meshes of the lectures.
-pub fn gallery() -> Vec<Specimen> {
+pub fn gallery() -> Vec<GalleryMesh> {
     let parts = [
         solids(),
         surfaces(),
@@ -31,7 +31,7 @@ pub fn gallery() -> Vec<Specimen> {
         lectures::fixtures(),
     ];
     let all = parts.into_iter().flatten();
-    all.map(|(name, polygons)| Specimen { name, polygons })
+    all.map(|(name, polygons)| GalleryMesh { name, polygons })
         .collect()
 }
 
@@ -44,8 +44,11 @@ fn solids() -> Vec<Named> {
         ("octahedron", sixfold_shapes::octahedron()),
         ("dodecahedron", sixfold_shapes::dodecahedron()),
         ("icosahedron", sixfold_shapes::icosahedron()),
-        ("pentagonal prism", sized(sixfold_shapes::prism(5))),
-        ("square antiprism", sized(sixfold_shapes::antiprism(4))),
+        ("pentagonal prism", expect_shape(sixfold_shapes::prism(5))),
+        (
+            "square antiprism",
+            expect_shape(sixfold_shapes::antiprism(4)),
+        ),
         (
             "shuffled icosahedron",
             sixfold_shapes::shuffled(&sixfold_shapes::icosahedron(), 7),
@@ -55,33 +58,33 @@ fn solids() -> Vec<Named> {
 
 fn surfaces() -> Vec<Named> {
     vec![
-        ("grid of quads", sized(sixfold_shapes::grid(3, 4))),
+        ("grid of quads", expect_shape(sixfold_shapes::grid(3, 4))),
         (
             "grid of triangles",
-            sized(sixfold_shapes::triangle_grid(4, 3)),
+            expect_shape(sixfold_shapes::triangle_grid(4, 3)),
         ),
         (
             "grid of triangles and quads",
-            sized(sixfold_shapes::mixed_grid(4, 4)),
+            expect_shape(sixfold_shapes::mixed_grid(4, 4)),
         ),
         (
             "grid with a hole",
-            sized(sixfold_shapes::grid_with_hole(4, 5)),
+            expect_shape(sixfold_shapes::grid_with_hole(4, 5)),
         ),
-        ("torus of quads", sized(sixfold_shapes::torus(3, 4))),
+        ("torus of quads", expect_shape(sixfold_shapes::torus(3, 4))),
         (
             "torus of triangles",
-            sized(sixfold_shapes::triangle_torus(4, 3)),
+            expect_shape(sixfold_shapes::triangle_torus(4, 3)),
         ),
         ("genus 2", voxels(&[".....", ".o.o.", "....."])),
-        ("Möbius strip", sized(sixfold_shapes::moebius(5))),
+        ("Möbius strip", expect_shape(sixfold_shapes::moebius(5))),
         ("Klein bottle", klein_bottle(4, 5)),
         ("projective plane", mesh(6, &PROJECTIVE_PLANE)),
         (
             "two cubes and a grid",
-            union(&[
+            disjoint_union(&[
                 sixfold_shapes::cube(),
-                sized(sixfold_shapes::grid(2, 2)),
+                expect_shape(sixfold_shapes::grid(2, 2)),
                 sixfold_shapes::cube(),
             ]),
         ),
@@ -131,27 +134,30 @@ fn corner_cases() -> Vec<Named> {
             "open fan of three triangles",
             mesh(5, &[[0, 1, 2], [0, 2, 3], [0, 3, 4]]),
         ),
-        ("cube of loose faces", loose(&sixfold_shapes::cube())),
-        ("negative zero equals zero", minus_nought()),
+        (
+            "cube of loose faces",
+            separate_faces(&sixfold_shapes::cube()),
+        ),
+        ("negative zero equals zero", negative_zero()),
         (
             "one face with two corners at one point",
             coincident_corners(),
         ),
         (
             "two triangles with equal positions",
-            place_at(&mesh(6, &[[0, 1, 2], [3, 4, 5]]), &[0, 1, 2, 0, 1, 2]),
+            with_positions(&mesh(6, &[[0, 1, 2], [3, 4, 5]]), &[0, 1, 2, 0, 1, 2]),
         ),
     ]
 }
 
 /// Returns meshes that are not oriented manifolds.
 fn faulty() -> Vec<Named> {
-    let mut turned = sixfold_shapes::cube()
+    let mut with_reversed_face = sixfold_shapes::cube()
         .faces()
         .iter()
-        .map(|(_, f)| numbers(f))
+        .map(|(_, f)| corner_numbers(f))
         .collect::<Vec<_>>();
-    turned[3].reverse();
+    with_reversed_face[3].reverse();
     vec![
         ("open bow-tie", mesh(5, &[[0, 1, 2], [0, 3, 4]])),
         ("closed bow-tie", closed_bow_tie()),
@@ -175,7 +181,7 @@ fn faulty() -> Vec<Named> {
             "one face, three times",
             mesh(3, &[[0, 1, 2], [1, 2, 0], [2, 1, 0]]),
         ),
-        ("cube with a face turned over", mesh(8, &turned)),
+        ("cube with a face turned over", mesh(8, &with_reversed_face)),
         (
             "two triangles with the same side",
             mesh(4, &[[0, 1, 2], [0, 1, 3]]),
@@ -231,14 +237,14 @@ mod tests {
 
     #[test]
     fn names_are_distinct() {
-        let names: BTreeSet<&str> = gallery().iter().map(|specimen| specimen.name).collect();
+        let names: BTreeSet<&str> = gallery().iter().map(|entry| entry.name).collect();
         assert_eq!(names.len(), gallery().len());
     }
 
     #[test]
-    fn specimens_have_the_properties_of_their_names() {
-        for Specimen { name, polygons } in gallery() {
-            let facts = Facts::of(&polygons);
+    fn meshes_have_the_properties_of_their_names() {
+        for GalleryMesh { name, polygons } in gallery() {
+            let facts = Facts::from_polygons(&polygons);
             let (genus, orientable) = (facts.genus, facts.orientable);
             match name {
                 "genus 2" => assert_eq!((genus, facts.closed), (Some(2), true)),

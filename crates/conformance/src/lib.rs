@@ -5,7 +5,8 @@
 //! - [`gallery`]: small meshes made by hand, one for each corner case.
 //! - [`strategy`]: random meshes that shrink: manifolds of any topology, known faults, random
 //!   faces.
-//! - [`edit`]: the model, the random scripts and the trial that test edits.
+//! - [`edit`]: the model, the random scripts, and the model test, which compares a structure with the
+//!   model.
 //! - [`suite!`]: a macro that makes one `#[test]` from each law.
 //!
 //! A structure is tested with one line in its `tests/conformance.rs`:
@@ -17,9 +18,10 @@
 //! This crate does not use the incidence code of `sixfold-core`, because that code is tested too.
 
 mod answers;
-mod caught;
+mod catch_panic;
 pub mod edit;
 mod element;
+mod expected_check;
 mod gallery;
 pub mod law;
 mod oracle;
@@ -28,14 +30,13 @@ mod shrink;
 pub mod strategy;
 mod subject;
 mod suite;
-mod verdict;
 mod weld;
 
 pub use answers::answers;
 pub use element::Element;
-pub use gallery::{Specimen, gallery};
+pub use expected_check::expected_check;
+pub use gallery::{GalleryMesh, gallery};
 pub use oracle::Oracle;
-pub use print::compact;
-pub use suite::hold;
-pub use verdict::verdict;
+pub use print::one_line;
+pub use suite::check_law;
 pub use weld::welded;

@@ -21,7 +21,7 @@ pub struct Oracle {
 
 impl Oracle {
     /// Computes all nine relations of `polygons`.
-    pub fn of(polygons: &PolygonMesh) -> Self {
+    pub fn new(polygons: &PolygonMesh) -> Self {
         let faces: Vec<Vec<VertexId>> = polygons
             .faces()
             .iter()
@@ -55,8 +55,8 @@ impl Oracle {
             answers.insert((Relation::FaceEdges, face), sides);
         }
         let (ends, across) = (Relation::VertexEdges, Relation::EdgeFaces);
-        let edge_edges = through(&sets, &sets, Relation::EdgeVertices, ends);
-        let face_faces = through(&sides_of_faces, &sets, Relation::FaceEdges, across);
+        let edge_edges = compose(&sets, &sets, Relation::EdgeVertices, ends);
+        let face_faces = compose(&sides_of_faces, &sets, Relation::FaceEdges, across);
         for (relation, sets_of) in [
             (Relation::EdgeEdges, edge_edges),
             (Relation::FaceFaces, face_faces),
@@ -146,9 +146,9 @@ impl Oracle {
                 return None;
             }
         }
-        let entry = steps.keys().find(|from| !targets.contains(from));
-        let closed = entry.is_none() && !steps.is_empty();
-        let Some(&start) = entry.or(steps.keys().next()) else {
+        let boundary_start = steps.keys().find(|from| !targets.contains(from));
+        let closed = boundary_start.is_none() && !steps.is_empty();
+        let Some(&start) = boundary_start.or(steps.keys().next()) else {
             return Some((Vec::new(), false));
         };
         let mut ring = vec![start];
@@ -170,17 +170,17 @@ fn add(sets: &mut Sets, relation: Relation, of: Element, item: Element) {
     sets.entry((relation, of)).or_default().insert(item);
 }
 
-/// Applies the relation `there` and then `back` to each element, and removes the element itself
+/// Applies the relation `first` and then `second` to each element, and removes the element itself
 /// from the result.
-fn through(
+fn compose(
     from: &Sets,
     sets: &Sets,
-    there: Relation,
-    back: Relation,
+    first: Relation,
+    second: Relation,
 ) -> Vec<(Element, BTreeSet<Element>)> {
-    let starts = from.iter().filter(|((relation, _), _)| *relation == there);
+    let starts = from.iter().filter(|((relation, _), _)| *relation == first);
     let joined = starts.map(|(&(_, element), between)| {
-        let reached = between.iter().flat_map(|&item| &sets[&(back, item)]);
+        let reached = between.iter().flat_map(|&item| &sets[&(second, item)]);
         let others = reached.copied().filter(|&other| other != element);
         (element, others.collect())
     });
@@ -206,7 +206,7 @@ mod tests {
         //   v0 ─── v1
         let square = [Point::ZERO, Point::X, Point::ONE, Point::Y];
         let mesh = PolygonMesh::new(square, [[0, 1, 2], [2, 3, 0]]).expect("valid");
-        let oracle = Oracle::of(&mesh);
+        let oracle = Oracle::new(&mesh);
         let v = VertexId::new;
         let shown = |relation, element| {
             let shown: Vec<String> = oracle

@@ -6,7 +6,7 @@ use sixfold_core::{Point, PolygonMesh, VertexId};
 ///
 /// Proptest shrinks the way in which a mesh was made, and can stop at a large mesh. This function
 /// continues from there.
-pub(crate) fn smallest(polygons: PolygonMesh, fails: impl Fn(&PolygonMesh) -> bool) -> PolygonMesh {
+pub(crate) fn shrink(polygons: PolygonMesh, fails: impl Fn(&PolygonMesh) -> bool) -> PolygonMesh {
     let mut smallest = polygons;
     let mut at = 0;
     let mut kept = 0;
@@ -24,9 +24,12 @@ pub(crate) fn smallest(polygons: PolygonMesh, fails: impl Fn(&PolygonMesh) -> bo
     if fails(&used) { used } else { smallest }
 }
 
-fn without_face(polygons: &PolygonMesh, gone: usize) -> PolygonMesh {
-    let faces = polygons.faces().iter().filter(|(f, _)| f.index() != gone);
-    let faces = faces.map(|(_, corners)| rows(corners, |v| v.index() as u32));
+fn without_face(polygons: &PolygonMesh, removed: usize) -> PolygonMesh {
+    let faces = polygons
+        .faces()
+        .iter()
+        .filter(|(f, _)| f.index() != removed);
+    let faces = faces.map(|(_, corners)| vertex_numbers(corners, |v| v.index() as u32));
     PolygonMesh::new(polygons.positions(), faces).expect("the other faces are unchanged")
 }
 
@@ -36,11 +39,11 @@ fn without_isolated(polygons: &PolygonMesh) -> PolygonMesh {
     used.dedup();
     let name = |v: &VertexId| used.iter().position(|u| u == v).unwrap_or_default() as u32;
     let faces = polygons.faces().iter();
-    let faces = faces.map(|(_, corners)| rows(corners, name));
+    let faces = faces.map(|(_, corners)| vertex_numbers(corners, name));
     let points: Vec<Point> = used.iter().map(|&v| polygons.position(v)).collect();
     PolygonMesh::new(points, faces).expect("the corners of a face stay distinct")
 }
 
-fn rows(corners: &[VertexId], name: impl Fn(&VertexId) -> u32) -> Vec<u32> {
+fn vertex_numbers(corners: &[VertexId], name: impl Fn(&VertexId) -> u32) -> Vec<u32> {
     corners.iter().map(name).collect()
 }

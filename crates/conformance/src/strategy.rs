@@ -1,11 +1,11 @@
 //! Random meshes that shrink towards a single triangle.
 //!
 //! Manifolds are constructed, not filtered. Shapes are placed side by side, then operations change
-//! them and keep them manifold (`surgery`), then all elements are renumbered (`draft`).
+//! them and keep them manifold (`operation`), then all elements are renumbered (`builder`).
 
-mod draft;
+mod builder;
 mod faults;
-mod surgery;
+mod operation;
 
 use std::ops::RangeInclusive;
 
@@ -13,8 +13,8 @@ use proptest::prelude::*;
 use proptest::{collection, sample};
 use sixfold_core::PolygonMesh;
 
-use crate::gallery::spot;
-use draft::Draft;
+use crate::gallery::distinct_position;
+use builder::MeshBuilder;
 pub use faults::Fault;
 
 /// A mesh with known faults.
@@ -31,25 +31,25 @@ pub struct Faulty {
 /// position.
 pub fn manifold_mesh() -> impl Strategy<Value = PolygonMesh> {
     let isolated = prop_oneof![4 => Just(0_u32), 1 => 1..4_u32];
-    let parts = (seed(), any::<bool>(), isolated, draft(1..=3));
-    parts.prop_map(|(seed, mirrored, isolated, mut draft)| {
-        draft.isolated = isolated;
+    let parts = (seed(), any::<bool>(), isolated, builder(1..=3));
+    parts.prop_map(|(seed, mirrored, isolated, mut builder)| {
+        builder.isolated = isolated;
         if mirrored {
-            draft.mirror();
+            builder.reverse_faces();
         }
-        draft.finish(seed)
+        builder.build(seed)
     })
 }
 
 /// Generates a manifold with one to three faults.
 pub fn faulty_mesh() -> impl Strategy<Value = Faulty> {
     let faults = sample::subsequence(Fault::ALL.to_vec(), 1..=3);
-    let parts = (seed(), faults, 0..1000_usize, draft(1..=2));
-    parts.prop_map(|(seed, faults, at, mut draft)| {
+    let parts = (seed(), faults, 0..1000_usize, builder(1..=2));
+    parts.prop_map(|(seed, faults, at, mut builder)| {
         for fault in &faults {
-            fault.put_into(&mut draft, at);
+            fault.add_to(&mut builder, at);
         }
-        let polygons = draft.finish(seed);
+        let polygons = builder.build(seed);
         Faulty { polygons, faults }
     })
 }
@@ -69,12 +69,12 @@ pub fn any_mesh() -> impl Strategy<Value = PolygonMesh> {
         };
         (places, collection::vec(face, 0..=faces))
     });
-    faces.prop_map(|(places, faces)| made_of(places, faces))
+    faces.prop_map(|(places, faces)| build_mesh(places, faces))
 }
 
 /// Builds a mesh with one vertex for each of `places`; the faces are lists of its vertices.
-fn made_of(places: Vec<u32>, faces: Vec<Vec<u32>>) -> PolygonMesh {
-    let points: Vec<_> = places.into_iter().map(spot).collect();
+fn build_mesh(places: Vec<u32>, faces: Vec<Vec<u32>>) -> PolygonMesh {
+    let points: Vec<_> = places.into_iter().map(distinct_position).collect();
     PolygonMesh::new(points, faces).expect("no face uses a vertex twice")
 }
 
@@ -82,21 +82,21 @@ fn made_of(places: Vec<u32>, faces: Vec<Vec<u32>>) -> PolygonMesh {
 ///
 /// A quarter of the meshes are triangulated at the end, because some structures hold only
 /// triangles.
-fn draft(pieces: RangeInclusive<usize>) -> impl Strategy<Value = Draft> {
+fn builder(pieces: RangeInclusive<usize>) -> impl Strategy<Value = MeshBuilder> {
     let pieces = collection::vec(piece(), pieces);
-    let surgeries = collection::vec(surgery::surgery(), 0..12);
+    let operations = collection::vec(operation::operation(), 0..12);
     // Proptest shrinks the first part first, so pieces are removed only after the operations on
     // them.
-    let parts = (prop::bool::weighted(0.25), surgeries, pieces);
-    parts.prop_map(|(triangulated, surgeries, pieces)| {
-        let mut draft = Draft::of(&pieces);
-        for surgery in surgeries {
-            surgery.operate(&mut draft);
+    let parts = (prop::bool::weighted(0.25), operations, pieces);
+    parts.prop_map(|(triangulated, operations, pieces)| {
+        let mut builder = MeshBuilder::from_meshes(&pieces);
+        for operation in operations {
+            operation.apply(&mut builder);
         }
         if triangulated {
-            surgery::triangulate(&mut draft);
+            operation::triangulate(&mut builder);
         }
-        draft
+        builder
     })
 }
 
@@ -104,20 +104,20 @@ fn draft(pieces: RangeInclusive<usize>) -> impl Strategy<Value = Draft> {
 fn piece() -> impl Strategy<Value = PolygonMesh> {
     let polygon = (3..8_u32).prop_map(|n| {
         let all: Vec<u32> = (0..n).collect();
-        made_of(all.clone(), vec![all])
+        build_mesh(all.clone(), vec![all])
     });
-    let small = "a shape of this size can be built";
+    let message = "a shape of this size can be built";
     prop_oneof![
         3 => polygon,
         1 => Just(sixfold_shapes::tetrahedron()),
         1 => Just(sixfold_shapes::cube()),
-        1 => (3..7_usize).prop_map(move |n| sixfold_shapes::prism(n).expect(small)),
-        1 => (3..6_usize).prop_map(move |n| sixfold_shapes::antiprism(n).expect(small)),
-        1 => (3..5_usize, 3..5_usize).prop_map(move |(m, n)| sixfold_shapes::uv_sphere(m, n).expect(small)),
-        1 => (1..4_usize, 1..5_usize).prop_map(move |(m, n)| sixfold_shapes::grid(m, n).expect(small)),
-        1 => (1..4_usize, 1..4_usize).prop_map(move |(m, n)| sixfold_shapes::mixed_grid(m, n).expect(small)),
-        1 => (3..5_usize, 3..5_usize).prop_map(move |(m, n)| sixfold_shapes::torus(m, n).expect(small)),
-        1 => (3..5_usize, 3..5_usize).prop_map(move |(m, n)| sixfold_shapes::triangle_torus(m, n).expect(small)),
+        1 => (3..7_usize).prop_map(move |n| sixfold_shapes::prism(n).expect(message)),
+        1 => (3..6_usize).prop_map(move |n| sixfold_shapes::antiprism(n).expect(message)),
+        1 => (3..5_usize, 3..5_usize).prop_map(move |(m, n)| sixfold_shapes::uv_sphere(m, n).expect(message)),
+        1 => (1..4_usize, 1..5_usize).prop_map(move |(m, n)| sixfold_shapes::grid(m, n).expect(message)),
+        1 => (1..4_usize, 1..4_usize).prop_map(move |(m, n)| sixfold_shapes::mixed_grid(m, n).expect(message)),
+        1 => (3..5_usize, 3..5_usize).prop_map(move |(m, n)| sixfold_shapes::torus(m, n).expect(message)),
+        1 => (3..5_usize, 3..5_usize).prop_map(move |(m, n)| sixfold_shapes::triangle_torus(m, n).expect(message)),
     ]
 }
 

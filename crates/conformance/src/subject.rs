@@ -15,40 +15,40 @@ pub(crate) struct Subject<M: Representation> {
     /// The input, welded if the structure identifies vertices by their coordinates.
     pub(crate) input: PolygonMesh,
     pub(crate) oracle: Oracle,
-    pub(crate) names: Names<M>,
+    pub(crate) handles: HandleMap<M>,
 }
 
 impl<M: Representation> Subject<M> {
     /// Builds `M` from `polygons`; `None` if its capabilities exclude them.
     ///
     /// An error for a mesh that the capabilities include is a failure of the test.
-    pub(crate) fn of(polygons: &PolygonMesh) -> Option<Self> {
+    pub(crate) fn from_polygons(polygons: &PolygonMesh) -> Option<Self> {
         M::CAPABILITIES.check(polygons).ok()?;
         let mesh = M::from_polygons(polygons);
         let mesh = mesh.unwrap_or_else(|e| panic!("{} refuses a supported mesh: {e}", M::NAME));
-        Some(Self::built(mesh, polygons))
+        Some(Self::from_mesh(mesh, polygons))
     }
 
     /// Wraps `mesh`, which should hold `polygons`.
-    pub(crate) fn built(mesh: M, polygons: &PolygonMesh) -> Self {
-        let input = held::<M>(polygons);
+    pub(crate) fn from_mesh(mesh: M, polygons: &PolygonMesh) -> Self {
+        let input = stored_mesh::<M>(polygons);
         Self {
-            oracle: Oracle::of(&input),
-            names: Names::of(&mesh, polygons, &input),
+            oracle: Oracle::new(&input),
+            handles: HandleMap::new(&mesh, polygons, &input),
             mesh,
             input,
         }
     }
 
     /// Queries `relation` of `element`.
-    pub(crate) fn ask(&self, relation: Relation, element: Element) -> Vec<Element> {
-        self.names.ask(&self.mesh, relation, element)
+    pub(crate) fn query(&self, relation: Relation, element: Element) -> Vec<Element> {
+        self.handles.query(&self.mesh, relation, element)
     }
 }
 
 /// Returns the mesh that `M` holds after it was built from `polygons`, which its capabilities
 /// include.
-pub(crate) fn held<M: Representation>(polygons: &PolygonMesh) -> PolygonMesh {
+pub(crate) fn stored_mesh<M: Representation>(polygons: &PolygonMesh) -> PolygonMesh {
     if M::CAPABILITIES.coincident_vertices {
         return polygons.clone();
     }
@@ -56,7 +56,7 @@ pub(crate) fn held<M: Representation>(polygons: &PolygonMesh) -> PolygonMesh {
 }
 
 /// Maps from the elements of the input to the handles of the structure, and back.
-pub(crate) struct Names<M: MeshQuery> {
+pub(crate) struct HandleMap<M: MeshQuery> {
     vertices: BTreeMap<VertexId, M::Vertex>,
     edges: BTreeMap<Element, M::Edge>,
     faces: BTreeMap<FaceId, M::Face>,
@@ -65,8 +65,8 @@ pub(crate) struct Names<M: MeshQuery> {
     face_ids: BTreeMap<M::Face, FaceId>,
 }
 
-impl<M: Representation> Names<M> {
-    fn of(mesh: &M, polygons: &PolygonMesh, input: &PolygonMesh) -> Self {
+impl<M: Representation> HandleMap<M> {
+    fn new(mesh: &M, polygons: &PolygonMesh, input: &PolygonMesh) -> Self {
         let numbers = if M::CAPABILITIES.coincident_vertices {
             polygons
                 .vertices()
@@ -75,63 +75,64 @@ impl<M: Representation> Names<M> {
         } else {
             weld_numbers(polygons)
         };
-        let named =
-            |(v, number): (&VertexId, &u32)| (VertexId::new(*number), M::vertex_name(polygons, *v));
-        let vertices: BTreeMap<_, _> = numbers.iter().map(named).collect();
+        let pair = |(v, number): (&VertexId, &u32)| {
+            (VertexId::new(*number), M::vertex_handle(polygons, *v))
+        };
+        let vertices: BTreeMap<_, _> = numbers.iter().map(pair).collect();
         let faces = input.faces().iter().map(|(f, _)| f);
-        let faces: BTreeMap<_, _> = faces.map(|f| (f, M::face_name(polygons, f))).collect();
-        let mut names = Self {
-            vertex_ids: vertices.iter().map(|(&v, &name)| (name, v)).collect(),
-            face_ids: faces.iter().map(|(&f, &name)| (name, f)).collect(),
+        let faces: BTreeMap<_, _> = faces.map(|f| (f, M::face_handle(polygons, f))).collect();
+        let mut maps = Self {
+            vertex_ids: vertices.iter().map(|(&v, &handle)| (handle, v)).collect(),
+            face_ids: faces.iter().map(|(&f, &handle)| (handle, f)).collect(),
             vertices,
             faces,
             edges: BTreeMap::new(),
             edge_ids: BTreeMap::new(),
         };
         for e in mesh.edges() {
-            let ends = mesh.edge_vertices(e).map(|v| names.vertex_id(v));
+            let ends = mesh.edge_vertices(e).map(|v| maps.vertex_id(v));
             let edge = Element::edge(ends[0], ends[1]);
-            names.edges.entry(edge).or_insert(e);
-            names.edge_ids.insert(e, edge);
+            maps.edges.entry(edge).or_insert(e);
+            maps.edge_ids.insert(e, edge);
         }
-        names
+        maps
     }
 
     /// Returns the handle of `v`.
     pub(crate) fn vertex(&self, v: VertexId) -> M::Vertex {
-        known(self.vertices.get(&v), M::NAME, v)
+        lookup(self.vertices.get(&v), M::NAME, v)
     }
 
     /// Returns the handle of `edge`.
     pub(crate) fn edge(&self, edge: Element) -> M::Edge {
-        known(self.edges.get(&edge), M::NAME, edge)
+        lookup(self.edges.get(&edge), M::NAME, edge)
     }
 
     /// Returns the handle of `f`.
     pub(crate) fn face(&self, f: FaceId) -> M::Face {
-        known(self.faces.get(&f), M::NAME, f)
+        lookup(self.faces.get(&f), M::NAME, f)
     }
 
-    /// Returns the vertex of the input with the handle `name`.
-    pub(crate) fn vertex_id(&self, name: M::Vertex) -> VertexId {
-        known(self.vertex_ids.get(&name), M::NAME, name)
+    /// Returns the vertex of the input with the handle `handle`.
+    pub(crate) fn vertex_id(&self, handle: M::Vertex) -> VertexId {
+        lookup(self.vertex_ids.get(&handle), M::NAME, handle)
     }
 
-    /// Returns the edge of the input with the handle `name`.
-    pub(crate) fn edge_id(&self, name: M::Edge) -> Element {
-        known(self.edge_ids.get(&name), M::NAME, name)
+    /// Returns the edge of the input with the handle `handle`.
+    pub(crate) fn edge_id(&self, handle: M::Edge) -> Element {
+        lookup(self.edge_ids.get(&handle), M::NAME, handle)
     }
 
-    /// Returns the face of the input with the handle `name`.
-    pub(crate) fn face_id(&self, name: M::Face) -> FaceId {
-        known(self.face_ids.get(&name), M::NAME, name)
+    /// Returns the face of the input with the handle `handle`.
+    pub(crate) fn face_id(&self, handle: M::Face) -> FaceId {
+        lookup(self.face_ids.get(&handle), M::NAME, handle)
     }
 
     /// Queries `relation` of `element`, and converts the answer to input numbers, in the order of
     /// the structure.
     ///
     /// The answer is empty if `relation` does not apply to this kind of element.
-    pub(crate) fn ask<Q>(&self, mesh: &Q, relation: Relation, element: Element) -> Vec<Element>
+    pub(crate) fn query<Q>(&self, mesh: &Q, relation: Relation, element: Element) -> Vec<Element>
     where
         Q: MeshQuery<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face>,
     {
@@ -181,9 +182,9 @@ impl<M: Representation> Names<M> {
     }
 }
 
-fn known<T: Copy>(entry: Option<&T>, structure: &str, name: impl Debug) -> T {
+fn lookup<T: Copy>(entry: Option<&T>, structure: &str, key: impl Debug) -> T {
     match entry {
         Some(&entry) => entry,
-        None => panic!("{structure} and the input do not share an element {name:?}"),
+        None => panic!("{structure} and the input do not share an element {key:?}"),
     }
 }

@@ -4,10 +4,10 @@ use proptest::strategy::{Strategy, Union};
 use proptest::test_runner::{Config, TestCaseError, TestError, TestRunner};
 use sixfold_core::{PolygonMesh, Representation};
 
-use crate::caught::caught;
+use crate::catch_panic::catch_panic;
 use crate::gallery::gallery;
-use crate::print::compact;
-use crate::shrink::smallest;
+use crate::print::one_line;
+use crate::shrink::shrink;
 use crate::strategy::{any_mesh, faulty_mesh, manifold_mesh};
 
 /// Makes one `#[test]` from each law: `sixfold_conformance::suite!(half_edge::HalfEdgeMesh);`
@@ -29,7 +29,7 @@ macro_rules! suite_of_laws {
         $(
             #[test]
             fn $law() {
-                $crate::hold::<$mesh>(stringify!($law), $crate::law::$law::<$mesh>);
+                $crate::check_law::<$mesh>(stringify!($law), $crate::law::$law::<$mesh>);
             }
         )+
         $(
@@ -48,7 +48,7 @@ macro_rules! refine_suite {
     ($mesh:ty) => {
         #[test]
         fn refine() {
-            $crate::hold::<$mesh>("refine", $crate::law::refine::<$mesh>);
+            $crate::check_law::<$mesh>("refine", $crate::law::refine::<$mesh>);
         }
 
         #[test]
@@ -89,12 +89,12 @@ const CASES: u32 = 192;
 /// # Panics
 ///
 /// Panics if the law is broken. The message shows the mesh; a random mesh is shrunk first.
-pub fn hold<M: Representation>(name: &str, law: impl Fn(&PolygonMesh)) {
+pub fn check_law<M: Representation>(name: &str, law: impl Fn(&PolygonMesh)) {
     let name = format!("{}: {name}", M::NAME);
-    for specimen in gallery() {
-        if let Err(fault) = caught(|| law(&specimen.polygons)) {
-            let mesh = compact(&specimen.polygons);
-            panic!("{name} fails on “{}” ({mesh})\n{fault}", specimen.name);
+    for entry in gallery() {
+        if let Err(fault) = catch_panic(|| law(&entry.polygons)) {
+            let mesh = one_line(&entry.polygons);
+            panic!("{name} fails on “{}” ({mesh})\n{fault}", entry.name);
         }
     }
     let mut config = Config {
@@ -104,37 +104,37 @@ pub fn hold<M: Representation>(name: &str, law: impl Fn(&PolygonMesh)) {
     if std::env::var_os("PROPTEST_CASES").is_none() {
         config.cases = CASES;
     }
-    let outcome = TestRunner::new(config).run(&random_mesh(), |Printed(polygons)| {
-        caught(|| law(&polygons)).map_err(|fault| TestCaseError::fail(fault.to_string()))
+    let outcome = TestRunner::new(config).run(&random_mesh(), |OneLineDebug(polygons)| {
+        catch_panic(|| law(&polygons)).map_err(|fault| TestCaseError::fail(fault.to_string()))
     });
     match outcome {
         Ok(()) => {}
-        Err(TestError::Fail(fault, Printed(mesh))) => {
-            let fails = |mesh: &PolygonMesh| caught(|| law(mesh)).err();
-            let mesh = smallest(mesh, |mesh| fails(mesh).is_some());
+        Err(TestError::Fail(fault, OneLineDebug(mesh))) => {
+            let fails = |mesh: &PolygonMesh| catch_panic(|| law(mesh)).err();
+            let mesh = shrink(mesh, |mesh| fails(mesh).is_some());
             let fault = fails(&mesh).map_or(fault.to_string(), |fault| fault.to_string());
-            panic!("{name} fails on {}\n{fault}", compact(&mesh))
+            panic!("{name} fails on {}\n{fault}", one_line(&mesh))
         }
         Err(TestError::Abort(reason)) => panic!("{name}: the test was aborted: {reason}"),
     }
 }
 
 /// Generates manifolds in half of the cases, otherwise meshes with known faults or random faces.
-fn random_mesh() -> impl Strategy<Value = Printed> {
+fn random_mesh() -> impl Strategy<Value = OneLineDebug> {
     let faulty = faulty_mesh().prop_map(|faulty| faulty.polygons);
     Union::new_weighted(vec![
         (2, manifold_mesh().boxed()),
         (1, faulty.boxed()),
         (1, any_mesh().boxed()),
     ])
-    .prop_map(Printed)
+    .prop_map(OneLineDebug)
 }
 
 /// A mesh whose debug output is one line.
-struct Printed(PolygonMesh);
+struct OneLineDebug(PolygonMesh);
 
-impl std::fmt::Debug for Printed {
+impl std::fmt::Debug for OneLineDebug {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&compact(&self.0))
+        f.write_str(&one_line(&self.0))
     }
 }

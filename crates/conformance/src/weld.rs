@@ -27,18 +27,20 @@ pub fn welded(polygons: &PolygonMesh) -> Result<PolygonMesh, PolygonError> {
 
 /// Returns the number that [`welded`] gives to each vertex with a face.
 pub(crate) fn weld_numbers(polygons: &PolygonMesh) -> BTreeMap<VertexId, u32> {
-    let mut at: BTreeMap<[u32; 3], u32> = BTreeMap::new();
+    let mut number_at: BTreeMap<[u32; 3], u32> = BTreeMap::new();
     let mut numbers = BTreeMap::new();
     for &v in polygons.faces().corners() {
-        let next = at.len() as u32;
-        let number = *at.entry(place(polygons.position(v))).or_insert(next);
+        let next = number_at.len() as u32;
+        let number = *number_at
+            .entry(position_key(polygons.position(v)))
+            .or_insert(next);
         numbers.insert(v, number);
     }
     numbers
 }
 
 /// Returns the bits of the coordinates, with −0 as 0.
-pub(crate) fn place(point: Point) -> [u32; 3] {
+pub(crate) fn position_key(point: Point) -> [u32; 3] {
     let bits = |x: f32| if x == 0.0 { 0 } else { x.to_bits() };
     point.to_array().map(bits)
 }
@@ -49,15 +51,15 @@ mod tests {
 
     #[test]
     fn vertices_with_equal_positions_are_merged_in_order_of_first_use() {
-        let minus = Point::new(-0.0, 0.0, 0.0);
-        let points = [Point::Y, Point::ZERO, Point::X, minus, Point::Z];
+        let negative_zero = Point::new(-0.0, 0.0, 0.0);
+        let points = [Point::Y, Point::ZERO, Point::X, negative_zero, Point::Z];
         let mesh = PolygonMesh::new(points, [[2, 1, 0], [4, 0, 3]]).expect("valid");
-        let one = welded(&mesh).expect("no face has two corners with equal positions");
+        let merged = welded(&mesh).expect("no face has two corners with equal positions");
         let expected = PolygonMesh::new(
             [Point::X, Point::ZERO, Point::Y, Point::Z],
             [[0, 1, 2], [3, 2, 1]],
         );
-        assert_eq!(Ok(one), expected);
+        assert_eq!(Ok(merged), expected);
         let flat = PolygonMesh::new(points, [[1, 3, 0]]).expect("valid");
         assert!(welded(&flat).is_err());
     }

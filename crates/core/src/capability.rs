@@ -68,7 +68,7 @@ impl Capabilities {
                 });
             }
             let faces = polygons.faces();
-            let incidence = Incidence::of(polygons.vertex_count(), faces, |_| true);
+            let incidence = Incidence::new(polygons.vertex_count(), faces, |_| true);
             if incidence.edges().nth(MAX_EDGES).is_some() {
                 return Err(BuildError::TooMany {
                     elements: "edges",
@@ -102,7 +102,7 @@ impl Capabilities {
     ///
     /// Panics if [`check`](Self::check) finds no fault: then the constructor or the check has a
     /// bug.
-    pub fn refusal(&self, polygons: &PolygonMesh) -> BuildError {
+    pub fn build_error(&self, polygons: &PolygonMesh) -> BuildError {
         match self.check(polygons) {
             Err(fault) => fault,
             Ok(()) => panic!("construction found a fault in a mesh that `check` accepts"),

@@ -8,12 +8,12 @@ use crate::polygon_mesh::PolygonMesh;
 use crate::row_id::VertexId;
 
 /// The smallest sharpness that counts as infinite: it does not decrease from level to level.
-pub const SHARP_FOR_EVER: f32 = 10.0;
+pub const SHARPNESS_INFINITE: f32 = 10.0;
 
 /// The sharpness of edges and vertices of a [`PolygonMesh`]; 0 for those without an entry.
 ///
 /// Sharpness is the number of levels for which an edge or a vertex stays sharp; it may be
-/// fractional. From [`SHARP_FOR_EVER`] on, infinity included, it stays sharp at every level
+/// fractional. From [`SHARPNESS_INFINITE`] on, infinity included, it stays sharp at every level
 /// (DeRose, Kass & Truong 1998).
 ///
 /// # Invariants
@@ -71,12 +71,12 @@ impl Creases {
             let vertex = check(entry, vertex, sharpness)?;
             creases.corners.push((vertex, sharpness));
         }
-        Ok(Self::sorted(creases.edges, creases.corners))
+        Ok(Self::from_entries(creases.edges, creases.corners))
     }
 
     /// Builds creases from entries in any order, which must be edges and vertices of a mesh. The
     /// last entry of each edge or vertex counts; entries of sharpness 0 are dropped.
-    pub fn sorted(
+    pub fn from_entries(
         mut edges: Vec<(Pair<VertexId>, f32)>,
         mut corners: Vec<(VertexId, f32)>,
     ) -> Self {
@@ -87,9 +87,9 @@ impl Creases {
 
     /// Returns these creases combined with `later`, whose entries replace those of the same edge or
     /// vertex.
-    pub fn with(&self, later: &Self) -> Self {
+    pub fn updated_with(&self, later: &Self) -> Self {
         let edges = [&self.edges[..], &later.edges].concat();
-        Self::sorted(edges, [&self.corners[..], &later.corners].concat())
+        Self::from_entries(edges, [&self.corners[..], &later.corners].concat())
     }
 
     /// Returns whether no edge and no vertex is sharp.
@@ -168,19 +168,19 @@ mod tests {
 
     #[test]
     fn each_fault_has_its_error() {
-        let of = |edges: Vec<([u32; 2], f32)>, corners: Vec<(u32, f32)>| {
+        let error_of = |edges: Vec<([u32; 2], f32)>, corners: Vec<(u32, f32)>| {
             Creases::new(&square(), edges, corners).unwrap_err()
         };
         let sharp = ([0, 1], 1.0);
         assert_eq!(
-            of(vec![sharp, ([0, 2], 1.0)], vec![]),
+            error_of(vec![sharp, ([0, 2], 1.0)], vec![]),
             CreaseError::NotAnEdge {
                 entry: 1,
                 ends: [0, 2].map(VertexId::new)
             }
         );
         assert_eq!(
-            of(vec![([0, 4], 1.0)], vec![]),
+            error_of(vec![([0, 4], 1.0)], vec![]),
             CreaseError::MissingVertex {
                 entry: 0,
                 vertex: 4,
@@ -188,15 +188,15 @@ mod tests {
             }
         );
         assert!(matches!(
-            of(vec![sharp], vec![(0, 1.0), (1, -0.5)]),
+            error_of(vec![sharp], vec![(0, 1.0), (1, -0.5)]),
             CreaseError::BadSharpness { entry: 1, .. }
         ));
         assert!(matches!(
-            of(vec![([0, 1], f32::NAN)], vec![]),
+            error_of(vec![([0, 1], f32::NAN)], vec![]),
             CreaseError::BadSharpness { entry: 0, .. }
         ));
         assert!(matches!(
-            of(vec![([1, 1], 1.0)], vec![]),
+            error_of(vec![([1, 1], 1.0)], vec![]),
             CreaseError::NotAnEdge { .. }
         ));
     }

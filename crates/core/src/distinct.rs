@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet;
 use crate::row_id::{RowId, Slot};
 
 /// The largest number of distinct items that are compared one by one; a hash set holds more.
-const FEW: usize = 16;
+const ARRAY_LEN: usize = 16;
 
 /// The distinct items of an iterator, each at its first occurrence.
 ///
@@ -18,9 +18,9 @@ const FEW: usize = 16;
 #[derive(Clone, Debug)]
 pub struct Distinct<I: Iterator> {
     items: I,
-    few: Option<[I::Item; FEW]>,
+    array: Option<[I::Item; ARRAY_LEN]>,
     seen: usize,
-    many: FxHashSet<I::Item>,
+    set: FxHashSet<I::Item>,
 }
 
 /// Adds [`distinct`](IteratorExt::distinct) to every iterator.
@@ -38,9 +38,9 @@ pub trait IteratorExt: Iterator + Sized {
     {
         Distinct {
             items: self,
-            few: None,
+            array: None,
             seen: 0,
-            many: FxHashSet::default(),
+            set: FxHashSet::default(),
         }
     }
 }
@@ -54,20 +54,20 @@ where
 {
     /// Records `item`; returns whether it is new.
     #[inline]
-    fn note(&mut self, item: I::Item) -> bool {
+    fn insert(&mut self, item: I::Item) -> bool {
         let seen = self.seen;
-        if seen > FEW {
-            return self.many.insert(item);
+        if seen > ARRAY_LEN {
+            return self.set.insert(item);
         }
-        let few = self.few.get_or_insert([item; FEW]);
-        if few[..seen].contains(&item) {
+        let array = self.array.get_or_insert([item; ARRAY_LEN]);
+        if array[..seen].contains(&item) {
             return false;
         }
         self.seen += 1;
-        if seen < FEW {
-            few[seen] = item;
+        if seen < ARRAY_LEN {
+            array[seen] = item;
         } else {
-            self.many.extend(few.iter().copied().chain([item]));
+            self.set.extend(array.iter().copied().chain([item]));
         }
         true
     }
@@ -84,7 +84,7 @@ where
     fn next(&mut self) -> Option<I::Item> {
         loop {
             let item = self.items.next()?;
-            if self.note(item) {
+            if self.insert(item) {
                 return Some(item);
             }
         }
@@ -92,7 +92,7 @@ where
 }
 
 /// The number of steps from which on a hash set is used instead of repeating the walk.
-const FEW_STEPS: usize = 32;
+const SET_STEPS: usize = 32;
 
 /// The distinct items of a walk that can be repeated, each at its first occurrence; empty slots are
 /// skipped.
@@ -118,7 +118,7 @@ pub struct DistinctWalk<W, H: RowId> {
     steps: usize,
     /// The three items found last.
     last: [Slot<H>; 3],
-    many: Option<FxHashSet<H>>,
+    set: Option<FxHashSet<H>>,
 }
 
 impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> DistinctWalk<W, H> {
@@ -130,13 +130,13 @@ impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> DistinctWalk<W, H> {
             walk,
             steps: 0,
             last: [Slot::NONE; 3],
-            many: None,
+            set: None,
         }
     }
 
     /// Returns the whole walk, if it has exactly three steps and has not begun.
     #[inline]
-    fn whole_of_three(&self) -> Option<[Slot<H>; 3]> {
+    fn as_three_steps(&self) -> Option<[Slot<H>; 3]> {
         let mut walk = self.walk.clone();
         let items = [walk.next()?, walk.next()?, walk.next()?];
         (self.steps == 0 && walk.next().is_none()).then_some(items)
@@ -151,7 +151,7 @@ impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> DistinctWalk<W, H> {
         }
         if steps > self.last.len() {
             // All but the set is passed by value, so that the walk itself can stay in registers.
-            if !is_new_among_many(self.start.clone(), steps, item, &mut self.many) {
+            if !is_new_among_many(self.start.clone(), steps, item, &mut self.set) {
                 return false;
             }
         }
@@ -167,14 +167,14 @@ fn is_new_among_many<H: RowId>(
     walk: impl Iterator<Item = Slot<H>>,
     steps: usize,
     item: Slot<H>,
-    many: &mut Option<FxHashSet<H>>,
+    set: &mut Option<FxHashSet<H>>,
 ) -> bool {
     let mut before = walk.take(steps);
-    if steps < FEW_STEPS {
+    if steps < SET_STEPS {
         return before.all(|other| other != item);
     }
-    let many = many.get_or_insert_with(|| before.filter_map(Slot::get).collect());
-    item.get().is_some_and(|item| many.insert(item))
+    let set = set.get_or_insert_with(|| before.filter_map(Slot::get).collect());
+    item.get().is_some_and(|item| set.insert(item))
 }
 
 impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> Iterator for DistinctWalk<W, H> {
@@ -200,7 +200,7 @@ impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> Iterator for DistinctWalk<W,
     #[inline(always)]
     fn fold<B, F: FnMut(B, H) -> B>(self, init: B, mut f: F) -> B {
         let mut folded = init;
-        if let Some([a, b, c]) = self.whole_of_three() {
+        if let Some([a, b, c]) = self.as_three_steps() {
             if let Some(item) = a.get() {
                 folded = f(folded, item);
             }
@@ -232,9 +232,9 @@ mod tests {
 
     #[test]
     fn a_walk_yields_each_item_once_from_any_step_on() {
-        let few = FEW_STEPS as u32;
-        for distinct in [1, 2, 3, 4, 5, few - 1, few, few + 1, few + 2, 200] {
-            for steps in [0, 1, 2, 3, 4, 5, few, few + 1, 3 * distinct] {
+        let limit = SET_STEPS as u32;
+        for distinct in [1, 2, 3, 4, 5, limit - 1, limit, limit + 1, limit + 2, 200] {
+            for steps in [0, 1, 2, 3, 4, 5, limit, limit + 1, 3 * distinct] {
                 // Every fourth step is empty; the others repeat the items.
                 let slot = |i: u32| match i % 4 {
                     1 => Slot::NONE,
@@ -266,7 +266,7 @@ mod tests {
 
     #[test]
     fn order_and_content_are_right_before_and_after_the_hash_set() {
-        for distinct in [0, 1, FEW - 1, FEW, FEW + 1, 100] {
+        for distinct in [0, 1, ARRAY_LEN - 1, ARRAY_LEN, ARRAY_LEN + 1, 100] {
             let items = (0..3 * distinct).map(|i| (i * 7) % distinct.max(1));
             let mut expected: Vec<usize> = Vec::new();
             for item in items.clone() {

@@ -126,15 +126,16 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// refuses the edit on every mesh.
     const EDITS: [Option<QueryCost>; Edit::ALL.len()];
 
-    /// The same structure without holes, whose queries need no check for them:
-    /// [`Whole`](crate::Whole).
-    type Whole: MeshQuery<Vertex = Self::Vertex, Edge = Self::Edge, Face = Self::Face> + Into<Self>;
+    /// The same structure without deleted rows, whose queries need no check for them: its type
+    /// parameter is [`Compact`](crate::Compact).
+    type Compact: MeshQuery<Vertex = Self::Vertex, Edge = Self::Edge, Face = Self::Face>
+        + Into<Self>;
 
     /// Closes all holes and converts to a mesh that cannot have any; O(mesh) if there are holes.
     /// Handles change as in [`compact`](Self::compact), but are not reported: to keep handles, call
-    /// [`compact_with_names`](Self::compact_with_names) first. `into()` converts
-    /// [`Whole`](Self::Whole) back in O(1).
-    fn into_whole(self) -> Self::Whole;
+    /// [`compact_with_map`](Self::compact_with_map) first. `into()` converts
+    /// [`Compact`](Self::Compact) back in O(1).
+    fn into_compact(self) -> Self::Compact;
 
     /// Moves `v` to `to`; returns the handle of the vertex afterwards.
     ///
@@ -364,12 +365,12 @@ pub trait MeshEdit: MeshQuery + Sized {
     fn compact(&mut self, log: &mut impl EditLog<Self>);
 
     /// Returns whether the structure supports `edit`.
-    fn offers(edit: Edit) -> bool {
+    fn supports(edit: Edit) -> bool {
         Self::EDITS[edit as usize].is_some()
     }
 
     /// Closes all holes and returns the new handle of each element; O(mesh).
-    fn compact_with_names(&mut self) -> OldToNew<Self> {
+    fn compact_with_map(&mut self) -> OldToNew<Self> {
         let mut vertices: VertexMap<Self, Option<Self::Vertex>> = self.vertex_map(None);
         let mut edges: EdgeMap<Self, Option<Self::Edge>> = self.edge_map(None);
         let mut faces: FaceMap<Self, Option<Self::Face>> = self.face_map(None);
@@ -382,13 +383,13 @@ pub trait MeshEdit: MeshQuery + Sized {
         for f in self.faces() {
             faces[f] = Some(f);
         }
-        let mut names = OldToNew {
+        let mut map = OldToNew {
             vertices,
             edges,
             faces,
         };
-        self.compact(&mut names);
-        names
+        self.compact(&mut map);
+        map
     }
 }
 

@@ -79,7 +79,7 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
     NotACorner { face: F, vertex: V },
     /// Two corners of a face that are equal or adjacent.
     #[error("{0:?} and {1:?} are equal or adjacent corners of face {face:?}: choose two that are neither", .ends[0], .ends[1])]
-    NothingBetween { face: F, ends: [V; 2] },
+    AdjacentCorners { face: F, ends: [V; 2] },
     /// A vertex that would lose its last face.
     #[error("vertex {vertex:?} would lose its last face: remove the faces instead")]
     LastFace { vertex: V },
@@ -108,7 +108,7 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
     NotANeighbour { vertex: V, side: V },
     /// Neighbours that are equal or both missing, for the split of a vertex.
     #[error("splitting vertex {vertex:?} requires two different neighbours, or one on a boundary")]
-    NoSides { vertex: V },
+    BadNeighbours { vertex: V },
     /// Only one neighbour, for a vertex that is not on a boundary.
     #[error("vertex {vertex:?} is not on a boundary: give both neighbours")]
     NotOnBoundary { vertex: V },

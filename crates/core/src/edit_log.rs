@@ -1,4 +1,5 @@
-//! Changes of handles by edits: the trait that receives them, a record, and maps that follow it.
+//! Changes of handles by edits: the trait that receives them, a record of them, and the update of
+//! maps.
 
 use std::fmt;
 
@@ -38,7 +39,7 @@ impl<M: MeshQuery> EditLog<M> for OldToNew<M> {
 /// edit reports nothing.
 pub trait EditLog<M: MeshQuery> {
     /// Whether the log uses the reports; if false, structures need not compute what to report.
-    const LISTENS: bool = true;
+    const USES_REPORTS: bool = true;
 
     /// Reports that `v` was created.
     fn created_vertex(&mut self, _v: M::Vertex) {}
@@ -62,10 +63,10 @@ pub trait EditLog<M: MeshQuery> {
 
 /// A log that ignores all reports.
 impl<M: MeshQuery> EditLog<M> for () {
-    const LISTENS: bool = false;
+    const USES_REPORTS: bool = false;
 }
 
-/// The changes by edits since the record was last cleared, to be read or followed by maps.
+/// The changes by edits since the record was last cleared, to be read or applied to maps.
 ///
 /// ```
 /// # use sixfold_core::{EditRecord, HandleMap, MeshEdit, MeshQuery};
@@ -73,7 +74,7 @@ impl<M: MeshQuery> EditLog<M> for () {
 /// let mut sharpness = mesh.edge_map(0.0_f32);
 /// let mut record = EditRecord::new();
 /// mesh.flip_edge(e, &mut record)?;
-/// record.edges.follow(&mut sharpness, &0.0);
+/// record.edges.apply_to(&mut sharpness, &0.0);
 /// # Ok(())
 /// # }
 /// ```
@@ -155,11 +156,11 @@ impl<H: Handle> Changes<H> {
 
     /// Updates `map` after one edit; O(changes). Removed elements lose their data (in a map by row
     /// it stays until the row is reused), renamed elements keep theirs under the new handle, and
-    /// new elements get `fresh`.
+    /// new elements get `initial`.
     ///
-    /// The record must hold the changes of one edit; after several edits, follow their records one
+    /// The record must hold the changes of one edit; after several edits, apply their records one
     /// by one.
-    pub fn follow<T: Clone>(&self, map: &mut H::Map<T>, fresh: &T) {
+    pub fn apply_to<T: Clone>(&self, map: &mut H::Map<T>, initial: &T) {
         for &old in &self.removed {
             map.remove(old);
         }
@@ -178,7 +179,7 @@ impl<H: Handle> Changes<H> {
             }
         }
         for &new in &self.created {
-            map.insert(new, fresh.clone());
+            map.insert(new, initial.clone());
         }
     }
 }
@@ -228,7 +229,7 @@ mod tests {
     use crate::row_id::{FaceId, VertexId};
 
     #[test]
-    fn maps_follow_exchanged_handles() {
+    fn exchanged_handles_are_updated_in_maps() {
         let f = FaceId::new;
         let changes = Changes {
             created: vec![f(3)],
@@ -237,7 +238,7 @@ mod tests {
         };
         let mut rows: RowMap<FaceId, char> = HandleMap::filled(3, '-');
         (rows[f(0)], rows[f(1)], rows[f(2)]) = ('a', 'b', 'c');
-        changes.follow(&mut rows, &'n');
+        changes.apply_to(&mut rows, &'n');
         assert_eq!([rows[f(0)], rows[f(1)], rows[f(3)]], ['b', 'a', 'n']);
 
         let e = |a, b| Pair::new(VertexId::new(a), VertexId::new(b));
@@ -248,7 +249,7 @@ mod tests {
             removed: vec![],
             renamed: vec![[e(0, 1), e(2, 3)]],
         };
-        changes.follow(&mut pairs, &'n');
+        changes.apply_to(&mut pairs, &'n');
         assert_eq!([pairs[e(0, 1)], pairs[e(3, 2)]], ['-', 'x']);
     }
 }

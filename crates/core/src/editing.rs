@@ -1,4 +1,4 @@
-//! Whole and editable meshes as different types, so that only editable meshes pay for editing.
+//! Compact and editable meshes as different types, so that only editable meshes pay for editing.
 
 use std::fmt::Debug;
 
@@ -8,15 +8,15 @@ use crate::memory::TableBytes;
 use crate::probe::Probe;
 use crate::row_id::{RowId, row};
 
-/// Whether elements of a mesh can be deleted: [`Editable`] if so, otherwise [`Whole`].
+/// Whether elements of a mesh can be deleted: [`Editable`] if so, otherwise [`Compact`].
 ///
 /// A query that checks whether elements were deleted costs a comparison for each element visited,
 /// and registers in the loops around it. Measured, this took some 10 % more time in the sweeps of a
 /// half-edge mesh, and up to 100 % more if the work per element was very small. As a type
-/// parameter, whole meshes need no check.
+/// parameter, compact meshes need no check.
 pub trait Editing: Clone + Copy + Debug + Send + Sync + 'static {
     /// Whether there can be holes.
-    const DELETES: bool;
+    const CAN_DELETE: bool;
 
     /// The set of rows that are holes.
     type Holes<P: Probe>: HoleSet<P>;
@@ -39,17 +39,17 @@ pub trait Editing: Clone + Copy + Debug + Send + Sync + 'static {
 
 /// Meshes in which every row of the tables is an element.
 #[derive(Clone, Copy, Debug)]
-pub struct Whole;
+pub struct Compact;
 
 /// Meshes in which rows may be holes, and faces may lie anywhere in the table of corners.
 #[derive(Clone, Copy, Debug)]
 pub struct Editable;
 
-impl Editing for Whole {
-    const DELETES: bool = false;
+impl Editing for Compact {
+    const CAN_DELETE: bool = false;
 
     type Holes<P: Probe> = NoHoles;
-    type Scattered<P: Probe> = NoFaces;
+    type Scattered<P: Probe> = NoScatteredFaces;
 
     fn spans<P: Probe>(spans: FaceSpans<P>) -> FaceSpans<P> {
         spans
@@ -65,13 +65,13 @@ impl Editing for Whole {
         NoHoles
     }
 
-    fn probed_faces<P: Probe, Q: Probe>(faces: NoFaces, _: Q) -> NoFaces {
+    fn probed_faces<P: Probe, Q: Probe>(faces: NoScatteredFaces, _: Q) -> NoScatteredFaces {
         faces
     }
 }
 
 impl Editing for Editable {
-    const DELETES: bool = true;
+    const CAN_DELETE: bool = true;
 
     type Holes<P: Probe> = Holes<P>;
     type Scattered<P: Probe> = ScatteredFaces<P>;
@@ -81,7 +81,7 @@ impl Editing for Editable {
     }
 
     fn no_holes<P: Probe>(name: &'static str, probe: P) -> Holes<P> {
-        Holes::none(name).probed(probe)
+        Holes::new(name).probed(probe)
     }
 
     fn probed_holes<P: Probe, Q: Probe>(holes: Holes<P>, probe: Q) -> Holes<Q> {
@@ -139,7 +139,7 @@ pub trait HoleSet<P: Probe>: Clone + Debug + Send + Sync {
     fn check(&self, end: usize) -> Result<(), String>;
 }
 
-/// The holes of a [`Whole`] mesh: none, which is known at compile time.
+/// The holes of a [`Compact`] mesh: none, which is known at compile time.
 #[derive(Clone, Copy, Debug)]
 pub struct NoHoles;
 
@@ -168,11 +168,11 @@ impl<P: Probe> HoleSet<P> for NoHoles {
     }
 }
 
-/// The scattered faces of a [`Whole`] mesh, which cannot have any.
+/// The scattered faces of a [`Compact`] mesh, which cannot have any.
 #[derive(Clone, Copy, Debug)]
-pub enum NoFaces {}
+pub enum NoScatteredFaces {}
 
-impl<P: Probe> AsRef<ScatteredFaces<P>> for NoFaces {
+impl<P: Probe> AsRef<ScatteredFaces<P>> for NoScatteredFaces {
     fn as_ref(&self) -> &ScatteredFaces<P> {
         match *self {}
     }

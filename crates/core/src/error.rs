@@ -51,7 +51,7 @@ pub enum BuildError {
     NotATriangle { face: FaceId, degree: usize },
     /// Three or more faces along one edge.
     #[error("edge {0}–{1} has {count} faces ({faces}): split it, or choose a structure that holds non-manifold edges",
-        .vertices[0], .vertices[1], count = .faces.len(), faces = names(.faces))]
+        .vertices[0], .vertices[1], count = .faces.len(), faces = format_faces(.faces))]
     NonManifoldEdge {
         vertices: [VertexId; 2],
         faces: Vec<FaceId>,
@@ -156,7 +156,7 @@ pub enum CreaseError {
 }
 
 /// Lists `faces`, at most eight of them.
-fn names(faces: &[FaceId]) -> String {
+fn format_faces(faces: &[FaceId]) -> String {
     let shown: Vec<String> = faces.iter().take(8).map(ToString::to_string).collect();
     let more = if faces.len() > 8 { ", …" } else { "" };
     shown.join(", ") + more

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::clone_by_field;
-use crate::editing::{Editable, Editing, HoleSet, Whole};
+use crate::editing::{Compact, Editable, Editing, HoleSet};
 use crate::holes::Holes;
 use crate::memory::TableBytes;
 use crate::probe::{Probe, Untraced};
@@ -15,7 +15,7 @@ use crate::table::Table;
 /// Structures store the corners themselves, as vertices or points. A deleted face keeps its row and
 /// its corners until the mesh is compacted; its corners are blank, so that scans skip them.
 #[derive(Debug)]
-pub enum FaceSpans<P: Probe = Untraced, E: Editing = Whole> {
+pub enum FaceSpans<P: Probe = Untraced, E: Editing = Compact> {
     /// Every face has `degree` corners.
     Uniform {
         /// The number of corners of each face.
@@ -97,9 +97,9 @@ impl<P: Probe> ScatteredFaces<P> {
         let mut owned = 0;
         for face in (0..row(self.spans.len())).map(FaceId::new) {
             let range = self.range(face);
-            let its_own = owners.get(range.clone());
-            let its_own = its_own.is_some_and(|o| o.iter().all(|o| o.get() == Some(face)));
-            if range.len() < 3 || !its_own {
+            let own = owners.get(range.clone());
+            let is_owner = own.is_some_and(|o| o.iter().all(|o| o.get() == Some(face)));
+            if range.len() < 3 || !is_owner {
                 return Err(format!("{face} has the corners {range:?} of {corners}"));
             }
             owned += range.len();
@@ -256,7 +256,7 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
 
     /// Returns the bytes of the tables, if there are any.
     pub fn bytes(&self) -> impl Iterator<Item = TableBytes> {
-        let [one, two] = match self {
+        let [first, second] = match self {
             Self::Uniform { .. } => [None, None],
             Self::Mixed(offsets) => [Some(offsets.bytes()), None],
             Self::Scattered(faces) => {
@@ -264,7 +264,7 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
                 [Some(spans.bytes()), Some(owners.bytes())]
             }
         };
-        one.into_iter().chain(two)
+        first.into_iter().chain(second)
     }
 }
 
@@ -281,7 +281,7 @@ impl<P: Probe> From<FaceSpans<P>> for FaceSpans<P, Editable> {
 /// can name one more face or corner.
 impl<P: Probe> FaceSpans<P, Editable> {
     /// Converts to the spans of a mesh that has no holes; `None` if faces are scattered.
-    pub fn into_whole(self) -> Option<FaceSpans<P>> {
+    pub fn into_compact(self) -> Option<FaceSpans<P>> {
         match self {
             Self::Uniform { degree, faces } => Some(FaceSpans::Uniform { degree, faces }),
             Self::Mixed(offsets) => Some(FaceSpans::Mixed(offsets)),
@@ -377,7 +377,7 @@ impl<P: Probe> FaceSpans<P, Editable> {
                 }
                 *faces = row(*faces as usize - holes.len());
                 corners.truncate(to);
-                corners.give_back();
+                corners.shrink_if_half_empty();
             }
             Self::Mixed(_) if holes.is_empty() => {}
             Self::Mixed(_) | Self::Scattered(_) => {
@@ -395,7 +395,7 @@ impl<P: Probe> FaceSpans<P, Editable> {
                     let degree = if faces == 0 { 3 } else { row(degrees[1]) };
                     Self::Uniform { degree, faces }
                 } else {
-                    Self::Mixed(corners.beside("offsets", "face", offsets))
+                    Self::Mixed(corners.new_like("offsets", "face", offsets))
                 };
                 list.shrink_to_fit();
                 corners.replace(list);
@@ -419,8 +419,8 @@ impl<P: Probe> FaceSpans<P, Editable> {
             owners.extend(range.map(|_| Slot::some(f)));
         }
         *self = Self::Scattered(ScatteredFaces {
-            spans: corners.beside("spans", "face", spans),
-            owners: corners.beside("owners", "corner", owners),
+            spans: corners.new_like("spans", "face", spans),
+            owners: corners.new_like("owners", "corner", owners),
         });
     }
 }
@@ -467,8 +467,8 @@ mod tests {
                 assert_eq!(spans.around(first), (face, [last, first, first + 1]));
                 assert_eq!(spans.around(last), (face, [last - 1, last, first]));
                 for corner in first + 1..last {
-                    let beside = [corner - 1, corner, corner + 1];
-                    assert_eq!(spans.around(corner), (face, beside));
+                    let around = [corner - 1, corner, corner + 1];
+                    assert_eq!(spans.around(corner), (face, around));
                     assert_eq!(spans.face_of(corner), face);
                 }
             }
@@ -504,7 +504,7 @@ mod tests {
             let mut spans = FaceSpans::from(list(degrees).spans());
             let all: Vec<Vec<u32>> = degrees.iter().map(|&d| (10..10 + d).collect()).collect();
             let mut corners = Table::new("corners", "corner", all.concat());
-            let mut holes = Holes::none("face holes");
+            let mut holes = Holes::new("face holes");
             let mut expected = all.clone();
             for new in [&[1, 2, 3][..], &[4, 5, 6], &[1, 2, 3, 4, 5], &[7, 8, 9]] {
                 let f = spans.push(&mut corners, new);
@@ -529,17 +529,17 @@ mod tests {
             }
             for f in [1, 0, 3] {
                 spans.blank(&mut corners, FaceId::new(f), BLANK);
-                holes.dig(f as usize);
+                holes.insert(f as usize);
             }
             expected = [&expected[2..3], &expected[4..]].concat();
             assert_eq!(faces(&spans, &corners, &holes), expected);
             spans.compact(&mut corners, &holes);
-            holes.fill();
+            holes.clear();
             assert_eq!(faces(&spans, &corners, &holes), expected);
             assert!(corners.rows().iter().all(|&c| c != BLANK));
             assert!(!matches!(spans, FaceSpans::Scattered(_)));
-            let one_degree = expected.iter().all(|f| f.len() == expected[0].len());
-            assert_eq!(matches!(spans, FaceSpans::Uniform { .. }), one_degree);
+            let is_uniform = expected.iter().all(|f| f.len() == expected[0].len());
+            assert_eq!(matches!(spans, FaceSpans::Uniform { .. }), is_uniform);
         }
     }
 
@@ -547,13 +547,13 @@ mod tests {
     fn a_uniform_degree_stays_uniform() {
         let mut spans = FaceSpans::from(list(&[3, 3, 3]).spans());
         let mut corners = Table::new("corners", "corner", (0..9).collect());
-        let mut holes = Holes::none("face holes");
+        let mut holes = Holes::new("face holes");
         spans.rewrite(&mut corners, FaceId::new(1), &[7, 7, 7], BLANK);
         spans.push(&mut corners, &[1, 2, 3]);
         spans.blank(&mut corners, FaceId::new(0), BLANK);
-        holes.dig(0);
+        holes.insert(0);
         spans.compact(&mut corners, &holes);
-        holes.fill();
+        holes.clear();
         assert!(matches!(
             spans,
             FaceSpans::Uniform {

@@ -60,15 +60,15 @@ pub struct Facts {
     /// Faces that name a vertex twice, and lists of fewer than three corners.
     pub degenerate_faces: usize,
     /// The number of edges at a vertex, over the used vertices.
-    pub valence: Option<Spread>,
+    pub valence: Option<Distribution>,
     /// The number of corners of a face.
-    pub face_degree: Option<Spread>,
+    pub face_degree: Option<Distribution>,
 }
 
 /// The distribution of a count: its extremes, its mean, and how often each value occurs.
 #[serde_as]
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Spread {
+pub struct Distribution {
     /// The smallest value.
     pub min: usize,
     /// The largest value.
@@ -80,9 +80,9 @@ pub struct Spread {
     pub hist: Option<BTreeMap<usize, usize>>,
 }
 
-impl Spread {
+impl Distribution {
     /// Returns the distribution of `values`; `None` if there are no values.
-    fn of(values: impl Iterator<Item = usize>) -> Option<Self> {
+    fn from_values(values: impl Iterator<Item = usize>) -> Option<Self> {
         let mut hist = BTreeMap::new();
         for value in values {
             *hist.entry(value).or_insert(0_usize) += 1;
@@ -103,13 +103,13 @@ impl Spread {
 
 impl Facts {
     /// Returns the facts of a polygon mesh; O(corners) expected.
-    pub fn of(polygons: &PolygonMesh) -> Self {
+    pub fn from_polygons(polygons: &PolygonMesh) -> Self {
         let (vertices, faces) = (polygons.vertex_count(), polygons.faces());
         let mut named = vec![false; vertices];
         for vertex in faces.corners() {
             named[vertex.index()] = true;
         }
-        Survey::of(vertices, faces, &vec![true; faces.len()]).facts(&named)
+        EdgePass::new(vertices, faces, &vec![true; faces.len()]).facts(&named)
     }
 
     /// Returns the facts of faces as in a file, degenerate ones included; O(corners) expected.
@@ -117,7 +117,7 @@ impl Facts {
     /// # Errors
     ///
     /// [`PolygonError::VertexOutOfRange`] for the first corner whose vertex does not exist.
-    pub fn of_faces(vertices: usize, faces: &FaceList) -> Result<Self, PolygonError> {
+    pub fn from_faces(vertices: usize, faces: &FaceList) -> Result<Self, PolygonError> {
         let mut named = vec![false; vertices];
         for (face, corners) in faces.iter() {
             for &vertex in corners {
@@ -134,12 +134,12 @@ impl Facts {
             .iter()
             .map(|(_, f)| f.len() >= 3 && repeated(f).is_none())
             .collect();
-        Ok(Survey::of(vertices, faces, &used).facts(&named))
+        Ok(EdgePass::new(vertices, faces, &used).facts(&named))
     }
 }
 
 /// The results of one pass over the edges.
-struct Survey<'a> {
+struct EdgePass<'a> {
     faces: &'a FaceList,
     used: &'a [bool],
     edges: usize,
@@ -161,11 +161,11 @@ struct Survey<'a> {
     on_non_manifold_edge: Vec<bool>,
 }
 
-impl<'a> Survey<'a> {
-    fn of(vertices: usize, faces: &'a FaceList, used: &'a [bool]) -> Self {
-        let incidence = Incidence::of(vertices, faces, |f| used[f.index()]);
+impl<'a> EdgePass<'a> {
+    fn new(vertices: usize, faces: &'a FaceList, used: &'a [bool]) -> Self {
+        let incidence = Incidence::new(vertices, faces, |f| used[f.index()]);
         let corners = faces.corners().len();
-        let mut survey = Self {
+        let mut pass = Self {
             faces,
             used,
             edges: 0,
@@ -181,35 +181,34 @@ impl<'a> Survey<'a> {
             on_non_manifold_edge: vec![false; vertices],
         };
         // Which faces must be flipped relative to each other; only edges with two faces count.
-        let mut turned = Partition::new(faces.len());
+        let mut flipped = Partition::new(faces.len());
         for edge in incidence.edges() {
-            survey.edges += 1;
+            pass.edges += 1;
             for v in edge.ends {
-                survey.valence[v.index()] += 1;
-                survey.on_non_manifold_edge[v.index()] |= edge.sides.len() > 2;
+                pass.valence[v.index()] += 1;
+                pass.on_non_manifold_edge[v.index()] |= edge.sides.len() > 2;
             }
             for pair in edge.sides.windows(2) {
-                survey
-                    .components
+                pass.components
                     .join(pair[0].face.index(), pair[1].face.index());
             }
             match edge.sides {
                 [side] => {
-                    survey.boundary_edges += 1;
+                    pass.boundary_edges += 1;
                     let ends = corners_at_ends(side, faces);
-                    let [a, b] = ends.map(|corner| survey.fans.root(corner).0);
-                    survey.loops.join(a, b);
-                    survey.boundary_fans.push(a);
+                    let [a, b] = ends.map(|corner| pass.fans.root(corner).0);
+                    pass.loops.join(a, b);
+                    pass.boundary_fans.push(a);
                 }
                 [a, b] => {
                     let same = a.downward == b.downward;
-                    survey.inconsistent_edges += usize::from(same);
-                    survey.orientable &= turned.relate(a.face.index(), b.face.index(), same);
+                    pass.inconsistent_edges += usize::from(same);
+                    pass.orientable &= flipped.relate(a.face.index(), b.face.index(), same);
                 }
-                _ => survey.non_manifold_edges += 1,
+                _ => pass.non_manifold_edges += 1,
             }
         }
-        survey
+        pass
     }
 
     fn facts(mut self, named: &[bool]) -> Facts {
@@ -225,13 +224,13 @@ impl<'a> Survey<'a> {
         let fans = self.fans.classes() - unused_corners;
         let polygons = faces.iter().filter(|(_, face)| face.len() >= 3);
         let boundary_loops = (self.non_manifold_edges == 0).then(|| self.boundary_loops());
-        let any = used_faces > 0;
+        let has_faces = used_faces > 0;
         let signed = |count: usize| i64::try_from(count).expect("counts fit");
         let genus = boundary_loops
-            .filter(|_| any && self.orientable)
+            .filter(|_| has_faces && self.orientable)
             .map(|loops| {
-                let cut = signed(fans) - signed(self.edges) + signed(used_faces);
-                (2 * signed(components) - cut - signed(loops)) / 2
+                let characteristic = signed(fans) - signed(self.edges) + signed(used_faces);
+                (2 * signed(components) - characteristic - signed(loops)) / 2
             });
         Facts {
             vertices: named.len(),
@@ -244,15 +243,17 @@ impl<'a> Survey<'a> {
             non_manifold_edges: self.non_manifold_edges,
             non_manifold_vertices: self.non_manifold_vertices(),
             inconsistent_edges: self.inconsistent_edges,
-            consistently_oriented: any.then_some(self.inconsistent_edges == 0),
-            orientable: any.then_some(self.orientable),
-            closed: any && self.boundary_edges == 0,
+            consistently_oriented: has_faces.then_some(self.inconsistent_edges == 0),
+            orientable: has_faces.then_some(self.orientable),
+            closed: has_faces && self.boundary_edges == 0,
             genus,
             isolated_vertices: named.iter().filter(|&&named| !named).count(),
             duplicate_faces: used_faces - self.distinct_vertex_sets(),
             degenerate_faces: faces.len() - used_faces,
-            valence: Spread::of(self.valence.iter().copied().filter(|&valence| valence > 0)),
-            face_degree: Spread::of(polygons.map(|(_, face)| face.len())),
+            valence: Distribution::from_values(
+                self.valence.iter().copied().filter(|&valence| valence > 0),
+            ),
+            face_degree: Distribution::from_values(polygons.map(|(_, face)| face.len())),
         }
     }
 
@@ -272,7 +273,10 @@ impl<'a> Survey<'a> {
                 self.on_non_manifold_edge[v.index()] |= root != first;
             }
         }
-        self.on_non_manifold_edge.iter().filter(|&&not| not).count()
+        self.on_non_manifold_edge
+            .iter()
+            .filter(|&&is_non_manifold| is_non_manifold)
+            .count()
     }
 
     fn distinct_vertex_sets(&self) -> usize {

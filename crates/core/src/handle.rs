@@ -40,7 +40,7 @@ pub trait HandleMap<H: Copy, T: Clone>: Index<H, Output = T> + IndexMut<H> + Clo
     /// Moves the value of `old` to `new`; O(1) amortised.
     ///
     /// This renames one element. If an edit exchanges the handles of several elements,
-    /// [`Changes::follow`](crate::Changes::follow) renames all of them at once.
+    /// [`Changes::apply_to`](crate::Changes::apply_to) renames all of them at once.
     fn rename(&mut self, old: H, new: H) {
         let value = self[old].clone();
         self.remove(old);
@@ -52,7 +52,7 @@ pub trait HandleMap<H: Copy, T: Clone>: Index<H, Output = T> + IndexMut<H> + Clo
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowMap<H, T> {
     values: Vec<T>,
-    names: PhantomData<H>,
+    handle: PhantomData<H>,
 }
 
 impl<H, T> RowMap<H, T> {
@@ -66,7 +66,7 @@ impl<H: RowId, T: Clone> HandleMap<H, T> for RowMap<H, T> {
     fn filled(rows: usize, value: T) -> Self {
         Self {
             values: vec![value; rows],
-            names: PhantomData,
+            handle: PhantomData,
         }
     }
 
@@ -119,14 +119,14 @@ fn no_such_row<H: Debug>(handle: H, rows: usize) -> ! {
 #[derive(Clone, Debug)]
 pub struct HashHandleMap<H, T> {
     written: FxHashMap<H, T>,
-    otherwise: T,
+    default: T,
 }
 
 impl<H: Handle, T: Clone> HandleMap<H, T> for HashHandleMap<H, T> {
     fn filled(_rows: usize, value: T) -> Self {
         Self {
             written: FxHashMap::default(),
-            otherwise: value,
+            default: value,
         }
     }
 
@@ -147,7 +147,7 @@ impl<H: Handle, T> Index<H> for HashHandleMap<H, T> {
     type Output = T;
 
     fn index(&self, handle: H) -> &T {
-        self.written.get(&handle).unwrap_or(&self.otherwise)
+        self.written.get(&handle).unwrap_or(&self.default)
     }
 }
 
@@ -155,7 +155,7 @@ impl<H: Handle, T: Clone> IndexMut<H> for HashHandleMap<H, T> {
     fn index_mut(&mut self, handle: H) -> &mut T {
         self.written
             .entry(handle)
-            .or_insert_with(|| self.otherwise.clone())
+            .or_insert_with(|| self.default.clone())
     }
 }
 

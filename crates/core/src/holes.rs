@@ -30,7 +30,7 @@ clone_by_field!(Holes<P: Probe> { words, count });
 impl Holes {
     /// Returns an empty set; `name` is the name of its table of bits, once there is one (`"face
     /// holes"`).
-    pub fn none(name: &'static str) -> Self {
+    pub fn new(name: &'static str) -> Self {
         Self {
             words: Table::new(name, "64 rows", Vec::new()),
             count: 0,
@@ -52,7 +52,7 @@ impl<P: Probe> Holes<P> {
     /// # Panics
     ///
     /// Panics if the row is already a hole: deleting twice is a bug of the caller.
-    pub fn dig(&mut self, row: usize) {
+    pub fn insert(&mut self, row: usize) {
         while self.words.len() <= row / WORD {
             self.words.push(0);
         }
@@ -63,7 +63,7 @@ impl<P: Probe> Holes<P> {
     }
 
     /// Removes all holes and frees their memory, after compaction.
-    pub fn fill(&mut self) {
+    pub fn clear(&mut self) {
         self.words.clear();
         self.count = 0;
     }
@@ -76,8 +76,8 @@ impl<P: Probe> Holes<P> {
             let word = words.get(row as usize / WORD).copied();
             word.unwrap_or(0) >> (row as usize % WORD) & 1 == 1
         };
-        let whole = self.count == 0;
-        (0..row(end)).filter(move |&row| whole || !is_hole(row))
+        let is_empty = self.count == 0;
+        (0..row(end)).filter(move |&row| is_empty || !is_hole(row))
     }
 }
 
@@ -120,9 +120,10 @@ impl<P: Probe> HoleSet<P> for Holes<P> {
 }
 
 impl<P: Probe> Holes<P> {
-    /// Closes the holes of `table`, whose rows this set describes: the other rows move down in
-    /// order. A table that is less than half used frees its spare memory. O(rows), not observed.
-    pub fn close<T: Copy>(&self, table: &mut Table<T, P>) {
+    /// Removes the rows that are holes from `table`, the table of this set: the other rows move
+    /// down in order. A table that is less than half used frees its spare memory. O(rows), not
+    /// observed.
+    pub fn compact_table<T: Copy>(&self, table: &mut Table<T, P>) {
         let mut to = 0;
         let end = table.len();
         if !self.is_empty() {
@@ -133,7 +134,7 @@ impl<P: Probe> Holes<P> {
             }
             table.truncate(to);
         }
-        table.give_back();
+        table.shrink_if_half_empty();
     }
 }
 
@@ -153,9 +154,9 @@ mod tests {
                 &|row| row == 0 || row + 1 == end,
             ];
             for (i, is_hole) in sets.iter().enumerate() {
-                let mut holes = Holes::none("holes");
+                let mut holes = Holes::new("holes");
                 for row in (0..end).filter(|&row| is_hole(row)).rev() {
-                    holes.dig(row);
+                    holes.insert(row);
                 }
                 let expected: Vec<u32> = (0..end).filter(|&r| !is_hole(r)).map(row).collect();
                 let rows = holes.rows(end);
@@ -174,7 +175,7 @@ mod tests {
                 let closed: Vec<u32> = expected.iter().map(|&old| new[old as usize]).collect();
                 assert!(closed.into_iter().eq(0..row(expected.len())));
                 let mut table = Table::new("rows", "row", (0..row(end)).collect());
-                holes.close(&mut table);
+                holes.compact_table(&mut table);
                 assert_eq!(table.rows(), expected);
             }
         }
@@ -182,21 +183,21 @@ mod tests {
 
     #[test]
     fn a_row_beyond_all_bits_is_not_a_hole() {
-        let mut holes = Holes::none("holes");
+        let mut holes = Holes::new("holes");
         assert!(holes.bytes().is_none() && !holes.has(7));
-        holes.dig(3);
+        holes.insert(3);
         assert!(holes.has(3) && !holes.has(1000));
         assert_eq!(holes.rows(6).collect::<Vec<_>>(), [0, 1, 2, 4, 5]);
         assert!(holes.check(3).is_err(), "a hole beyond the rows");
-        holes.fill();
+        holes.clear();
         assert!(holes.is_empty() && !holes.has(3));
     }
 
     #[test]
     #[should_panic(expected = "row 3 is already a hole")]
     fn deleting_a_row_twice_panics() {
-        let mut holes = Holes::none("holes");
-        holes.dig(3);
-        holes.dig(3);
+        let mut holes = Holes::new("holes");
+        holes.insert(3);
+        holes.insert(3);
     }
 }

@@ -38,7 +38,7 @@ pub struct EdgeUse {
 }
 
 impl EdgeUse {
-    pub(crate) fn of(edge: EdgeSides<'_>) -> Self {
+    pub(crate) fn from_sides(edge: EdgeSides<'_>) -> Self {
         let faces = edge.sides.len();
         let down = edge.sides.iter().filter(|side| side.downward).count();
         Self {
@@ -70,7 +70,7 @@ pub(crate) struct Incidence {
 impl Incidence {
     /// Collects the sides of the faces that `used` selects, which must name each vertex at most
     /// once.
-    pub(crate) fn of(vertices: usize, faces: &FaceList, used: impl Fn(FaceId) -> bool) -> Self {
+    pub(crate) fn new(vertices: usize, faces: &FaceList, used: impl Fn(FaceId) -> bool) -> Self {
         let sides = || {
             let used = faces.iter().filter(|&(f, _)| used(f));
             used.flat_map(|(face, corners)| sides_of(face, corners, faces.range(face).start))
@@ -89,18 +89,21 @@ impl Incidence {
             corner: 0,
             downward: false,
         };
-        let mut filed = vec![blank; total as usize];
+        let mut sorted = vec![blank; total as usize];
         for (low, side) in sides() {
             let at = &mut ends[low.index()];
-            filed[*at as usize] = side;
+            sorted[*at as usize] = side;
             *at += 1;
         }
         let mut start = 0;
         for &end in &ends {
-            filed[start..end as usize].sort_unstable();
+            sorted[start..end as usize].sort_unstable();
             start = end as usize;
         }
-        Self { sides: filed, ends }
+        Self {
+            sides: sorted,
+            ends,
+        }
     }
 
     /// Returns every edge, ordered by its lower and then by its higher end.

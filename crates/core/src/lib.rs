@@ -10,7 +10,7 @@
 //! - [`Refine`] and [`Split`]: structures that split every face in their own tables.
 //! - [`MeshEdit`], [`EditRecord`] and [`EditError`]: edits in place, the record of created, removed
 //!   and renamed elements, and why an edit is refused; [`Holes`]: the rows of deleted elements.
-//! - [`Whole`] and [`Editable`]: type parameters of meshes without and with deletion.
+//! - [`Compact`] and [`Editable`]: type parameters of meshes without and with deletion.
 //! - [`ScannedFaces`]: queries and edits of structures that find the faces at a vertex by a scan.
 //! - [`Creases`]: the sharpness of edges and vertices under subdivision.
 //! - [`Facts`]: the exact topology of a face list, independent of any structure.
@@ -29,7 +29,6 @@ mod error;
 mod face_list;
 mod face_spans;
 mod facts;
-mod few;
 mod handle;
 mod holes;
 mod incidence;
@@ -47,23 +46,24 @@ mod row_id;
 mod scan;
 mod scan_edit;
 mod scanned;
+mod short_vec;
 mod sides;
 mod table;
 
 pub use capability::Capabilities;
-pub use creases::{Creases, SHARP_FOR_EVER};
+pub use creases::{Creases, SHARPNESS_INFINITE};
 pub use distinct::{Distinct, DistinctWalk, IteratorExt};
 pub use edit::{Edit, MeshEdit, Refusal};
 pub use edit_error::EditError;
 pub use edit_log::{Changes, EditLog, EditRecord, OldToNew};
 pub use editing::{
-    EDGE_HOLES, Editable, Editing, FACE_HOLES, HoleSet, NoFaces, NoHoles, VERTEX_HOLES, Whole,
+    Compact, EDGE_HOLES, Editable, Editing, FACE_HOLES, HoleSet, NoHoles, NoScatteredFaces,
+    VERTEX_HOLES,
 };
 pub use error::{BuildError, CreaseError, InvariantError, MoveError, PolygonError, RefineError};
 pub use face_list::FaceList;
 pub use face_spans::{FaceSpans, ScatteredFaces};
-pub use facts::{Facts, Spread};
-pub use few::{Few, Lookup};
+pub use facts::{Distribution, Facts};
 pub use glam;
 pub use glam::Vec3 as Point;
 pub use handle::{Handle, HandleMap, HashHandleMap, Pair, RowMap};
@@ -77,13 +77,15 @@ pub use probe::{Access, AccessKind, Probe, Traced, Untraced};
 pub use query::{EdgeMap, FaceMap, MeshQuery, VertexMap};
 pub use ranks::Ranks;
 pub use refine::{
-    PART, Refine, Split, all_rows, check_split, in_given_parts, in_parts, row_parts, rows_of_part,
+    CHUNK_ROWS, Refine, Split, all_rows, check_split, chunk_starts, for_each_chunk, map_chunks,
+    rows_of_chunk,
 };
 pub use representation::{QueryCost, Relation, Representation};
 pub use row_id::{EdgeId, FaceId, MAX_ROWS, RowId, Slot, VertexId, row};
 pub use scan::hits_in;
 pub use scan_edit::ScannedMesh;
-pub use scanned::{Hit, ScannedFaces, ScannedVertex, Sought};
+pub use scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
+pub use short_vec::{Lookup, ShortVec};
 pub use table::Table;
 
 /// The imports of a program that uses meshes: the traits with queries, edits and refinement, and

@@ -33,13 +33,13 @@ impl TwinPairs {
     ///
     /// Scratch: 8 bytes per corner and 8 bytes per vertex; [`with_rows`](Self::with_rows) needs
     /// less.
-    pub fn of(vertices: usize, faces: &FaceList) -> Option<Self> {
+    pub fn new(vertices: usize, faces: &FaceList) -> Option<Self> {
         let mut rows = vec![(0_u32, 0_u32); faces.corners().len()];
         Self::with_rows(vertices, faces, &mut rows[..])
     }
 
-    /// Pairs sides like [`of`](Self::of), but stores the sorted sides in `rows`, with one place per
-    /// corner: a table of the result that is not filled yet. The rows are not meaningful
+    /// Pairs sides like [`new`](Self::new), but stores the sorted sides in `rows`, with one place
+    /// per corner: a table of the result that is not filled yet. The rows are not meaningful
     /// afterwards.
     ///
     /// # Panics
@@ -64,7 +64,7 @@ impl TwinPairs {
         // old.
         let mut last = vec![0_u32; vertices];
         let mut half_of_corner = vec![0_u32; corners];
-        let (mut edges, mut clash, mut start) = (0_u32, 0, 0);
+        let (mut edges, mut conflict, mut start) = (0_u32, 0, 0);
         for end in ends {
             let end = end as usize;
             let first = (edges << 2).max(1);
@@ -76,7 +76,7 @@ impl TwinPairs {
                 // No branch: half of all sides are new, in unpredictable order.
                 let known = if new { edges << 2 } else { *row };
                 let seen = 1 << direction;
-                clash |= known & seen;
+                conflict |= known & seen;
                 *row = known | seen;
                 edges += u32::from(new);
                 half_of_corner[corner as usize] = known >> 2 << 1 | direction;
@@ -87,7 +87,7 @@ impl TwinPairs {
             }
         }
         let edge_count = edges as usize;
-        (clash == 0).then_some(Self {
+        (conflict == 0).then_some(Self {
             half_of_corner,
             edge_count,
         })
@@ -126,7 +126,7 @@ impl SideRows for [(u32, u32)] {
 /// paired only with itself; the partner of the second side is the first. `highs` is scratch with a
 /// row per corner: a table of the result that is not filled yet. Returns scratch of 4 bytes per
 /// corner, which the caller can reuse, and the number of edges; `None` in the cases of
-/// [`TwinPairs::of`].
+/// [`TwinPairs::new`].
 ///
 /// # Panics
 ///
@@ -143,7 +143,7 @@ pub fn pair_triangle_sides(
         return None;
     }
     assert!(faces.is_empty() || faces.uniform_degree() == Some(3));
-    let faces = FacedSides(corners);
+    let faces = TriangleSides(corners);
     let (mut ends, sides) = bucket_starts(vertices, &faces);
     let mut tags = vec![0_u32; sides];
     fill_buckets(&faces, &mut ends, |at, a, b, corner| {
@@ -152,7 +152,7 @@ pub fn pair_triangle_sides(
     });
     // By higher end: 1 + the place of the first side of the last edge that ends there.
     let mut last = vec![0_u32; vertices];
-    let (mut edges, mut clash, mut start) = (0, false, 0);
+    let (mut edges, mut conflict, mut start) = (0, false, 0);
     for end in ends {
         for at in start..end {
             let tag = tags[at as usize];
@@ -166,14 +166,14 @@ pub fn pair_triangle_sides(
                 // A third side along one edge; rare, so a branch is cheap.
                 return None;
             }
-            clash |= !new & ((*first ^ tag) & 1 == 0);
+            conflict |= !new & ((*first ^ tag) & 1 == 0);
             let twin = std::mem::replace(first, if new { tag } else { PAIRED });
             edges += usize::from(new);
             pair(tag >> 1, twin >> 1);
         }
         start = end;
     }
-    (!clash && edges <= MAX_EDGES).then_some((tags, edges))
+    (!conflict && edges <= MAX_EDGES).then_some((tags, edges))
 }
 
 /// The tag of an edge whose two sides were both found; the tag of a corner is always smaller.
@@ -186,9 +186,9 @@ fn tag(a: VertexId, b: VertexId, corner: u32) -> u32 {
 }
 
 /// The sides of triangles, each with its opposite corner.
-struct FacedSides<'a>(&'a [VertexId]);
+struct TriangleSides<'a>(&'a [VertexId]);
 
-impl Sides for FacedSides<'_> {
+impl Sides for TriangleSides<'_> {
     #[inline(always)]
     fn for_each_side(&self, mut visit: impl FnMut(VertexId, VertexId, u32)) {
         let mut first = 0;
@@ -211,7 +211,7 @@ mod tests {
             list.push(face.iter().copied().map(VertexId::new))
                 .expect("small");
         }
-        TwinPairs::of(vertices, &list)
+        TwinPairs::new(vertices, &list)
     }
 
     #[test]
@@ -253,7 +253,7 @@ mod tests {
         });
         let (scratch, edges) = done?;
         assert_eq!(scratch.len(), partners.len());
-        let pairs = TwinPairs::of(vertices, &list).expect("a manifold for both");
+        let pairs = TwinPairs::new(vertices, &list).expect("a manifold for both");
         assert_eq!(edges, pairs.edge_count);
         Some(partners)
     }

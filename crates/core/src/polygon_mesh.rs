@@ -66,12 +66,12 @@ impl PolygonMesh {
                 limit: MAX_ROWS,
             });
         }
-        let sound = match faces.uniform_degree() {
-            Some(3) => all_sound::<3>(faces.corners(), positions.len()),
-            Some(4) => all_sound::<4>(faces.corners(), positions.len()),
+        let valid = match faces.uniform_degree() {
+            Some(3) => all_valid::<3>(faces.corners(), positions.len()),
+            Some(4) => all_valid::<4>(faces.corners(), positions.len()),
             _ => false,
         };
-        if !sound {
+        if !valid {
             for (f, face) in faces.iter() {
                 check_face(f, face, positions.len())?;
             }
@@ -146,7 +146,7 @@ impl PolygonMesh {
     /// Two faces are in one fan if a chain of faces leads from one to the other, each step across
     /// an edge at the vertex. Orientation does not matter.
     pub fn vertices_of_several_fans(&self) -> Vec<VertexId> {
-        let incidence = Incidence::of(self.vertex_count(), &self.faces, |_| true);
+        let incidence = Incidence::new(self.vertex_count(), &self.faces, |_| true);
         let fans = incidence.several_fans(&self.faces).into_iter();
         let mut vertices: Vec<VertexId> = fans.map(|(v, _)| v).collect();
         vertices.sort_unstable();
@@ -155,25 +155,25 @@ impl PolygonMesh {
 
     /// Returns every edge once, ordered by its ends; O(corners) expected.
     pub fn edge_uses(&self) -> Vec<EdgeUse> {
-        let incidence = Incidence::of(self.vertex_count(), &self.faces, |_| true);
-        incidence.edges().map(EdgeUse::of).collect()
+        let incidence = Incidence::new(self.vertex_count(), &self.faces, |_| true);
+        incidence.edges().map(EdgeUse::from_sides).collect()
     }
 
-    /// Returns the mesh with vertex `v` renumbered as `names[v]`; the faces keep their order.
+    /// Returns the mesh with vertex `v` renumbered as `numbers[v]`; the faces keep their order.
     ///
     /// # Panics
     ///
-    /// Panics if `names` is not a permutation of the vertices.
-    pub fn renamed(&self, names: &[u32]) -> Self {
+    /// Panics if `numbers` is not a permutation of the vertices.
+    pub fn renumbered(&self, numbers: &[u32]) -> Self {
         assert_eq!(
-            names.len(),
+            numbers.len(),
             self.vertex_count(),
-            "`names` needs one number for each vertex"
+            "`numbers` needs one number for each vertex"
         );
-        let mut positions = vec![None; names.len()];
-        for (&name, &position) in names.iter().zip(&self.positions) {
-            let before = positions[name as usize].replace(position);
-            assert!(before.is_none(), "two vertices get the number {name}");
+        let mut positions = vec![None; numbers.len()];
+        for (&number, &position) in numbers.iter().zip(&self.positions) {
+            let before = positions[number as usize].replace(position);
+            assert!(before.is_none(), "two vertices get the number {number}");
         }
         let positions = positions
             .into_iter()
@@ -181,8 +181,8 @@ impl PolygonMesh {
             .collect();
         let mut faces = FaceList::with_capacity(self.corner_count());
         for (_, face) in self.faces.iter() {
-            let renamed = face.iter().map(|v| VertexId::new(names[v.index()]));
-            faces.push(renamed).expect("as many corners as before");
+            let renumbered = face.iter().map(|v| VertexId::new(numbers[v.index()]));
+            faces.push(renumbered).expect("as many corners as before");
         }
         Self { positions, faces }
     }
@@ -212,17 +212,17 @@ impl PolygonMesh {
 }
 
 /// Returns whether all faces satisfy I1; their degree is known to the compiler.
-fn all_sound<const DEGREE: usize>(corners: &[VertexId], vertices: usize) -> bool {
+fn all_valid<const DEGREE: usize>(corners: &[VertexId], vertices: usize) -> bool {
     corners.as_chunks::<DEGREE>().0.iter().all(|face| {
         // No early exit: it would almost never be taken.
-        let mut sound = true;
+        let mut valid = true;
         for (i, a) in face.iter().enumerate() {
-            sound &= a.index() < vertices;
+            valid &= a.index() < vertices;
             for b in &face[..i] {
-                sound &= a != b;
+                valid &= a != b;
             }
         }
-        sound
+        valid
     })
 }
 
@@ -256,8 +256,11 @@ pub(crate) fn repeated(corners: &[VertexId]) -> Option<VertexId> {
             _ => None,
         };
     }
-    let mut once = corners.iter().copied().distinct();
-    corners.iter().copied().find(|&v| once.next() != Some(v))
+    let mut distinct = corners.iter().copied().distinct();
+    corners
+        .iter()
+        .copied()
+        .find(|&v| distinct.next() != Some(v))
 }
 
 #[cfg(test)]
@@ -311,20 +314,20 @@ mod tests {
         let mesh = PolygonMesh::new(corners, [[0, 1, 2], [1, 0, 3], [0, 2, 4]]).expect("valid");
         let uses = mesh.edge_uses();
         assert_eq!(uses.len(), 7);
-        let of = |a: u32, b: u32| {
+        let use_of = |a: u32, b: u32| {
             let ends = [a, b].map(VertexId::new);
             let found = uses.iter().find(|edge| edge.ends == ends).expect("an edge");
             (found.faces, found.is_manifold())
         };
         assert_eq!(
-            [of(0, 1), of(0, 3), of(0, 2)],
+            [use_of(0, 1), use_of(0, 3), use_of(0, 2)],
             [(2, true), (1, true), (2, true)]
         );
         let book = PolygonMesh::new(corners, [[0, 1, 2], [1, 0, 3], [0, 1, 4]]).expect("valid");
         let spine = book.edge_uses()[0];
         assert_eq!((spine.faces, spine.is_manifold()), (3, false));
-        let turned = PolygonMesh::new(corners, [[0, 1, 2], [0, 1, 3]]).expect("valid");
-        assert!(!turned.edge_uses()[0].is_manifold());
+        let inconsistent = PolygonMesh::new(corners, [[0, 1, 2], [0, 1, 3]]).expect("valid");
+        assert!(!inconsistent.edge_uses()[0].is_manifold());
     }
 
     #[test]
@@ -339,11 +342,11 @@ mod tests {
     #[test]
     fn renumbering_changes_positions_and_corners() {
         let square = PolygonMesh::new(SQUARE, [[0, 1, 2]]).expect("valid");
-        let renamed = square.renamed(&[3, 0, 1, 2]);
+        let renumbered = square.renumbered(&[3, 0, 1, 2]);
         assert_eq!(
-            renamed.faces().face(FaceId::new(0)),
+            renumbered.faces().face(FaceId::new(0)),
             [3, 0, 1].map(VertexId::new)
         );
-        assert_eq!(renamed.position(VertexId::new(3)), Point::ZERO);
+        assert_eq!(renumbered.position(VertexId::new(3)), Point::ZERO);
     }
 }

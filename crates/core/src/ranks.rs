@@ -1,6 +1,6 @@
 //! Consecutive numbers for the members of a set of rows.
 
-use crate::refine::{PART, all_rows, in_parts};
+use crate::refine::{CHUNK_ROWS, all_rows, for_each_chunk};
 use crate::row_id::row;
 
 /// The number of items of a [`Block`].
@@ -73,12 +73,12 @@ impl Ranks {
         self.blocks.clear();
         self.blocks.reserve_exact(blocks);
         self.blocks.resize(blocks, Block::default());
-        in_parts(&mut self.blocks, PART / BLOCK, |first, blocks| {
+        for_each_chunk(&mut self.blocks, CHUNK_ROWS / BLOCK, |first, blocks| {
             let first = first * rows_of_block;
-            let parts = rows[first..].chunks(rows_of_block);
+            let chunks = rows[first..].chunks(rows_of_block);
             for (first, (block, rows)) in (first..)
                 .step_by(rows_of_block)
-                .zip(blocks.iter_mut().zip(parts))
+                .zip(blocks.iter_mut().zip(chunks))
             {
                 let items = (first..).zip(rows).flat_map(|(i, row)| is_member(i, row));
                 let bits = items.enumerate().map(|(i, is)| u64::from(is) << i);
@@ -170,9 +170,9 @@ impl Ranks {
 
 /// Returns the position of the set bit of `bits` that has `rank` set bits before it.
 fn nth_bit(bits: u64, rank: usize) -> usize {
-    let lowest_gone = |bits: u64| bits & (bits - 1);
+    let clear_lowest = |bits: u64| bits & (bits - 1);
     (0..rank)
-        .fold(bits, |bits, _| lowest_gone(bits))
+        .fold(bits, |bits, _| clear_lowest(bits))
         .trailing_zeros() as usize
 }
 

@@ -63,7 +63,7 @@ impl Split {
     /// with one face; only the √3 split with `trisect` uses it. Sizes beyond `usize` saturate.
     ///
     /// For quads and triangles, the sizes are correct even if edges have three or more faces.
-    pub const fn grown(self, counts: &Counts, boundary: usize) -> Counts {
+    pub const fn refined_counts(self, counts: &Counts, boundary: usize) -> Counts {
         let &Counts {
             vertices: v,
             edges: e,
@@ -144,16 +144,16 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
     /// Numbers the edges in the order of `edges()`; O(corners) or less.
     fn number_edges(&self, numbers: &mut Self::EdgeNumbers);
 
-    /// Returns the division of the numbered edges into parts of a few thousand, for parallel
-    /// passes: the first number of each part, and at the end the number of edges. `[0]` for a mesh
+    /// Returns the division of the numbered edges into chunks of a few thousand, for parallel
+    /// passes: the first number of each chunk, and at the end the number of edges. `[0]` for a mesh
     /// without edges.
-    fn edge_parts(&self, numbers: &Self::EdgeNumbers) -> Vec<usize>;
+    fn edge_chunks(&self, numbers: &Self::EdgeNumbers) -> Vec<usize>;
 
-    /// Returns the edges of one part, in the order of their numbers.
-    fn edges_of_part(
+    /// Returns the edges of one chunk, in the order of their numbers.
+    fn edges_of_chunk(
         &self,
         numbers: &Self::EdgeNumbers,
-        part: usize,
+        chunk: usize,
     ) -> impl Iterator<Item = Self::Edge>;
 
     /// Returns the number of `e`: its place in `edges()`. O(1), or O(valence) if edges are not
@@ -206,12 +206,12 @@ pub fn check_split<M: Refine>(
         let structure = M::NAME;
         return Err(RefineError::Unsupported { structure, split });
     }
-    let grown = split.grown(counts, boundary);
+    let refined = split.refined_counts(counts, boundary);
     // Half-edges and corners are rows, so twice the edges and all corners must fit handles too.
     for (elements, number) in [
-        ("vertices", grown.vertices),
-        ("half-edges", grown.edges.saturating_mul(2)),
-        ("corners", grown.corners),
+        ("vertices", refined.vertices),
+        ("half-edges", refined.edges.saturating_mul(2)),
+        ("corners", refined.corners),
     ] {
         if number > MAX_ROWS {
             return Err(RefineError::TooMany {
@@ -221,85 +221,87 @@ pub fn check_split<M: Refine>(
             });
         }
     }
-    Ok(grown)
+    Ok(refined)
 }
 
 /// The number of rows that a thread takes at a time: few enough to share evenly, enough to outweigh
 /// the overhead.
-pub const PART: usize = 4096;
+pub const CHUNK_ROWS: usize = 4096;
 
-/// Returns the starts of parts of [`PART`] rows, and at the end the number of rows: the
-/// [`edge_parts`](Refine::edge_parts) of structures whose edges are rows.
-pub fn row_parts(rows: usize) -> Vec<usize> {
-    (0..rows).step_by(PART).chain([rows]).collect()
+/// Returns the starts of chunks of [`CHUNK_ROWS`] rows, and at the end the number of rows: the
+/// [`edge_chunks`](Refine::edge_chunks) of structures whose edges are rows.
+pub fn chunk_starts(rows: usize) -> Vec<usize> {
+    (0..rows).step_by(CHUNK_ROWS).chain([rows]).collect()
 }
 
-/// Returns the rows of one part of [`row_parts`].
-pub fn rows_of_part(rows: usize, part: usize) -> Range<u32> {
-    let start = (part * PART).min(rows);
-    row(start)..row((start + PART).min(rows))
+/// Returns the rows of one chunk of [`chunk_starts`].
+pub fn rows_of_chunk(rows: usize, chunk: usize) -> Range<u32> {
+    let start = (chunk * CHUNK_ROWS).min(rows);
+    row(start)..row((start + CHUNK_ROWS).min(rows))
 }
 
-/// Calls `work` with every part of `rows` and the number of its first row; parts have `part` rows,
-/// the last may have fewer. The threads of the current rayon pool share the parts.
+/// Calls `work` with every chunk of `rows` and the number of its first row; chunks have `len` rows,
+/// the last may have fewer. The threads of the current rayon pool share the chunks.
 ///
 /// On one thread it is a plain loop. What `work` writes must depend only on the rows, not on their
-/// part: then the result is the same on any number of threads.
-pub fn in_parts<T: Send>(rows: &mut [T], part: usize, work: impl Fn(usize, &mut [T]) + Sync) {
+/// chunk: then the result is the same on any number of threads.
+pub fn for_each_chunk<T: Send>(rows: &mut [T], len: usize, work: impl Fn(usize, &mut [T]) + Sync) {
     use rayon::prelude::*;
-    if rows.len() <= part || rayon::current_num_threads() == 1 {
-        for (number, rows) in rows.chunks_mut(part).enumerate() {
-            work(number * part, rows);
+    if rows.len() <= len || rayon::current_num_threads() == 1 {
+        for (number, rows) in rows.chunks_mut(len).enumerate() {
+            work(number * len, rows);
         }
     } else {
-        let parts = rows.par_chunks_mut(part).enumerate();
-        parts.for_each(|(number, rows)| work(number * part, rows));
+        let chunks = rows.par_chunks_mut(len).enumerate();
+        chunks.for_each(|(number, rows)| work(number * len, rows));
     }
 }
 
-/// Calls `work` like [`in_parts`], for parts of different lengths: part `i` has the rows
-/// `starts[i]..starts[i + 1]`. `work` gets the number of the part; its results are returned in the
-/// order of the parts.
+/// Calls `work` like [`for_each_chunk`], for chunks of different lengths: chunk `i` has the rows
+/// `starts[i]..starts[i + 1]`. `work` gets the number of the chunk; its results are returned in the
+/// order of the chunks.
 ///
 /// # Panics
 ///
 /// Panics if `starts` do not ascend from 0 to the number of rows.
-pub fn in_given_parts<T: Send, R: Send>(
+pub fn map_chunks<T: Send, R: Send>(
     rows: &mut [T],
     starts: &[usize],
     work: impl Fn(usize, Range<usize>, &mut [T]) -> R + Sync,
 ) -> Vec<R> {
     use rayon::prelude::*;
-    let mut parts = Vec::with_capacity(starts.len());
+    let mut chunks = Vec::with_capacity(starts.len());
     let mut rest = rows;
     for (number, bounds) in starts.windows(2).enumerate() {
-        let (part, after) = rest.split_at_mut(bounds[1] - bounds[0]);
-        parts.push((number, bounds[0]..bounds[1], part));
+        let (chunk, after) = rest.split_at_mut(bounds[1] - bounds[0]);
+        chunks.push((number, bounds[0]..bounds[1], chunk));
         rest = after;
     }
     assert!(
         rest.is_empty(),
-        "the parts do not cover the last {} rows",
+        "the chunks do not cover the last {} rows",
         rest.len()
     );
     let work = |(number, range, rows)| work(number, range, rows);
-    if parts.len() == 1 || rayon::current_num_threads() == 1 {
-        parts.into_iter().map(work).collect()
+    if chunks.len() == 1 || rayon::current_num_threads() == 1 {
+        chunks.into_iter().map(work).collect()
     } else {
-        parts.into_par_iter().map(work).collect()
+        chunks.into_par_iter().map(work).collect()
     }
 }
 
-/// Returns whether `is` holds for all `rows`, which the threads of the current rayon pool share.
+/// Returns whether `holds` is true for all `rows`, which the threads of the current rayon pool
+/// share.
 ///
-/// There is no early exit inside a part of [`PART`] rows, so that the loop can be vectorised.
-pub fn all_rows<T: Sync>(rows: &[T], is: impl Fn(&T) -> bool + Sync) -> bool {
+/// There is no early exit inside a chunk of [`CHUNK_ROWS`] rows, so that the loop can be
+/// vectorised.
+pub fn all_rows<T: Sync>(rows: &[T], holds: impl Fn(&T) -> bool + Sync) -> bool {
     use rayon::prelude::*;
-    let whole = |rows: &[T]| rows.iter().fold(true, |all, row| all & is(row));
-    if rows.len() <= PART || rayon::current_num_threads() == 1 {
-        rows.chunks(PART).all(whole)
+    let all_hold = |rows: &[T]| rows.iter().fold(true, |all, row| all & holds(row));
+    if rows.len() <= CHUNK_ROWS || rayon::current_num_threads() == 1 {
+        rows.chunks(CHUNK_ROWS).all(all_hold)
     } else {
-        rows.par_chunks(PART).all(whole)
+        rows.par_chunks(CHUNK_ROWS).all(all_hold)
     }
 }
 
@@ -328,29 +330,35 @@ mod tests {
     #[test]
     fn counts_grow_in_closed_form() {
         let sizes = |c: Counts| [c.vertices, c.edges, c.faces, c.corners];
-        assert_eq!(sizes(Split::Quads.grown(&CUBE, 0)), [26, 48, 24, 96]);
-        assert_eq!(sizes(Split::Triangles.grown(&TRIANGLE, 3)), [6, 9, 4, 12]);
-        let sqrt3 = |trisect| sizes(Split::Sqrt3 { trisect }.grown(&TRIANGLE, 3));
+        assert_eq!(
+            sizes(Split::Quads.refined_counts(&CUBE, 0)),
+            [26, 48, 24, 96]
+        );
+        assert_eq!(
+            sizes(Split::Triangles.refined_counts(&TRIANGLE, 3)),
+            [6, 9, 4, 12]
+        );
+        let sqrt3 = |trisect| sizes(Split::Sqrt3 { trisect }.refined_counts(&TRIANGLE, 3));
         assert_eq!(sqrt3(false), [4, 6, 3, 9]);
         assert_eq!(sqrt3(true), [10, 18, 9, 27]);
         let huge = Counts {
             faces: usize::MAX / 2,
             ..TRIANGLE
         };
-        assert_eq!(Split::Triangles.grown(&huge, 0).faces, usize::MAX);
+        assert_eq!(Split::Triangles.refined_counts(&huge, 0).faces, usize::MAX);
     }
 
     #[test]
-    fn parts_cover_every_row_once() {
-        for rows in [0, 1, PART, PART + 1, 3 * PART] {
-            let starts = row_parts(rows);
-            let parts = (0..starts.len() - 1).flat_map(|part| rows_of_part(rows, part));
-            assert!(parts.eq(0..rows as u32));
+    fn chunks_cover_every_row_once() {
+        for rows in [0, 1, CHUNK_ROWS, CHUNK_ROWS + 1, 3 * CHUNK_ROWS] {
+            let starts = chunk_starts(rows);
+            let covered = (0..starts.len() - 1).flat_map(|chunk| rows_of_chunk(rows, chunk));
+            assert!(covered.eq(0..rows as u32));
             assert_eq!(starts.last(), Some(&rows));
         }
         for rows in [0, 1, 7, 8, 9, 100] {
             let mut seen = vec![0_usize; rows];
-            in_parts(&mut seen, 8, |first, rows| {
+            for_each_chunk(&mut seen, 8, |first, rows| {
                 for (i, row) in rows.iter_mut().enumerate() {
                     *row += first + i + 1;
                 }
@@ -358,11 +366,11 @@ mod tests {
             assert!(seen.iter().enumerate().all(|(i, &row)| row == i + 1));
         }
         let mut seen = vec![0; 6];
-        in_given_parts(&mut seen, &[0, 1, 1, 4, 6], |part, range, rows| {
+        map_chunks(&mut seen, &[0, 1, 1, 4, 6], |chunk, range, rows| {
             assert_eq!(range.len(), rows.len());
-            rows.fill(part);
+            rows.fill(chunk);
         });
         assert_eq!(seen, [0, 2, 2, 2, 3, 3]);
-        in_given_parts(&mut [0; 0], &[0], |_, _, _| unreachable!("no parts"));
+        map_chunks(&mut [0; 0], &[0], |_, _, _| unreachable!("no chunks"));
     }
 }

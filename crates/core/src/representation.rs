@@ -116,10 +116,10 @@ pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
     fn to_polygons(&self) -> PolygonMesh;
 
     /// Returns the handle that vertex `v` of `polygons` has in `from_polygons(polygons)`; O(1).
-    fn vertex_name(polygons: &PolygonMesh, v: VertexId) -> Self::Vertex;
+    fn vertex_handle(polygons: &PolygonMesh, v: VertexId) -> Self::Vertex;
 
     /// Returns the handle that face `f` of `polygons` has in `from_polygons(polygons)`; O(1).
-    fn face_name(polygons: &PolygonMesh, f: FaceId) -> Self::Face;
+    fn face_handle(polygons: &PolygonMesh, f: FaceId) -> Self::Face;
 
     /// Moves every vertex to its position in `positions`; O(vertices), or O(corners) if corners do
     /// not share vertices.

@@ -108,14 +108,14 @@ row_id! {
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Slot<H> {
     row: u32,
-    names: PhantomData<H>,
+    handle: PhantomData<H>,
 }
 
 impl<H: RowId> Slot<H> {
     /// The empty slot.
     pub const NONE: Self = Self {
         row: u32::MAX,
-        names: PhantomData,
+        handle: PhantomData,
     };
 
     /// Returns a slot that holds `handle`.
@@ -124,7 +124,7 @@ impl<H: RowId> Slot<H> {
         debug_assert_ne!(handle.row(), u32::MAX, "a row beyond MAX_ROWS");
         Self {
             row: handle.row(),
-            names: PhantomData,
+            handle: PhantomData,
         }
     }
 

@@ -31,19 +31,19 @@ impl<T, P: Probe> Table<T, P> {
     }
 }
 
-/// Returns the rows that meet the condition `sought` in a block of up to 64, as bits.
+/// Returns the rows that meet the condition `is_hit` in a block of up to 64, as bits.
 ///
 /// Few blocks have such a row. So the first test is whether there is one at all; it has no branch
 /// and compiles to vector instructions. Only then each row is tested for its bit.
 #[inline]
-pub fn hits_in<T>(block: &[T], sought: impl Fn(&T) -> bool) -> u64 {
+pub fn hits_in<T>(block: &[T], is_hit: impl Fn(&T) -> bool) -> u64 {
     if let Ok(block) = <&[T; BLOCK]>::try_from(block)
-        && !block.iter().fold(false, |any, row| any | sought(row))
+        && !block.iter().fold(false, |any, row| any | is_hit(row))
     {
         return 0;
     }
     let bits = block.iter().zip(0..);
-    let bits = bits.map(|(row, i)| u64::from(sought(row)) << i);
+    let bits = bits.map(|(row, i)| u64::from(is_hit(row)) << i);
     bits.fold(0, |mask, bit| mask | bit)
 }
 
@@ -90,10 +90,10 @@ mod tests {
             let values: Vec<usize> = (0..rows).map(|row| row * 5 % 7).collect();
             let probe = Traced::default();
             let table = Table::new("values", "row", values.clone()).probed(probe.clone());
-            for sought in 0..8 {
-                let found = table.scan(|block| hits_in(block, |&value| value == sought));
-                let expected = (0..rows).filter(|&row| values[row] == sought);
-                assert!(found.eq(expected), "{sought} in {rows} rows");
+            for wanted in 0..8 {
+                let found = table.scan(|block| hits_in(block, |&value| value == wanted));
+                let expected = (0..rows).filter(|&row| values[row] == wanted);
+                assert!(found.eq(expected), "{wanted} in {rows} rows");
                 let read = probe.take().into_iter().map(|access| access.row);
                 assert!(read.eq(0..rows), "each of {rows} rows once, in order");
             }

@@ -15,12 +15,12 @@ mod split_vertex;
 use crate::edit_error::EditError;
 use crate::edit_log::EditLog;
 use crate::editing::Editable;
-use crate::few::Few;
 use crate::handle::Pair;
 use crate::probe::Probe;
 use crate::query::MeshQuery;
 use crate::row_id::{FaceId, MAX_ROWS};
-use crate::scanned::{Hit, ScannedFaces, ScannedVertex, Sought};
+use crate::scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
+use crate::short_vec::ShortVec;
 
 type Refusal<V> = EditError<V, Pair<V>, FaceId>;
 
@@ -30,14 +30,14 @@ pub trait ScannedMesh<V>: MeshQuery<Vertex = V, Edge = Pair<V>, Face = FaceId> {
 impl<V, M: MeshQuery<Vertex = V, Edge = Pair<V>, Face = FaceId>> ScannedMesh<V> for M {}
 
 /// Returns whether the log uses what is reported to it.
-const fn listens<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
-    L::LISTENS
+const fn uses_reports<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
+    L::USES_REPORTS
 }
 
 /// Steps that several edits share.
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     /// Returns `f` if it exists.
-    fn existing(&self, f: FaceId) -> Result<FaceId, Refusal<V>> {
+    fn check_face(&self, f: FaceId) -> Result<FaceId, Refusal<V>> {
         if self.has(f) {
             Ok(f)
         } else {
@@ -51,7 +51,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
 
     /// Checks that handles can name this many more faces and corners. A face that grows moves, and
     /// takes new rows for all its corners.
-    fn room(&self, faces: usize, corners: usize) -> Result<(), Refusal<V>> {
+    fn check_capacity(&self, faces: usize, corners: usize) -> Result<(), Refusal<V>> {
         let full = |elements| EditError::TooMany {
             elements,
             limit: MAX_ROWS,
@@ -67,38 +67,38 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
 
     /// Returns whether a corner is at `v`; one scan.
     pub fn has_vertex(&self, v: V) -> bool {
-        self.scan(Sought::One(v)).next().is_some()
+        self.scan(SearchSet::One(v)).next().is_some()
     }
 
     /// Returns the corners at `v`. If a vertex is its coordinates, the same scan checks that the
     /// position `m` is free.
-    fn around(&self, v: V, m: V) -> Result<Few<Hit<V>>, Refusal<V>> {
-        let sought = if V::IS_PLACE {
-            Sought::Two([v, m])
+    fn hits_at(&self, v: V, m: V) -> Result<ShortVec<Hit<V>>, Refusal<V>> {
+        let set = if V::IS_POSITION {
+            SearchSet::Two([v, m])
         } else {
-            Sought::One(v)
+            SearchSet::One(v)
         };
-        let (mut around, mut occupied) = (Few::new(), false);
-        for hit in self.hits(sought) {
+        let (mut hits, mut occupied) = (ShortVec::new(), false);
+        for hit in self.hits(set) {
             occupied |= hit.at == m;
             if hit.at == v {
-                around.push(hit);
+                hits.push(hit);
             }
         }
-        if V::IS_PLACE && around.is_empty() {
+        if V::IS_POSITION && hits.is_empty() {
             return Err(EditError::NoSuchVertex { vertex: v });
         }
         if occupied {
             return Err(EditError::Occupied { vertex: m });
         }
-        Ok(around)
+        Ok(hits)
     }
 
     /// Returns all corners of `f`, starting at `corner`.
     fn corners_from(&self, f: FaceId, corner: usize) -> impl Iterator<Item = V::Corner> {
         let range = self.spans.range(f);
-        let round = (corner..range.end).chain(range.start..corner);
-        round.map(|corner| *self.corners.read(corner))
+        let cycle = (corner..range.end).chain(range.start..corner);
+        cycle.map(|corner| *self.corners.read(corner))
     }
 
     fn push(&mut self, face: &[V::Corner]) -> FaceId {
@@ -121,13 +121,13 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
 
     fn delete(&mut self, f: FaceId) {
         self.spans.blank(&mut self.corners, f, V::BLANK.corner());
-        self.holes.dig(f.index());
+        self.holes.insert(f.index());
     }
 
     /// Closes the gaps of deleted faces; O(corners). The structure reports its own vertices and
     /// edges.
     pub fn compact<M: ScannedMesh<V>>(&mut self, log: &mut impl EditLog<M>) {
-        if listens(log) {
+        if uses_reports(log) {
             for (new, old) in (0..).map(FaceId::new).zip(self.handles()) {
                 if new != old {
                     log.renamed_face(old, new);
@@ -135,7 +135,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
             }
         }
         self.spans.compact(&mut self.corners, &self.holes);
-        self.holes.fill();
+        self.holes.clear();
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::clone_by_field;
 use crate::distinct::IteratorExt;
-use crate::editing::{Editable, Editing, FACE_HOLES, HoleSet, NoHoles, Whole};
+use crate::editing::{Compact, Editable, Editing, FACE_HOLES, HoleSet, NoHoles};
 use crate::face_spans::FaceSpans;
 use crate::handle::{Handle, Pair};
 use crate::memory::TableBytes;
@@ -21,10 +21,10 @@ pub trait ScannedVertex: Handle {
     const BLANK: Self;
     /// Whether a vertex is its coordinates: then it exists as long as a face has it, and no two
     /// vertices are at one position.
-    const IS_PLACE: bool;
+    const IS_POSITION: bool;
 
     /// Returns the vertex of a corner.
-    fn of(corner: Self::Corner) -> Self;
+    fn from_corner(corner: Self::Corner) -> Self;
     /// Returns the vertex in the form of a corner.
     fn corner(self) -> Self::Corner;
     /// Returns whether `corner` is at this vertex.
@@ -41,10 +41,10 @@ impl ScannedVertex for VertexId {
     /// One bit for each row up to the highest member.
     type Set = Vec<u64>;
     const BLANK: Self = Self::new(u32::MAX);
-    const IS_PLACE: bool = false;
+    const IS_POSITION: bool = false;
 
     #[inline]
-    fn of(corner: Self) -> Self {
+    fn from_corner(corner: Self) -> Self {
         corner
     }
 
@@ -79,7 +79,7 @@ impl ScannedVertex for VertexId {
 
 /// The vertices that a scan searches for.
 #[derive(Clone, Debug)]
-pub enum Sought<V, S> {
+pub enum SearchSet<V, S> {
     /// One vertex.
     One(V),
     /// Two vertices.
@@ -90,10 +90,10 @@ pub enum Sought<V, S> {
     Many(S),
 }
 
-impl<V: ScannedVertex> Sought<V, V::Set> {
-    /// Builds the search for all of `vertices`, which must not be empty.
+impl<V: ScannedVertex> SearchSet<V, V::Set> {
+    /// Builds the set of `vertices`, which must not be empty.
     #[inline]
-    pub fn all(vertices: &[V]) -> Self {
+    pub fn from_vertices(vertices: &[V]) -> Self {
         match *vertices {
             [a] => Self::One(a),
             [a, b] => Self::Two([a, b]),
@@ -103,13 +103,17 @@ impl<V: ScannedVertex> Sought<V, V::Set> {
         }
     }
 
-    /// Builds the search for every second corner of a face: each of its sides ends at one of them.
+    /// Builds the set of every second corner of a face: each side of the face ends at one of them.
     pub fn every_second(face: &[V::Corner]) -> Self {
         match *face {
-            [a, _, c] | [a, _, c, _] => Self::Two([a, c].map(V::of)),
-            [a, _, c, _, e] | [a, _, c, _, e, _] => Self::Four([a, c, e, e].map(V::of)),
-            [a, _, c, _, e, _, g] | [a, _, c, _, e, _, g, _] => Self::Four([a, c, e, g].map(V::of)),
-            _ => Self::Many(V::set(face.iter().step_by(2).map(|&corner| V::of(corner)))),
+            [a, _, c] | [a, _, c, _] => Self::Two([a, c].map(V::from_corner)),
+            [a, _, c, _, e] | [a, _, c, _, e, _] => Self::Four([a, c, e, e].map(V::from_corner)),
+            [a, _, c, _, e, _, g] | [a, _, c, _, e, _, g, _] => {
+                Self::Four([a, c, e, g].map(V::from_corner))
+            }
+            _ => Self::Many(V::set(
+                face.iter().step_by(2).map(|&corner| V::from_corner(corner)),
+            )),
         }
     }
 
@@ -162,7 +166,7 @@ impl<V: Handle> Hit<V> {
 /// Corners without a face, because it was deleted or moved to another place in the table, are
 /// blank: no scan finds them.
 #[derive(Debug)]
-pub struct ScannedFaces<V: ScannedVertex, P: Probe = Untraced, E: Editing = Whole> {
+pub struct ScannedFaces<V: ScannedVertex, P: Probe = Untraced, E: Editing = Compact> {
     /// The corners, face by face.
     pub corners: Table<V::Corner, P>,
     /// The division of the corners into faces, deleted ones included.
@@ -186,8 +190,11 @@ impl<V: ScannedVertex, E: Editing> ScannedFaces<V, Untraced, E> {
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     /// Converts to faces without deletion; `None` if they have not been compacted.
-    pub fn into_whole(self) -> Option<ScannedFaces<V, P>> {
-        let spans = self.spans.into_whole().filter(|_| self.holes.is_empty())?;
+    pub fn into_compact(self) -> Option<ScannedFaces<V, P>> {
+        let spans = self
+            .spans
+            .into_compact()
+            .filter(|_| self.holes.is_empty())?;
         Some(ScannedFaces {
             corners: self.corners,
             spans,
@@ -258,23 +265,23 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
     /// Returns the vertices of `f`, in order.
     #[inline]
     pub fn face_vertices(&self, f: FaceId) -> impl Iterator<Item = V> {
-        self.face(f).iter().map(|&corner| V::of(corner))
+        self.face(f).iter().map(|&corner| V::from_corner(corner))
     }
 
     /// Returns the sides of `f`, in order.
     #[inline]
     pub fn face_edges(&self, f: FaceId) -> impl Iterator<Item = Pair<V>> + use<'_, V, P, E> {
         let corners = self.face(f);
-        Pair::sides(corners.len(), |i| V::of(corners[i]))
+        Pair::sides(corners.len(), |i| V::from_corner(corners[i]))
     }
 
-    /// Scans all corners for those at a vertex in `sought`, in order.
+    /// Scans all corners for those at a vertex in `set`, in order.
     #[inline]
     pub fn scan(
         &self,
-        sought: Sought<V, V::Set>,
+        set: SearchSet<V, V::Set>,
     ) -> impl Iterator<Item = usize> + use<'_, V, P, E> {
-        self.corners.scan(move |block| sought.hits(block))
+        self.corners.scan(move |block| set.hits(block))
     }
 
     /// Scans like [`scan`](Self::scan); returns each corner with its face and the vertices before
@@ -282,11 +289,12 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
     #[inline]
     pub fn hits(
         &self,
-        sought: Sought<V, V::Set>,
+        set: SearchSet<V, V::Set>,
     ) -> impl Iterator<Item = Hit<V>> + use<'_, V, P, E> {
-        self.scan(sought).map(|corner| {
+        self.scan(set).map(|corner| {
             let (face, corners) = self.spans.around(corner);
-            let [before, at, after] = corners.map(|corner| V::of(*self.corners.read(corner)));
+            let [before, at, after] =
+                corners.map(|corner| V::from_corner(*self.corners.read(corner)));
             Hit {
                 corner,
                 face,
@@ -299,14 +307,14 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
 
     /// VV; one scan.
     pub fn vertex_vertices(&self, v: V) -> impl Iterator<Item = V> {
-        let hits = self.hits(Sought::One(v));
+        let hits = self.hits(SearchSet::One(v));
         hits.flat_map(|hit| [hit.before, hit.after]).distinct()
     }
 
     /// VF; one scan. A face has at most one corner at `v`, so no face is yielded twice.
     #[inline]
     pub fn vertex_faces(&self, v: V) -> impl Iterator<Item = FaceId> {
-        let corners = self.scan(Sought::One(v));
+        let corners = self.scan(SearchSet::One(v));
         corners.map(|corner| self.spans.face_of(corner))
     }
 
@@ -315,7 +323,7 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
     pub fn edge_edges(&self, e: Pair<V>) -> impl Iterator<Item = Pair<V>> + use<V, P, E> {
         let mut edges = Vec::new();
         if !e.has(V::BLANK) {
-            let hits = self.hits(Sought::Two(e.ends()));
+            let hits = self.hits(SearchSet::Two(e.ends()));
             edges.extend(hits.flat_map(|hit| hit.sides()).distinct());
         }
         match edges.iter().position(|&edge| edge == e) {
@@ -328,22 +336,22 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
     /// EF; one scan. A face has at most one corner at the first end, so no face is yielded twice.
     pub fn edge_faces(&self, e: Pair<V>) -> impl Iterator<Item = FaceId> {
         let [a, b] = e.ends();
-        let corners = self.scan(Sought::One(a));
+        let corners = self.scan(SearchSet::One(a));
         let corners = corners.take_while(move |_| a != V::BLANK);
         corners.filter_map(move |corner| {
             let (face, [before, _, after]) = self.spans.around(corner);
-            let is_other = |corner| V::of(*self.corners.read(corner)) == b;
+            let is_other = |corner| V::from_corner(*self.corners.read(corner)) == b;
             (is_other(before) || is_other(after)).then_some(face)
         })
     }
 
     /// FF; one scan for every second corner of `f`, because each side of `f` ends at one of them.
     pub fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
-        let sought = Sought::every_second(self.face(f));
+        let set = SearchSet::every_second(self.face(f));
         let mut sides: Vec<Pair<V>> = self.face_edges(f).collect();
         sides.sort_unstable();
         let is_side = move |side: Pair<V>| sides.binary_search(&side).is_ok();
-        let hits = self.hits(sought).filter_map(move |hit| {
+        let hits = self.hits(set).filter_map(move |hit| {
             let across = hit.face != f && hit.sides().into_iter().any(&is_side);
             across.then_some(hit.face)
         });
@@ -409,12 +417,12 @@ mod tests {
             let v = |i: u32| VertexId::new(i % (count + 2));
             for i in 0..count + 2 {
                 let some = [i, i + 7, i + 1, i + 30, i + 31, i + 2].map(v);
-                for sought in (1..=some.len()).map(|n| &some[..n]) {
+                for wanted in (1..=some.len()).map(|n| &some[..n]) {
                     let all = 0..mesh.corners.len();
-                    let expected = all.filter(|&c| sought.contains(&mesh.corners.rows()[c]));
+                    let expected = all.filter(|&c| wanted.contains(&mesh.corners.rows()[c]));
                     assert!(
-                        mesh.scan(Sought::all(sought)).eq(expected),
-                        "{sought:?} of {count} faces"
+                        mesh.scan(SearchSet::from_vertices(wanted)).eq(expected),
+                        "{wanted:?} of {count} faces"
                     );
                 }
             }
@@ -426,7 +434,7 @@ mod tests {
         let face: Vec<VertexId> = (0..20).map(VertexId::new).collect();
         for degree in 3..=face.len() {
             let face = &face[..degree];
-            let hits = Sought::<VertexId, _>::every_second(face).hits(face);
+            let hits = SearchSet::<VertexId, _>::every_second(face).hits(face);
             let is_hit = |v: VertexId| hits >> v.index() & 1 == 1;
             let mut sides = Pair::sides(degree, |i| face[i]).map(Pair::ends);
             assert!(
@@ -450,7 +458,7 @@ mod tests {
         );
         mesh.spans.blank(&mut mesh.corners, f(1), VertexId::BLANK);
         assert!(mesh.check_holes().is_err(), "blank, but no hole");
-        mesh.holes.dig(1);
+        mesh.holes.insert(1);
         assert_eq!(mesh.check_holes(), Ok(()));
         let blank = VertexId::BLANK;
         for other in [VertexId::new(0), blank] {
@@ -460,7 +468,7 @@ mod tests {
         }
         // The blank corners are beyond the words of the set.
         let many: Vec<VertexId> = (0..6).map(VertexId::new).collect();
-        assert_eq!(mesh.scan(Sought::all(&many)).count(), 6);
+        assert_eq!(mesh.scan(SearchSet::from_vertices(&many)).count(), 6);
         mesh.corners.rows_mut()[3] = many[3];
         let wrong = mesh.check_holes().unwrap_err();
         assert_eq!(wrong, "corner 3 is not blank, but no face has it");
@@ -472,7 +480,7 @@ mod tests {
         let mut mesh = ScannedFaces::from(faces(&[&[0, 1, 2, 3], &[2, 1, 4]]));
         mesh.spans
             .blank(&mut mesh.corners, FaceId::new(1), VertexId::BLANK);
-        mesh.holes.dig(1);
+        mesh.holes.insert(1);
         mesh.face(FaceId::new(1));
     }
 }

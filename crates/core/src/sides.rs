@@ -98,7 +98,7 @@ impl<T: Copy + Default> Buckets<T> {
     /// Visits the sides twice: to count them, and to place the result of `entry` for the two ends
     /// and the corner of each side; O(corners + vertices).
     #[inline(always)]
-    pub(crate) fn of(
+    pub(crate) fn new(
         vertices: usize,
         faces: &impl Sides,
         entry: impl Fn(VertexId, VertexId, u32) -> T,
@@ -158,10 +158,10 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
         vertices: usize,
     ) -> impl Iterator<Item = Pair<VertexId>> + use<P, E> {
         let higher_end = |a: VertexId, b: VertexId, _| a.max(b).index() as u32;
-        let Buckets { entries, ends } = Buckets::of(vertices, &(self, corners, holes), higher_end);
+        let Buckets { entries, ends } = Buckets::new(vertices, &(self, corners, holes), higher_end);
         // By higher end: the lower end of the last edge found there; at first the vertex itself,
         // which is never its own lower end.
-        let mut met: Vec<u32> = (0..row(vertices)).collect();
+        let mut last_low: Vec<u32> = (0..row(vertices)).collect();
         let (mut low, mut at) = (0_u32, 0);
         std::iter::from_fn(move || {
             loop {
@@ -170,7 +170,7 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
                     low += 1;
                 }
                 at += 1;
-                if std::mem::replace(&mut met[high as usize], low) != low {
+                if std::mem::replace(&mut last_low[high as usize], low) != low {
                     return Some(Pair::new(VertexId::new(low), VertexId::new(high)));
                 }
             }

@@ -141,7 +141,7 @@ impl<T, P: Probe> Table<T, P> {
     }
 
     /// Returns a table of other rows, observed by the same probe.
-    pub fn beside<U>(
+    pub fn new_like<U>(
         &self,
         name: &'static str,
         element: &'static str,
@@ -176,7 +176,7 @@ impl<T, P: Probe> Table<T, P> {
     }
 
     /// Frees spare memory if less than half of the capacity is used. Not observed.
-    pub fn give_back(&mut self) {
+    pub fn shrink_if_half_empty(&mut self) {
         if self.rows.len() < self.rows.capacity() / 2 {
             self.rows.shrink_to_fit();
         }

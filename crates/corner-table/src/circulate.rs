@@ -220,18 +220,18 @@ pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
     mesh: &'a AnyCornerTable<P, E>,
     /// The corner that faces the next edge.
     at: Option<CornerId>,
-    turn: Turn,
+    direction: Direction,
     /// The corner that faces the edge, on the side where the walk began.
     near: Slot<CornerId>,
     /// The corner that faces the edge on the other side: the walk ends there.
     far: Slot<CornerId>,
     /// Whether the walk around the other end has not started.
-    more: bool,
+    other_end_pending: bool,
 }
 
 /// The direction of a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Turn {
+enum Direction {
     Counterclockwise,
     Clockwise,
 }
@@ -245,8 +245,8 @@ impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
             far: mesh.across(e),
             near: Slot::some(c),
             at: Some(c.prev()),
-            turn: Turn::Counterclockwise,
-            more: true,
+            direction: Direction::Counterclockwise,
+            other_end_pending: true,
         }
     }
 }
@@ -264,20 +264,20 @@ impl<P: Probe, E: Editing> EdgeEdges<'_, P, E> {
     /// Starts the next walk. Returns false if all walks are finished.
     #[inline]
     fn begin_next_walk(&mut self) -> bool {
-        // A walk that returned to the edge has visited the whole fan; one that met a boundary has
-        // not.
-        if self.at.is_none() && self.turn == Turn::Counterclockwise {
-            self.turn = Turn::Clockwise;
+        // A walk that returned to the edge has visited the whole fan. A walk that ended at a
+        // boundary has not.
+        if self.at.is_none() && self.direction == Direction::Counterclockwise {
+            self.direction = Direction::Clockwise;
             self.at = self.far.get().map(CornerId::next);
             return true;
         }
-        let more = std::mem::take(&mut self.more);
-        if more {
-            self.turn = Turn::Counterclockwise;
+        let starts_other_end = std::mem::take(&mut self.other_end_pending);
+        if starts_other_end {
+            self.direction = Direction::Counterclockwise;
             (self.near, self.far) = (self.far, self.near);
             self.at = self.near.get().map(CornerId::prev);
         }
-        more
+        starts_other_end
     }
 }
 
@@ -288,9 +288,9 @@ impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
     fn next(&mut self) -> Option<EdgeCorner> {
         loop {
             if let Some((edge, across)) = self.here() {
-                self.at = across.map(|across| match self.turn {
-                    Turn::Counterclockwise => across.prev(),
-                    Turn::Clockwise => across.next(),
+                self.at = across.map(|across| match self.direction {
+                    Direction::Counterclockwise => across.prev(),
+                    Direction::Clockwise => across.next(),
                 });
                 return Some(edge);
             }
@@ -305,14 +305,14 @@ impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
         let mut folded = init;
         loop {
             // Two loops, so that the inner steps do not test the direction.
-            match self.turn {
-                Turn::Counterclockwise => {
+            match self.direction {
+                Direction::Counterclockwise => {
                     while let Some((edge, across)) = self.here() {
                         folded = f(folded, edge);
                         self.at = across.map(CornerId::prev);
                     }
                 }
-                Turn::Clockwise => {
+                Direction::Clockwise => {
                     while let Some((edge, across)) = self.here() {
                         folded = f(folded, edge);
                         self.at = across.map(CornerId::next);
@@ -336,8 +336,8 @@ mod tests {
     use super::*;
     use crate::mesh::CornerTable;
 
-    /// Checks that `fold` agrees with `next`, from the start and after any number of steps.
-    fn folds_as_it_steps<I>(items: I, of: impl Debug)
+    /// Checks that `fold` visits the items of `next`, from the start and after any number of steps.
+    fn check_fold_equals_next<I>(items: I, of: impl Debug)
     where
         I: Iterator<Item: Debug + PartialEq> + Clone,
     {
@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn walks_fold_as_they_step() {
+    fn fold_visits_the_items_of_next() {
         let open = sixfold_shapes::grid_with_hole(4, 4).expect("a valid size");
         for polygons in [
             sixfold_shapes::octahedron(),
@@ -364,13 +364,13 @@ mod tests {
         ] {
             let mesh = CornerTable::from_polygons(&polygons).expect("manifold");
             for v in mesh.vertices() {
-                folds_as_it_steps(mesh.corners_at(v), v);
-                folds_as_it_steps(mesh.fan(v), v);
-                folds_as_it_steps(Neighbours::new(&mesh, v), v);
-                folds_as_it_steps(Spokes::new(&mesh, v), v);
+                check_fold_equals_next(mesh.corners_at(v), v);
+                check_fold_equals_next(mesh.fan(v), v);
+                check_fold_equals_next(Neighbours::new(&mesh, v), v);
+                check_fold_equals_next(Spokes::new(&mesh, v), v);
             }
             for e in mesh.edges() {
-                folds_as_it_steps(EdgeEdges::new(&mesh, e), e);
+                check_fold_equals_next(EdgeEdges::new(&mesh, e), e);
             }
         }
     }

@@ -20,7 +20,7 @@ impl<E: Editing> Representation for AnyCornerTable<Untraced, E> {
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
 
     fn type_path() -> &'static str {
-        match E::DELETES {
+        match E::CAN_DELETE {
             true => "sixfold_corner_table::EditableCornerTable",
             false => "sixfold_corner_table::CornerTable",
         }
@@ -29,14 +29,14 @@ impl<E: Editing> Representation for AnyCornerTable<Untraced, E> {
     /// Pairs the sides, links the corners that face a pair, then sets `corner` of each vertex.
     /// O(corners + vertices), without hashing.
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
-        let refusal = || Self::CAPABILITIES.refusal(polygons);
+        let refusal = || Self::CAPABILITIES.build_error(polygons);
         let (vertices, faces) = (polygons.vertex_count(), polygons.faces());
         if !faces.is_empty() && faces.uniform_degree() != Some(3) {
             return Err(refusal());
         }
         // Scratch memory for the pairing first; then filled with the vertices.
         let mut vertex = vec![VertexId::new(0); faces.corners().len()];
-        let links = Links::between(vertices, faces, &mut vertex).ok_or_else(refusal)?;
+        let links = Links::from_faces(vertices, faces, &mut vertex).ok_or_else(refusal)?;
         vertex.copy_from_slice(faces.corners());
         let corner = links.first_corners(vertices, &vertex);
         if !links.every_vertex_is_one_fan(&corner) {
@@ -66,11 +66,11 @@ impl<E: Editing> Representation for AnyCornerTable<Untraced, E> {
         PolygonMesh::from_faces(positions, faces).expect("I1")
     }
 
-    fn vertex_name(_: &PolygonMesh, v: VertexId) -> VertexId {
+    fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
         v
     }
 
-    fn face_name(_: &PolygonMesh, f: FaceId) -> FaceId {
+    fn face_handle(_: &PolygonMesh, f: FaceId) -> FaceId {
         f
     }
 
@@ -137,7 +137,7 @@ struct Links {
 impl Links {
     /// Finds for each corner the one that faces the same edge from the other side; O(corners +
     /// vertices). Returns `None` if the sides cannot be paired. `scratch` has one row per corner.
-    fn between(vertices: usize, faces: &FaceList, scratch: &mut [VertexId]) -> Option<Self> {
+    fn from_faces(vertices: usize, faces: &FaceList, scratch: &mut [VertexId]) -> Option<Self> {
         let mut opposite = vec![Slot::some(CornerId::new(0)); faces.corners().len()];
         let (mut swing, edges) = pair_triangle_sides(vertices, faces, scratch, |own, across| {
             let [own, across] = [own, across].map(CornerId::new);
@@ -193,17 +193,17 @@ impl Links {
 
     /// Returns whether the walks from `first` visit every corner.
     fn every_vertex_is_one_fan(&self, first: &[Slot<CornerId>]) -> bool {
-        let mut met = 0;
+        let mut visited = 0;
         for first in first.iter().filter_map(|first| first.get()) {
             let mut at = first.row();
             while let Some(&next) = self.swing.get(at as usize) {
-                met += 1;
+                visited += 1;
                 at = next;
                 if at == first.row() {
                     break;
                 }
             }
         }
-        met == self.swing.len()
+        visited == self.swing.len()
     }
 }

@@ -35,7 +35,7 @@ use sixfold_core::{
 };
 
 use crate::mesh::{
-    AnyCornerTable, CornerId, CornerTable, EdgeCorner, EditableCornerTable, NOWHERE, names_edge,
+    AnyCornerTable, CornerId, CornerTable, EdgeCorner, EditableCornerTable, NO_VERTEX, names_edge,
 };
 
 /// The error of an edit; the same type for every probe.
@@ -54,9 +54,9 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
         costs
     };
 
-    type Whole = CornerTable<P>;
+    type Compact = CornerTable<P>;
 
-    fn into_whole(mut self) -> CornerTable<P> {
+    fn into_compact(mut self) -> CornerTable<P> {
         self.compact(&mut ());
         AnyCornerTable {
             positions: self.positions,
@@ -115,7 +115,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
         for v in (0..row(self.corner.len())).map(VertexId::new) {
             let isolated = self.corner.read(v.index()).get().is_none();
             if isolated && !self.vertex_holes.has(v.index()) {
-                self.vertex_holes.dig(v.index());
+                self.vertex_holes.insert(v.index());
                 log.removed_vertex(v);
             }
         }
@@ -129,7 +129,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
         _: Point,
         _: &mut impl EditLog<Self>,
     ) -> Result<VertexId, Refusal> {
-        Err(makes_polygons(Edit::SplitEdge))
+        Err(unsupported(Edit::SplitEdge))
     }
 
     /// O(1) amortised.
@@ -160,7 +160,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
         _: [VertexId; 2],
         _: &mut impl EditLog<Self>,
     ) -> Result<EdgeCorner, Refusal> {
-        Err(makes_polygons(Edit::SplitFace))
+        Err(unsupported(Edit::SplitFace))
     }
 
     /// Always returns an error: this edit makes polygons.
@@ -169,7 +169,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
         _: EdgeCorner,
         _: &mut impl EditLog<Self>,
     ) -> Result<FaceId, Refusal> {
-        Err(makes_polygons(Edit::DissolveEdge))
+        Err(unsupported(Edit::DissolveEdge))
     }
 
     /// O(valence of a third corner) to check that the new edge does not exist; O(1) to change the
@@ -208,12 +208,12 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
     }
 
     fn compact(&mut self, log: &mut impl EditLog<Self>) {
-        self.close_holes(log);
+        self.compact_tables(log);
     }
 }
 
 #[cold]
-fn makes_polygons(edit: Edit) -> Refusal {
+fn unsupported(edit: Edit) -> Refusal {
     EditError::Unsupported {
         structure: EditableCornerTable::NAME,
         edit,
@@ -252,7 +252,7 @@ impl<P: Probe> EditableCornerTable<P> {
         let first = 3 * f.index();
         if first < self.vertex.len()
             && let &[a, b, c] = self.vertex.read_range(first..first + 3)
-            && a != NOWHERE
+            && a != NO_VERTEX
         {
             return Ok([a, b, c]);
         }
@@ -303,9 +303,9 @@ impl<P: Probe> EditableCornerTable<P> {
         self.opposite.extend(opposites);
     }
 
-    /// Sets the opposite of `across` to `c`, if `across` is not empty: the second half of a link.
+    /// Sets the opposite of `across` to `c`, if `across` is not empty. The caller links `c`.
     #[inline]
-    fn answer(&mut self, across: Slot<CornerId>, c: Slot<CornerId>) {
+    fn set_opposite(&mut self, across: Slot<CornerId>, c: Slot<CornerId>) {
         if let Some(across) = across.get() {
             *self.opposite.write(across.index()) = c;
         }
@@ -313,7 +313,7 @@ impl<P: Probe> EditableCornerTable<P> {
 
     /// Sets `corner(v)` to `new`, if it was `old`.
     #[inline]
-    fn reenter(&mut self, v: VertexId, old: CornerId, new: CornerId) {
+    fn replace_corner(&mut self, v: VertexId, old: CornerId, new: CornerId) {
         if *self.corner.read(v.index()) == Slot::some(old) {
             *self.corner.write(v.index()) = Slot::some(new);
         }
@@ -324,17 +324,17 @@ impl<P: Probe> EditableCornerTable<P> {
     fn delete_triangle(&mut self, f: FaceId) {
         let first = 3 * f.row();
         for c in [first, first + 1, first + 2].map(CornerId::new) {
-            *self.vertex.write(c.index()) = NOWHERE;
+            *self.vertex.write(c.index()) = NO_VERTEX;
             *self.opposite.write(c.index()) = Slot::some(c);
         }
-        self.face_holes.dig(f.index());
+        self.face_holes.insert(f.index());
     }
 
     /// Deletes `v`, which has no triangles any more.
     #[inline]
     fn delete_vertex(&mut self, v: VertexId) {
         *self.corner.write(v.index()) = Slot::NONE;
-        self.vertex_holes.dig(v.index());
+        self.vertex_holes.insert(v.index());
     }
 }
 
@@ -346,7 +346,7 @@ fn faced_by(c: CornerId) -> EdgeCorner {
 
 /// Reports the new handle of an edge to the log, if it changed.
 #[inline]
-fn tell_renamed<P: Probe>(
+fn report_renamed<P: Probe>(
     log: &mut impl EditLog<EditableCornerTable<P>>,
     old: EdgeCorner,
     new: EdgeCorner,

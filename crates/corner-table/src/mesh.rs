@@ -1,8 +1,8 @@
 //! The tables, their invariants, and the corner operators.
 
 use sixfold_core::{
-    Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe, Slot, Table, Untraced,
-    VERTEX_HOLES, VertexId, Whole, row_id,
+    Compact, Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe, Slot, Table, Untraced,
+    VERTEX_HOLES, VertexId, row_id,
 };
 
 row_id! {
@@ -101,7 +101,7 @@ pub struct AnyCornerTable<P: Probe, E: Editing> {
 sixfold_core::clone_by_field!(AnyCornerTable<P: Probe, E: Editing> { positions, corner, vertex, opposite, vertex_holes, face_holes });
 
 /// A corner table that cannot delete elements: an [`AnyCornerTable`] without holes.
-pub type CornerTable<P = Untraced> = AnyCornerTable<P, Whole>;
+pub type CornerTable<P = Untraced> = AnyCornerTable<P, Compact>;
 
 /// A corner table that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an [`AnyCornerTable`]
 /// with holes.
@@ -122,7 +122,7 @@ impl<P: Probe> From<CornerTable<P>> for EditableCornerTable<P> {
 }
 
 /// The vertex row of the corners of a deleted triangle; no table has this row.
-pub(crate) const NOWHERE: VertexId = VertexId::new(u32::MAX);
+pub(crate) const NO_VERTEX: VertexId = VertexId::new(u32::MAX);
 
 /// The operators of the corner table (Rossignac et al.), each O(1). An operator that reads a table
 /// panics with the row if the row does not exist. The operators do not check for deleted triangles:
@@ -191,7 +191,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
     #[inline]
     pub fn corner_at(&self, v: VertexId) -> Option<CornerId> {
         let corner = self.corner.read(v.index()).get();
-        if E::DELETES && corner.is_none() {
+        if E::CAN_DELETE && corner.is_none() {
             self.expect_vertex(v);
         }
         corner
@@ -200,7 +200,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
     /// Returns the three corners of `t`, counter-clockwise; O(1).
     #[inline]
     pub fn corners_of(&self, t: FaceId) -> [CornerId; 3] {
-        if 3 * t.index() >= self.vertex.len() || *self.vertex.read(3 * t.index()) == NOWHERE {
+        if 3 * t.index() >= self.vertex.len() || *self.vertex.read(3 * t.index()) == NO_VERTEX {
             self.no_such_triangle(t);
         }
         corners_of(t)
@@ -231,7 +231,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
     #[inline]
     pub(crate) fn vertices_of(&self, t: FaceId) -> [VertexId; 3] {
         let [a, b, c] = self.rows_of(&self.vertex, t);
-        if E::DELETES && a == NOWHERE {
+        if E::CAN_DELETE && a == NO_VERTEX {
             self.no_such_triangle(t);
         }
         [a, b, c]
@@ -241,7 +241,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
     #[inline]
     pub(crate) fn opposites_of(&self, t: FaceId) -> [(CornerId, Slot<CornerId>); 3] {
         let [i, j, k] = corners_of(t);
-        if E::DELETES {
+        if E::CAN_DELETE {
             self.expect_triangle(t);
         }
         let [a, b, c] = self.rows_of(&self.opposite, t);
@@ -255,7 +255,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
             self.no_such_edge(e);
         }
         let [a, b] = [e.corner().next(), e.corner().prev()].map(|c| self.vertex(c));
-        if E::DELETES && a == NOWHERE {
+        if E::CAN_DELETE && a == NO_VERTEX {
             self.no_such_edge(e);
         }
         [a, b]
@@ -265,7 +265,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
     #[inline]
     pub(crate) fn across(&self, e: EdgeCorner) -> Slot<CornerId> {
         let across = *self.opposite.read(e.index());
-        if E::DELETES && across == Slot::some(e.corner()) {
+        if E::CAN_DELETE && across == Slot::some(e.corner()) {
             self.no_such_edge(e);
         }
         across

@@ -25,7 +25,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyCornerTable<P, E> {
             let across = *self.opposite.read(c.index());
             let edge = edge_between(c, across);
             // The corners of a deleted triangle are their own opposites.
-            let is_there = !E::DELETES || across != Slot::some(c);
+            let is_there = !E::CAN_DELETE || across != Slot::some(c);
             (edge.corner() == c && is_there).then_some(edge)
         })
     }

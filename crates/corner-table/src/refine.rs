@@ -39,14 +39,14 @@
 //! In the child, corner(v) is 3 prev(corner(v)), and the corner of the point of `t` is 9t + 2.
 
 use sixfold_core::{
-    Counts, FaceId, MeshQuery, NoHoles, PART, Point, Ranks, Refine, RefineError, RowId, Slot,
-    Split, Table, VertexId, all_rows, check_split, in_given_parts, in_parts, row,
+    CHUNK_ROWS, Counts, FaceId, MeshQuery, NoHoles, Point, Ranks, Refine, RefineError, RowId, Slot,
+    Split, Table, VertexId, all_rows, check_split, for_each_chunk, map_chunks, row,
 };
 
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
 
-/// Number of corners in one part of the edges: whole triangles.
-const CORNERS: usize = 3 * PART;
+/// Number of corners in one chunk: whole triangles.
+const CHUNK_CORNERS: usize = 3 * CHUNK_ROWS;
 
 /// Numbers of the edges: which corners name an edge, and which face another triangle.
 ///
@@ -99,16 +99,16 @@ impl Refine for CornerTable {
         numbers.inner.fill(opposite, inner);
     }
 
-    fn edge_parts(&self, numbers: &EdgeNumbers) -> Vec<usize> {
-        let starts = (0..self.corner_count()).step_by(CORNERS);
+    fn edge_chunks(&self, numbers: &EdgeNumbers) -> Vec<usize> {
+        let starts = (0..self.corner_count()).step_by(CHUNK_CORNERS);
         let starts = starts.map(|corner| numbers.names.rank(corner));
         starts.chain([numbers.names.members()]).collect()
     }
 
     #[inline]
-    fn edges_of_part(&self, _: &EdgeNumbers, part: usize) -> impl Iterator<Item = EdgeCorner> {
-        let end = self.corner_count().min((part + 1) * CORNERS);
-        let corners = (row(part * CORNERS)..row(end)).map(CornerId::new);
+    fn edges_of_chunk(&self, _: &EdgeNumbers, chunk: usize) -> impl Iterator<Item = EdgeCorner> {
+        let end = self.corner_count().min((chunk + 1) * CHUNK_CORNERS);
+        let corners = (row(chunk * CHUNK_CORNERS)..row(end)).map(CornerId::new);
         corners.filter_map(|c| {
             let edge = self.edge(c);
             (edge.corner() == c).then_some(edge)
@@ -186,13 +186,17 @@ impl CornerTable {
     /// across two sides of each triangle.
     fn check_double_edges(&self) -> Result<(), RefineError> {
         let across = |o: Slot<CornerId>| o.get().map(CornerId::triangle);
-        let twofold = |&[a, b, _]: &[Slot<CornerId>; 3]| a != Slot::NONE && across(a) == across(b);
+        let has_double_edge =
+            |&[a, b, _]: &[Slot<CornerId>; 3]| a != Slot::NONE && across(a) == across(b);
         let opposites = self.opposite_corners().as_chunks().0;
-        if all_rows(opposites, |triangle| !twofold(triangle)) {
+        if all_rows(opposites, |triangle| !has_double_edge(triangle)) {
             return Ok(());
         }
-        let mut twofold = self.faces().zip(opposites).filter(|(_, t)| twofold(t));
-        match twofold.find_map(|(first, t)| Some((first, across(t[0])?))) {
+        let mut doubled = self
+            .faces()
+            .zip(opposites)
+            .filter(|(_, t)| has_double_edge(t));
+        match doubled.find_map(|(first, t)| Some((first, across(t[0])?))) {
             Some((first, second)) => Err(RefineError::DoubleEdge { first, second }),
             None => Ok(()),
         }
@@ -204,8 +208,8 @@ impl CornerTable {
     fn split_in_four(&self, numbers: &EdgeNumbers, child: &mut Self) {
         let count = self.positions.len();
         let middle = |c, across| VertexId::new(count as u32 + numbers.number(c, across));
-        let four = 12 * PART;
-        in_parts(child.vertex.rows_mut(), four, |first, rows| {
+        let four = 12 * CHUNK_ROWS;
+        for_each_chunk(child.vertex.rows_mut(), four, |first, rows| {
             let vertices = triangles(self.corner_vertices(), first / 4);
             let opposites = triangles(self.opposite_corners(), first / 4);
             let mut c = first as u32 / 4;
@@ -217,7 +221,7 @@ impl CornerTable {
                 c += 3;
             }
         });
-        in_parts(child.opposite.rows_mut(), four, |first, rows| {
+        for_each_chunk(child.opposite.rows_mut(), four, |first, rows| {
             let opposites = triangles(self.opposite_corners(), first / 4);
             let mut c = first as u32;
             for (&across, rows) in opposites.zip(rows.as_chunks_mut().0) {
@@ -226,19 +230,20 @@ impl CornerTable {
             }
         });
         let (old, new) = child.corner.rows_mut().split_at_mut(count);
-        in_parts(old, PART, |first, corners| {
+        for_each_chunk(old, CHUNK_ROWS, |first, corners| {
             for (corner, parent) in corners.iter_mut().zip(&self.vertex_corners()[first..]) {
                 let kept = |c: CornerId| CornerId::new(4 * c.row());
                 *corner = Slot::from(parent.get().map(kept));
             }
         });
-        in_given_parts(new, &self.edge_parts(numbers), |part, _, corners| {
-            let mut first = (part * CORNERS) as u32;
+        map_chunks(new, &self.edge_chunks(numbers), |chunk, _, corners| {
+            let mut first = (chunk * CHUNK_CORNERS) as u32;
             let mut edge = 0;
-            for across in triangles(self.opposite_corners(), part * CORNERS).take(PART) {
+            let opposites = triangles(self.opposite_corners(), chunk * CHUNK_CORNERS);
+            for across in opposites.take(CHUNK_ROWS) {
                 let [a, b, c] = [first, first + 1, first + 2].map(CornerId::new);
-                let seen_from = [towards(c, b), towards(a, c), towards(b, a)];
-                for ((corner, &across), middle) in [a, b, c].into_iter().zip(across).zip(seen_from)
+                let at_middles = [towards(c, b), towards(a, c), towards(b, a)];
+                for ((corner, &across), middle) in [a, b, c].into_iter().zip(across).zip(at_middles)
                 {
                     // Not every corner names an edge, in an unpredictable order. To avoid a branch,
                     // every corner writes; the next one overwrites the row of a corner that names
@@ -304,17 +309,17 @@ impl Sqrt3<'_> {
         let split = 3 * self.mesh.corner_count();
         let (vertex, cut_vertex) = child.vertex.rows_mut().split_at_mut(split);
         let (opposite, cut_opposite) = child.opposite.rows_mut().split_at_mut(split);
-        in_parts(vertex, 9 * PART, |first, rows| {
+        for_each_chunk(vertex, 9 * CHUNK_ROWS, |first, rows| {
             for (c, rows) in (first as u32 / 3..).zip(rows.as_chunks_mut().0) {
                 *rows = self.vertices(CornerId::new(c));
             }
         });
-        in_parts(opposite, 9 * PART, |first, rows| {
+        for_each_chunk(opposite, 9 * CHUNK_ROWS, |first, rows| {
             for (c, rows) in (first as u32 / 3..).zip(rows.as_chunks_mut().0) {
                 *rows = self.opposites(CornerId::new(c));
             }
         });
-        in_parts(cut_vertex, 6 * PART, |first, rows| {
+        for_each_chunk(cut_vertex, 6 * CHUNK_ROWS, |first, rows| {
             for (k, rows) in (first / 6..).zip(rows.as_chunks_mut().0) {
                 let c = self.boundary_corner(k);
                 let [m, n] = self.cuts(c);
@@ -328,12 +333,12 @@ impl Sqrt3<'_> {
                 ];
             }
         });
-        in_parts(cut_opposite, 6 * PART, |first, rows| {
+        for_each_chunk(cut_opposite, 6 * CHUNK_ROWS, |first, rows| {
             let pieces = rows.as_chunks_mut().0.as_chunks_mut().0;
             for (k, rows) in (first / 6..).zip(pieces) {
                 let c = self.boundary_corner(k);
-                let first = [self.cut(c, 4), part(c, 0), Slot::NONE];
-                let second = [part(c.next(), 1), self.cut(c, 0), Slot::NONE];
+                let first = [self.cut(c, 4), child_corner(c, 0), Slot::NONE];
+                let second = [child_corner(c.next(), 1), self.cut(c, 0), Slot::NONE];
                 *rows = [first, second];
             }
         });
@@ -343,17 +348,19 @@ impl Sqrt3<'_> {
     fn fill_corners(self, child: &mut [Slot<CornerId>]) {
         let (old, new) = child.split_at_mut(self.mesh.positions.len());
         let (of_faces, of_cuts) = new.split_at_mut(self.mesh.face_count());
-        in_parts(old, PART, |first, corners| {
+        for_each_chunk(old, CHUNK_ROWS, |first, corners| {
             for (corner, parent) in corners.iter_mut().zip(&self.mesh.vertex_corners()[first..]) {
-                *corner = parent.get().map_or(Slot::NONE, |c| part(c.prev(), 0));
+                *corner = parent
+                    .get()
+                    .map_or(Slot::NONE, |c| child_corner(c.prev(), 0));
             }
         });
-        in_parts(of_faces, PART, |first, corners| {
+        for_each_chunk(of_faces, CHUNK_ROWS, |first, corners| {
             for (t, corner) in (first as u32..).zip(corners) {
-                *corner = part(CornerId::new(3 * t), 2);
+                *corner = child_corner(CornerId::new(3 * t), 2);
             }
         });
-        in_parts(of_cuts, 2 * PART, |first, corners| {
+        for_each_chunk(of_cuts, 2 * CHUNK_ROWS, |first, corners| {
             for (cut, corner) in (first as u32..).zip(corners) {
                 *corner = self.cut_corner(3 * cut);
             }
@@ -376,16 +383,16 @@ impl Sqrt3<'_> {
     fn opposites(self, c: CornerId) -> [Slot<CornerId>; 3] {
         let [own, before] = [c, c.prev()].map(|c| self.mesh.opposite(c));
         let ahead = match own {
-            Some(across) => part(across, 0),
+            Some(across) => child_corner(across, 0),
             None if self.trisect => self.cut(c, 1),
-            None => part(c.next(), 1),
+            None => child_corner(c.next(), 1),
         };
         let behind = match before {
-            Some(across) => part(across, 2),
+            Some(across) => child_corner(across, 2),
             None if self.trisect => self.cut(c.prev(), 3),
-            None => part(c.prev(), 0),
+            None => child_corner(c.prev(), 0),
         };
-        let across = own.map_or(Slot::NONE, |across| part(across.next(), 1));
+        let across = own.map_or(Slot::NONE, |across| child_corner(across.next(), 1));
         [ahead, behind, across]
     }
 
@@ -420,7 +427,7 @@ impl Sqrt3<'_> {
 
 /// Returns corner `i` of the child triangle `c` of a mesh split in three.
 #[inline(always)]
-fn part(c: CornerId, i: u32) -> Slot<CornerId> {
+fn child_corner(c: CornerId, i: u32) -> Slot<CornerId> {
     Slot::some(CornerId::new(3 * c.row() + i))
 }
 

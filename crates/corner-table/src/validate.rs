@@ -4,22 +4,22 @@ use std::collections::HashSet;
 
 use sixfold_core::{Editing, HoleSet, InvariantError, MeshQuery, Slot, Untraced, VertexId, row};
 
-use crate::mesh::{AnyCornerTable, CornerId, NOWHERE};
+use crate::mesh::{AnyCornerTable, CornerId, NO_VERTEX};
 
 /// Checks the lengths of the tables, the holes, and I1 to I7 in order; later checks rely on
 /// earlier.
 pub(crate) fn validate<E: Editing>(
     mesh: &AnyCornerTable<Untraced, E>,
 ) -> Result<(), InvariantError> {
-    columns(mesh)?;
-    holes(mesh)?;
-    triangles(mesh)?;
-    opposites(mesh)?;
-    sides_agree(mesh)?;
-    a_corner_each(mesh)?;
-    fans_start(mesh)?;
-    one_fan_each(mesh)?;
-    edges_differ(mesh)
+    check_table_lengths(mesh)?;
+    check_holes(mesh)?;
+    check_triangles(mesh)?;
+    check_opposites(mesh)?;
+    check_sides(mesh)?;
+    check_vertex_corners(mesh)?;
+    check_first_corners(mesh)?;
+    check_fans(mesh)?;
+    check_distinct_edges(mesh)
 }
 
 fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> {
@@ -30,7 +30,9 @@ fn corners<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> impl Iterator<Item
     mesh.faces().flat_map(|t| mesh.corners_of(t))
 }
 
-fn columns<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
+fn check_table_lengths<E: Editing>(
+    mesh: &AnyCornerTable<Untraced, E>,
+) -> Result<(), InvariantError> {
     let (corners, opposites) = (mesh.corner_vertices().len(), mesh.opposite_corners().len());
     if !corners.is_multiple_of(3) || opposites != corners {
         let detail = format!("`vertex` has {corners} rows, `opposite` {opposites}: not 3 per face");
@@ -42,7 +44,7 @@ fn columns<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), Invaria
     Ok(())
 }
 
-fn holes<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
+fn check_holes<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     let rows = [
         (&mesh.vertex_holes, mesh.positions().len()),
         (&mesh.face_holes, mesh.corner_vertices().len() / 3),
@@ -54,7 +56,7 @@ fn holes<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), Invariant
     }
     for c in (0..row(mesh.corner_vertices().len())).map(CornerId::new) {
         let deleted = mesh.face_holes.has(c.triangle().index());
-        let marks = [mesh.vertex(c) == NOWHERE, mesh.opposite(c) == Some(c)];
+        let marks = [mesh.vertex(c) == NO_VERTEX, mesh.opposite(c) == Some(c)];
         if marks != [deleted; 2] {
             return fails(
                 "I8",
@@ -70,7 +72,7 @@ fn holes<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), Invariant
     Ok(())
 }
 
-fn triangles<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
+fn check_triangles<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     for t in mesh.faces() {
         let [a, b, c] = mesh.vertices_of(t);
         if a == b || b == c || c == a {
@@ -85,7 +87,7 @@ fn triangles<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), Invar
     Ok(())
 }
 
-fn opposites<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
+fn check_opposites<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     for c in corners(mesh) {
         if let Some(across) = mesh.opposite(c) {
             if across.index() >= mesh.corner_vertices().len() {
@@ -102,7 +104,7 @@ fn opposites<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), Invar
     Ok(())
 }
 
-fn sides_agree<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
+fn check_sides<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     for c in corners(mesh) {
         if let Some(across) = mesh.opposite(c) {
             let here = [c.next(), c.prev()].map(|c| mesh.vertex(c));
@@ -117,7 +119,9 @@ fn sides_agree<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), Inv
     Ok(())
 }
 
-fn a_corner_each<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
+fn check_vertex_corners<E: Editing>(
+    mesh: &AnyCornerTable<Untraced, E>,
+) -> Result<(), InvariantError> {
     let mut used = vec![false; mesh.positions().len()];
     for c in corners(mesh) {
         used[mesh.vertex(c).index()] = true;
@@ -136,7 +140,9 @@ fn a_corner_each<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), I
     Ok(())
 }
 
-fn fans_start<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
+fn check_first_corners<E: Editing>(
+    mesh: &AnyCornerTable<Untraced, E>,
+) -> Result<(), InvariantError> {
     for c in corners(mesh).filter(|&c| mesh.unswing(c).is_none()) {
         let v = mesh.vertex(c);
         let entered = mesh.corner_at(v).and_then(|first| mesh.unswing(first));
@@ -148,24 +154,26 @@ fn fans_start<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), Inva
     Ok(())
 }
 
-fn one_fan_each<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
+fn check_fans<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
     let mut all = vec![0_usize; mesh.positions().len()];
     for c in corners(mesh) {
         all[mesh.vertex(c).index()] += 1;
     }
     for v in mesh.vertices() {
-        let (met, all) = (mesh.corners_at(v).count(), all[v.index()]);
-        if met != all {
+        let (visited, all) = (mesh.corners_at(v).count(), all[v.index()]);
+        if visited != all {
             return fails(
                 "I6",
-                format!("swinging around {v} visits {met} of {all} corners"),
+                format!("swinging around {v} visits {visited} of {all} corners"),
             );
         }
     }
     Ok(())
 }
 
-fn edges_differ<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
+fn check_distinct_edges<E: Editing>(
+    mesh: &AnyCornerTable<Untraced, E>,
+) -> Result<(), InvariantError> {
     let mut ends = HashSet::new();
     for e in mesh.edges() {
         let [a, b] = mesh.edge_vertices(e);
@@ -238,13 +246,13 @@ mod tests {
         assert_eq!(broken(|m| m.corner.rows_mut()[0] = c(3)), "I5");
         // I8: holes without marks, marks without a hole, a deleted vertex with a corner, one in a
         // face.
-        assert_eq!(broken(|m| m.face_holes.dig(0)), "I8");
-        assert_eq!(broken(|m| m.face_holes.dig(2)), "I8");
-        assert_eq!(broken(|m| m.vertex.rows_mut()[2] = NOWHERE), "I8");
+        assert_eq!(broken(|m| m.face_holes.insert(0)), "I8");
+        assert_eq!(broken(|m| m.face_holes.insert(2)), "I8");
+        assert_eq!(broken(|m| m.vertex.rows_mut()[2] = NO_VERTEX), "I8");
         assert_eq!(broken(|m| m.opposite.rows_mut()[2] = c(2)), "I8");
-        assert_eq!(broken(|m| m.vertex_holes.dig(1)), "I8");
+        assert_eq!(broken(|m| m.vertex_holes.insert(1)), "I8");
         let orphan = |m: &mut EditableCornerTable| {
-            m.vertex_holes.dig(1);
+            m.vertex_holes.insert(1);
             m.corner.rows_mut()[1] = Slot::NONE;
         };
         assert_eq!(broken(orphan), "I1");

@@ -17,7 +17,7 @@ const FEW_SIDES: usize = 8;
 ///
 /// Panics if `v` is missing from a face of more than three corners, which I3 rules out.
 #[inline]
-pub(crate) fn beside(face: &[VertexId], v: VertexId) -> [VertexId; 2] {
+pub(crate) fn neighbours_in(face: &[VertexId], v: VertexId) -> [VertexId; 2] {
     if let &[a, b, c] = face {
         // Two selections each and no branch, because the place of `v` is unpredictable.
         let before = if v == b {
@@ -46,27 +46,20 @@ pub(crate) fn beside(face: &[VertexId], v: VertexId) -> [VertexId; 2] {
 
 /// Returns whether a face that contains `v` has a side between `v` and `other`.
 #[inline]
-pub(crate) fn runs_between(face: &[VertexId], v: VertexId, other: VertexId) -> bool {
+pub(crate) fn has_side_between(face: &[VertexId], v: VertexId, other: VertexId) -> bool {
     match face {
         // Any two corners of a triangle are adjacent.
         &[a, b, c] => (a == other) | (b == other) | (c == other),
-        face => beside(face, v).contains(&other),
+        face => neighbours_in(face, v).contains(&other),
     }
 }
 
 /// Moves the first of each group of equal items to the front; returns the number of distinct items.
 ///
-/// Compares every item with all items before it, without a branch. Which of them are new is
+/// Compares each item with all distinct items before it, without a branch. Which items are new is
 /// unpredictable, and a branch misprediction costs more than the comparison with a whole ring.
 #[inline]
 fn keep_distinct<T: Copy + PartialEq>(items: &mut [T]) -> usize {
-    let mut new = [true; FEW];
-    for i in 1..items.len() {
-        let item = items[i];
-        new[i] = !items[..i]
-            .iter()
-            .fold(false, |known, &x| known | (x == item));
-    }
     let mut kept = 0;
     for i in 0..items.len() {
         let item = items[i];
@@ -109,16 +102,16 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
     #[inline]
     pub(crate) fn ring(&self, v: VertexId) -> Ring {
         let fan = self.fan(v);
-        let beside = |f: &FaceId| beside(self.known_face(*f), v);
+        let neighbours = |f: &FaceId| neighbours_in(self.known_face(*f), v);
         let mut few = [v; FEW];
         let (mut found, mut many) = (0, Vec::new());
         if 2 * fan.len() <= FEW {
             for (pair, f) in few.as_chunks_mut().0.iter_mut().zip(fan) {
-                *pair = beside(f);
+                *pair = neighbours(f);
             }
             found = keep_distinct(&mut few[..2 * fan.len()]);
         } else {
-            many = fan.iter().flat_map(beside).distinct().collect();
+            many = fan.iter().flat_map(neighbours).distinct().collect();
         }
         Ring { few, found, many }
     }
@@ -147,7 +140,7 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
     pub(crate) fn faces_along(&self, e: Pair<VertexId>) -> impl Iterator<Item = FaceId> {
         let (v, fan, other) = self.shorter_fan(e);
         let fan = fan.iter().copied();
-        fan.filter(move |&f| runs_between(self.known_face(f), v, other))
+        fan.filter(move |&f| has_side_between(self.known_face(f), v, other))
     }
 
     /// Returns the faces that share a side with `f`, each once; allocates only for many sides.
@@ -184,7 +177,7 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
         for side in self.sides(f) {
             let (v, fan, other) = self.shorter_fan(side);
             for &g in fan {
-                if !known.contains(&g) && runs_between(self.known_face(g), v, other) {
+                if !known.contains(&g) && has_side_between(self.known_face(g), v, other) {
                     known.insert(g);
                     faces.push(g);
                 }

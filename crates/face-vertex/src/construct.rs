@@ -21,7 +21,7 @@ impl<E: Editing> Representation for AnyFaceVertexMesh<Untraced, E> {
     };
 
     fn type_path() -> &'static str {
-        match E::DELETES {
+        match E::CAN_DELETE {
             true => "sixfold_face_vertex::EditableFaceVertexMesh",
             false => "sixfold_face_vertex::FaceVertexMesh",
         }
@@ -73,11 +73,11 @@ impl<E: Editing> Representation for AnyFaceVertexMesh<Untraced, E> {
         PolygonMesh::from_faces(positions, faces).expect("I1 holds")
     }
 
-    fn vertex_name(_: &PolygonMesh, v: VertexId) -> VertexId {
+    fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
         v
     }
 
-    fn face_name(_: &PolygonMesh, f: FaceId) -> FaceId {
+    fn face_handle(_: &PolygonMesh, f: FaceId) -> FaceId {
         f
     }
 
@@ -140,30 +140,31 @@ fn incident_faces(vertices: usize, faces: &FaceList) -> (Vec<Fan>, Vec<FaceId>) 
         fan.len = 0;
     }
     let mut pool = vec![FaceId::new(0); corners.len()];
-    let mut file = |face: FaceId, v: VertexId| {
+    let mut add = |face: FaceId, v: VertexId| {
         let fan = &mut fans[v.index()];
         pool[(fan.start + fan.len) as usize] = face;
         fan.len += 1;
     };
     match faces.uniform_degree() {
-        Some(3) => file_uniform::<3>(corners, file),
-        Some(4) => file_uniform::<4>(corners, file),
+        Some(3) => add_uniform::<3>(corners, add),
+        Some(4) => add_uniform::<4>(corners, add),
         _ => {
             for (f, face) in faces.iter() {
-                face.iter().for_each(|&v| file(f, v));
+                face.iter().for_each(|&v| add(f, v));
             }
         }
     }
     (fans, pool)
 }
 
-/// Files each face of `DEGREE` corners; the compiler unrolls the loop over a constant degree.
+/// Calls `add` for each corner of each face of `DEGREE` corners. The compiler unrolls the loop over
+/// a constant degree.
 #[inline(always)]
-fn file_uniform<const DEGREE: usize>(corners: &[VertexId], mut file: impl FnMut(FaceId, VertexId)) {
+fn add_uniform<const DEGREE: usize>(corners: &[VertexId], mut add: impl FnMut(FaceId, VertexId)) {
     let faces = corners.as_chunks::<DEGREE>().0;
     for (f, face) in (0..row(faces.len())).zip(faces) {
         for &v in face {
-            file(FaceId::new(f), v);
+            add(FaceId::new(f), v);
         }
     }
 }

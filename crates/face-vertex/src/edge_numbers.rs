@@ -3,7 +3,7 @@
 use std::hint::select_unpredictable;
 use std::ops::Range;
 
-use sixfold_core::{FaceId, FaceSpans, PART, Pair, VertexId, row};
+use sixfold_core::{CHUNK_ROWS, FaceId, FaceSpans, Pair, VertexId, row};
 
 use crate::mesh::FaceVertexMesh;
 
@@ -22,16 +22,16 @@ use crate::mesh::FaceVertexMesh;
 #[derive(Clone, Debug, Default)]
 pub struct EdgeNumbers {
     pub(crate) by_corner: Vec<u32>,
-    /// The starts of the parts, and the end of the last part.
-    pub(crate) parts: Vec<EdgePart>,
+    /// The starts of the chunks, and the end of the last chunk.
+    pub(crate) chunks: Vec<EdgeChunk>,
     /// For each vertex: one more than the highest number of an edge that has it as its higher end.
     /// Used only while edges are numbered.
-    met: Vec<u32>,
+    bounds: Vec<u32>,
 }
 
 /// The start of some thousand edges: all those with lower ends in a range of vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct EdgePart {
+pub(crate) struct EdgeChunk {
     /// The first vertex of the range.
     pub(crate) vertex: usize,
     /// The number of the first edge.
@@ -56,17 +56,17 @@ impl EdgeNumbers {
 
     fn fill_from<const DEGREE: usize>(&mut self, mesh: &FaceVertexMesh) {
         self.by_corner.resize(mesh.corners.len(), 0);
-        self.met.clear();
-        self.met.resize(mesh.fans.len(), 0);
-        self.parts.clear();
-        self.parts.push(EdgePart::default());
+        self.bounds.clear();
+        self.bounds.resize(mesh.fans.len(), 0);
+        self.chunks.clear();
+        self.chunks.push(EdgeChunk::default());
         let (mut edges, mut sides, mut last) = (0_u32, 0, 0);
         let mut upward = [[0; 2]; 2 * FEW];
         let mut in_order = Vec::new();
         for v in (0..row(mesh.fans.len())).map(VertexId::new) {
-            if edges as usize - last >= PART {
+            if edges as usize - last >= CHUNK_ROWS {
                 last = edges as usize;
-                self.parts.push(EdgePart {
+                self.chunks.push(EdgeChunk {
                     vertex: v.index(),
                     edge: last,
                     side: sides,
@@ -85,19 +85,19 @@ impl EdgeNumbers {
             for faces in fan.chunks(FEW) {
                 let found = mesh.sides_upward::<DEGREE>(v, faces, &mut upward);
                 for &[corner, high] in &upward[..found] {
-                    let met = &mut self.met[high as usize];
-                    let is_new = *met <= known;
+                    let bound = &mut self.bounds[high as usize];
+                    let is_new = *bound <= known;
                     edges += u32::from(is_new);
-                    *met = select_unpredictable(is_new, edges, *met);
-                    self.by_corner[corner as usize] = *met - 1;
+                    *bound = select_unpredictable(is_new, edges, *bound);
+                    self.by_corner[corner as usize] = *bound - 1;
                 }
                 sides += found;
             }
         }
         if last == edges as usize {
-            self.parts.pop();
+            self.chunks.pop();
         }
-        self.parts.push(EdgePart {
+        self.chunks.push(EdgeChunk {
             vertex: mesh.fans.len(),
             edge: edges as usize,
             side: sides,
@@ -106,7 +106,7 @@ impl EdgeNumbers {
 
     /// Returns the number of edges.
     pub(crate) fn edges(&self) -> usize {
-        self.parts.last().map_or(0, |end| end.edge)
+        self.chunks.last().map_or(0, |end| end.edge)
     }
 }
 
@@ -122,7 +122,7 @@ impl FaceVertexMesh {
 
     /// Returns the corners before, at and after `v` in `f`, which contains `v`.
     #[inline(always)]
-    pub(crate) fn around<const DEGREE: usize>(&self, f: FaceId, v: VertexId) -> [u32; 3] {
+    pub(crate) fn corners_around<const DEGREE: usize>(&self, f: FaceId, v: VertexId) -> [u32; 3] {
         let range = self.corners_of::<DEGREE>(f);
         let face = &self.corners.rows()[range.clone()];
         let i = if DEGREE == 0 {
@@ -150,7 +150,7 @@ impl FaceVertexMesh {
         let corners = self.corners.rows();
         let mut found = 0;
         for &f in faces {
-            let [before, at, after] = self.around::<DEGREE>(f, v);
+            let [before, at, after] = self.corners_around::<DEGREE>(f, v);
             let to = corners[after as usize].index() as u32;
             let from = corners[before as usize].index() as u32;
             // In the order of the corners where the sides start.
@@ -168,21 +168,25 @@ impl FaceVertexMesh {
         found
     }
 
-    /// Returns the edges of a part, in the order of their numbers.
-    pub(crate) fn edges_between(&self, numbers: &EdgeNumbers, part: usize) -> Vec<Pair<VertexId>> {
+    /// Returns the edges of a chunk, in the order of their numbers.
+    pub(crate) fn edges_in_chunk(
+        &self,
+        numbers: &EdgeNumbers,
+        chunk: usize,
+    ) -> Vec<Pair<VertexId>> {
         match self.spans {
-            FaceSpans::Uniform { degree: 3, .. } => self.edges_from::<3>(numbers, part),
-            FaceSpans::Uniform { degree: 4, .. } => self.edges_from::<4>(numbers, part),
-            _ => self.edges_from::<0>(numbers, part),
+            FaceSpans::Uniform { degree: 3, .. } => self.edges_from::<3>(numbers, chunk),
+            FaceSpans::Uniform { degree: 4, .. } => self.edges_from::<4>(numbers, chunk),
+            _ => self.edges_from::<0>(numbers, chunk),
         }
     }
 
     fn edges_from<const DEGREE: usize>(
         &self,
         numbers: &EdgeNumbers,
-        part: usize,
+        chunk: usize,
     ) -> Vec<Pair<VertexId>> {
-        let [from, to] = [part, part + 1].map(|part| numbers.parts[part]);
+        let [from, to] = [chunk, chunk + 1].map(|chunk| numbers.chunks[chunk]);
         let blank = Pair::new(VertexId::new(0), VertexId::new(0));
         let mut edges = vec![blank; to.edge - from.edge];
         let mut sides = [[0; 2]; 2 * FEW];
@@ -238,27 +242,27 @@ mod tests {
             [0, 3, 1, 2, 4, 0],
             "fans turned"
         );
-        let end = |vertex| EdgePart {
+        let end = |vertex| EdgeChunk {
             vertex,
-            ..EdgePart::default()
+            ..EdgeChunk::default()
         };
-        assert_eq!(numbered(&build(2, &[[0; 3]; 0])).parts, [end(2)]);
+        assert_eq!(numbered(&build(2, &[[0; 3]; 0])).chunks, [end(2)]);
     }
 
     #[test]
-    fn parts_start_at_vertices() {
+    fn chunks_start_at_vertices() {
         // Triangles at one edge v0–v1: v0 is the lower end of half of the edges, v1 of the others.
-        let n = 2 * PART;
-        let mesh = build(n + 5, (0..row(n)).map(|page| [0, 1, page + 2]));
-        let part = |vertex, edge, side| EdgePart { vertex, edge, side };
-        let cut = [
-            part(0, 0, 0),
-            part(1, n + 1, 2 * n),
-            part(n + 5, 2 * n + 1, 3 * n),
+        let n = 2 * CHUNK_ROWS;
+        let mesh = build(n + 5, (0..row(n)).map(|i| [0, 1, i + 2]));
+        let chunk = |vertex, edge, side| EdgeChunk { vertex, edge, side };
+        let expected = [
+            chunk(0, 0, 0),
+            chunk(1, n + 1, 2 * n),
+            chunk(n + 5, 2 * n + 1, 3 * n),
         ];
         let numbers = numbered(&mesh);
-        assert_eq!(numbers.parts, cut);
-        let both = [0, 1].map(|part| mesh.edges_between(&numbers, part));
+        assert_eq!(numbers.chunks, expected);
+        let both = [0, 1].map(|chunk| mesh.edges_in_chunk(&numbers, chunk));
         assert!(mesh.edges().eq(both.concat()));
     }
 }

@@ -15,11 +15,11 @@ mod split_vertex;
 mod tests;
 
 use sixfold_core::{
-    Edit, EditError, EditLog, FaceId, Few, HoleSet, MeshEdit, NoHoles, Pair, Point, Probe,
-    QueryCost, Refusal, VertexId, row,
+    Edit, EditError, EditLog, FaceId, HoleSet, MeshEdit, NoHoles, Pair, Point, Probe, QueryCost,
+    Refusal, ShortVec, VertexId, row,
 };
 
-use self::corners::{from_corner, repeated, sides, third};
+use self::corners::{corners_from, repeated_vertex, sides, third_corner};
 use crate::mesh::{AnyFaceVertexMesh, BLANK_CORNER, EditableFaceVertexMesh, FaceVertexMesh, Fan};
 
 type Edge = Pair<VertexId>;
@@ -27,14 +27,14 @@ type Edge = Pair<VertexId>;
 impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 
-    type Whole = FaceVertexMesh<P>;
+    type Compact = FaceVertexMesh<P>;
 
-    fn into_whole(mut self) -> FaceVertexMesh<P> {
+    fn into_compact(mut self) -> FaceVertexMesh<P> {
         self.compact(&mut ());
         AnyFaceVertexMesh {
             positions: self.positions,
             corners: self.corners,
-            spans: self.spans.into_whole().expect("compacted"),
+            spans: self.spans.into_compact().expect("compacted"),
             fans: self.fans,
             pool: self.pool,
             vertex_holes: NoHoles,
@@ -77,17 +77,17 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         for &v in corners {
             self.fan_of(v)?;
         }
-        if let Some(vertex) = repeated(corners) {
+        if let Some(vertex) = repeated_vertex(corners) {
             return Err(EditError::RepeatedVertex { vertex });
         }
         self.check_room(0, 1, corners.len())?;
-        if listens(log) {
+        if uses_reports(log) {
             let new = sides(corners).filter(|&e| !self.has_edge(e));
             new.for_each(|e| log.created_edge(e));
         }
         let f = self.spans.push(&mut self.corners, corners);
         for &v in corners {
-            self.join(v, f);
+            self.add_to_fan(v, f);
         }
         log.created_face(f);
         Ok(f)
@@ -98,14 +98,14 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         f: FaceId,
         log: &mut impl EditLog<Self>,
     ) -> Result<(), Refusal<Self>> {
-        let face = Few::from_iter(self.corners_of_face(f)?.iter().copied());
+        let face = ShortVec::from_iter(self.corners_of_face(f)?.iter().copied());
         for &v in &*face {
-            self.leave(v, f);
+            self.remove_from_fan(v, f);
         }
         self.delete_face(f);
-        if listens(log) {
+        if uses_reports(log) {
             log.removed_face(f);
-            self.tell_removed(sides(&face), log);
+            self.report_removed(sides(&face), log);
         }
         Ok(())
     }
@@ -116,15 +116,15 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         log: &mut impl EditLog<Self>,
     ) -> Result<(), Refusal<Self>> {
         self.fan_of(v)?;
-        let faces = Few::from_iter(self.fan(v).iter().copied());
+        let faces = ShortVec::from_iter(self.fan(v).iter().copied());
         let mut along = Vec::new();
         for &f in &*faces {
-            let face = Few::from_iter(self.known_face(f).iter().copied());
+            let face = ShortVec::from_iter(self.known_face(f).iter().copied());
             for &u in face.iter().filter(|&&u| u != v) {
-                self.leave(u, f);
+                self.remove_from_fan(u, f);
             }
             self.delete_face(f);
-            if listens(log) {
+            if uses_reports(log) {
                 log.removed_face(f);
                 along.extend(sides(&face));
             }
@@ -133,7 +133,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         log.removed_vertex(v);
         along.sort_unstable();
         along.dedup();
-        self.tell_removed(along, log);
+        self.report_removed(along, log);
         Ok(())
     }
 
@@ -159,7 +159,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         self.check_room(1, 0, degrees.sum())?;
         let m = self.push_vertex(at, &along);
         for &f in &*along {
-            let mut face = Few::new();
+            let mut face = ShortVec::new();
             let old = self.known_face(f);
             for (&corner, side) in old.iter().zip(sides(old)) {
                 face.push(corner);
@@ -170,7 +170,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
             self.spans
                 .rewrite(&mut self.corners, f, &face, BLANK_CORNER);
         }
-        tell_split(e, m, log);
+        report_split(e, m, log);
         Ok(m)
     }
 
@@ -190,13 +190,13 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         let mut apexes = Vec::new();
         for i in 0..along {
             let f = faces[i];
-            let (b, c) = third(self.triangle(f)?, e);
-            self.retarget(f, b, m);
+            let (b, c) = third_corner(self.triangle(f)?, e);
+            self.replace_corner(f, b, m);
             let g = self.spans.push(&mut self.corners, &[m, b, c]);
-            self.swap(b, f, g);
-            self.join(c, g);
+            self.replace_in_fan(b, f, g);
+            self.add_to_fan(c, g);
             faces.push(g);
-            if listens(log) {
+            if uses_reports(log) {
                 log.created_face(g);
                 apexes.push(c);
             }
@@ -207,7 +207,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         let spokes = apexes.iter().map(|&c| Pair::new(m, c));
         spokes.for_each(|spoke| log.created_edge(spoke));
         self.push_vertex(at, &faces);
-        tell_split(e, m, log);
+        report_split(e, m, log);
         Ok(m)
     }
 
@@ -217,10 +217,10 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         at: Point,
         log: &mut impl EditLog<Self>,
     ) -> Result<VertexId, Refusal<Self>> {
-        let face = Few::from_iter(self.corners_of_face(f)?.iter().copied());
+        let face = ShortVec::from_iter(self.corners_of_face(f)?.iter().copied());
         self.check_room(1, face.len() - 1, 3 * face.len())?;
         let n = VertexId::new(row(self.fans.len()));
-        let mut parts = Few::new();
+        let mut parts = ShortVec::new();
         parts.push(f);
         self.spans
             .rewrite(&mut self.corners, f, &[face[0], face[1], n], BLANK_CORNER);
@@ -229,16 +229,16 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
             let part = self.spans.push(&mut self.corners, &[a, b, n]);
             // The fan of `a` gets this part and the part before it, which is `f` if i = 1.
             if i > 1 {
-                self.swap(a, f, part);
-                self.join(a, parts[i - 1]);
+                self.replace_in_fan(a, f, part);
+                self.add_to_fan(a, parts[i - 1]);
             } else {
-                self.join(a, part);
+                self.add_to_fan(a, part);
             }
             parts.push(part);
         }
-        self.join(face[0], parts[parts.len() - 1]);
+        self.add_to_fan(face[0], parts[parts.len() - 1]);
         self.push_vertex(at, &parts);
-        if listens(log) {
+        if uses_reports(log) {
             log.created_vertex(n);
             face.iter().for_each(|&a| log.created_edge(Pair::new(a, n)));
             parts[1..].iter().for_each(|&part| log.created_face(part));
@@ -261,24 +261,24 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         }
         let (i, j) = (i.min(j), i.max(j));
         if j - i < 2 || j - i + 2 > face.len() {
-            return Err(EditError::NothingBetween { face: f, ends });
+            return Err(EditError::AdjacentCorners { face: f, ends });
         }
-        let kept = Few::from_iter(face[i..=j].iter().copied());
+        let kept = ShortVec::from_iter(face[i..=j].iter().copied());
         let new = face[j..].iter().chain(&face[..=i]);
-        let new = Few::from_iter(new.copied());
+        let new = ShortVec::from_iter(new.copied());
         self.check_room(0, 1, new.len())?;
         let e = Pair::new(ends[0], ends[1]);
-        if listens(log) && !self.has_edge(e) {
+        if uses_reports(log) && !self.has_edge(e) {
             log.created_edge(e);
         }
         let g = self.spans.push(&mut self.corners, &new);
         self.spans
             .rewrite(&mut self.corners, f, &kept, BLANK_CORNER);
         for &v in &new[1..new.len() - 1] {
-            self.swap(v, f, g);
+            self.replace_in_fan(v, f, g);
         }
         for v in ends {
-            self.join(v, g);
+            self.add_to_fan(v, g);
         }
         log.created_face(g);
         Ok(e)
@@ -293,20 +293,20 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         let [f, g] = self.two_faces(e)?;
         let [low, high] = e.ends();
         // The corners of f from the higher end around to the lower, then those of g.
-        let kept = from_corner(self.known_face(f), high);
-        let gained = from_corner(self.known_face(g), low).skip(1);
+        let kept = corners_from(self.known_face(f), high);
+        let gained = corners_from(self.known_face(g), low).skip(1);
         let gained = gained.filter(|&v| v != high);
-        let gained = Few::from_iter(gained);
-        let merged = Few::from_iter(kept.chain(gained.iter().copied()));
+        let gained = ShortVec::from_iter(gained);
+        let merged = ShortVec::from_iter(kept.chain(gained.iter().copied()));
         if let Some(&vertex) = gained.iter().find(|&&v| self.fan(v).contains(&f)) {
             return Err(EditError::RepeatedVertex { vertex });
         }
         self.check_room(0, 0, merged.len())?;
         for &v in &*gained {
-            self.swap(v, g, f);
+            self.replace_in_fan(v, g, f);
         }
-        self.leave(low, g);
-        self.leave(high, g);
+        self.remove_from_fan(low, g);
+        self.remove_from_fan(high, g);
         self.spans
             .rewrite(&mut self.corners, f, &merged, BLANK_CORNER);
         self.delete_face(g);
@@ -318,8 +318,8 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
     fn flip_edge(&mut self, e: Edge, log: &mut impl EditLog<Self>) -> Result<Edge, Refusal<Self>> {
         let [f, g] = self.two_faces(e)?;
         let [low, high] = e.ends();
-        let (_, c) = third(self.triangle(f)?, e);
-        let (_, d) = third(self.triangle(g)?, e);
+        let (_, c) = third_corner(self.triangle(f)?, e);
+        let (_, d) = third_corner(self.triangle(g)?, e);
         if c == d {
             return Err(EditError::SameApex { edge: e, vertex: c });
         }
@@ -333,12 +333,12 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
             }
         }
         self.check_room(0, 0, 2)?;
-        self.retarget(f, high, d);
-        self.retarget(g, low, c);
-        self.leave(high, f);
-        self.leave(low, g);
-        self.join(d, f);
-        self.join(c, g);
+        self.replace_corner(f, high, d);
+        self.replace_corner(g, low, c);
+        self.remove_from_fan(high, f);
+        self.remove_from_fan(low, g);
+        self.add_to_fan(d, f);
+        self.add_to_fan(c, g);
         log.renamed_edge(e, turned);
         Ok(turned)
     }
@@ -366,7 +366,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
 
     /// Puts the fans in the order of their vertices again, and each fan in the order of its faces.
     fn compact(&mut self, log: &mut impl EditLog<Self>) {
-        self.close_up(log);
+        self.compact_tables(log);
     }
 }
 
@@ -374,19 +374,19 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
     /// Marks `f`, which is in no fan any more, as deleted.
     fn delete_face(&mut self, f: FaceId) {
         self.spans.blank(&mut self.corners, f, BLANK_CORNER);
-        self.face_holes.dig(f.index());
+        self.face_holes.insert(f.index());
     }
 
     /// Marks `v`, which has no faces any more, as deleted.
     fn delete_vertex(&mut self, v: VertexId) {
-        let fan = std::mem::replace(self.fans.write(v.index()), Fan::GONE);
+        let fan = std::mem::replace(self.fans.write(v.index()), Fan::DELETED);
         self.clear_places(fan.range());
-        self.vertex_holes.dig(v.index());
+        self.vertex_holes.insert(v.index());
     }
 
     /// Replaces the corner `old` of `f` by `new`; the caller updates the fans.
     #[inline]
-    fn retarget(&mut self, f: FaceId, old: VertexId, new: VertexId) {
+    fn replace_corner(&mut self, f: FaceId, old: VertexId, new: VertexId) {
         let range = self.spans.range(f);
         let at = match self.corners.read_range(range.clone()) {
             // Without a branch, because its place is unpredictable.
@@ -400,7 +400,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
     }
 
     /// Reports each of `sides`, which were edges before, that is not an edge any more.
-    fn tell_removed(&self, sides: impl IntoIterator<Item = Edge>, log: &mut impl EditLog<Self>) {
+    fn report_removed(&self, sides: impl IntoIterator<Item = Edge>, log: &mut impl EditLog<Self>) {
         for e in sides.into_iter().filter(|&e| !self.has_edge(e)) {
             log.removed_edge(e);
         }
@@ -408,12 +408,12 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
 }
 
 /// Returns whether `log` records events.
-fn listens<P: Probe, L: EditLog<EditableFaceVertexMesh<P>>>(_: &L) -> bool {
-    L::LISTENS
+fn uses_reports<P: Probe, L: EditLog<EditableFaceVertexMesh<P>>>(_: &L) -> bool {
+    L::USES_REPORTS
 }
 
 /// Reports that `m` splits `e`: `e` is renamed to its lower half, and the upper half is new.
-fn tell_split<P: Probe>(e: Edge, m: VertexId, log: &mut impl EditLog<EditableFaceVertexMesh<P>>) {
+fn report_split<P: Probe>(e: Edge, m: VertexId, log: &mut impl EditLog<EditableFaceVertexMesh<P>>) {
     let [low, high] = e.ends();
     log.created_vertex(m);
     log.renamed_edge(e, Pair::new(low, m));

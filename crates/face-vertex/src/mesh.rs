@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use sixfold_core::{
-    Editable, Editing, FACE_HOLES, FaceId, FaceSpans, Point, Probe, Table, Untraced, VERTEX_HOLES,
-    VertexId, Whole,
+    Compact, Editable, Editing, FACE_HOLES, FaceId, FaceSpans, Point, Probe, Table, Untraced,
+    VERTEX_HOLES, VertexId,
 };
 
 /// A mesh with the vertices of each face and the faces of each vertex; edges are not stored.
@@ -24,7 +24,7 @@ use sixfold_core::{
 /// - I3  The fan of `v` contains exactly the faces with a corner at `v`, each once.
 /// - I4  Deleted and unused entries are blank. A corner of a deleted face or of no face contains
 ///   vertex `u32::MAX`, which no mesh has. A place of no fan contains face `u32::MAX`. The fan of a
-///   deleted vertex is [`Fan::GONE`]. The holes are exactly the deleted vertices and faces.
+///   deleted vertex is [`Fan::DELETED`]. The holes are exactly the deleted vertices and faces.
 ///
 /// A large closed triangle mesh uses 17 words per vertex: 3 for positions, 6 for corners, 2 for
 /// fans and 6 for the pool. With mixed degrees, the offsets add one word per face. With one offset
@@ -117,7 +117,7 @@ pub struct AnyFaceVertexMesh<P: Probe, E: Editing> {
 sixfold_core::clone_by_field!(AnyFaceVertexMesh<P: Probe, E: Editing> { positions, corners, spans, fans, pool, vertex_holes, face_holes });
 
 /// A face-vertex mesh that cannot delete elements: an [`AnyFaceVertexMesh`] without holes.
-pub type FaceVertexMesh<P = Untraced> = AnyFaceVertexMesh<P, Whole>;
+pub type FaceVertexMesh<P = Untraced> = AnyFaceVertexMesh<P, Compact>;
 
 /// A face-vertex mesh that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an
 /// [`AnyFaceVertexMesh`] with holes.
@@ -156,7 +156,7 @@ pub struct Fan {
 impl Fan {
     /// The fan of a deleted vertex: it is beyond every pool, so the bounds check of a read detects
     /// it.
-    pub const GONE: Self = Self {
+    pub const DELETED: Self = Self {
         start: u32::MAX,
         len: u32::MAX,
     };
@@ -203,7 +203,7 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
     #[inline(always)]
     pub fn face(&self, f: FaceId) -> &[VertexId] {
         let face = self.known_face(f);
-        if E::DELETES && face.first() == Some(&BLANK_CORNER) {
+        if E::CAN_DELETE && face.first() == Some(&BLANK_CORNER) {
             deleted_face(f);
         }
         face
@@ -229,7 +229,7 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
     #[inline]
     pub(crate) fn places(&self, v: VertexId, fan: Fan) -> &[FaceId] {
         let range = fan.range();
-        if E::DELETES && range.end > self.pool.len() {
+        if E::CAN_DELETE && range.end > self.pool.len() {
             deleted_vertex(v);
         }
         self.pool.read_range(range)

@@ -190,9 +190,9 @@ mod tests {
 
     #[test]
     fn forty_faces_at_one_edge_are_all_adjacent() {
-        let mesh = build((0..40).map(|page| [0, 1, page + 2]), 42);
-        let spine = Pair::new(VertexId::new(0), VertexId::new(1));
-        assert_eq!(mesh.edge_faces(spine).count(), 40);
+        let mesh = build((0..40).map(|i| [0, 1, i + 2]), 42);
+        let shared = Pair::new(VertexId::new(0), VertexId::new(1));
+        assert_eq!(mesh.edge_faces(shared).count(), 40);
         for f in mesh.faces() {
             let others = mesh.faces().filter(|&face| face != f);
             let mut around: Vec<FaceId> = mesh.face_faces(f).collect();

@@ -55,17 +55,17 @@ impl Refine for FaceVertexMesh {
         numbers.fill(self);
     }
 
-    fn edge_parts(&self, numbers: &EdgeNumbers) -> Vec<usize> {
-        numbers.parts.iter().map(|part| part.edge).collect()
+    fn edge_chunks(&self, numbers: &EdgeNumbers) -> Vec<usize> {
+        numbers.chunks.iter().map(|chunk| chunk.edge).collect()
     }
 
     /// Searches the fans of the lower ends.
-    fn edges_of_part(
+    fn edges_of_chunk(
         &self,
         numbers: &EdgeNumbers,
-        part: usize,
+        chunk: usize,
     ) -> impl Iterator<Item = Pair<VertexId>> {
-        self.edges_between(numbers, part).into_iter()
+        self.edges_in_chunk(numbers, chunk).into_iter()
     }
 
     /// Searches the shorter fan of the two ends; O(length · degree).
@@ -73,7 +73,7 @@ impl Refine for FaceVertexMesh {
         let (v, fan, other) = self.shorter_fan(e);
         let corners = self.corners.rows();
         let side = fan.iter().find_map(|&f| {
-            let [before, at, after] = self.around::<0>(f, v);
+            let [before, at, after] = self.corners_around::<0>(f, v);
             if corners[after as usize] == other {
                 Some(at)
             } else {
@@ -250,8 +250,8 @@ mod tests {
     #[test]
     fn a_fan_longer_than_the_buffer_is_split_correctly() {
         // More triangles at one edge than the buffer of sides can hold.
-        let pages = (0..1500).map(|page| [0, 1, page + 2]);
-        let polygons = PolygonMesh::new(vec![Point::ZERO; 1502], pages).expect("valid");
+        let triangles = (0..1500).map(|i| [0, 1, i + 2]);
+        let polygons = PolygonMesh::new(vec![Point::ZERO; 1502], triangles).expect("valid");
         let mesh = FaceVertexMesh::from_polygons(&polygons).expect("holds every mesh");
         let mut numbers = EdgeNumbers::default();
         mesh.number_edges(&mut numbers);

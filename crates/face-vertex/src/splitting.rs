@@ -2,21 +2,21 @@
 
 use std::ops::Range;
 
-use sixfold_core::{FaceId, PART, VertexId, in_given_parts, in_parts, row};
+use sixfold_core::{CHUNK_ROWS, FaceId, VertexId, for_each_chunk, map_chunks, row};
 
-use crate::edge_numbers::{EdgeNumbers, EdgePart};
+use crate::edge_numbers::{EdgeChunk, EdgeNumbers};
 use crate::mesh::{FaceVertexMesh, Fan};
 
-/// Maximum number of sides that are found before they are filed. Large batches make the loops end
-/// rarely; each loop end costs a branch misprediction.
-const ROOM: usize = 512;
+/// Maximum number of sides that are found before they are added to the fans. Large batches make the
+/// loops end rarely; each loop end costs a branch misprediction.
+const BATCH: usize = 512;
 
 /// A mesh during its split; `DEGREE` is the degree of all its faces, or 0 if degrees differ.
 #[derive(Clone, Copy)]
 pub(crate) struct Splitting<'a, const DEGREE: usize, const QUADS: bool> {
     mesh: &'a FaceVertexMesh,
     by_corner: &'a [u32],
-    parts: &'a [EdgePart],
+    chunks: &'a [EdgeChunk],
     /// The vertex row of the middle of the first edge.
     middle: u32,
 }
@@ -31,14 +31,14 @@ impl FaceVertexMesh {
         Splitting {
             mesh: self,
             by_corner: &numbers.by_corner,
-            parts: &numbers.parts,
+            chunks: &numbers.chunks,
             middle: row(vertices + if QUADS { faces } else { 0 }),
         }
     }
 }
 
 /// The child rows for a range of vertices, and for the edges with lower ends in this range.
-struct Part<'a> {
+struct Chunk<'a> {
     vertices: Range<usize>,
     /// The number of the first edge.
     first: usize,
@@ -61,7 +61,7 @@ struct Side {
 
 impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
     /// Number of parts of a face at the middle of a side.
-    const ALONG: usize = if QUADS { 2 } else { 3 };
+    const PARTS_AT_MIDDLE: usize = if QUADS { 2 } else { 3 };
 
     /// Overwrites the tables of `child`, which already have their final lengths.
     pub(crate) fn fill(self, child: &mut FaceVertexMesh) {
@@ -97,11 +97,11 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
             _ if f == faces => self.by_corner.len(),
             _ => self.mesh.corners_of::<DEGREE>(FaceId::new(row(f))).start,
         };
-        let cut = (0..faces).step_by(PART).chain([faces]);
+        let bounds = (0..faces).step_by(CHUNK_ROWS).chain([faces]);
         // Four rows per corner: a quad, or a triangle and a third of the inner one.
-        let starts: Vec<usize> = cut.map(|f| 4 * first(f)).collect();
-        in_given_parts(child, &starts, |part, _, child| {
-            let faces = part * PART..faces.min((part + 1) * PART);
+        let starts: Vec<usize> = bounds.map(|f| 4 * first(f)).collect();
+        map_chunks(child, &starts, |chunk, _, child| {
+            let faces = chunk * CHUNK_ROWS..faces.min((chunk + 1) * CHUNK_ROWS);
             self.fill_corners_of(faces, child);
         });
     }
@@ -141,7 +141,7 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
     fn fill_face_points(self, fans: &mut [Fan], pool: &mut [FaceId]) {
         // The fans of the old vertices come first, with one place for each corner.
         let start = self.by_corner.len();
-        in_parts(fans, PART, |first, fans| {
+        for_each_chunk(fans, CHUNK_ROWS, |first, fans| {
             for (f, fan) in (first..).zip(fans) {
                 let range = self.mesh.corners_of::<DEGREE>(FaceId::new(f as u32));
                 *fan = Fan {
@@ -150,7 +150,7 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
                 };
             }
         });
-        in_parts(pool, PART, |first, pool| {
+        for_each_chunk(pool, CHUNK_ROWS, |first, pool| {
             for (part, place) in (first as u32..).zip(pool) {
                 *place = FaceId::new(part);
             }
@@ -167,38 +167,39 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
         let places = if QUADS { 2 } else { 1 } * around.len();
         let ends_at = around.len();
         let place = |v: usize| old.get(v).map_or(ends_at, |fan| fan.start as usize);
-        let mut parts = Vec::with_capacity(self.parts.len());
-        for bounds in self.parts.windows(2) {
+        let mut chunks = Vec::with_capacity(self.chunks.len());
+        for bounds in self.chunks.windows(2) {
             let [from, to] = [bounds[0], bounds[1]];
             let (here, middles, along);
             (here, around) = around.split_at_mut(place(to.vertex) - place(from.vertex));
             (middles, fans) = fans.split_at_mut(to.edge - from.edge);
-            (along, pool) = pool.split_at_mut(Self::ALONG * (to.side - from.side));
-            parts.push(Part {
+            (along, pool) = pool.split_at_mut(Self::PARTS_AT_MIDDLE * (to.side - from.side));
+            chunks.push(Chunk {
                 vertices: from.vertex..to.vertex,
                 first: from.edge,
-                start: places + Self::ALONG * from.side,
+                start: places + Self::PARTS_AT_MIDDLE * from.side,
                 around: here,
                 fans: middles,
                 pool: along,
             });
         }
-        in_parts(&mut parts, 1, |_, parts| {
-            for part in parts {
-                self.fill_part(part);
+        for_each_chunk(&mut chunks, 1, |_, chunks| {
+            for chunk in chunks {
+                self.fill_chunk(chunk);
             }
         });
     }
 
-    /// Finds the sides of the edges of a range of vertices, counts them by edge, and files them.
-    fn fill_part(self, part: &mut Part<'_>) {
-        let mut sides = [Side::default(); ROOM];
-        let mut around = std::mem::take(&mut part.around);
-        let (mut v, mut known, mut end) = (part.vertices.start, part.first, part.start);
-        part.fans.fill(Fan::default());
-        while v < part.vertices.end {
+    /// Finds the sides of the edges of a range of vertices, counts them by edge, and adds them to
+    /// the fans.
+    fn fill_chunk(self, chunk: &mut Chunk<'_>) {
+        let mut sides = [Side::default(); BATCH];
+        let mut around = std::mem::take(&mut chunk.around);
+        let (mut v, mut known, mut end) = (chunk.vertices.start, chunk.first, chunk.start);
+        chunk.fans.fill(Fan::default());
+        while v < chunk.vertices.end {
             let (first, mut found) = (known, 0);
-            while v < part.vertices.end {
+            while v < chunk.vertices.end {
                 let vertex = VertexId::new(v as u32);
                 let fan = self.mesh.fan(vertex);
                 let Some(room) = sides.get_mut(found..found + 2 * fan.len()) else {
@@ -206,34 +207,34 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
                 };
                 let (here, after) = std::mem::take(&mut around).split_at_mut(fan.len());
                 around = after;
-                let upward = self.find_sides(vertex, fan, known, here, room);
-                found += upward.found;
-                known = upward.known;
+                let batch = self.find_sides(vertex, fan, known, here, room);
+                found += batch.found;
+                known = batch.known;
                 v += 1;
             }
-            if known == first && found == 0 && v < part.vertices.end {
-                // The fan does not fit into `sides`: process it in pieces, first to count, then to
-                // file.
+            if known == first && found == 0 && v < chunk.vertices.end {
+                // The fan does not fit into `sides`: process it in pieces, first to count its
+                // sides, then to add them.
                 let vertex = VertexId::new(v as u32);
                 let fan = self.mesh.fan(vertex);
                 let (here, after) = std::mem::take(&mut around).split_at_mut(fan.len());
                 around = after;
-                for (faces, here) in fan.chunks(ROOM / 2).zip(here.chunks_mut(ROOM / 2)) {
-                    let upward = self.find_sides(vertex, faces, first, here, &mut sides);
-                    part.count(&sides[..upward.found], Self::ALONG);
-                    known = known.max(upward.known);
+                for (faces, here) in fan.chunks(BATCH / 2).zip(here.chunks_mut(BATCH / 2)) {
+                    let batch = self.find_sides(vertex, faces, first, here, &mut sides);
+                    chunk.count(&sides[..batch.found], Self::PARTS_AT_MIDDLE);
+                    known = known.max(batch.known);
                 }
-                end = part.open(first..known, end);
-                for (faces, here) in fan.chunks(ROOM / 2).zip(here.chunks_mut(ROOM / 2)) {
-                    let upward = self.find_sides(vertex, faces, first, here, &mut sides);
-                    self.file(&sides[..upward.found], part);
+                end = chunk.place_fans(first..known, end);
+                for (faces, here) in fan.chunks(BATCH / 2).zip(here.chunks_mut(BATCH / 2)) {
+                    let batch = self.find_sides(vertex, faces, first, here, &mut sides);
+                    self.append_to_fans(&sides[..batch.found], chunk);
                 }
                 v += 1;
                 continue;
             }
-            part.count(&sides[..found], Self::ALONG);
-            end = part.open(first..known, end);
-            self.file(&sides[..found], part);
+            chunk.count(&sides[..found], Self::PARTS_AT_MIDDLE);
+            end = chunk.place_fans(first..known, end);
+            self.append_to_fans(&sides[..found], chunk);
         }
     }
 
@@ -247,10 +248,10 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
         known: usize,
         around: &mut [FaceId],
         sides: &mut [Side],
-    ) -> Upward {
+    ) -> FoundSides {
         let (mut found, mut end) = (0, known as u32);
         for (&f, place) in faces.iter().zip(around) {
-            let corners = self.mesh.around::<DEGREE>(f, v);
+            let corners = self.mesh.corners_around::<DEGREE>(f, v);
             let [before, at, after] = corners.map(|corner| self.part(f, corner));
             *place = FaceId::new(at);
             for (corner, parts) in [(corners[0], [before, at]), (corners[1], [at, after])] {
@@ -261,7 +262,7 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
                 end = end.max(edge + 1);
             }
         }
-        Upward {
+        FoundSides {
             found,
             known: end as usize,
         }
@@ -269,12 +270,12 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
 
     /// Adds the parts along these sides to the fans of the middles.
     #[inline(always)]
-    fn file(self, sides: &[Side], part: &mut Part<'_>) {
+    fn append_to_fans(self, sides: &[Side], chunk: &mut Chunk<'_>) {
         for side in sides {
-            let fan = &mut part.fans[side.edge as usize - part.first];
-            let places = fan.range().end - part.start;
+            let fan = &mut chunk.fans[side.edge as usize - chunk.first];
+            let places = fan.range().end - chunk.start;
             let [first, second] = side.parts;
-            let pool = &mut part.pool[places..places + Self::ALONG];
+            let pool = &mut chunk.pool[places..places + Self::PARTS_AT_MIDDLE];
             // In the order of faces, as in all fans that no edit has changed.
             pool[0] = FaceId::new(first.min(second));
             pool[1] = FaceId::new(first.max(second));
@@ -282,31 +283,31 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
                 // The middle of triangles.
                 pool[2] = FaceId::new(first | 3);
             }
-            fan.len += Self::ALONG as u32;
+            fan.len += Self::PARTS_AT_MIDDLE as u32;
         }
     }
 }
 
 /// The result of [`Splitting::find_sides`].
-struct Upward {
+struct FoundSides {
     found: usize,
     /// One more than the highest edge number found.
     known: usize,
 }
 
-impl Part<'_> {
-    /// Makes the fans of the middles longer, by `along` for each side.
+impl Chunk<'_> {
+    /// Makes the fans of the middles longer, by `parts` for each side.
     #[inline(always)]
-    fn count(&mut self, sides: &[Side], along: usize) {
+    fn count(&mut self, sides: &[Side], parts: usize) {
         for side in sides {
-            self.fans[side.edge as usize - self.first].len += along as u32;
+            self.fans[side.edge as usize - self.first].len += parts as u32;
         }
     }
 
     /// Places the fans of these edges one after another, still empty, from place `start` of the
     /// pool. Returns the place where the next fan starts.
     #[inline(always)]
-    fn open(&mut self, edges: Range<usize>, start: usize) -> usize {
+    fn place_fans(&mut self, edges: Range<usize>, start: usize) -> usize {
         let mut start = start as u32;
         for fan in &mut self.fans[edges.start - self.first..edges.end - self.first] {
             fan.start = start;

@@ -97,7 +97,7 @@ impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
         self.vertex_holes.check(self.fans.len()).map_err(fails)?;
         self.face_holes.check(self.spans.len()).map_err(fails)?;
         for (v, fan) in (0..row(self.fans.len())).zip(self.fans.rows()) {
-            if (*fan == Fan::GONE) != self.vertex_holes.has(v as usize) {
+            if (*fan == Fan::DELETED) != self.vertex_holes.has(v as usize) {
                 let v = VertexId::new(v);
                 return Err(fails(format!("{v} has {fan:?}, but the holes disagree")));
             }
@@ -231,17 +231,17 @@ mod tests {
     #[test]
     fn i4_deleted_elements_that_are_not_marked() {
         let mut broken = triangles();
-        broken.vertex_holes.dig(3);
+        broken.vertex_holes.insert(3);
         assert_eq!(
             fault(&broken),
             "I1 fails: f1 has vertex v3, which does not exist"
         );
         let mut broken = mesh(&[&[0, 1, 2]]);
-        broken.vertex_holes.dig(3);
+        broken.vertex_holes.insert(3);
         let expected = "I4 fails: v3 has Fan { start: 3, len: 0 }, but the holes disagree";
         assert_eq!(fault(&broken), expected);
         let mut broken = triangles();
-        broken.face_holes.dig(1);
+        broken.face_holes.insert(1);
         for v in [0, 2, 3] {
             broken.fans.rows_mut()[v].len = 1;
         }

@@ -2,7 +2,7 @@
 
 use sixfold_core::{EdgeId, Editing, FaceId, Probe, Slot, VertexId};
 
-use crate::mesh::{AnyHalfEdgeMesh, Half, HalfEdgeId, deleted};
+use crate::mesh::{AnyHalfEdgeMesh, Half, HalfEdgeId, panic_deleted};
 
 /// The half-edges that leave a vertex, clockwise: each step is `h → next(twin(h))`.
 #[derive(Clone, Debug)]
@@ -180,8 +180,10 @@ impl<P: Probe, E: Editing> Iterator for Across<'_, P, E> {
 pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
     mesh: &'a AnyHalfEdgeMesh<P, E>,
     at: HalfEdgeId,
+    /// The half-edge at which the walk ends.
     stop: HalfEdgeId,
-    then: Option<HalfEdgeId>,
+    /// The half-edge at which the walk around the other end stops; `None` during that walk.
+    next_stop: Option<HalfEdgeId>,
 }
 
 impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
@@ -189,15 +191,15 @@ impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
     pub(crate) fn new(mesh: &'a AnyHalfEdgeMesh<P, E>, e: EdgeId) -> Self {
         let [one, other] = mesh.halves_of(e);
         let half = mesh.halves.read(other.index());
-        if E::DELETES && half.is_deleted() {
-            deleted(e);
+        if E::CAN_DELETE && half.is_deleted() {
+            panic_deleted(e);
         }
         let at = half.next;
         Self {
             mesh,
             at,
             stop: one,
-            then: Some(other),
+            next_stop: Some(other),
         }
     }
 }
@@ -208,7 +210,7 @@ impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
     #[inline]
     fn next(&mut self) -> Option<EdgeId> {
         while self.at == self.stop {
-            self.stop = self.then.take()?;
+            self.stop = self.next_stop.take()?;
             self.at = self.mesh.follow(self.stop.twin());
         }
         let edge = self.at.edge();
@@ -222,16 +224,15 @@ impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
             mesh,
             mut at,
             mut stop,
-            then,
+            mut next_stop,
         } = self;
         let mut folded = init;
-        let mut then = then;
         loop {
             while at != stop {
                 folded = f(folded, at.edge());
                 at = mesh.follow(at.twin());
             }
-            match then.take() {
+            match next_stop.take() {
                 Some(other) => (stop, at) = (other, mesh.follow(other.twin())),
                 None => return folded,
             }

@@ -16,7 +16,7 @@ impl<E: Editing> Representation for AnyHalfEdgeMesh<Untraced, E> {
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
 
     fn type_path() -> &'static str {
-        match E::DELETES {
+        match E::CAN_DELETE {
             true => "sixfold_half_edge::EditableHalfEdgeMesh",
             false => "sixfold_half_edge::HalfEdgeMesh",
         }
@@ -25,23 +25,23 @@ impl<E: Editing> Representation for AnyHalfEdgeMesh<Untraced, E> {
     /// Pairs the sides, links the half-edges of each face, then links the boundary loops, without
     /// hashing; O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
-        let refusal = || Self::CAPABILITIES.refusal(polygons);
+        let error = || Self::CAPABILITIES.build_error(polygons);
         let faces = polygons.faces();
         let mut halves = vec![BLANK; faces.corners().len()];
         let mut unlinked = Unlinked(&mut halves);
         let pairs = TwinPairs::with_rows(polygons.vertex_count(), faces, &mut unlinked);
-        let pairs = pairs.ok_or_else(refusal)?;
-        let mut draft = Draft::link(polygons.vertex_count(), faces, halves, &pairs);
+        let pairs = pairs.ok_or_else(error)?;
+        let mut builder = Builder::from_faces(polygons.vertex_count(), faces, halves, &pairs);
         let closed = faces.corners().len() == 2 * pairs.edge_count;
-        if (!closed && !draft.close_boundary_loops()) || !draft.every_vertex_is_one_fan() {
-            return Err(refusal());
+        if (!closed && !builder.close_boundary_loops()) || !builder.every_vertex_is_one_fan() {
+            return Err(error());
         }
         let positions = polygons.positions().to_vec();
-        Ok(Self::of_tables(
+        Ok(Self::from_tables(
             positions,
-            draft.leaving,
-            draft.halves,
-            draft.first,
+            builder.leaving,
+            builder.halves,
+            builder.first,
         ))
     }
 
@@ -65,11 +65,11 @@ impl<E: Editing> Representation for AnyHalfEdgeMesh<Untraced, E> {
         PolygonMesh::from_faces(positions, faces).expect("I7")
     }
 
-    fn vertex_name(_: &PolygonMesh, v: VertexId) -> VertexId {
+    fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
         v
     }
 
-    fn face_name(_: &PolygonMesh, f: FaceId) -> FaceId {
+    fn face_handle(_: &PolygonMesh, f: FaceId) -> FaceId {
         f
     }
 
@@ -154,39 +154,39 @@ impl SideRows for Unlinked<'_> {
 }
 
 /// The tables during construction.
-struct Draft {
+struct Builder {
     leaving: Vec<Slot<HalfEdgeId>>,
     halves: Vec<Half>,
     first: Vec<HalfEdgeId>,
 }
 
-impl Draft {
+impl Builder {
     /// Writes the half-edge of every corner over the rows of `halves`, whose faces are empty.
     /// Boundary half-edges keep an empty face.
-    fn link(vertices: usize, faces: &FaceList, halves: Vec<Half>, pairs: &TwinPairs) -> Self {
-        let mut draft = Self {
+    fn from_faces(vertices: usize, faces: &FaceList, halves: Vec<Half>, pairs: &TwinPairs) -> Self {
+        let mut builder = Self {
             leaving: vec![Slot::NONE; vertices],
             halves,
             first: Vec::with_capacity(faces.len()),
         };
         let half_count = 2 * pairs.edge_count;
-        if half_count > draft.halves.len() {
+        if half_count > builder.halves.len() {
             // There is a boundary, so some half-edges have no corner. The old rows are freed first:
             // a growing block may be copied, and the table would be in memory twice.
-            draft.halves = Vec::new();
-            draft.halves = vec![BLANK; half_count];
+            builder.halves = Vec::new();
+            builder.halves = vec![BLANK; half_count];
         }
         let halves = pairs.half_of_corner.as_slice();
         match faces.uniform_degree() {
-            Some(3) => draft.link_uniform::<3>(faces.corners(), halves),
-            Some(4) => draft.link_uniform::<4>(faces.corners(), halves),
+            Some(3) => builder.link_uniform::<3>(faces.corners(), halves),
+            Some(4) => builder.link_uniform::<4>(faces.corners(), halves),
             _ => {
                 for (f, corners) in faces.iter() {
-                    draft.link_face(f, corners, &halves[faces.range(f)]);
+                    builder.link_face(f, corners, &halves[faces.range(f)]);
                 }
             }
         }
-        draft
+        builder
     }
 
     /// Links faces of one degree, which is known at compile time so that the loop is unrolled.
@@ -248,17 +248,17 @@ impl Draft {
 
     /// Returns whether the walks around all vertices visit every half-edge.
     fn every_vertex_is_one_fan(&self) -> bool {
-        let mut met = 0;
+        let mut visited = 0;
         for first in self.leaving.iter().filter_map(|leaving| leaving.get()) {
             let mut h = first;
             loop {
-                met += 1;
+                visited += 1;
                 h = self.halves[h.twin().index()].next;
                 if h == first {
                     break;
                 }
             }
         }
-        met == self.halves.len()
+        visited == self.halves.len()
     }
 }

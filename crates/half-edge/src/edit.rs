@@ -4,7 +4,7 @@ mod collapse;
 mod compact;
 mod faces;
 mod flip;
-mod names;
+mod handle_set;
 mod split;
 mod split_vertex;
 #[cfg(test)]
@@ -32,9 +32,9 @@ type Refusal = sixfold_core::Refusal<EditableHalfEdgeMesh>;
 impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 
-    type Whole = HalfEdgeMesh<P>;
+    type Compact = HalfEdgeMesh<P>;
 
-    fn into_whole(mut self) -> HalfEdgeMesh<P> {
+    fn into_compact(mut self) -> HalfEdgeMesh<P> {
         self.compact(&mut ());
         AnyHalfEdgeMesh {
             positions: self.positions,
@@ -74,7 +74,7 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
     }
 
     fn remove_face(&mut self, f: FaceId, log: &mut impl EditLog<Self>) -> Result<(), Refusal> {
-        let first = self.existing_face(f)?;
+        let first = self.check_face(f)?;
         self.check_removable(first)?;
         self.unlink_face(f, first, log);
         Ok(())
@@ -82,9 +82,9 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
 
     fn remove_vertex(&mut self, v: VertexId, log: &mut impl EditLog<Self>) -> Result<(), Refusal> {
         self.check_vertex(v)?;
-        self.check_star_removable(v)?;
-        self.unlink_star(v, log);
-        self.dig_vertex(v);
+        self.check_fan_removable(v)?;
+        self.unlink_fan(v, log);
+        self.delete_vertex(v);
         log.removed_vertex(v);
         Ok(())
     }
@@ -94,7 +94,7 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
         for v in (0..row(self.vertex_rows())).map(VertexId::new) {
             let isolated = self.leaving.read(v.index()).get().is_none();
             if isolated && !self.vertex_holes.has(v.index()) {
-                self.dig_vertex(v);
+                self.delete_vertex(v);
                 log.removed_vertex(v);
             }
         }
@@ -134,7 +134,7 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
         ends: [VertexId; 2],
         log: &mut impl EditLog<Self>,
     ) -> Result<EdgeId, Refusal> {
-        self.cut(f, ends, log)
+        self.split_between(f, ends, log)
     }
 
     fn dissolve_edge(
@@ -169,11 +169,11 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
         at: Point,
         log: &mut impl EditLog<Self>,
     ) -> Result<VertexId, Refusal> {
-        self.open(v, left, right, at, log)
+        self.split_fan(v, left, right, at, log)
     }
 
     fn compact(&mut self, log: &mut impl EditLog<Self>) {
-        self.close_holes(log);
+        self.compact_tables(log);
     }
 }
 
@@ -190,7 +190,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
 
     /// Returns the records of both half-edges of `e`, or an error if `e` does not exist.
     #[inline]
-    fn existing_edge(&self, e: EdgeId) -> Result<[Half; 2], Refusal> {
+    fn check_edge(&self, e: EdgeId) -> Result<[Half; 2], Refusal> {
         if e.index() < self.edge_rows() {
             let pair = *self.halves.read_pair(e.index());
             if !pair[0].is_deleted() {
@@ -202,7 +202,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
 
     /// Returns `first(f)`, or an error if `f` does not exist.
     #[inline]
-    fn existing_face(&self, f: FaceId) -> Result<HalfEdgeId, Refusal> {
+    fn check_face(&self, f: FaceId) -> Result<HalfEdgeId, Refusal> {
         if f.index() < self.face_rows() {
             let first = *self.first.read(f.index());
             if first != NO_HALF {
@@ -233,13 +233,13 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
 impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// Returns the record of `h`.
     #[inline]
-    fn row_of(&self, h: HalfEdgeId) -> Half {
+    fn record(&self, h: HalfEdgeId) -> Half {
         *self.halves.read(h.index())
     }
 
     /// Returns the records of `h` and of its twin.
     #[inline]
-    fn both(&self, h: HalfEdgeId) -> [Half; 2] {
+    fn record_pair(&self, h: HalfEdgeId) -> [Half; 2] {
         let pair = self.halves.read_pair(h.edge().index());
         let side = h.index() & 1;
         [pair[side], pair[side ^ 1]]
@@ -248,7 +248,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// Returns whether `h` has a face on its left.
     #[inline]
     fn has_face(&self, h: HalfEdgeId) -> bool {
-        self.row_of(h).face != Slot::NONE
+        self.record(h).face != Slot::NONE
     }
 
     #[inline]
@@ -259,16 +259,16 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// Puts `new` in the place of `old`, after `before`, in its face or on its boundary loop.
     #[inline]
     fn replace(&mut self, before: HalfEdgeId, old: HalfEdgeId, new: HalfEdgeId) {
-        let Half { next, face, .. } = self.row_of(old);
+        let Half { next, face, .. } = self.record(old);
         self.link(before, new);
         let half = self.halves.write(new.index());
         (half.next, half.face) = (next, face);
-        self.pass_on_first(face, old, new);
+        self.replace_first(face, old, new);
     }
 
     /// Sets `first` of the face, if there is a face, to `new` if it was `old`.
     #[inline]
-    fn pass_on_first(&mut self, face: Slot<FaceId>, old: HalfEdgeId, new: HalfEdgeId) {
+    fn replace_first(&mut self, face: Slot<FaceId>, old: HalfEdgeId, new: HalfEdgeId) {
         if let Some(f) = face.get()
             && *self.first.read(f.index()) == old
         {
@@ -278,7 +278,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
 
     /// Sets `leaving(v)` to `new` if it was `old`.
     #[inline]
-    fn pass_on_leaving(&mut self, v: VertexId, old: HalfEdgeId, new: HalfEdgeId) {
+    fn replace_leaving(&mut self, v: VertexId, old: HalfEdgeId, new: HalfEdgeId) {
         if *self.leaving.read(v.index()) == Slot::some(old) {
             self.set_leaving(v, new);
         }
@@ -333,24 +333,24 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
 
     /// Deletes `v`: its row becomes a hole.
     #[inline]
-    fn dig_vertex(&mut self, v: VertexId) {
+    fn delete_vertex(&mut self, v: VertexId) {
         *self.leaving.write(v.index()) = Slot::NONE;
-        self.vertex_holes.dig(v.index());
+        self.vertex_holes.insert(v.index());
     }
 
     /// Deletes `e`: its rows become holes.
     #[inline]
-    fn dig_edge(&mut self, e: EdgeId) {
+    fn delete_edge(&mut self, e: EdgeId) {
         for h in self.halves_of(e) {
             *self.halves.write(h.index()) = Half::DELETED;
         }
-        self.edge_holes.dig(e.index());
+        self.edge_holes.insert(e.index());
     }
 
     /// Deletes `f`: its row becomes a hole.
     #[inline]
-    fn dig_face(&mut self, f: FaceId) {
+    fn delete_face(&mut self, f: FaceId) {
         *self.first.write(f.index()) = NO_HALF;
-        self.face_holes.dig(f.index());
+        self.face_holes.insert(f.index());
     }
 }

@@ -3,8 +3,8 @@
 use std::fmt::Debug;
 
 use sixfold_core::{
-    EDGE_HOLES, EdgeId, Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe, Slot, Table,
-    Untraced, VERTEX_HOLES, VertexId, Whole, row_id,
+    Compact, EDGE_HOLES, EdgeId, Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe,
+    Slot, Table, Untraced, VERTEX_HOLES, VertexId, row_id,
 };
 
 row_id! {
@@ -110,7 +110,7 @@ pub struct AnyHalfEdgeMesh<P: Probe, E: Editing> {
 sixfold_core::clone_by_field!(AnyHalfEdgeMesh<P: Probe, E: Editing> { positions, leaving, halves, first, vertex_holes, edge_holes, face_holes });
 
 /// A half-edge mesh that cannot delete elements: an [`AnyHalfEdgeMesh`] without holes.
-pub type HalfEdgeMesh<P = Untraced> = AnyHalfEdgeMesh<P, Whole>;
+pub type HalfEdgeMesh<P = Untraced> = AnyHalfEdgeMesh<P, Compact>;
 
 /// A half-edge mesh that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an
 /// [`AnyHalfEdgeMesh`] with holes.
@@ -133,7 +133,7 @@ impl<P: Probe> From<HalfEdgeMesh<P>> for EditableHalfEdgeMesh<P> {
 
 impl<E: Editing> AnyHalfEdgeMesh<Untraced, E> {
     /// Builds a mesh from these tables, without holes.
-    pub(crate) fn of_tables(
+    pub(crate) fn from_tables(
         positions: Vec<Point>,
         leaving: Vec<Slot<HalfEdgeId>>,
         halves: Vec<Half>,
@@ -230,7 +230,7 @@ impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
         let leaving = self.leaving.read(v.index()).get();
         // Tested here, because a cold function that may return made the VF sweep 6 % slower.
         if leaving.is_none() && self.vertex_holes.has(v.index()) {
-            deleted(v);
+            panic_deleted(v);
         }
         leaving
     }
@@ -243,8 +243,8 @@ impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
     #[inline]
     pub fn half_along(&self, f: FaceId) -> HalfEdgeId {
         let first = *self.first.read(f.index());
-        if E::DELETES && first == NO_HALF {
-            deleted(f);
+        if E::CAN_DELETE && first == NO_HALF {
+            panic_deleted(f);
         }
         first
     }
@@ -269,8 +269,8 @@ impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
     #[inline]
     fn half(&self, h: HalfEdgeId) -> &Half {
         let half = self.halves.read(h.index());
-        if E::DELETES && half.is_deleted() {
-            deleted(h);
+        if E::CAN_DELETE && half.is_deleted() {
+            panic_deleted(h);
         }
         half
     }
@@ -285,7 +285,7 @@ impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
 /// Panics because a query got the handle of a deleted element.
 #[cold]
 #[inline(never)]
-pub(crate) fn deleted(handle: impl Debug) -> ! {
+pub(crate) fn panic_deleted(handle: impl Debug) -> ! {
     panic!("{handle:?} was deleted")
 }
 

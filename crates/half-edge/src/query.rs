@@ -5,7 +5,7 @@ use sixfold_core::{
 };
 
 use crate::circulate::EdgeEdges;
-use crate::mesh::{AnyHalfEdgeMesh, Half, deleted};
+use crate::mesh::{AnyHalfEdgeMesh, Half, panic_deleted};
 
 impl<P: Probe, E: Editing> MeshQuery for AnyHalfEdgeMesh<P, E> {
     type Vertex = VertexId;
@@ -43,7 +43,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyHalfEdgeMesh<P, E> {
     fn position(&self, v: VertexId) -> Point {
         let at = self.positions.read(v.index());
         if self.vertex_holes.has(v.index()) {
-            deleted(v);
+            panic_deleted(v);
         }
         *at
     }
@@ -138,8 +138,8 @@ impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
     #[inline]
     fn pair(&self, e: EdgeId) -> &[Half; 2] {
         let pair = self.halves.read_pair(e.index());
-        if E::DELETES && pair[0].is_deleted() {
-            deleted(e);
+        if E::CAN_DELETE && pair[0].is_deleted() {
+            panic_deleted(e);
         }
         pair
     }

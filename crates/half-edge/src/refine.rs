@@ -8,8 +8,8 @@ mod tests;
 use std::ops::Range;
 
 use sixfold_core::{
-    Counts, EdgeId, FaceId, MeshQuery, PART, Point, Ranks, Refine, RefineError, Slot, Split,
-    VertexId, all_rows, check_split, in_parts, row, row_parts, rows_of_part,
+    CHUNK_ROWS, Counts, EdgeId, FaceId, MeshQuery, Point, Ranks, Refine, RefineError, Slot, Split,
+    VertexId, all_rows, check_split, chunk_starts, for_each_chunk, row, rows_of_chunk,
 };
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
@@ -36,19 +36,19 @@ impl Refine for HalfEdgeMesh {
     type EdgeNumbers = Ranks;
 
     fn empty() -> Self {
-        Self::of_tables(Vec::new(), Vec::new(), Vec::new(), Vec::new())
+        Self::from_tables(Vec::new(), Vec::new(), Vec::new(), Vec::new())
     }
 
     fn number_edges(&self, numbers: &mut Ranks) {
         numbers.fill(self.half_rows(), |half| [half.face != Slot::NONE]);
     }
 
-    fn edge_parts(&self, _: &Ranks) -> Vec<usize> {
-        row_parts(self.edge_count())
+    fn edge_chunks(&self, _: &Ranks) -> Vec<usize> {
+        chunk_starts(self.edge_count())
     }
 
-    fn edges_of_part(&self, _: &Ranks, part: usize) -> impl Iterator<Item = EdgeId> {
-        rows_of_part(self.edge_count(), part).map(EdgeId::new)
+    fn edges_of_chunk(&self, _: &Ranks, chunk: usize) -> impl Iterator<Item = EdgeId> {
+        rows_of_chunk(self.edge_count(), chunk).map(EdgeId::new)
     }
 
     fn edge_number(&self, _: &Ranks, e: EdgeId) -> usize {
@@ -77,9 +77,9 @@ impl Refine for HalfEdgeMesh {
         };
         let grown = check_split::<Self>(split, &counts, boundary)?;
         if split.needs_triangles() && !counts.uniform {
-            return Err(self.first_that_is_no_triangle());
+            return Err(self.first_non_triangle());
         }
-        if split.needs_triangles() && !all_rows(self.leaving_rows(), |&h| !self.is_pinched(h)) {
+        if split.needs_triangles() && !all_rows(self.leaving_rows(), |&h| !self.is_double_edge(h)) {
             return Err(self.first_double_edge());
         }
         child.positions.resize(grown.vertices, Point::ZERO);
@@ -138,7 +138,7 @@ impl HalfEdgeMesh {
         }
     }
 
-    fn first_that_is_no_triangle(&self) -> RefineError {
+    fn first_non_triangle(&self) -> RefineError {
         let degrees = self
             .faces()
             .map(|face| (face, self.around_face(face).count()));
@@ -147,17 +147,20 @@ impl HalfEdgeMesh {
         RefineError::NotATriangle { face, degree }
     }
 
-    /// Returns whether the origin of `h` is an inner vertex with two edges, so that its two faces
-    /// share both.
-    fn is_pinched(&self, h: Slot<HalfEdgeId>) -> bool {
+    /// Returns whether the origin of `h` is an inner vertex with two edges. Its two faces then
+    /// share both edges.
+    fn is_double_edge(&self, h: Slot<HalfEdgeId>) -> bool {
         let after = |h: HalfEdgeId| self.half_rows()[h.twin().index()].next;
         h.get()
             .is_some_and(|h| after(after(h)) == h && !self.is_boundary(h))
     }
 
     fn first_double_edge(&self) -> RefineError {
-        let mut pinched = self.leaving_rows().iter().filter(|&&h| self.is_pinched(h));
-        let h = pinched.next().and_then(|h| h.get()).expect("one exists");
+        let mut doubled = self
+            .leaving_rows()
+            .iter()
+            .filter(|&&h| self.is_double_edge(h));
+        let h = doubled.next().and_then(|h| h.get()).expect("one exists");
         let [first, second] = [h, h.twin()].map(|h| self.face(h).expect("both faces exist"));
         RefineError::DoubleEdge { first, second }
     }
@@ -186,7 +189,7 @@ impl<const CLOSED: bool> Corners<'_, CLOSED> {
 
     /// Returns whether `h` has a face.
     #[inline(always)]
-    fn is_one(&self, h: u32) -> bool {
+    fn has_face(&self, h: u32) -> bool {
         CLOSED || self.0.contains(h as usize)
     }
 }
@@ -203,7 +206,7 @@ fn half(next: u32, origin: u32, face: Slot<FaceId>) -> Half {
 
 /// The rows of the child that come from some edges of the parent and from the corners of their
 /// half-edges.
-struct Part<'a> {
+struct Chunk<'a> {
     /// The edges of the parent.
     edges: Range<u32>,
     /// The half-edges along each edge, always the same number.
@@ -214,30 +217,32 @@ struct Part<'a> {
     first: &'a mut [HalfEdgeId],
 }
 
-/// Calls `work` with consecutive parts of the child's tables that cover the rows of all edges and
+/// Calls `work` with consecutive chunks of the child's tables that cover the rows of all edges and
 /// corners, on the threads of the current rayon pool. `along_each` half-edges belong to each edge.
-fn for_parts<const CLOSED: bool>(
+fn for_each_edge_chunk<const CLOSED: bool>(
     edges: usize,
     corners: &Corners<CLOSED>,
     along_each: usize,
     child: &mut HalfEdgeMesh,
-    work: impl Fn(&mut Part) + Sync,
+    work: impl Fn(&mut Chunk) + Sync,
 ) {
     let (mut along, mut inner) = child.halves.rows_mut().split_at_mut(along_each * edges);
     let mut first = child.first.rows_mut();
-    let mut parts = Vec::with_capacity(edges.div_ceil(PART));
-    for start in (0..edges).step_by(PART) {
-        let end = (start + PART).min(edges);
+    let mut chunks = Vec::with_capacity(edges.div_ceil(CHUNK_ROWS));
+    for start in (0..edges).step_by(CHUNK_ROWS) {
+        let end = (start + CHUNK_ROWS).min(edges);
         let number = |edge: usize| corners.0.rank(2 * edge);
         let corners = number(end) - number(start);
-        parts.push(Part {
+        chunks.push(Chunk {
             edges: row(start)..row(end),
             along: take(&mut along, along_each * (end - start)),
             inner: take(&mut inner, 2 * corners),
             first: take(&mut first, corners),
         });
     }
-    in_parts(&mut parts, 1, |_, parts| parts.iter_mut().for_each(&work));
+    for_each_chunk(&mut chunks, 1, |_, chunks| {
+        chunks.iter_mut().for_each(&work)
+    });
 }
 
 /// Splits the first `len` rows off `rows` and returns them.
@@ -245,9 +250,9 @@ fn take<'a, T>(rows: &mut &'a mut [T], len: usize) -> &'a mut [T] {
     rows.split_off_mut(..len).expect("the child has these rows")
 }
 
-/// Computes each of `rows` from its number, in parts that the threads share.
+/// Computes each of `rows` from its number, in chunks that the threads share.
 fn fill<T: Send>(rows: &mut [T], value: impl Fn(usize) -> T + Sync) {
-    in_parts(rows, PART, |first, rows| {
+    for_each_chunk(rows, CHUNK_ROWS, |first, rows| {
         for (i, row) in (first..).zip(rows) {
             *row = value(i);
         }

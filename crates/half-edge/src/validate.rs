@@ -13,17 +13,17 @@ use crate::mesh::{AnyHalfEdgeMesh, Half, HalfEdgeId, NO_HALF};
 pub(crate) fn validate<E: Editing>(
     mesh: &AnyHalfEdgeMesh<Untraced, E>,
 ) -> Result<(), InvariantError> {
-    pairs(mesh)?;
-    holes(mesh)?;
-    names_exist(mesh)?;
-    one_face_at_least(mesh)?;
-    permutation(mesh)?;
-    faces_agree(mesh)?;
-    ends_meet(mesh)?;
-    leaving_halves(mesh)?;
-    one_fan_each(mesh)?;
-    faces(mesh)?;
-    edges_differ(mesh)
+    check_pairs(mesh)?;
+    check_holes(mesh)?;
+    check_handles(mesh)?;
+    check_edge_faces(mesh)?;
+    check_permutation(mesh)?;
+    check_cycle_faces(mesh)?;
+    check_ends(mesh)?;
+    check_leaving(mesh)?;
+    check_fans(mesh)?;
+    check_faces(mesh)?;
+    check_distinct_edges(mesh)
 }
 
 fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> {
@@ -35,7 +35,7 @@ fn halves<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> impl Iterator<Item
     mesh.edges().flat_map(|e| mesh.halves_of(e))
 }
 
-fn pairs<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_pairs<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     match mesh.half_rows().len() {
         rows if rows.is_multiple_of(2) => Ok(()),
         rows => fails("I1", format!("{rows} half-edges, expected an even number")),
@@ -43,7 +43,7 @@ fn pairs<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), Invarian
 }
 
 /// Checks that exactly the rows of deleted elements are marked as deleted.
-fn holes<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_holes<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let kinds = [
         (&mesh.vertex_holes, mesh.vertex_rows()),
         (&mesh.edge_holes, mesh.edge_rows()),
@@ -73,9 +73,9 @@ fn holes<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), Invarian
     Ok(())
 }
 
-/// Checks that every handle in the tables names an element that exists; the other checks walk, and
-/// need this.
-fn names_exist<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+/// Checks that every handle in the tables refers to an element that exists. The other checks walk
+/// along these handles, so they rely on this check.
+fn check_handles<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let is_vertex =
         |v: VertexId| v.index() < mesh.vertex_rows() && !mesh.vertex_holes.has(v.index());
     let is_half = |h: HalfEdgeId| {
@@ -97,16 +97,16 @@ fn names_exist<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), In
     }
 }
 
-fn one_face_at_least<E: Editing>(
-    mesh: &AnyHalfEdgeMesh<Untraced, E>,
-) -> Result<(), InvariantError> {
+fn check_edge_faces<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     match halves(mesh).find(|&h| mesh.is_boundary(h) && mesh.is_boundary(h.twin())) {
         Some(h) => fails("I1", format!("{} has no face on either side", h.edge())),
         None => Ok(()),
     }
 }
 
-fn permutation<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_permutation<E: Editing>(
+    mesh: &AnyHalfEdgeMesh<Untraced, E>,
+) -> Result<(), InvariantError> {
     let mut reached = vec![false; mesh.half_rows().len()];
     for h in halves(mesh) {
         let next = mesh.next(h);
@@ -117,7 +117,9 @@ fn permutation<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), In
     Ok(())
 }
 
-fn faces_agree<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_cycle_faces<E: Editing>(
+    mesh: &AnyHalfEdgeMesh<Untraced, E>,
+) -> Result<(), InvariantError> {
     match halves(mesh).find(|&h| mesh.face(mesh.next(h)) != mesh.face(h)) {
         Some(h) => fails(
             "I3",
@@ -127,14 +129,14 @@ fn faces_agree<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), In
     }
 }
 
-fn ends_meet<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_ends<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     match halves(mesh).find(|&h| mesh.origin(mesh.next(h)) != mesh.target(h)) {
         Some(h) => fails("I4", format!("{h} does not end where its next starts")),
         None => Ok(()),
     }
 }
 
-fn leaving_halves<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_leaving<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     for h in halves(mesh) {
         let v = mesh.origin(h);
         let Some(leaving) = mesh.half_leaving(v) else {
@@ -161,7 +163,7 @@ fn leaving_halves<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(),
     Ok(())
 }
 
-fn one_fan_each<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_fans<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let mut leaving = vec![0_usize; mesh.vertex_rows()];
     for h in halves(mesh) {
         leaving[mesh.origin(h).index()] += 1;
@@ -179,7 +181,7 @@ fn one_fan_each<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), I
     Ok(())
 }
 
-fn faces<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_faces<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let mut along = 0;
     for f in mesh.faces() {
         let h = mesh.half_along(f);
@@ -203,7 +205,9 @@ fn faces<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), Invarian
     Ok(())
 }
 
-fn edges_differ<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_distinct_edges<E: Editing>(
+    mesh: &AnyHalfEdgeMesh<Untraced, E>,
+) -> Result<(), InvariantError> {
     let mut ends = HashSet::new();
     for e in mesh.edges() {
         let [a, b] = mesh.edge_vertices(e);
@@ -283,10 +287,10 @@ mod tests {
         );
         let along = |m: &EditableHalfEdgeMesh, f| m.half_along(FaceId::new(f));
         assert_eq!(broken(|m| m.first.rows_mut()[0] = along(m, 1)), "I7");
-        assert_eq!(broken(|m| m.vertex_holes.dig(0)), "I9");
-        assert_eq!(broken(|m| m.vertex_holes.dig(5)), "I9");
-        assert_eq!(broken(|m| m.edge_holes.dig(0)), "I9");
-        assert_eq!(broken(|m| m.face_holes.dig(1)), "I9");
+        assert_eq!(broken(|m| m.vertex_holes.insert(0)), "I9");
+        assert_eq!(broken(|m| m.vertex_holes.insert(5)), "I9");
+        assert_eq!(broken(|m| m.edge_holes.insert(0)), "I9");
+        assert_eq!(broken(|m| m.face_holes.insert(1)), "I9");
         assert_eq!(broken(|m| m.first.rows_mut()[1] = NO_HALF), "I9");
         assert_eq!(broken(|m| m.halves.rows_mut()[o] = Half::DELETED), "I9");
     }
@@ -294,7 +298,7 @@ mod tests {
     #[test]
     fn a_reference_to_a_deleted_element_is_found() {
         let mut mesh = sound();
-        mesh.vertex_holes.dig(4);
+        mesh.vertex_holes.insert(4);
         assert_eq!(mesh.validate(), Ok(()), "an isolated vertex is deleted");
         let i = mesh.half_along(FaceId::new(0)).index();
         for (name, broken) in [
@@ -353,7 +357,7 @@ mod tests {
             .expect_err("v2 has two fans and two edges to each end");
         assert!(["I6", "I8"].contains(&broken.invariant), "{broken}");
         assert_eq!(
-            edges_differ(&mesh)
+            check_distinct_edges(&mesh)
                 .expect_err("two pairs of equal edges")
                 .invariant,
             "I8"

@@ -22,7 +22,7 @@ impl<E: Editing> Representation for AnyIndexedFaceSet<Untraced, E> {
     };
 
     fn type_path() -> &'static str {
-        match E::DELETES {
+        match E::CAN_DELETE {
             true => "sixfold_indexed_face_set::EditableIndexedFaceSet",
             false => "sixfold_indexed_face_set::IndexedFaceSet",
         }
@@ -52,11 +52,11 @@ impl<E: Editing> Representation for AnyIndexedFaceSet<Untraced, E> {
         PolygonMesh::from_faces(positions.collect(), faces).expect("I1 and I2")
     }
 
-    fn vertex_name(_: &PolygonMesh, v: VertexId) -> VertexId {
+    fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
         v
     }
 
-    fn face_name(_: &PolygonMesh, f: FaceId) -> FaceId {
+    fn face_handle(_: &PolygonMesh, f: FaceId) -> FaceId {
         f
     }
 

@@ -31,13 +31,13 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         ]
     };
 
-    type Whole = IndexedFaceSet<P>;
+    type Compact = IndexedFaceSet<P>;
 
-    fn into_whole(mut self) -> IndexedFaceSet<P> {
+    fn into_compact(mut self) -> IndexedFaceSet<P> {
         self.compact(&mut ());
         AnyIndexedFaceSet {
             positions: self.positions,
-            faces: self.faces.into_whole().expect("compacted"),
+            faces: self.faces.into_compact().expect("compacted"),
             vertex_holes: NoHoles,
         }
     }
@@ -49,7 +49,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         to: Point,
         _: &mut impl EditLog<Self>,
     ) -> Result<VertexId, Refusal<Self>> {
-        self.check(v)?;
+        self.check_vertex(v)?;
         *self.positions.write(v.index()) = to;
         Ok(v)
     }
@@ -72,7 +72,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         corners: &[VertexId],
         log: &mut impl EditLog<Self>,
     ) -> Result<FaceId, Refusal<Self>> {
-        corners.iter().try_for_each(|&v| self.check(v))?;
+        corners.iter().try_for_each(|&v| self.check_vertex(v))?;
         self.faces.add_face(corners, log)
     }
 
@@ -91,9 +91,9 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         v: VertexId,
         log: &mut impl EditLog<Self>,
     ) -> Result<(), Refusal<Self>> {
-        self.check(v)?;
+        self.check_vertex(v)?;
         self.faces.remove_faces_at(v, log)?;
-        self.vertex_holes.dig(v.index());
+        self.vertex_holes.insert(v.index());
         log.removed_vertex(v);
         Ok(())
     }
@@ -111,7 +111,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         let before = self.vertex_count();
         for v in (0..row(used.len())).map(VertexId::new) {
             if !used[v.index()] && !self.vertex_holes.has(v.index()) {
-                self.vertex_holes.dig(v.index());
+                self.vertex_holes.insert(v.index());
                 log.removed_vertex(v);
             }
         }
@@ -196,7 +196,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         self.faces.collapse_edge(e, keep, keep, log)?;
         let [a, b] = e.ends();
         let gone = if a == keep { b } else { a };
-        self.vertex_holes.dig(gone.index());
+        self.vertex_holes.insert(gone.index());
         *self.positions.write(keep.index()) = to;
         Ok(keep)
     }
@@ -210,7 +210,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         at: Point,
         log: &mut impl EditLog<Self>,
     ) -> Result<VertexId, Refusal<Self>> {
-        self.check(v)?;
+        self.check_vertex(v)?;
         let n = self.next_vertex()?;
         self.faces.split_vertex(v, left, right, n, log)?;
         self.positions.push(at);
@@ -221,7 +221,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         if !self.vertex_holes.is_empty() {
             let new = self.vertex_holes.new_rows(self.positions.len());
             let new = |v: VertexId| VertexId::new(new[v.index()]);
-            if listens(log) {
+            if uses_reports(log) {
                 for v in self.vertices().filter(|&v| new(v) != v) {
                     log.renamed_vertex(v, new(v));
                 }
@@ -239,17 +239,17 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         } else {
             self.faces.compact(log);
         }
-        self.vertex_holes.close(&mut self.positions);
-        self.vertex_holes.fill();
+        self.vertex_holes.compact_table(&mut self.positions);
+        self.vertex_holes.clear();
     }
 }
 
-fn listens<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
-    L::LISTENS
+fn uses_reports<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
+    L::USES_REPORTS
 }
 
 impl<P: Probe> EditableIndexedFaceSet<P> {
-    fn check(&self, v: VertexId) -> Result<(), Refusal<Self>> {
+    fn check_vertex(&self, v: VertexId) -> Result<(), Refusal<Self>> {
         match self.has(v) {
             true => Ok(()),
             false => Err(EditError::NoSuchVertex { vertex: v }),

@@ -1,8 +1,8 @@
 //! The tables, their invariants, and access to them.
 
 use sixfold_core::{
-    Editable, Editing, FaceId, FaceSpans, HoleSet, Point, Probe, ScannedFaces, Table, Untraced,
-    VERTEX_HOLES, VertexId, Whole,
+    Compact, Editable, Editing, FaceId, FaceSpans, HoleSet, Point, Probe, ScannedFaces, Table,
+    Untraced, VERTEX_HOLES, VertexId,
 };
 
 /// A mesh with the position of each vertex and the vertices of each face.
@@ -76,7 +76,7 @@ pub struct AnyIndexedFaceSet<P: Probe, E: Editing> {
 sixfold_core::clone_by_field!(AnyIndexedFaceSet<P: Probe, E: Editing> { positions, vertex_holes, faces });
 
 /// An indexed face set that cannot delete elements: an [`AnyIndexedFaceSet`] without holes.
-pub type IndexedFaceSet<P = Untraced> = AnyIndexedFaceSet<P, Whole>;
+pub type IndexedFaceSet<P = Untraced> = AnyIndexedFaceSet<P, Compact>;
 
 /// An indexed face set that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an
 /// [`AnyIndexedFaceSet`] with holes.
@@ -131,10 +131,10 @@ impl<P: Probe, E: Editing> AnyIndexedFaceSet<P, E> {
     ///
     /// Panics if there is no vertex `v`.
     #[inline]
-    pub(crate) fn existing(&self, v: VertexId) -> VertexId {
+    pub(crate) fn expect_vertex(&self, v: VertexId) -> VertexId {
         let vertices = self.positions.len();
         assert!(v.index() < vertices, "no vertex {v}: there are {vertices}");
-        self.check_deleted(v);
+        self.check_not_deleted(v);
         v
     }
 
@@ -144,15 +144,15 @@ impl<P: Probe, E: Editing> AnyIndexedFaceSet<P, E> {
     ///
     /// Panics if `v` was deleted.
     #[inline]
-    pub(crate) fn check_deleted(&self, v: VertexId) {
+    pub(crate) fn check_not_deleted(&self, v: VertexId) {
         if self.vertex_holes.has(v.index()) {
-            deleted(v);
+            deleted_vertex(v);
         }
     }
 }
 
 #[cold]
 #[inline(never)]
-fn deleted(v: VertexId) -> ! {
+fn deleted_vertex(v: VertexId) -> ! {
     panic!("no vertex {v}: it was deleted")
 }

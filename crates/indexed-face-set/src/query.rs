@@ -39,13 +39,13 @@ impl<P: Probe, E: Editing> MeshQuery for AnyIndexedFaceSet<P, E> {
     #[inline]
     fn position(&self, v: VertexId) -> Point {
         let at = *self.positions.read(v.index());
-        self.check_deleted(v);
+        self.check_not_deleted(v);
         at
     }
 
     #[inline]
     fn vertex_vertices(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
-        self.faces.vertex_vertices(self.existing(v))
+        self.faces.vertex_vertices(self.expect_vertex(v))
     }
 
     #[inline]
@@ -56,7 +56,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyIndexedFaceSet<P, E> {
 
     #[inline]
     fn vertex_faces(&self, v: VertexId) -> impl Iterator<Item = FaceId> {
-        self.faces.vertex_faces(self.existing(v))
+        self.faces.vertex_faces(self.expect_vertex(v))
     }
 
     #[inline]

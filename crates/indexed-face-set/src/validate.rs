@@ -112,19 +112,19 @@ mod tests {
                 mesh.faces.corners.rows_mut()[4] = VertexId::BLANK;
             };
             assert_eq!(broken(faces, blank), "I3");
-            let used = |mesh: &mut EditableIndexedFaceSet| mesh.faces.holes.dig(1);
+            let used = |mesh: &mut EditableIndexedFaceSet| mesh.faces.holes.insert(1);
             assert_eq!(broken(faces, used), "I3");
-            let beyond = |mesh: &mut EditableIndexedFaceSet| mesh.vertex_holes.dig(5);
+            let beyond = |mesh: &mut EditableIndexedFaceSet| mesh.vertex_holes.insert(5);
             assert_eq!(broken(faces, beyond), "I3");
-            let revived = |mesh: &mut EditableIndexedFaceSet| {
+            let reused = |mesh: &mut EditableIndexedFaceSet| {
                 let f = FaceId::new(1);
                 mesh.remove_face(f, &mut ()).expect("f1 exists");
                 assert_eq!(mesh.validate(), Ok(()));
                 mesh.faces.corners.rows_mut()[5] = VertexId::new(0);
             };
-            assert_eq!(broken(faces, revived), "I3");
+            assert_eq!(broken(faces, reused), "I3");
             // A face that has a deleted vertex breaks I2.
-            let named = |mesh: &mut EditableIndexedFaceSet| mesh.vertex_holes.dig(2);
+            let named = |mesh: &mut EditableIndexedFaceSet| mesh.vertex_holes.insert(2);
             assert_eq!(broken(faces, named), "I2");
         }
     }

@@ -6,14 +6,14 @@ use std::path::Path;
 
 use sixfold_core::{CreaseError, Creases, MAX_ROWS, PolygonMesh, VertexId};
 
-use crate::error::{Place, shown};
+use crate::error::{Location, shortened};
 use crate::lines::{Lines, Start};
-use crate::read::{Unopened, opened};
+use crate::read::{OpenError, open_file};
 use crate::sharpness::sharpness;
-use crate::write::Shortest;
+use crate::write::ShortestDecimal;
 
 /// Maximum length of a line in bytes, much longer than any comment needs.
-const LONGEST_LINE: u64 = 1 << 20;
+const MAX_LINE_LENGTH: u64 = 1 << 20;
 
 /// The reason why a file is not a valid crease file of a mesh, with its place and a way to correct
 /// it.
@@ -32,28 +32,28 @@ pub enum CreaseFileError {
     Directory { file: String },
     /// Reading fails before the end of the file.
     #[error("{at}: cannot be read further ({cause}): copy the file again")]
-    Read { at: Place, cause: io::Error },
+    Read { at: Location, cause: io::Error },
     /// The text has a byte order mark of UTF-16.
     #[error("{at}: the text is UTF-16: save it as UTF-8")]
-    Utf16 { at: Place },
+    Utf16 { at: Location },
     /// A line is not valid text.
     #[error(
         "{at}: the line is not UTF-8 text: a crease file has lines `edge a b sharpness` and `corner v sharpness`"
     )]
-    NotUtf8 { at: Place },
+    NotUtf8 { at: Location },
     /// A line is too long.
     #[error("{at}: the line is longer than {limit} bytes: end each entry with a line feed")]
-    LongLine { at: Place, limit: u64 },
+    LongLine { at: Location, limit: u64 },
     /// There are more lines than can be counted.
     #[error("{at}: more than {limit} lines: write each edge and corner only once")]
-    TooMany { at: Place, limit: usize },
+    TooMany { at: Location, limit: usize },
     /// A line does not start with `edge` or `corner`.
     #[error("{at}: {text:?} is not an entry: write `edge a b sharpness` or `corner v sharpness`")]
-    UnknownEntry { at: Place, text: String },
+    UnknownEntry { at: Location, text: String },
     /// An entry has too few or too many fields.
     #[error("{at}: expected {wanted} fields, found {found}: write `{form}`", wanted = .form.split(' ').count())]
     Fields {
-        at: Place,
+        at: Location,
         found: usize,
         form: &'static str,
     },
@@ -62,16 +62,16 @@ pub enum CreaseFileError {
         "{at}: {text:?} is not a vertex number: use whole numbers that count from 0; the mesh has {vertices} vertices"
     )]
     BadVertex {
-        at: Place,
+        at: Location,
         text: String,
         vertices: usize,
     },
     /// A field is not a sharpness.
     #[error("{at}: sharpness {text:?} is not a number from 0 to inf: write it like 2, 0.5 or inf")]
-    BadSharpness { at: Place, text: String },
+    BadSharpness { at: Location, text: String },
     /// The mesh does not have this vertex or edge.
     #[error("{at}: {cause}")]
-    Mesh { at: Place, cause: CreaseError },
+    Mesh { at: Location, cause: CreaseError },
 }
 
 /// Reads the crease file of `polygons` at `path`; O(bytes + corners) expected.
@@ -82,10 +82,10 @@ pub enum CreaseFileError {
 /// `path`.
 pub fn read_creases(path: &Path, polygons: &PolygonMesh) -> Result<Creases, CreaseFileError> {
     let file = path.display().to_string();
-    match opened(path) {
+    match open_file(path) {
         Ok(source) => parse_creases(&file, source, polygons),
-        Err(Unopened::Directory) => Err(CreaseFileError::Directory { file }),
-        Err(Unopened::Failed(cause)) => Err(CreaseFileError::Open { file, cause }),
+        Err(OpenError::Directory) => Err(CreaseFileError::Directory { file }),
+        Err(OpenError::Failed(cause)) => Err(CreaseFileError::Open { file, cause }),
     }
 }
 
@@ -136,7 +136,7 @@ pub fn parse_creases(
     let edges = edges.map(|&(_, ends, sharpness)| (ends, sharpness));
     let corners = corners.map(|&(_, vertex, sharpness)| (vertex, sharpness));
     Creases::new(polygons, edges, corners).map_err(|cause| CreaseFileError::Mesh {
-        at: place(name, line.get()),
+        at: location(name, line.get()),
         cause,
     })
 }
@@ -155,10 +155,10 @@ pub fn write_creases(creases: &Creases, out: impl Write) -> io::Result<()> {
     writeln!(out, "# edges: {}, corners: {}", edges.len(), corners.len())?;
     for &(edge, sharpness) in edges {
         let [a, b] = edge.ends().map(VertexId::index);
-        writeln!(out, "edge {a} {b} {}", Shortest(sharpness))?;
+        writeln!(out, "edge {a} {b} {}", ShortestDecimal(sharpness))?;
     }
     for &(vertex, sharpness) in corners {
-        let (v, sharpness) = (vertex.index(), Shortest(sharpness));
+        let (v, sharpness) = (vertex.index(), ShortestDecimal(sharpness));
         writeln!(out, "corner {v} {sharpness}")?;
     }
     out.flush()
@@ -173,19 +173,19 @@ struct Entries {
 
 impl Entries {
     fn read(name: &str, source: impl BufRead, vertices: usize) -> Result<Self, CreaseFileError> {
-        let mut lines = Lines::new(source).of_at_most(LONGEST_LINE);
-        let unreadable = |cause: io::Error, line| {
-            let at = place(name, u32::try_from(line).unwrap_or(u32::MAX));
+        let mut lines = Lines::new(source).with_max_length(MAX_LINE_LENGTH);
+        let read_error = |cause: io::Error, line| {
+            let at = location(name, u32::try_from(line).unwrap_or(u32::MAX));
             match cause.kind() {
                 io::ErrorKind::FileTooLarge => CreaseFileError::LongLine {
                     at,
-                    limit: LONGEST_LINE,
+                    limit: MAX_LINE_LENGTH,
                 },
                 _ => CreaseFileError::Read { at, cause },
             }
         };
-        if let Start::Utf16 = lines.start().map_err(|cause| unreadable(cause, 1))? {
-            let at = place(name, 1);
+        if let Start::Utf16 = lines.start().map_err(|cause| read_error(cause, 1))? {
+            let at = location(name, 1);
             return Err(CreaseFileError::Utf16 { at });
         }
         let mut entries = Self::default();
@@ -193,29 +193,29 @@ impl Entries {
         loop {
             let next = lines.count() + 1;
             let line = lines.read(&mut text);
-            let Some(line) = line.map_err(|cause| unreadable(cause, next))? else {
+            let Some(line) = line.map_err(|cause| read_error(cause, next))? else {
                 return Ok(entries);
             };
-            let fits = u32::try_from(line)
+            let row = u32::try_from(line)
                 .ok()
                 .filter(|&n| (n as usize) < MAX_ROWS);
-            let Some(line) = fits else {
-                let (at, limit) = (place(name, u32::MAX), MAX_ROWS);
+            let Some(line) = row else {
+                let (at, limit) = (location(name, u32::MAX), MAX_ROWS);
                 return Err(CreaseFileError::TooMany { at, limit });
             };
-            let at = || place(name, line);
+            let at = || location(name, line);
             let text = str::from_utf8(&text).map_err(|_| CreaseFileError::NotUtf8 { at: at() })?;
             let vertex = |text: &str| {
                 text.parse::<u32>().map_err(|_| CreaseFileError::BadVertex {
                     at: at(),
-                    text: shown(text),
+                    text: shortened(text),
                     vertices,
                 })
             };
             let sharpness = |text: &str| {
                 sharpness(text).ok_or_else(|| CreaseFileError::BadSharpness {
                     at: at(),
-                    text: shown(text),
+                    text: shortened(text),
                 })
             };
             let mut words = text.split_whitespace();
@@ -232,7 +232,7 @@ impl Entries {
                     entries.corners.push((line, vertex, sharpness));
                 }
                 Some(word) => {
-                    let (at, text) = (at(), shown(word));
+                    let (at, text) = (at(), shortened(word));
                     return Err(CreaseFileError::UnknownEntry { at, text });
                 }
             }
@@ -247,7 +247,7 @@ const CORNER: &str = "corner v sharpness";
 fn fields<'a, const N: usize>(
     mut words: impl Iterator<Item = &'a str>,
     form: &'static str,
-    at: impl Fn() -> Place,
+    at: impl Fn() -> Location,
 ) -> Result<[&'a str; N], CreaseFileError> {
     let mut fields = [""; N];
     let mut found = 0;
@@ -263,7 +263,7 @@ fn fields<'a, const N: usize>(
     Ok(fields)
 }
 
-fn place(name: &str, line: u32) -> Place {
+fn location(name: &str, line: u32) -> Location {
     let file = name.to_owned();
-    Place { file, line }
+    Location { file, line }
 }

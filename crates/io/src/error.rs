@@ -7,14 +7,14 @@ use crate::tags::TagFault;
 
 /// A line of a file; printed as `bunny.obj:17`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct Location {
     /// Name of the file, as given by the caller.
     pub file: String,
     /// Line, counted from 1; for a continued statement, its first line.
     pub line: u32,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}", self.file, self.line)
     }
@@ -37,27 +37,27 @@ pub enum ObjError {
     Directory { file: String },
     /// Reading fails before the end of the file.
     #[error("{at}: cannot be read further ({cause}): copy the file again")]
-    Read { at: Place, cause: io::Error },
+    Read { at: Location, cause: io::Error },
     /// The text has a byte order mark of UTF-16.
     #[error("{at}: the text is UTF-16: save it as UTF-8")]
-    Utf16 { at: Place },
+    Utf16 { at: Location },
     /// A vertex, face or tag is not valid text.
     #[error("{at}: the statement is not UTF-8 text: save the file as UTF-8, or correct the line")]
-    NotUtf8 { at: Place },
+    NotUtf8 { at: Location },
     /// The file has no vertex and no face.
     #[error("{file}: no vertex and no face: check that it is an OBJ file")]
     Empty { file: String },
     /// There are more elements than handles, or more lines than can be counted.
     #[error("{at}: more than {limit} {elements}: split the mesh, because handles have 32 bits")]
     TooMany {
-        at: Place,
+        at: Location,
         elements: &'static str,
         limit: usize,
     },
     /// A vertex has fewer than three coordinates.
     #[error("{at}: vertex {vertex} has {found} of three coordinates: add the missing ones")]
     TooFewCoordinates {
-        at: Place,
+        at: Location,
         vertex: usize,
         found: usize,
     },
@@ -66,7 +66,7 @@ pub enum ObjError {
         "{at}: coordinate {text:?} of vertex {vertex} is not a number: write it like 0.5 or -2e-3"
     )]
     BadNumber {
-        at: Place,
+        at: Location,
         vertex: usize,
         text: String,
     },
@@ -75,7 +75,7 @@ pub enum ObjError {
         "{at}: coordinate {coordinate} of vertex {vertex} is not finite: keep coordinates below 3.4e38"
     )]
     NonFinite {
-        at: Place,
+        at: Location,
         vertex: usize,
         coordinate: char,
     },
@@ -83,38 +83,38 @@ pub enum ObjError {
     #[error(
         "{at}: face corner {text:?} is not a vertex number: use whole numbers that count from 1, or backwards from -1"
     )]
-    BadCorner { at: Place, text: String },
+    BadCorner { at: Location, text: String },
     /// A corner has vertex number 0.
     #[error("{at}: face names vertex 0, but OBJ counts from 1: add 1 to the indices of the file")]
-    IndexZero { at: Place },
+    IndexZero { at: Location },
     /// A face has the number of a vertex that is not in the file.
-    #[error("{at}: face names vertex {index}, but there {count}: correct the index", count = there_are(*vertices))]
+    #[error("{at}: face names vertex {index}, but there {count}: correct the index", count = vertices_phrase(*vertices))]
     IndexOutOfRange {
-        at: Place,
+        at: Location,
         index: u32,
         vertices: usize,
     },
     /// A face counts backwards beyond the first vertex.
-    #[error("{at}: face names vertex {index}, but before it there {count}: correct the index", count = there_are(*before))]
+    #[error("{at}: face names vertex {index}, but before it there {count}: correct the index", count = vertices_phrase(*before))]
     RelativeIndexOutOfRange {
-        at: Place,
+        at: Location,
         index: i64,
         before: usize,
     },
     /// A `t crease` or `t corner` tag is invalid.
     #[error("{at}: {fault}")]
-    Tag { at: Place, fault: TagFault },
+    Tag { at: Location, fault: TagFault },
     /// The parser rejects a statement for a reason that the normaliser does not detect.
     #[error("{at}: the parser rejects {text:?} ({reason}): write the line in a simpler form")]
     Refused {
-        at: Place,
+        at: Location,
         text: String,
         reason: String,
     },
 }
 
 /// Formats a number of vertices as `is 1 vertex` or `are 12 vertices`.
-fn there_are(vertices: usize) -> String {
+fn vertices_phrase(vertices: usize) -> String {
     match vertices {
         0 => "is no vertex".to_owned(),
         1 => "is 1 vertex".to_owned(),
@@ -123,9 +123,9 @@ fn there_are(vertices: usize) -> String {
 }
 
 /// Shortens `text` to a length that fits into a message.
-pub(crate) fn shown(text: &str) -> String {
-    const LONGEST: usize = 40;
-    match text.char_indices().nth(LONGEST) {
+pub(crate) fn shortened(text: &str) -> String {
+    const MAX_CHARS: usize = 40;
+    match text.char_indices().nth(MAX_CHARS) {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text.to_owned(),
     }

@@ -64,9 +64,9 @@ mod tags;
 mod write;
 
 pub use crease_file::{CreaseFileError, parse_creases, read_creases, write_creases};
-pub use error::{ObjError, Place};
-pub use notice::{Notice, Passed};
+pub use error::{Location, ObjError};
+pub use notice::{IgnoredKind, Notice};
 pub use obj_mesh::{LeftOut, LeftOutReason, ObjMesh, ShortFace};
 pub use read::{parse_obj, read_obj};
-pub use tags::{CornerTag, CreaseTag, LooseCrease, Tag, TagFault};
+pub use tags::{CornerTag, CreaseTag, Tag, TagFault, UnusedCrease};
 pub use write::{write_obj, write_obj_with_normals};

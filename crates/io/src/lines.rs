@@ -17,7 +17,7 @@ pub(crate) struct Lines<R> {
     /// Number of physical lines that were read.
     count: u64,
     /// Maximum length of a line in bytes; adjacent lines that end in a lone CR count as one line.
-    longest: u64,
+    max_length: u64,
 }
 
 /// How a file starts.
@@ -36,14 +36,14 @@ impl<R: BufRead> Lines<R> {
             chunk: Vec::new(),
             next: None,
             count: 0,
-            longest: u64::MAX,
+            max_length: u64::MAX,
         }
     }
 
-    /// Limits the length of lines: if a line is longer than `longest` bytes, reading fails with
+    /// Limits the length of lines: if a line is longer than `max_length` bytes, reading fails with
     /// [`io::ErrorKind::FileTooLarge`].
-    pub(crate) fn of_at_most(self, longest: u64) -> Self {
-        Self { longest, ..self }
+    pub(crate) fn with_max_length(self, max_length: u64) -> Self {
+        Self { max_length, ..self }
     }
 
     /// Reads the first line in advance and checks for a byte order mark.
@@ -66,13 +66,13 @@ impl<R: BufRead> Lines<R> {
     /// line.
     pub(crate) fn read(&mut self, statement: &mut Vec<u8>) -> io::Result<Option<u64>> {
         statement.clear();
-        let (first, longest) = (self.count + 1, self.longest);
+        let (first, max_length) = (self.count + 1, self.max_length);
         while let Some(line) = self.physical()? {
             let comment = line.iter().position(|&byte| byte == b'#');
             let text = line[..comment.unwrap_or(line.len())].trim_ascii_end();
             let continued = text.strip_suffix(b"\\").filter(|_| comment.is_none());
             statement.extend_from_slice(continued.unwrap_or(text));
-            if statement.len() as u64 > longest {
+            if statement.len() as u64 > max_length {
                 return Err(io::ErrorKind::FileTooLarge.into());
             }
             if continued.is_none() {
@@ -105,10 +105,10 @@ impl<R: BufRead> Lines<R> {
     /// Reads up to the next LF and removes the line end; returns whether any byte was read.
     fn read_chunk(&mut self) -> io::Result<bool> {
         self.chunk.clear();
-        let most = self.longest.saturating_add(1);
-        let mut source = self.source.by_ref().take(most);
+        let limit = self.max_length.saturating_add(1);
+        let mut source = self.source.by_ref().take(limit);
         let read = source.read_until(b'\n', &mut self.chunk)?;
-        if read as u64 > self.longest && self.chunk.last() != Some(&b'\n') {
+        if read as u64 > self.max_length && self.chunk.last() != Some(&b'\n') {
             return Err(io::ErrorKind::FileTooLarge.into());
         }
         for end in [b'\n', b'\r'] {
@@ -170,7 +170,7 @@ mod tests {
             ("ab\\\nab", false),
             ("a\\\na", true),
         ] {
-            let mut lines = Lines::new(text.as_bytes()).of_at_most(4);
+            let mut lines = Lines::new(text.as_bytes()).with_max_length(4);
             let mut statement = Vec::new();
             let mut read = || lines.read(&mut statement);
             let end = std::iter::repeat_with(&mut read).find(|line| !matches!(line, Ok(Some(_))));

@@ -4,9 +4,9 @@ use std::io::{self, BufRead, Read, Write};
 
 use sixfold_core::{MAX_ROWS, VertexId};
 
-use crate::error::{ObjError, Place, shown};
+use crate::error::{Location, ObjError, shortened};
 use crate::lines::{Lines, Start};
-use crate::notice::{Notice, Passed, note};
+use crate::notice::{IgnoredKind, Notice, add_notice};
 use crate::obj_mesh::ShortFace;
 use crate::tags::{Tag, Tags};
 
@@ -27,13 +27,13 @@ pub(crate) struct Normaliser<'a, R> {
     statement: Vec<u8>,
     /// First physical line of the current logical line, counted from 1.
     line: u32,
-    /// Text of the converted statement; the parser has taken the first `given` bytes.
+    /// Text of the converted statement; the parser has taken the first `consumed` bytes.
     text: Vec<u8>,
-    given: usize,
+    consumed: usize,
     progress: Progress,
     /// Vertex numbers that were used before the vertex was read, each higher than the ones before
     /// it, with the line of the face.
-    forward: Vec<(u32, u32)>,
+    forward_references: Vec<(u32, u32)>,
     corners: usize,
     /// Maximum number of vertices, corners and lines.
     limit: usize,
@@ -64,9 +64,9 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
             statement: Vec::new(),
             line: 1,
             text: Vec::new(),
-            given: 0,
+            consumed: 0,
             progress: Progress::AtStart,
-            forward: Vec::new(),
+            forward_references: Vec::new(),
             corners: 0,
             limit: MAX_ROWS,
             fault: None,
@@ -80,44 +80,46 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
 
     /// Finds out why the parser stopped at the last statement.
     pub(crate) fn diagnose(&self, refusal: &tobj::LoadError) -> ObjError {
-        let at = self.at(self.line);
+        let at = self.location(self.line);
         let text = String::from_utf8_lossy(&self.text);
         let mut words = text.split_whitespace();
         if words.next() == Some("v") {
             let vertex = self.vertex_lines.len();
             let found = words.clone().count();
             if let Some(bad) = words.find(|word| word.parse::<f32>().is_err()) {
-                let text = shown(bad);
+                let text = shortened(bad);
                 return ObjError::BadNumber { at, vertex, text };
             }
             if found < 3 {
                 return ObjError::TooFewCoordinates { at, vertex, found };
             }
         }
-        let (text, reason) = (shown(text.trim_end()), refusal.to_string());
+        let (text, reason) = (shortened(text.trim_end()), refusal.to_string());
         ObjError::Refused { at, text, reason }
     }
 
-    /// Returns the place of line `line` in this file.
-    pub(crate) fn at(&self, line: u32) -> Place {
+    /// Returns the location of line `line` in this file.
+    pub(crate) fn location(&self, line: u32) -> Location {
         let file = self.name.to_owned();
-        Place { file, line }
+        Location { file, line }
     }
 
     /// Writes the next statement into `text`; at the end of the file, `text` is empty.
     fn advance(&mut self) -> Result<(), ObjError> {
         self.text.clear();
-        self.given = 0;
+        self.consumed = 0;
         if self.progress == Progress::AtStart {
             self.progress = Progress::Inside;
-            if let Start::Utf16 = self.lines.start().map_err(|e| self.unreadable(e))? {
-                return Err(ObjError::Utf16 { at: self.at(1) });
+            if let Start::Utf16 = self.lines.start().map_err(|e| self.read_error(e))? {
+                return Err(ObjError::Utf16 {
+                    at: self.location(1),
+                });
             }
         }
         while self.text.is_empty() && self.progress == Progress::Inside {
             let mut statement = std::mem::take(&mut self.statement);
             let line = self.lines.read(&mut statement);
-            match line.map_err(|e| self.unreadable(e))? {
+            match line.map_err(|e| self.read_error(e))? {
                 Some(line) => {
                     self.check_limit("lines", usize::try_from(line).unwrap_or(usize::MAX))?;
                     self.line = u32::try_from(line).expect("the limit is below 2³²");
@@ -130,9 +132,9 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
         Ok(())
     }
 
-    fn unreadable(&self, cause: io::Error) -> ObjError {
+    fn read_error(&self, cause: io::Error) -> ObjError {
         let line = u32::try_from(self.lines.count() + 1).unwrap_or(u32::MAX);
-        let at = self.at(line);
+        let at = self.location(line);
         ObjError::Read { at, cause }
     }
 
@@ -143,11 +145,15 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
         let (keyword, rest) = statement.split_at(end.unwrap_or(statement.len()));
         match keyword {
             b"" => Ok(()),
-            b"v" => self.read_vertex(self.decoded(rest)?),
-            b"f" | b"fo" => self.read_face(self.decoded(rest)?),
+            b"v" => self.read_vertex(self.decode(rest)?),
+            b"f" | b"fo" => self.read_face(self.decode(rest)?),
             b"t" => self.read_tag(rest),
             _ => {
-                note(&mut self.notices, Passed::of(keyword), self.line);
+                add_notice(
+                    &mut self.notices,
+                    IgnoredKind::from_keyword(keyword),
+                    self.line,
+                );
                 Ok(())
             }
         }
@@ -158,22 +164,22 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
         let tag = tag.trim_ascii_start();
         let end = tag.iter().position(u8::is_ascii_whitespace);
         let (name, values) = tag.split_at(end.unwrap_or(tag.len()));
-        let Some(tag) = Tag::named(name) else {
-            note(&mut self.notices, Passed::of_tag(name), self.line);
+        let Some(tag) = Tag::from_name(name) else {
+            add_notice(&mut self.notices, IgnoredKind::from_tag(name), self.line);
             return Ok(());
         };
-        let values = self.decoded(values)?;
+        let values = self.decode(values)?;
         let read = self.tags.read(tag, values, self.line);
         read.map_err(|fault| ObjError::Tag {
-            at: self.at(self.line),
+            at: self.location(self.line),
             fault,
         })?;
         self.check_limit("sharp edges and vertices", self.tags.len())
     }
 
-    fn decoded<'b>(&self, bytes: &'b [u8]) -> Result<&'b str, ObjError> {
+    fn decode<'b>(&self, bytes: &'b [u8]) -> Result<&'b str, ObjError> {
         str::from_utf8(bytes).map_err(|_| ObjError::NotUtf8 {
-            at: self.at(self.line),
+            at: self.location(self.line),
         })
     }
 
@@ -190,7 +196,7 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
         }
         self.text.push(b'\n');
         if words.next().is_some() {
-            note(&mut self.notices, Passed::ExtraValues, self.line);
+            add_notice(&mut self.notices, IgnoredKind::ExtraValues, self.line);
         }
         Ok(())
     }
@@ -229,12 +235,12 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
         let (index, _) = word.split_once('/').unwrap_or((word, ""));
         let before = self.vertex_lines.len();
         let bad = || ObjError::BadCorner {
-            at: self.at(self.line),
-            text: shown(word),
+            at: self.location(self.line),
+            text: shortened(word),
         };
         let index: i64 = index.parse().map_err(|_| bad())?;
         if index == 0 {
-            let at = self.at(self.line);
+            let at = self.location(self.line);
             return Err(ObjError::IndexZero { at });
         }
         if index < 0 {
@@ -242,16 +248,19 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
             return match before.checked_sub(back).map(u32::try_from) {
                 Some(Ok(row)) => Ok(row + 1),
                 _ => Err(ObjError::RelativeIndexOutOfRange {
-                    at: self.at(self.line),
+                    at: self.location(self.line),
                     index,
                     before,
                 }),
             };
         }
         let number = u32::try_from(index).map_err(|_| bad())?;
-        let highest = self.forward.last().map_or(0, |&(number, _)| number);
+        let highest = self
+            .forward_references
+            .last()
+            .map_or(0, |&(number, _)| number);
         if number > highest && number as usize > before {
-            self.forward.push((number, self.line));
+            self.forward_references.push((number, self.line));
         }
         Ok(number)
     }
@@ -261,9 +270,9 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
         self.progress = Progress::AtEnd;
         let vertices = self.vertex_lines.len();
         let beyond = |&&(number, _): &&(u32, u32)| number as usize > vertices;
-        if let Some(&(index, line)) = self.forward.iter().find(beyond) {
+        if let Some(&(index, line)) = self.forward_references.iter().find(beyond) {
             return Err(ObjError::IndexOutOfRange {
-                at: self.at(line),
+                at: self.location(line),
                 index,
                 vertices,
             });
@@ -281,7 +290,7 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
     fn check_limit(&self, elements: &'static str, count: usize) -> Result<(), ObjError> {
         if count > self.limit {
             return Err(ObjError::TooMany {
-                at: self.at(self.line),
+                at: self.location(self.line),
                 elements,
                 limit: self.limit,
             });
@@ -292,17 +301,17 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
 
 impl<R: BufRead> BufRead for Normaliser<'_, R> {
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        if self.given == self.text.len()
+        if self.consumed == self.text.len()
             && let Err(fault) = self.advance()
         {
             self.fault = Some(fault);
             return Err(io::ErrorKind::InvalidData.into());
         }
-        Ok(&self.text[self.given..])
+        Ok(&self.text[self.consumed..])
     }
 
     fn consume(&mut self, bytes: usize) {
-        self.given += bytes;
+        self.consumed += bytes;
     }
 }
 

@@ -5,7 +5,7 @@ use std::fmt;
 /// A kind of statement, or part of one, that the reader ignores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-pub enum Passed {
+pub enum IgnoredKind {
     /// `vt`.
     TextureCoordinates,
     /// `vn`.
@@ -40,9 +40,9 @@ pub enum Passed {
     Unknown,
 }
 
-impl Passed {
+impl IgnoredKind {
     /// Returns the kind of a statement with this keyword, which is not `v` or `f`.
-    pub(crate) fn of(keyword: &[u8]) -> Self {
+    pub(crate) fn from_keyword(keyword: &[u8]) -> Self {
         match keyword {
             b"vt" => Self::TextureCoordinates,
             b"vn" => Self::Normals,
@@ -62,7 +62,7 @@ impl Passed {
     }
 
     /// Returns the kind of a `t` statement with this name, which is not `crease` or `corner`.
-    pub(crate) fn of_tag(name: &[u8]) -> Self {
+    pub(crate) fn from_tag(name: &[u8]) -> Self {
         match name {
             b"interpolateboundary"
             | b"facevaryinginterpolateboundary"
@@ -101,7 +101,7 @@ impl Passed {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
     /// Kind of the ignored statements.
-    pub passed: Passed,
+    pub kind: IgnoredKind,
     /// Number of statements; for values after coordinates, the number of vertices with such values.
     pub count: usize,
     /// Line of the first one, counted from 1.
@@ -110,7 +110,7 @@ pub struct Notice {
 
 impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [one, several] = self.passed.names();
+        let [one, several] = self.kind.names();
         let line = self.first_line;
         match self.count {
             1 => write!(f, "ignored 1 {one} (line {line})"),
@@ -119,12 +119,12 @@ impl fmt::Display for Notice {
     }
 }
 
-/// Counts one more occurrence of `passed`, at `line`; `notices` has one entry for each kind.
-pub(crate) fn note(notices: &mut Vec<Notice>, passed: Passed, line: u32) {
-    match notices.iter_mut().find(|notice| notice.passed == passed) {
+/// Counts one more occurrence of `kind`, at `line`; `notices` has one entry for each kind.
+pub(crate) fn add_notice(notices: &mut Vec<Notice>, kind: IgnoredKind, line: u32) {
+    match notices.iter_mut().find(|notice| notice.kind == kind) {
         Some(notice) => notice.count += 1,
         None => notices.push(Notice {
-            passed,
+            kind,
             count: 1,
             first_line: line,
         }),

@@ -5,7 +5,7 @@ use std::fmt;
 use sixfold_core::{Creases, FaceList, Facts, IteratorExt, Point, PolygonMesh, VertexId};
 
 use crate::notice::Notice;
-use crate::tags::{CornerTag, CreaseTag, LooseCrease, on_polygons};
+use crate::tags::{CornerTag, CreaseTag, UnusedCrease, creases_on_polygons};
 
 /// The vertices and faces of a file, with the numbering of the file.
 ///
@@ -67,7 +67,7 @@ impl ObjMesh {
     ///
     /// Panics if `faces` was changed and uses a vertex that does not exist.
     pub fn facts(&self) -> Facts {
-        let facts = Facts::of_faces(self.positions.len(), &self.faces);
+        let facts = Facts::from_faces(self.positions.len(), &self.faces);
         let mut facts = facts.unwrap_or_else(|error| panic!("{error}"));
         facts.degenerate_faces += self.short_faces.len();
         facts
@@ -85,12 +85,12 @@ impl ObjMesh {
     /// ```
     /// let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nt crease 3/1/0 2 0 1 4.7\nt corner 1/1/0 1 inf\n";
     /// let obj = sixfold_io::parse_obj("triangle.obj", text.as_bytes())?;
-    /// let (creases, loose) = obj.creases();
-    /// assert_eq!((creases.edges().len(), creases.corners().len(), loose.len()), (2, 1, 0));
+    /// let (creases, unused) = obj.creases();
+    /// assert_eq!((creases.edges().len(), creases.corners().len(), unused.len()), (2, 1, 0));
     /// # Ok::<(), sixfold_io::ObjError>(())
     /// ```
-    pub fn creases(&self) -> (Creases, Vec<LooseCrease>) {
-        on_polygons(&self.crease_tags, &self.corner_tags, &self.faces)
+    pub fn creases(&self) -> (Creases, Vec<UnusedCrease>) {
+        creases_on_polygons(&self.crease_tags, &self.corner_tags, &self.faces)
     }
 
     /// Returns the mesh without its degenerate and short faces, and these faces sorted by line;
@@ -107,7 +107,7 @@ impl ObjMesh {
             left_out.push(LeftOut::new(short.line, &short.corners, reason));
         }
         for (f, face) in self.faces.iter() {
-            if let Some(vertex) = repeated(face) {
+            if let Some(vertex) = repeated_vertex(face) {
                 let reason = LeftOutReason::RepeatedVertex(number(vertex));
                 left_out.push(LeftOut::new(self.face_lines[f.index()], face, reason));
             }
@@ -120,7 +120,7 @@ impl ObjMesh {
             for (_, face) in self
                 .faces
                 .iter()
-                .filter(|(_, face)| repeated(face).is_none())
+                .filter(|(_, face)| repeated_vertex(face).is_none())
             {
                 let face = face.iter().copied();
                 kept.push(face).expect("fewer faces than before");
@@ -146,12 +146,12 @@ impl LeftOut {
 impl fmt::Display for LeftOut {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         /// Maximum number of corners that are printed.
-        const MOST: usize = 8;
+        const MAX_CORNERS: usize = 8;
         write!(f, "line {}: face", self.line)?;
-        for vertex in self.vertices.iter().take(MOST) {
+        for vertex in self.vertices.iter().take(MAX_CORNERS) {
             write!(f, " {vertex}")?;
         }
-        if self.vertices.len() > MOST {
+        if self.vertices.len() > MAX_CORNERS {
             write!(f, " …")?;
         }
         match self.reason {
@@ -167,7 +167,7 @@ fn number(vertex: VertexId) -> u32 {
 }
 
 /// Returns the first vertex that repeats an earlier corner of `face`; O(corners) expected.
-pub(crate) fn repeated(face: &[VertexId]) -> Option<VertexId> {
+pub(crate) fn repeated_vertex(face: &[VertexId]) -> Option<VertexId> {
     let mut distinct = face.iter().copied().distinct();
     face.iter().copied().find(|&v| distinct.next() != Some(v))
 }

@@ -11,7 +11,7 @@ use crate::normaliser::Normaliser;
 use crate::obj_mesh::ObjMesh;
 
 /// Options that keep faces as they are, use only vertex numbers, and ignore nothing.
-const AS_IT_IS: tobj::LoadOptions = tobj::LoadOptions {
+const LOAD_OPTIONS: tobj::LoadOptions = tobj::LoadOptions {
     single_index: false,
     triangulate: false,
     ignore_points: false,
@@ -26,32 +26,32 @@ const AS_IT_IS: tobj::LoadOptions = tobj::LoadOptions {
 /// `path`.
 pub fn read_obj(path: &Path) -> Result<ObjMesh, ObjError> {
     let file = path.display().to_string();
-    match opened(path) {
+    match open_file(path) {
         Ok(source) => parse_obj(&file, source),
-        Err(Unopened::Directory) => Err(ObjError::Directory { file }),
-        Err(Unopened::Failed(cause)) => Err(ObjError::Open { file, cause }),
+        Err(OpenError::Directory) => Err(ObjError::Directory { file }),
+        Err(OpenError::Failed(cause)) => Err(ObjError::Open { file, cause }),
     }
 }
 
 /// The reason why a file could not be opened.
-pub(crate) enum Unopened {
+pub(crate) enum OpenError {
     /// The path is a directory.
     Directory,
     /// The system returned an error.
     Failed(io::Error),
 }
 
-impl From<io::Error> for Unopened {
+impl From<io::Error> for OpenError {
     fn from(cause: io::Error) -> Self {
         Self::Failed(cause)
     }
 }
 
 /// Opens the file at `path`.
-pub(crate) fn opened(path: &Path) -> Result<BufReader<File>, Unopened> {
+pub(crate) fn open_file(path: &Path) -> Result<BufReader<File>, OpenError> {
     // Opening a directory succeeds on some systems and gives a misleading error on others.
     if fs::metadata(path)?.is_dir() {
-        return Err(Unopened::Directory);
+        return Err(OpenError::Directory);
     }
     Ok(BufReader::with_capacity(1 << 16, File::open(path)?))
 }
@@ -82,7 +82,7 @@ pub fn parse_obj(name: &str, source: impl BufRead) -> Result<ObjMesh, ObjError> 
     let mut text = Normaliser::new(name, source);
     // The text for the parser never contains a material library, so this is not called.
     let no_library = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
-    let loaded = tobj::load_obj_buf(&mut text, &AS_IT_IS, no_library);
+    let loaded = tobj::load_obj_buf(&mut text, &LOAD_OPTIONS, no_library);
     if let Some(fault) = text.fault.take() {
         return Err(fault);
     }
@@ -91,11 +91,11 @@ pub fn parse_obj(name: &str, source: impl BufRead) -> Result<ObjMesh, ObjError> 
         let file = name.to_owned();
         return Err(ObjError::Empty { file });
     }
-    let (positions, faces) = as_numbered(models, text.vertex_lines.len());
+    let (positions, faces) = restore_numbering(models, text.vertex_lines.len());
     check_finite(&text, &positions)?;
     let tags = text.tags.check(positions.len(), &faces, &text.short_faces);
     tags.map_err(|(line, fault)| ObjError::Tag {
-        at: text.at(line),
+        at: text.location(line),
         fault,
     })?;
     Ok(ObjMesh {
@@ -112,7 +112,7 @@ pub fn parse_obj(name: &str, source: impl BufRead) -> Result<ObjMesh, ObjError> 
 /// Restores the numbering of the file; the parser numbers vertices by first use.
 ///
 /// The last `vertices` corners are the polygon through all vertices in file order.
-fn as_numbered(models: Vec<tobj::Model>, vertices: usize) -> (Vec<Point>, FaceList) {
+fn restore_numbering(models: Vec<tobj::Model>, vertices: usize) -> (Vec<Point>, FaceList) {
     let [model] = <[_; 1]>::try_from(models).expect("N1: one object");
     let tobj::Mesh {
         positions: coordinates,
@@ -120,15 +120,18 @@ fn as_numbered(models: Vec<tobj::Model>, vertices: usize) -> (Vec<Point>, FaceLi
         mut face_arities,
         ..
     } = model.mesh;
-    let names = indices.split_off(indices.len() - vertices);
+    let tobj_numbers = indices.split_off(indices.len() - vertices);
     let mut numbers = vec![VertexId::new(0); vertices];
-    for (number, &name) in names.iter().enumerate() {
-        numbers[name as usize] = VertexId::new(row(number));
+    for (number, &tobj_number) in tobj_numbers.iter().enumerate() {
+        numbers[tobj_number as usize] = VertexId::new(row(number));
     }
-    let position = |&name: &u32| Point::from_slice(&coordinates[3 * name as usize..]);
-    let positions = names.iter().map(position).collect();
+    let position = |&tobj_number: &u32| Point::from_slice(&coordinates[3 * tobj_number as usize..]);
+    let positions = tobj_numbers.iter().map(position).collect();
 
-    let corners: Vec<VertexId> = indices.iter().map(|&name| numbers[name as usize]).collect();
+    let corners: Vec<VertexId> = indices
+        .iter()
+        .map(|&tobj_number| numbers[tobj_number as usize])
+        .collect();
     // The list of degrees is empty if all degrees are three, including the last polygon's.
     face_arities.pop();
     let degree = face_arities.first().map_or(3, |&degree| degree as usize);
@@ -156,7 +159,7 @@ fn check_finite<R: BufRead>(text: &Normaliser<'_, R>, positions: &[Point]) -> Re
     let coordinates = ['x', 'y', 'z'].into_iter().zip(positions[v].to_array());
     let mut infinite = coordinates.filter(|(_, value)| !value.is_finite());
     Err(ObjError::NonFinite {
-        at: text.at(text.vertex_lines[v]),
+        at: text.location(text.vertex_lines[v]),
         vertex: v + 1,
         coordinate: infinite.next().map_or('x', |(name, _)| name),
     })

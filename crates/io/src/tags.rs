@@ -4,8 +4,8 @@ use std::fmt;
 
 use sixfold_core::{CreaseError, Creases, FaceList, MAX_ROWS, Pair, VertexId, row};
 
-use crate::error::shown;
-use crate::obj_mesh::{ShortFace, repeated};
+use crate::error::shortened;
+use crate::obj_mesh::{ShortFace, repeated_vertex};
 use crate::sharpness::sharpness;
 
 /// One edge of a `t crease` tag. A tag through several vertices gives one entry for each edge.
@@ -34,14 +34,14 @@ pub struct CornerTag {
 /// `line 40: crease 3 7 lies only on faces that are left out`. Its vertices count from 0, as in the
 /// tag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LooseCrease {
+pub struct UnusedCrease {
     /// Line of the tag, counted from 1.
     pub line: u32,
     /// Ends of the edge.
     pub ends: [VertexId; 2],
 }
 
-impl fmt::Display for LooseCrease {
+impl fmt::Display for UnusedCrease {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [a, b] = self.ends.map(VertexId::index);
         let line = self.line;
@@ -62,11 +62,11 @@ pub enum TagFault {
     Counts { tag: Tag, text: String },
     /// The number of values does not match the counts.
     #[error(
-        "the counts of tag {tag} require {promised} values, found {found}: correct the counts or the values"
+        "the counts of tag {tag} require {required} values, found {found}: correct the counts or the values"
     )]
     Length {
         tag: Tag,
-        promised: usize,
+        required: usize,
         found: usize,
     },
     /// The numbers of vertices and sharpnesses do not match, or the tag has words.
@@ -96,7 +96,7 @@ pub enum Tag {
 
 impl Tag {
     /// Returns the tag with this name, if it sets sharpness.
-    pub(crate) fn named(name: &[u8]) -> Option<Self> {
+    pub(crate) fn from_name(name: &[u8]) -> Option<Self> {
         match name {
             b"crease" => Some(Self::Crease),
             b"corner" => Some(Self::Corner),
@@ -157,44 +157,44 @@ impl Tags {
         let counts = words.next().unwrap_or("");
         let of_counts = || TagFault::Counts {
             tag,
-            text: shown(counts),
+            text: shortened(counts),
         };
-        let [vertices, sharpnesses, other] = three_numbers(counts).ok_or_else(of_counts)?;
-        let promised = vertices
+        let [vertices, sharpnesses, other] = parse_counts(counts).ok_or_else(of_counts)?;
+        let required = vertices
             .checked_add(sharpnesses)
             .and_then(|sum| sum.checked_add(other))
             .ok_or_else(of_counts)?;
         let words: Vec<&str> = words.collect();
-        if words.len() != promised {
+        if words.len() != required {
             let found = words.len();
             return Err(TagFault::Length {
                 tag,
-                promised,
+                required,
                 found,
             });
         }
-        let places = match tag {
+        let count = match tag {
             Tag::Crease => vertices.saturating_sub(1),
             Tag::Corner => vertices,
         };
-        if other > 0 || places == 0 || (sharpnesses != 1 && sharpnesses != places) {
-            let counts = shown(counts);
+        if other > 0 || count == 0 || (sharpnesses != 1 && sharpnesses != count) {
+            let counts = shortened(counts);
             return Err(TagFault::Shape { tag, counts });
         }
-        let (names, numbers) = words.split_at(vertices);
-        let names = names.iter().map(|word| vertex(tag, word));
-        let names = names.collect::<Result<Vec<VertexId>, TagFault>>()?;
-        let numbers = numbers.iter().map(|word| {
+        let (vertices, values) = words.split_at(vertices);
+        let vertices = vertices.iter().map(|word| parse_vertex(tag, word));
+        let vertices = vertices.collect::<Result<Vec<VertexId>, TagFault>>()?;
+        let values = values.iter().map(|word| {
             sharpness(word).ok_or_else(|| TagFault::Sharpness {
                 tag,
-                text: shown(word),
+                text: shortened(word),
             })
         });
-        let numbers = numbers.collect::<Result<Vec<f32>, TagFault>>()?;
-        let numbers = numbers.into_iter().cycle();
+        let values = values.collect::<Result<Vec<f32>, TagFault>>()?;
+        let values = values.into_iter().cycle();
         match tag {
             Tag::Crease => {
-                let edges = names.windows(2).zip(numbers);
+                let edges = vertices.windows(2).zip(values);
                 self.creases
                     .extend(edges.map(|(ends, sharpness)| CreaseTag {
                         line,
@@ -203,7 +203,7 @@ impl Tags {
                     }));
             }
             Tag::Corner => {
-                let corners = names.into_iter().zip(numbers);
+                let corners = vertices.into_iter().zip(values);
                 self.corners
                     .extend(corners.map(|(vertex, sharpness)| CornerTag {
                         line,
@@ -232,11 +232,11 @@ impl Tags {
         };
         let all_faces = faces.iter().map(|(_, face)| face);
         let all_faces = all_faces.chain(short_faces.iter().map(|face| face.corners.as_slice()));
-        let on_sides = on_sides(&self.creases, all_faces);
-        let edges = self.creases.iter().zip(on_sides).enumerate();
-        let mut edges = edges.filter_map(|(entry, (tag, there))| {
+        let are_sides = are_sides(&self.creases, all_faces);
+        let edges = self.creases.iter().zip(are_sides).enumerate();
+        let mut edges = edges.filter_map(|(entry, (tag, is_side))| {
             let ends = tag.ends;
-            let no_edge = || (!there).then_some(CreaseError::NotAnEdge { entry, ends });
+            let no_edge = || (!is_side).then_some(CreaseError::NotAnEdge { entry, ends });
             let cause = missing(entry, ends[0]).or_else(|| missing(entry, ends[1]));
             Some((tag.line, Tag::Crease, cause.or_else(no_edge)?))
         });
@@ -253,63 +253,66 @@ impl Tags {
 
 /// Returns the creases of these tags on faces that are valid polygons, and the creases that lie on
 /// other faces only.
-pub(crate) fn on_polygons(
+pub(crate) fn creases_on_polygons(
     creases: &[CreaseTag],
     corners: &[CornerTag],
     faces: &FaceList,
-) -> (Creases, Vec<LooseCrease>) {
+) -> (Creases, Vec<UnusedCrease>) {
     let polygons = faces.iter().map(|(_, face)| face);
-    let kept = on_sides(creases, polygons.filter(|face| repeated(face).is_none()));
+    let kept = are_sides(
+        creases,
+        polygons.filter(|face| repeated_vertex(face).is_none()),
+    );
     let mut edges = Vec::new();
-    let mut loose = Vec::new();
+    let mut unused = Vec::new();
     for (tag, kept) in creases.iter().zip(kept) {
         let CreaseTag { line, ends, .. } = *tag;
         if kept {
             edges.push((Pair::new(ends[0], ends[1]), tag.sharpness));
         } else {
-            loose.push(LooseCrease { line, ends });
+            unused.push(UnusedCrease { line, ends });
         }
     }
     let corners = corners.iter().map(|tag| (tag.vertex, tag.sharpness));
-    (Creases::sorted(edges, corners.collect()), loose)
+    (Creases::from_entries(edges, corners.collect()), unused)
 }
 
 /// Returns for each tag whether its edge is a side of one of `faces`. O(corners · log tags).
-fn on_sides<'a>(tags: &[CreaseTag], faces: impl Iterator<Item = &'a [VertexId]>) -> Vec<bool> {
+fn are_sides<'a>(tags: &[CreaseTag], faces: impl Iterator<Item = &'a [VertexId]>) -> Vec<bool> {
     let pair = |tag: &CreaseTag| Pair::new(tag.ends[0], tag.ends[1]);
-    let mut wanted: Vec<Pair<VertexId>> = tags.iter().map(pair).collect();
+    let mut edges: Vec<Pair<VertexId>> = tags.iter().map(pair).collect();
     // A face that uses a vertex twice in a row has a side with two equal ends; this is not an edge.
-    wanted.retain(|pair| pair.ends()[0] != pair.ends()[1]);
-    wanted.sort_unstable();
-    wanted.dedup();
-    let mut found = vec![false; wanted.len()];
-    if !wanted.is_empty() {
+    edges.retain(|pair| pair.ends()[0] != pair.ends()[1]);
+    edges.sort_unstable();
+    edges.dedup();
+    let mut found = vec![false; edges.len()];
+    if !edges.is_empty() {
         for face in faces {
             for side in Pair::sides(face.len(), |i| face[i]) {
-                if let Ok(at) = wanted.binary_search(&side) {
+                if let Ok(at) = edges.binary_search(&side) {
                     found[at] = true;
                 }
             }
         }
     }
-    let place = |tag| wanted.binary_search(&pair(tag));
+    let index = |tag| edges.binary_search(&pair(tag));
     tags.iter()
-        .map(|tag| place(tag).is_ok_and(|at| found[at]))
+        .map(|tag| index(tag).is_ok_and(|at| found[at]))
         .collect()
 }
 
 /// Parses three counts such as `2/1/0`.
-fn three_numbers(counts: &str) -> Option<[usize; 3]> {
+fn parse_counts(counts: &str) -> Option<[usize; 3]> {
     let mut numbers = counts.split('/').map(|number| number.parse().ok());
-    let three = [numbers.next()??, numbers.next()??, numbers.next()??];
-    numbers.next().is_none().then_some(three)
+    let counts = [numbers.next()??, numbers.next()??, numbers.next()??];
+    numbers.next().is_none().then_some(counts)
 }
 
-fn vertex(tag: Tag, word: &str) -> Result<VertexId, TagFault> {
+fn parse_vertex(tag: Tag, word: &str) -> Result<VertexId, TagFault> {
     let number = word.parse().ok();
     let number = number.filter(|&number: &u32| (number as usize) < MAX_ROWS);
     number.map(VertexId::new).ok_or_else(|| TagFault::Vertex {
         tag,
-        text: shown(word),
+        text: shortened(word),
     })
 }

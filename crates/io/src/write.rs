@@ -27,7 +27,7 @@ use sixfold_core::{Point, PolygonMesh, VertexId};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn write_obj(polygons: &PolygonMesh, out: impl Write) -> io::Result<()> {
-    written(polygons, &[], out)
+    write_text(polygons, &[], out)
 }
 
 /// Writes `polygons` like [`write_obj`], with the normals of vertices. A face is written without
@@ -47,10 +47,14 @@ pub fn write_obj_with_normals(
         let message = format!("{} normals for {vertices} vertices", normals.len());
         return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     }
-    written(polygons, normals, out)
+    write_text(polygons, normals, out)
 }
 
-fn written(polygons: &PolygonMesh, normals: &[Option<Point>], out: impl Write) -> io::Result<()> {
+fn write_text(
+    polygons: &PolygonMesh,
+    normals: &[Option<Point>],
+    out: impl Write,
+) -> io::Result<()> {
     let positions = polygons.positions();
     if let Some(v) = positions.iter().position(|p| !p.is_finite()) {
         let message = format!("the position of vertex v{v} is not finite: OBJ cannot store it");
@@ -63,9 +67,9 @@ fn written(polygons: &PolygonMesh, normals: &[Option<Point>], out: impl Write) -
         writeln!(
             out,
             "v {} {} {}",
-            Shortest(p.x),
-            Shortest(p.y),
-            Shortest(p.z)
+            ShortestDecimal(p.x),
+            ShortestDecimal(p.y),
+            ShortestDecimal(p.z)
         )?;
     }
     // For each vertex, the number of its normal in the file.
@@ -78,19 +82,19 @@ fn written(polygons: &PolygonMesh, normals: &[Option<Point>], out: impl Write) -
             writeln!(
                 out,
                 "vn {} {} {}",
-                Shortest(n.x),
-                Shortest(n.y),
-                Shortest(n.z)
+                ShortestDecimal(n.x),
+                ShortestDecimal(n.y),
+                ShortestDecimal(n.z)
             )?;
         }
     }
     let normal = |v: &VertexId| numbers.get(v.index()).copied().flatten();
     for (_, face) in polygons.faces().iter() {
-        let whole = face.iter().all(|v| normal(v).is_some());
+        let has_normals = face.iter().all(|v| normal(v).is_some());
         write!(out, "f")?;
         for v in face {
             write!(out, " {}", v.index() + 1)?;
-            if let (true, Some(normal)) = (whole, normal(v)) {
+            if let (true, Some(normal)) = (has_normals, normal(v)) {
                 write!(out, "//{normal}")?;
             }
         }
@@ -101,9 +105,9 @@ fn written(polygons: &PolygonMesh, normals: &[Option<Point>], out: impl Write) -
 
 /// A number that is formatted with the fewest digits that read back as the same number. Very small
 /// and very large numbers are written with a power of ten.
-pub(crate) struct Shortest(pub(crate) f32);
+pub(crate) struct ShortestDecimal(pub(crate) f32);
 
-impl fmt::Display for Shortest {
+impl fmt::Display for ShortestDecimal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let size = self.0.abs();
         if size == 0.0 || (1e-5..1e9).contains(&size) {

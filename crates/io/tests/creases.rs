@@ -30,7 +30,7 @@ fn read(text: &str) -> ObjMesh {
     parse_obj("a.obj", text.as_bytes()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn parsed(text: impl AsRef<[u8]>) -> Result<Creases, CreaseFileError> {
+fn parse(text: impl AsRef<[u8]>) -> Result<Creases, CreaseFileError> {
     parse_creases("a.creases", text.as_ref(), &squares())
 }
 
@@ -59,11 +59,11 @@ fn a_crease_file_has_edges_corners_comments_and_empty_lines() {
         format!("\u{feff}{text}"),
         text.trim_end().to_owned(),
     ] {
-        let creases = parsed(&text).unwrap_or_else(|error| panic!("{text:?}: {error}"));
+        let creases = parse(&text).unwrap_or_else(|error| panic!("{text:?}: {error}"));
         assert_eq!(numbers(&creases), expected, "{text:?}");
     }
-    assert!(parsed("").expect("an empty file is valid").is_empty());
-    let twice = parsed("edge 0 1 2\nedge 1 0 3\ncorner 2 1\ncorner 2 0\n").expect("valid");
+    assert!(parse("").expect("an empty file is valid").is_empty());
+    let twice = parse("edge 0 1 2\nedge 1 0 3\ncorner 2 1\ncorner 2 0\n").expect("valid");
     assert_eq!(numbers(&twice), (vec![(0, 1, 3.0)], vec![]));
 }
 
@@ -112,19 +112,19 @@ fn each_fault_of_a_crease_file_is_named_with_its_line() {
         // Faults of the text are reported before elements that the mesh does not have.
         ("corner 9 1\nedges", format!("2: \"edges\" is not an entry: {forms}")),
     ] {
-        let error = parsed(text).expect_err(text);
+        let error = parse(text).expect_err(text);
         assert_eq!(error.to_string(), format!("a.creases:{message}"), "{text:?}");
     }
-    let error = parsed(b"corner 0 1\nedge \xFF 0 1").expect_err("no text");
+    let error = parse(b"corner 0 1\nedge \xFF 0 1").expect_err("no text");
     assert!(
         error
             .to_string()
             .starts_with("a.creases:2: the line is not UTF-8")
     );
-    let error = parsed(b"\xFF\xFEe\0").expect_err("UTF-16");
+    let error = parse(b"\xFF\xFEe\0").expect_err("UTF-16");
     assert!(matches!(error, CreaseFileError::Utf16 { .. }), "{error}");
     let long = "x".repeat(10_000);
-    let message = parsed(&long).expect_err("no entry").to_string();
+    let message = parse(&long).expect_err("no entry").to_string();
     assert!(message.len() < 200, "{message}");
 }
 
@@ -191,9 +191,9 @@ fn one_tag_can_have_a_chain_of_edges_or_several_corners() {
     for text in [format!("{SQUARES}{tags}"), format!("{tags}{SQUARES}")] {
         let obj = read(&text);
         assert_eq!(obj.notices, []);
-        let (creases, loose) = obj.creases();
+        let (creases, unused) = obj.creases();
         assert_eq!(numbers(&creases), expected);
-        assert_eq!(loose, []);
+        assert_eq!(unused, []);
         // The vertex numbers are those of the polygons.
         let (polygons, _) = obj.into_polygons();
         let edges = creases.edges().iter().map(|&(edge, s)| {
@@ -226,17 +226,17 @@ fn other_tags_are_ignored_with_a_notice() {
 }
 
 #[test]
-fn creases_of_faces_that_are_left_out_are_loose() {
+fn creases_of_faces_that_are_left_out_are_unused() {
     // Only the degenerate first face has the side 3 4, and only the short face has the side 2 5.
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 2 2\nv 3 3 3\nf 4 5 5 1\nf 1 2 3\nf 3 6\n\
                 t crease 3/2/0 2 1 0 5 6\nt crease 2/1/0 3 4 7\nt crease 2/1/0 5 2 1\nt corner 1/1/0 4 2\n";
     let obj = read(text);
-    let (creases, loose) = obj.creases();
+    let (creases, unused) = obj.creases();
     let expected = (vec![(0, 1, 6.0), (1, 2, 5.0)], vec![(4, 2.0)]);
     assert_eq!(numbers(&creases), expected);
-    let loose: Vec<String> = loose.iter().map(ToString::to_string).collect();
+    let unused: Vec<String> = unused.iter().map(ToString::to_string).collect();
     assert_eq!(
-        loose,
+        unused,
         [
             "line 11: crease 3 4 lies only on faces that are left out",
             "line 12: crease 5 2 lies only on faces that are left out",
@@ -376,8 +376,8 @@ fn the_torus_with_creases_is_read_completely() {
         notices,
         ["ignored 4 texture coordinates (first at line 58)"]
     );
-    let (creases, loose) = obj.creases();
-    assert_eq!((creases.corners(), loose.len()), (&[][..], 0));
+    let (creases, unused) = obj.creases();
+    assert_eq!((creases.corners(), unused.len()), (&[][..], 0));
     // The creases form a ring through every fourth vertex, once around the hole.
     let ring = (0..8).map(|i| [4 * i + 1, (4 * i + 5) % 32]);
     let ring = ring.map(|ends| ends.map(VertexId::new));
@@ -446,7 +446,7 @@ proptest! {
         bytes in vec(any::<u8>(), 0..40),
     ) {
         for text in [pieces.concat().into_bytes(), bytes] {
-            if let Err(error) = parsed(&text) {
+            if let Err(error) = parse(&text) {
                 let message = error.to_string();
                 prop_assert!(message.starts_with("a.creases:"), "{}", message);
                 prop_assert!(message.len() < 400, "{}", message);
@@ -464,8 +464,8 @@ proptest! {
     ) {
         match parse_obj("a.obj", format!("{SQUARES}{}", pieces.concat()).as_bytes()) {
             Ok(obj) => {
-                let (creases, loose) = obj.creases();
-                prop_assert!(loose.is_empty());
+                let (creases, unused) = obj.creases();
+                prop_assert!(unused.is_empty());
                 prop_assert!(creases.edges().len() <= obj.crease_tags.len());
                 prop_assert!(creases.corners().len() <= obj.corner_tags.len());
             }

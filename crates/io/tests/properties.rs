@@ -30,9 +30,9 @@ fn point() -> impl Strategy<Value = Point> {
 fn mesh() -> impl Strategy<Value = PolygonMesh> {
     let only_triangles = any::<bool>();
     (vec(point(), 3..12), only_triangles).prop_flat_map(|(positions, only_triangles)| {
-        let names: Vec<u32> = (0..).take(positions.len()).collect();
-        let most = if only_triangles { 3 } else { names.len() };
-        let face = subsequence(names, 3..=most).prop_shuffle();
+        let numbers: Vec<u32> = (0..).take(positions.len()).collect();
+        let max_corners = if only_triangles { 3 } else { numbers.len() };
+        let face = subsequence(numbers, 3..=max_corners).prop_shuffle();
         vec(face, 0..12).prop_map(move |faces| {
             PolygonMesh::new(positions.clone(), faces).expect("three corners, each once")
         })
@@ -62,7 +62,7 @@ fn check_same(obj: ObjMesh, mesh: &PolygonMesh) -> Result<(), TestCaseError> {
 }
 
 /// Checks that reading gives a consistent mesh, or an error with its place and a short message.
-fn check_whole(bytes: &[u8]) -> Result<(), TestCaseError> {
+fn check_consistent(bytes: &[u8]) -> Result<(), TestCaseError> {
     match parse_obj("a.obj", bytes) {
         Ok(obj) => {
             let lines = bytes.iter().filter(|b| b"\r\n".contains(b)).count() + 1;
@@ -130,7 +130,7 @@ fn piece() -> impl Strategy<Value = &'static [u8]> {
 
 /// One of many equivalent ways to write a statement.
 #[derive(Clone, Debug)]
-struct Manner {
+struct Formatting {
     before: &'static str,
     blank: &'static str,
     after: &'static str,
@@ -138,7 +138,7 @@ struct Manner {
     corner: &'static str,
 }
 
-fn manner() -> impl Strategy<Value = Manner> {
+fn formatting() -> impl Strategy<Value = Formatting> {
     let before = select(vec![
         "",
         "",
@@ -161,7 +161,7 @@ fn manner() -> impl Strategy<Value = Manner> {
     ]);
     let corner = select(vec!["", "/1", "//-7", "/9/9", "/"]);
     (before, blank, after, any::<bool>(), corner).prop_map(
-        |(before, blank, after, backwards, corner)| Manner {
+        |(before, blank, after, backwards, corner)| Formatting {
             before,
             blank,
             after,
@@ -171,30 +171,34 @@ fn manner() -> impl Strategy<Value = Manner> {
     )
 }
 
-/// Writes `mesh` in the given manners, with its faces after the first `early` vertices. Returns the
-/// text and the lines of the faces.
-fn in_manners(mesh: &PolygonMesh, early: usize, manners: &[Manner]) -> (String, Vec<u32>) {
-    let mut manners = manners.iter().cycle();
-    let mut next = || manners.next().expect("at least one manner");
-    let early = early.min(mesh.vertex_count());
+/// Writes `mesh` in the given formattings, with its faces after the first `vertices_first` vertices.
+/// Returns the text and the lines of the faces.
+fn format_mesh(
+    mesh: &PolygonMesh,
+    vertices_first: usize,
+    formattings: &[Formatting],
+) -> (String, Vec<u32>) {
+    let mut formattings = formattings.iter().cycle();
+    let mut next = || formattings.next().expect("at least one formatting");
+    let vertices_first = vertices_first.min(mesh.vertex_count());
     let mut text = "\u{feff}".to_owned();
     let mut face_lines = Vec::new();
-    let vertex = |text: &mut String, m: &Manner, p: &Point| {
+    let vertex = |text: &mut String, m: &Formatting, p: &Point| {
         let (before, blank, after, [x, y, z]) = (m.before, m.blank, m.after, p.to_array());
         *text += &format!("{before}v {x:e}{blank}{y}{blank}{z:?}{after}");
     };
-    for p in &mesh.positions()[..early] {
+    for p in &mesh.positions()[..vertices_first] {
         vertex(&mut text, next(), p);
     }
     for (_, face) in mesh.faces().iter() {
         let m = next();
         text += m.before;
-        face_lines.push(ends_in(&text) + 1);
+        face_lines.push(count_line_ends(&text) + 1);
         text += "f ";
         for v in face {
             // Counting backwards works only for vertices that precede the face.
-            if m.backwards && v.index() < early {
-                text += &format!("-{}", early - v.index());
+            if m.backwards && v.index() < vertices_first {
+                text += &format!("-{}", vertices_first - v.index());
             } else {
                 text += &format!("{}", v.index() + 1);
             }
@@ -203,23 +207,23 @@ fn in_manners(mesh: &PolygonMesh, early: usize, manners: &[Manner]) -> (String, 
         }
         text += m.after;
     }
-    for p in &mesh.positions()[early..] {
+    for p in &mesh.positions()[vertices_first..] {
         vertex(&mut text, next(), p);
     }
     (text, face_lines)
 }
 
 /// Returns the number of line ends in `text`.
-fn ends_in(text: &str) -> u32 {
+fn count_line_ends(text: &str) -> u32 {
     let lone = text.replace("\r\n", "\n").replace('\r', "\n");
     lone.matches('\n').count() as u32
 }
 
 #[test]
 fn every_shape_reads_back_bit_for_bit() -> Result<(), TestCaseError> {
-    for recipe in sixfold_shapes::RECIPES {
-        let mesh = recipe.make(&[]).expect("defaults are possible");
-        let obj = parse_obj(recipe.name, written(&mesh).as_bytes());
+    for generator in sixfold_shapes::GENERATORS {
+        let mesh = generator.build(&[]).expect("defaults are possible");
+        let obj = parse_obj(generator.name, written(&mesh).as_bytes());
         check_same(obj.expect("valid"), &mesh)?;
     }
     Ok(())
@@ -233,13 +237,13 @@ proptest! {
     }
 
     #[test]
-    fn every_manner_of_writing_gives_the_same_mesh(
+    fn every_formatting_gives_the_same_mesh(
         mesh in mesh(),
-        early in 0..12_usize,
-        manners in vec(manner(), 1..30),
+        vertices_first in 0..12_usize,
+        formattings in vec(formatting(), 1..30),
         buffer in 1..40_usize,
     ) {
-        let (text, face_lines) = in_manners(&mesh, early, &manners);
+        let (text, face_lines) = format_mesh(&mesh, vertices_first, &formattings);
         let source = BufReader::with_capacity(buffer, text.as_bytes());
         let obj = parse_obj("a.obj", source);
         let obj = obj.unwrap_or_else(|error| panic!("{error}\n{text}"));
@@ -251,17 +255,17 @@ proptest! {
     /// by first use.
     #[test]
     fn tobj_alone_agrees(mesh in mesh()) {
-        let mut names: Vec<Option<u32>> = vec![None; mesh.vertex_count()];
+        let mut numbers: Vec<Option<u32>> = vec![None; mesh.vertex_count()];
         let mut order = Vec::new();
         for v in mesh.faces().corners() {
-            names[v.index()].get_or_insert_with(|| {
+            numbers[v.index()].get_or_insert_with(|| {
                 order.push(mesh.position(*v));
                 order.len() as u32 - 1
             });
         }
         let mut faces = FaceList::default();
         for (_, face) in mesh.faces().iter() {
-            let renamed = face.iter().map(|v| sixfold_core::VertexId::new(names[v.index()].expect("used")));
+            let renamed = face.iter().map(|v| sixfold_core::VertexId::new(numbers[v.index()].expect("used")));
             faces.push(renamed).expect("small");
         }
         let by_first_use = PolygonMesh::from_faces(order, faces).expect("as before");
@@ -271,25 +275,25 @@ proptest! {
         let nothing = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
         let (models, _) = tobj::load_obj_buf(&mut source, &tobj::LoadOptions::default(), nothing)
             .expect("valid");
-        let theirs = &models[0].mesh;
-        let flat: Vec<u32> = theirs.positions.iter().map(|x| x.to_bits()).collect();
+        let tobj_mesh = &models[0].mesh;
+        let flat: Vec<u32> = tobj_mesh.positions.iter().map(|x| x.to_bits()).collect();
         prop_assert_eq!(flat, bits(by_first_use.positions()).concat());
         let corners = by_first_use.faces().corners();
-        prop_assert!(theirs.indices.iter().copied().eq(corners.iter().map(|v| v.index() as u32)));
+        prop_assert!(tobj_mesh.indices.iter().copied().eq(corners.iter().map(|v| v.index() as u32)));
         if by_first_use.vertex_count() > 0 {
-            let ours = parse_obj("a.obj", text.as_bytes());
-            check_same(ours.expect("valid"), &by_first_use)?;
+            let read_mesh = parse_obj("a.obj", text.as_bytes());
+            check_same(read_mesh.expect("valid"), &by_first_use)?;
         }
     }
 
     #[test]
     fn random_bytes_give_a_consistent_mesh_or_an_error(bytes in vec(any::<u8>(), 0..200)) {
-        check_whole(&bytes)?;
+        check_consistent(&bytes)?;
     }
 
     #[test]
     fn random_pieces_give_a_consistent_mesh_or_an_error(pieces in vec(piece(), 0..60)) {
-        check_whole(&pieces.concat())?;
+        check_consistent(&pieces.concat())?;
     }
 
     #[test]
@@ -298,16 +302,16 @@ proptest! {
         damage in vec((any::<prop::sample::Index>(), 0..4_u8, piece()), 1..6),
     ) {
         let mut bytes = written(&mesh).into_bytes();
-        for (place, manner, piece) in damage {
-            let at = place.index(bytes.len() + 1);
+        for (index, kind, piece) in damage {
+            let at = index.index(bytes.len() + 1);
             let end = (at + piece.len()).min(bytes.len());
-            match manner {
+            match kind {
                 0 => { bytes.splice(at..at, piece.iter().copied()); }
                 1 => { bytes.splice(at..end, piece.iter().copied()); }
                 2 => { bytes.splice(at..end, []); }
                 _ => bytes.truncate(at),
             }
         }
-        check_whole(&bytes)?;
+        check_consistent(&bytes)?;
     }
 }

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
-use sixfold_core::{Facts, Spread};
+use sixfold_core::{Distribution, Facts};
 use sixfold_io::{ObjMesh, read_obj};
 
 const FOLDERS: [&str; 3] = ["tiny", "fetched", "derived"];
@@ -38,11 +38,11 @@ fn load(folder: &Path, name: &str) -> ObjMesh {
 }
 
 /// Converts a spread to the format of `truth.json`.
-fn spread(spread: &Option<Spread>) -> Value {
+fn spread(spread: &Option<Distribution>) -> Value {
     let Some(spread) = spread else {
         return Value::Null;
     };
-    let Spread { min, max, mean, .. } = *spread;
+    let Distribution { min, max, mean, .. } = *spread;
     let hist = spread.hist.as_ref().map(histogram);
     json!({"min": min, "max": max, "mean": mean, "hist": hist})
 }
@@ -54,7 +54,7 @@ fn histogram(hist: &std::collections::BTreeMap<usize, usize>) -> Value {
 }
 
 /// Returns `facts` under the names, and in the format, of `truth.json`.
-fn as_truth(facts: &Facts) -> [(&'static str, Value); 18] {
+fn truth_fields(facts: &Facts) -> [(&'static str, Value); 18] {
     [
         ("V", json!(facts.vertices)),
         ("E", json!(facts.edges)),
@@ -78,7 +78,7 @@ fn as_truth(facts: &Facts) -> [(&'static str, Value); 18] {
 }
 
 #[test]
-fn facts_are_those_of_the_truth_file() {
+fn facts_equal_the_truth_file() {
     let Some(folder) = folder() else { return };
     let truth = fs::read_to_string(folder.join("truth.json")).expect("truth.json");
     let truth: Value = serde_json::from_str(&truth).expect("JSON");
@@ -94,7 +94,7 @@ fn facts_are_those_of_the_truth_file() {
     for name in &known {
         let (truth, facts) = (&truth[name], load(&folder, name).facts());
         assert_eq!(truth["status"], "ok", "{name}");
-        for (field, ours) in as_truth(&facts) {
+        for (field, ours) in truth_fields(&facts) {
             let theirs = truth["file"].get(field).expect(field);
             if *theirs != ours {
                 wrong.push(format!("{name}: {field} is {theirs}, found {ours}"));
@@ -119,20 +119,20 @@ fn exactly_the_degenerate_faces_are_left_out() {
         let (polygons, left_out) = obj.into_polygons();
         assert_eq!(left_out.len(), before.degenerate_faces, "{name}");
         assert_eq!(polygons.face_count(), faces - left_out.len(), "{name}");
-        let after = Facts::of(&polygons);
+        let after = Facts::from_polygons(&polygons);
         assert_eq!(after.edges, before.edges, "{name}");
         assert_eq!(after.degenerate_faces, 0, "{name}");
     }
 }
 
-/// Where `tobj` alone reads a file correctly, it gives the same mesh, except for its numbering.
+/// If `tobj` alone reads a file correctly, it gives the same mesh, except for its numbering.
 #[test]
-fn tobj_alone_agrees_where_it_is_right() {
+fn tobj_alone_agrees_on_files_that_it_reads_correctly() {
     let Some(folder) = folder() else { return };
-    let as_it_is = tobj::LoadOptions::default();
+    let options = tobj::LoadOptions::default();
     let mut agreed = 0;
     for name in files(&folder) {
-        let Ok((models, _)) = tobj::load_obj(folder.join(&name), &as_it_is) else {
+        let Ok((models, _)) = tobj::load_obj(folder.join(&name), &options) else {
             continue;
         };
         let ours = load(&folder, &name);
@@ -140,17 +140,17 @@ fn tobj_alone_agrees_where_it_is_right() {
         // correctly.
         let [model] = models.as_slice() else { continue };
         let used = ours.positions.len() - ours.facts().isolated_vertices;
-        let passed = |p| ours.notices.iter().any(|notice| notice.passed == p);
-        if model.mesh.positions.len() != 3 * used || passed(sixfold_io::Passed::Lines) {
+        let ignores = |kind| ours.notices.iter().any(|notice| notice.kind == kind);
+        if model.mesh.positions.len() != 3 * used || ignores(sixfold_io::IgnoredKind::Lines) {
             continue;
         }
         agreed += 1;
-        let mut names = vec![None; ours.positions.len()];
+        let mut numbers = vec![None; ours.positions.len()];
         let mut positions = Vec::new();
         let mut indices = Vec::new();
         for v in ours.faces.corners() {
             let next = positions.len() as u32 / 3;
-            indices.push(*names[v.index()].get_or_insert_with(|| {
+            indices.push(*numbers[v.index()].get_or_insert_with(|| {
                 positions.extend(ours.positions[v.index()].to_array());
                 next
             }));

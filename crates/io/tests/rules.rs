@@ -142,9 +142,9 @@ fn degenerate_and_short_faces_are_left_out_with_their_lines() {
     assert_eq!(polygons.face_count(), 1);
     let face = polygons.faces().face(FaceId::new(0));
     assert_eq!(face, [0, 1, 2].map(VertexId::new));
-    let told: Vec<String> = left_out.iter().map(ToString::to_string).collect();
+    let messages: Vec<String> = left_out.iter().map(ToString::to_string).collect();
     assert_eq!(
-        told,
+        messages,
         [
             "line 4: face 1 2 2 names vertex 2 twice",
             "line 6: face 3 1 has fewer than three corners",

@@ -47,21 +47,21 @@ use crate::error::DualError;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn dual<M: MeshQuery>(mesh: &M) -> Result<PolygonMesh, DualError> {
-    let rows = Rows::of(mesh);
-    let walk = Walk::of(&rows)?;
-    let faces = walk.dual_faces(&rows)?;
-    Ok(rows.dual_mesh(faces))
+    let indexed = IndexedMesh::new(mesh);
+    let walk = Walk::new(&indexed)?;
+    let faces = walk.dual_faces(&indexed)?;
+    Ok(indexed.dual_mesh(faces))
 }
 
 /// A mesh as tables: positions in the order of `vertices()`, faces in the order of `faces()`.
-struct Rows {
+struct IndexedMesh {
     positions: Vec<DVec3>,
     faces: FaceList,
 }
 
-impl Rows {
+impl IndexedMesh {
     /// Reads the mesh in one pass over the vertices and one over FV.
-    fn of<M: MeshQuery>(mesh: &M) -> Self {
+    fn new<M: MeshQuery>(mesh: &M) -> Self {
         let mut numbers = mesh.vertex_map(VertexId::new(0));
         let mut positions = Vec::new();
         mesh.vertices().for_each(|v| {
@@ -79,20 +79,22 @@ impl Rows {
     /// Builds the dual from its `faces`; its vertices are the means of the corners of each face of
     /// `self`.
     fn dual_mesh(&self, faces: FaceList) -> PolygonMesh {
-        let middles = self.faces.iter().map(|(_, corners)| {
+        let centroids = self.faces.iter().map(|(_, corners)| {
             let sum: DVec3 = corners.iter().map(|v| self.positions[v.index()]).sum();
             (sum / corners.len() as f64).as_vec3()
         });
-        PolygonMesh::from_faces(middles.collect(), faces)
+        PolygonMesh::from_faces(centroids.collect(), faces)
             .expect("a manifold vertex has at least three different faces")
     }
 
     /// Returns the reason why this is not an oriented manifold; call it only if that is the case.
-    fn refusal(&self) -> DualError {
+    fn non_manifold_error(&self) -> DualError {
         let positions = self.positions.iter().map(|p| p.as_vec3()).collect();
         let polygons = PolygonMesh::from_faces(positions, self.faces.clone())
             .expect("a face has at least three different vertices");
-        Capabilities::ORIENTED_MANIFOLDS.refusal(&polygons).into()
+        Capabilities::ORIENTED_MANIFOLDS
+            .build_error(&polygons)
+            .into()
     }
 }
 
@@ -105,24 +107,24 @@ struct Walk {
     /// By corner: its face.
     face: Vec<FaceId>,
     /// By corner: the next corner around its vertex, counter-clockwise.
-    turned: Vec<u32>,
+    next_around: Vec<u32>,
 }
 
 impl Walk {
     /// Builds the tables.
     ///
     /// ```text
-    ///       ╲  turned(c)          the side that ends at v starts at prev(c);
+    ///       ╲  next_around(c)     the side that ends at v starts at prev(c);
     ///        ╲    ╱               its twin leaves v in the next face
     ///   prev(c) ─ v
     ///            ╱ c
     /// ```
-    fn of(rows: &Rows) -> Result<Self, DualError> {
-        let (vertices, faces) = (rows.positions.len(), &rows.faces);
+    fn new(mesh: &IndexedMesh) -> Result<Self, DualError> {
+        let (vertices, faces) = (mesh.positions.len(), &mesh.faces);
         let corners = faces.corners();
-        let pairs = TwinPairs::of(vertices, faces).ok_or_else(|| rows.refusal())?;
+        let pairs = TwinPairs::new(vertices, faces).ok_or_else(|| mesh.non_manifold_error())?;
         if 2 * pairs.edge_count != corners.len() {
-            return Err(boundary_edge(faces, &pairs));
+            return Err(boundary_edge_error(faces, &pairs));
         }
         let mut corner_of_half = vec![0_u32; corners.len()];
         for (corner, &half) in (0_u32..).zip(&pairs.half_of_corner) {
@@ -132,34 +134,34 @@ impl Walk {
             first: vec![None; vertices],
             valence: vec![0; vertices],
             face: Vec::with_capacity(corners.len()),
-            turned: Vec::with_capacity(corners.len()),
+            next_around: Vec::with_capacity(corners.len()),
         };
         for (f, face) in faces.iter() {
             let range = faces.range(f);
-            let mut before = range.end - 1;
+            let mut prev = range.end - 1;
             for (corner, v) in range.zip(face) {
                 walk.first[v.index()].get_or_insert(row(corner));
                 walk.valence[v.index()] += 1;
                 walk.face.push(f);
-                let twin = pairs.half_of_corner[before] ^ 1;
-                walk.turned.push(corner_of_half[twin as usize]);
-                before = corner;
+                let twin = pairs.half_of_corner[prev] ^ 1;
+                walk.next_around.push(corner_of_half[twin as usize]);
+                prev = corner;
             }
         }
         Ok(walk)
     }
 
     /// Walks around every vertex to collect the faces of the dual.
-    fn dual_faces(&self, rows: &Rows) -> Result<FaceList, DualError> {
+    fn dual_faces(&self, mesh: &IndexedMesh) -> Result<FaceList, DualError> {
         let mut faces = FaceList::with_capacity(self.face.len());
         let mut ring = Vec::new();
         for (vertex, (first, &valence)) in self.first.iter().zip(&self.valence).enumerate() {
             let vertex = VertexId::new(row(vertex));
             let first = first.ok_or(DualError::IsolatedVertex { vertex })?;
             ring.clear();
-            self.around(first, &mut ring);
+            self.append_ring(first, &mut ring);
             if ring.len() < valence as usize {
-                return Err(rows.refusal()); // the vertex has a second fan
+                return Err(mesh.non_manifold_error()); // the vertex has a second fan
             }
             if ring.len() < 3 {
                 let valence = ring.len();
@@ -172,11 +174,11 @@ impl Walk {
     }
 
     /// Appends the faces around the vertex of corner `first` to `ring`, as vertices of the dual.
-    fn around(&self, first: u32, ring: &mut Vec<VertexId>) {
+    fn append_ring(&self, first: u32, ring: &mut Vec<VertexId>) {
         let mut corner = first;
         loop {
             ring.push(VertexId::new(row(self.face[corner as usize].index())));
-            corner = self.turned[corner as usize];
+            corner = self.next_around[corner as usize];
             if corner == first {
                 return;
             }
@@ -185,7 +187,7 @@ impl Walk {
 }
 
 /// Returns the error for the lowest edge with only one side.
-fn boundary_edge(faces: &FaceList, pairs: &TwinPairs) -> DualError {
+fn boundary_edge_error(faces: &FaceList, pairs: &TwinPairs) -> DualError {
     let mut sides = vec![0_u8; pairs.edge_count];
     for half in &pairs.half_of_corner {
         sides[(half >> 1) as usize] += 1;
@@ -218,8 +220,8 @@ mod tests {
     }
 
     fn mesh(vertices: u32, faces: &[&[u32]]) -> PolygonMesh {
-        let spots: Vec<Point> = (0..vertices).map(|i| Point::splat(i as f32)).collect();
-        PolygonMesh::new(spots, faces).expect("valid")
+        let points: Vec<Point> = (0..vertices).map(|i| Point::splat(i as f32)).collect();
+        PolygonMesh::new(points, faces).expect("valid")
     }
 
     /// Returns the corners of a face, starting at the lowest.
@@ -310,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn each_refusal_names_the_element() {
+    fn each_error_names_the_element() {
         let v = VertexId::new;
         let open = mesh(4, &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3]]);
         let ends = [v(0), v(2)];
@@ -341,19 +343,19 @@ mod tests {
         ];
         assert!(matches!(
             dual_of(&mesh(7, &tetrahedra)),
-            Err(DualError::NoOrientedManifold(BuildError::NonManifoldVertex { vertex, .. })) if vertex == v(0)
+            Err(DualError::NotOrientedManifold(BuildError::NonManifoldVertex { vertex, .. })) if vertex == v(0)
         ));
         let book = mesh(5, &[&[0, 1, 2], &[1, 0, 3], &[0, 1, 4]]);
         assert!(matches!(
             dual_of(&book),
-            Err(DualError::NoOrientedManifold(
+            Err(DualError::NotOrientedManifold(
                 BuildError::NonManifoldEdge { .. }
             ))
         ));
-        let turned = mesh(4, &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[0, 2, 3]]);
+        let reversed = mesh(4, &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[0, 2, 3]]);
         assert!(matches!(
-            dual_of(&turned),
-            Err(DualError::NoOrientedManifold(
+            dual_of(&reversed),
+            Err(DualError::NotOrientedManifold(
                 BuildError::RepeatedSide { .. }
             ))
         ));

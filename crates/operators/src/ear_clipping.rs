@@ -28,15 +28,15 @@ use crate::normals::Newell;
 /// largest. Ears whose diagonal is already an edge of the mesh are cut last.
 #[derive(Default)]
 pub(crate) struct EarClipping {
-    solid: Vec<DVec3>,
-    flat: Vec<DVec2>,
-    before: Vec<u32>,
-    after: Vec<u32>,
+    points: Vec<DVec3>,
+    projected: Vec<DVec2>,
+    prev: Vec<u32>,
+    next: Vec<u32>,
     /// By corner: how often it was tested for an ear. Heap entries with an older count are stale.
-    looked: Vec<u32>,
-    gone: Vec<bool>,
+    version: Vec<u32>,
+    removed: Vec<bool>,
     /// Corners that may obstruct an ear: neither convex nor cut off at their last test.
-    in_the_way: Vec<u32>,
+    reflex: Vec<u32>,
     ears: BinaryHeap<Ear>,
 }
 
@@ -44,10 +44,10 @@ pub(crate) struct EarClipping {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ear {
     /// Whether its diagonal is not yet an edge of the mesh.
-    free: bool,
-    shape: f64,
+    has_new_diagonal: bool,
+    quality: f64,
     corner: u32,
-    looked: u32,
+    version: u32,
 }
 
 impl Eq for Ear {}
@@ -60,16 +60,19 @@ impl PartialOrd for Ear {
 
 impl Ord for Ear {
     fn cmp(&self, other: &Self) -> Ordering {
-        let by_shape = self.shape.total_cmp(&other.shape);
+        let by_quality = self.quality.total_cmp(&other.quality);
         let first = other.corner.cmp(&self.corner);
-        self.free.cmp(&other.free).then(by_shape).then(first)
+        self.has_new_diagonal
+            .cmp(&other.has_new_diagonal)
+            .then(by_quality)
+            .then(first)
     }
 }
 
 impl EarClipping {
     /// Passes the `n − 2` triangles of the polygon to `cut`, each as three of its corner numbers 0
-    /// to `n − 1`, in the orientation of the polygon. `taken` returns whether a diagonal is already
-    /// an edge of the mesh.
+    /// to `n − 1`, in the orientation of the polygon. `is_edge` returns whether a diagonal is
+    /// already an edge of the mesh.
     ///
     /// A polygon that crosses itself or lies on a line may run out of ears. Then all corners are
     /// tested again, at most once each time their number has halved. If there is still no ear, the
@@ -78,99 +81,100 @@ impl EarClipping {
     pub(crate) fn clip(
         &mut self,
         corners: impl Iterator<Item = DVec3>,
-        taken: impl Fn(usize, usize) -> bool,
+        is_edge: impl Fn(usize, usize) -> bool,
         mut cut: impl FnMut([usize; 3]),
     ) {
-        self.start(corners);
-        let mut left = self.flat.len();
-        let mut looked_at_all = usize::MAX;
-        while left > 3 {
+        self.init(corners);
+        let mut remaining = self.projected.len();
+        let mut last_full_test = usize::MAX;
+        while remaining > 3 {
             // The last cut makes two triangles, and the worse one counts: test all four corners.
-            if left == 4 || looked_at_all == usize::MAX {
-                self.look_at_all(left, &taken);
-                looked_at_all = left;
+            if remaining == 4 || last_full_test == usize::MAX {
+                self.find_ears(remaining, &is_edge);
+                last_full_test = remaining;
             }
             let mut ear = self.best_ear();
-            if ear.is_none() && 2 * left <= looked_at_all {
-                self.look_at_all(left, &taken);
-                looked_at_all = left;
+            if ear.is_none() && 2 * remaining <= last_full_test {
+                self.find_ears(remaining, &is_edge);
+                last_full_test = remaining;
                 ear = self.best_ear();
             }
-            let tip = ear.unwrap_or_else(|| self.makeshift(&taken));
-            let (a, c) = (self.before[tip], self.after[tip]);
+            let tip = ear.unwrap_or_else(|| self.fallback_ear(&is_edge));
+            let (a, c) = (self.prev[tip], self.next[tip]);
             cut([a as usize, tip, c as usize]);
-            self.gone[tip] = true;
-            self.after[a as usize] = c;
-            self.before[c as usize] = a;
-            left -= 1;
-            self.look_at(a as usize, left, &taken);
-            self.look_at(c as usize, left, &taken);
+            self.removed[tip] = true;
+            self.next[a as usize] = c;
+            self.prev[c as usize] = a;
+            remaining -= 1;
+            self.test_corner(a as usize, remaining, &is_edge);
+            self.test_corner(c as usize, remaining, &is_edge);
         }
-        if let Some(last) = self.gone.iter().position(|&gone| !gone) {
-            cut([last, self.after[last] as usize, self.before[last] as usize]);
+        if let Some(last) = self.removed.iter().position(|&removed| !removed) {
+            cut([last, self.next[last] as usize, self.prev[last] as usize]);
         }
     }
 
     /// Fills the tables: all corners are in place, no corner is tested yet.
-    fn start(&mut self, corners: impl Iterator<Item = DVec3>) {
-        self.solid.clear();
-        self.solid.extend(corners);
-        self.flat.clear();
-        let view = view_along(&self.solid);
-        self.flat.extend(self.solid.iter().map(|&p| view(p)));
-        let n = self.solid.len() as u32;
-        self.before.clear();
-        self.before
+    fn init(&mut self, corners: impl Iterator<Item = DVec3>) {
+        self.points.clear();
+        self.points.extend(corners);
+        self.projected.clear();
+        let project = projection(&self.points);
+        self.projected
+            .extend(self.points.iter().map(|&p| project(p)));
+        let n = self.points.len() as u32;
+        self.prev.clear();
+        self.prev
             .extend((0..n).map(|i| if i == 0 { n - 1 } else { i - 1 }));
-        self.after.clear();
-        self.after
+        self.next.clear();
+        self.next
             .extend((0..n).map(|i| if i + 1 == n { 0 } else { i + 1 }));
-        self.looked.clear();
-        self.looked.resize(n as usize, 0);
-        self.gone.clear();
-        self.gone.resize(n as usize, false);
+        self.version.clear();
+        self.version.resize(n as usize, 0);
+        self.removed.clear();
+        self.removed.resize(n as usize, false);
         self.ears.clear();
     }
 
     /// Finds all ears of the current polygon.
-    fn look_at_all(&mut self, left: usize, taken: &impl Fn(usize, usize) -> bool) {
+    fn find_ears(&mut self, remaining: usize, is_edge: &impl Fn(usize, usize) -> bool) {
         self.ears.clear();
-        self.in_the_way.clear();
-        for i in 0..self.flat.len() {
-            if !self.gone[i] && !self.is_convex(i) {
-                self.in_the_way.push(i as u32);
+        self.reflex.clear();
+        for i in 0..self.projected.len() {
+            if !self.removed[i] && !self.is_convex(i) {
+                self.reflex.push(i as u32);
             }
         }
-        for i in 0..self.flat.len() {
-            if !self.gone[i] {
-                self.look_at(i, left, taken);
+        for i in 0..self.projected.len() {
+            if !self.removed[i] {
+                self.test_corner(i, remaining, is_edge);
             }
         }
     }
 
     /// Tests corner `i` and adds its ear, if it has one now.
-    fn look_at(&mut self, i: usize, left: usize, taken: &impl Fn(usize, usize) -> bool) {
-        self.looked[i] += 1;
+    fn test_corner(&mut self, i: usize, remaining: usize, is_edge: &impl Fn(usize, usize) -> bool) {
+        self.version[i] += 1;
         if !self.is_convex(i) || self.is_obstructed(i) {
             return;
         }
-        let (a, c) = (self.before[i] as usize, self.after[i] as usize);
-        let mut shape = self.shape(i);
-        if left == 4 {
-            shape = shape.min(self.shape(self.after[c] as usize));
+        let (a, c) = (self.prev[i] as usize, self.next[i] as usize);
+        let mut quality = self.quality(i);
+        if remaining == 4 {
+            quality = quality.min(self.quality(self.next[c] as usize));
         }
         self.ears.push(Ear {
-            free: !taken(a, c),
-            shape,
+            has_new_diagonal: !is_edge(a, c),
+            quality,
             corner: i as u32,
-            looked: self.looked[i],
+            version: self.version[i],
         });
     }
 
     fn best_ear(&mut self) -> Option<usize> {
         while let Some(ear) = self.ears.pop() {
             let corner = ear.corner as usize;
-            if !self.gone[corner] && self.looked[corner] == ear.looked {
+            if !self.removed[corner] && self.version[corner] == ear.version {
                 return Some(corner);
             }
         }
@@ -178,15 +182,15 @@ impl EarClipping {
     }
 
     /// Returns the best corner to cut if there is no ear.
-    fn makeshift(&self, taken: &impl Fn(usize, usize) -> bool) -> usize {
-        let here = (0..self.flat.len()).filter(|&i| !self.gone[i]);
-        let ears = here.map(|i| {
-            let diagonal = [self.before[i], self.after[i]].map(|j| j as usize);
+    fn fallback_ear(&self, is_edge: &impl Fn(usize, usize) -> bool) -> usize {
+        let corners = (0..self.projected.len()).filter(|&i| !self.removed[i]);
+        let ears = corners.map(|i| {
+            let diagonal = [self.prev[i], self.next[i]].map(|j| j as usize);
             let ear = Ear {
-                free: !taken(diagonal[0], diagonal[1]),
-                shape: self.shape(i),
+                has_new_diagonal: !is_edge(diagonal[0], diagonal[1]),
+                quality: self.quality(i),
                 corner: i as u32,
-                looked: 0,
+                version: 0,
             };
             (self.is_convex(i), ear)
         });
@@ -195,17 +199,17 @@ impl EarClipping {
     }
 
     fn triangle(&self, i: usize) -> [usize; 3] {
-        [self.before[i] as usize, i, self.after[i] as usize]
+        [self.prev[i] as usize, i, self.next[i] as usize]
     }
 
     fn is_convex(&self, i: usize) -> bool {
-        let [a, b, c] = self.triangle(i).map(|j| self.flat[j]);
-        turn(a, b, c) > 0.0
+        let [a, b, c] = self.triangle(i).map(|j| self.projected[j]);
+        orient2d(a, b, c) > 0.0
     }
 
     /// Returns twice the area divided by the square of the longest side: at most √3/2.
-    fn shape(&self, i: usize) -> f64 {
-        let [a, b, c] = self.triangle(i).map(|j| self.solid[j]);
+    fn quality(&self, i: usize) -> f64 {
+        let [a, b, c] = self.triangle(i).map(|j| self.points[j]);
         let sides = [b - a, c - b, a - c];
         let longest = sides
             .map(DVec3::length_squared)
@@ -223,10 +227,10 @@ impl EarClipping {
     fn is_obstructed(&mut self, i: usize) -> bool {
         let triangle = self.triangle(i);
         let mut at = 0;
-        while let Some(&q) = self.in_the_way.get(at) {
+        while let Some(&q) = self.reflex.get(at) {
             let q = q as usize;
-            if self.gone[q] || self.is_convex(q) {
-                self.in_the_way.swap_remove(at); // it never obstructs again
+            if self.removed[q] || self.is_convex(q) {
+                self.reflex.swap_remove(at); // it never obstructs again
                 continue;
             }
             if !triangle.contains(&q) && self.obstructs(q, triangle) {
@@ -240,20 +244,20 @@ impl EarClipping {
     /// Returns whether corner `q` prevents the triangle from being cut off.
     ///
     /// A corner at exactly the position of `a`, `b` or `c` obstructs only if one of its sides runs
-    /// into the triangle from there. Such corners occur along a slit to a hole.
+    /// into the triangle from there. Such corners occur along a bridge to a hole.
     fn obstructs(&self, q: usize, triangle: [usize; 3]) -> bool {
-        let [a, b, c] = triangle.map(|j| self.flat[j]);
-        let at = self.flat[q];
-        if turn(a, b, at) < 0.0 || turn(b, c, at) < 0.0 || turn(c, a, at) < 0.0 {
+        let [a, b, c] = triangle.map(|j| self.projected[j]);
+        let at = self.projected[q];
+        if orient2d(a, b, at) < 0.0 || orient2d(b, c, at) < 0.0 || orient2d(c, a, at) < 0.0 {
             return false;
         }
         let wedge = [[a, b, c], [b, c, a], [c, a, b]];
         let Some([tip, right, left]) = wedge.into_iter().find(|&[tip, ..]| tip == at) else {
             return true;
         };
-        [self.before[q], self.after[q]].into_iter().any(|to| {
-            let to = self.flat[to as usize];
-            turn(tip, right, to) > 0.0 && turn(tip, to, left) > 0.0
+        [self.prev[q], self.next[q]].into_iter().any(|to| {
+            let to = self.projected[to as usize];
+            orient2d(tip, right, to) > 0.0 && orient2d(tip, to, left) > 0.0
         })
     }
 }
@@ -262,25 +266,29 @@ impl EarClipping {
 ///
 /// The difference of two singles is exact in doubles if their sizes differ by a factor below 2²⁹. A
 /// product rounds only in its last bits.
-fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
 /// Returns the projection along the axis nearest to the Newell normal, in which the polygon runs
 /// counter-clockwise.
-fn view_along(corners: &[DVec3]) -> impl Fn(DVec3) -> DVec2 + use<> {
+fn projection(corners: &[DVec3]) -> impl Fn(DVec3) -> DVec2 + use<> {
     let mut newell = Newell::default();
-    corners.iter().for_each(|&p| newell.corner(p));
+    corners.iter().for_each(|&p| newell.add(p));
     let normal = newell.normal;
     let size = normal.abs();
     move |p| {
-        let (seen, component) = if size.z >= size.x && size.z >= size.y {
+        let (projected, component) = if size.z >= size.x && size.z >= size.y {
             (DVec2::new(p.x, p.y), normal.z)
         } else if size.x >= size.y {
             (DVec2::new(p.y, p.z), normal.x)
         } else {
             (DVec2::new(p.z, p.x), normal.y)
         };
-        if component < 0.0 { seen.yx() } else { seen }
+        if component < 0.0 {
+            projected.yx()
+        } else {
+            projected
+        }
     }
 }

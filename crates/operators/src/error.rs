@@ -44,7 +44,7 @@ pub enum DualError {
     /// A mesh that is not an oriented manifold: an edge has three faces, a vertex has two fans, or
     /// two faces run along one edge in the same direction.
     #[error("only an oriented manifold has a dual: {0}")]
-    NoOrientedManifold(#[from] BuildError),
+    NotOrientedManifold(#[from] BuildError),
 }
 
 /// The reason why the faces cannot be oriented consistently.
@@ -66,7 +66,7 @@ pub enum SphereError {
     #[error(
         "centre {centre:?} and radius {radius} do not define a sphere: both must be finite, and the radius above 0"
     )]
-    NoSphere { centre: [f32; 3], radius: f32 },
+    InvalidSphere { centre: [f32; 3], radius: f32 },
     /// A vertex that is at the centre or not finite, so that it has no direction from the centre.
     #[error(
         "vertex {vertex} is at the centre or not finite, so it has no direction from the centre: move it, or choose another centre"

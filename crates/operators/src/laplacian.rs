@@ -8,16 +8,16 @@ use crate::smoothing::{Boundary, Weights};
 
 /// Smallest height of a triangle, relative to its longest side, at which its angles are used. Below
 /// it, the angles are only rounding errors of single-precision coordinates.
-const FLAT: f64 = 1e-8;
+const MIN_HEIGHT: f64 = 1e-8;
 
 /// The weighted sum of the offsets to the neighbours of a vertex, and the sum of the weights.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pull {
+pub(crate) struct WeightedSum {
     offset: DVec3,
     weight: f64,
 }
 
-impl Pull {
+impl WeightedSum {
     /// Adds a neighbour at `offset` from the vertex.
     #[inline(always)]
     fn add(&mut self, weight: f64, offset: DVec3) {
@@ -27,7 +27,7 @@ impl Pull {
 
     /// Returns the offset to the weighted mean of the neighbours; zero if the weights are zero.
     #[inline(always)]
-    pub(crate) fn way(self) -> DVec3 {
+    pub(crate) fn mean(self) -> DVec3 {
         if self.weight > 0.0 {
             self.offset / self.weight
         } else {
@@ -36,50 +36,50 @@ impl Pull {
     }
 }
 
-/// The neighbours that pull each vertex, read from a mesh once and used at every step.
+/// The neighbours of each vertex, read from a mesh once and used at every step.
 pub(crate) struct Laplacian<V> {
-    springs: Springs<V>,
-    rim: Rim<V>,
+    elements: Elements<V>,
+    boundary: BoundaryCurves<V>,
 }
 
 impl<V: Handle> Laplacian<V> {
     /// Reads every face and every edge of `mesh`; O(corners).
-    pub(crate) fn of<M: MeshQuery<Vertex = V>>(
+    pub(crate) fn new<M: MeshQuery<Vertex = V>>(
         mesh: &M,
         weights: Weights,
         boundary: Boundary,
     ) -> Result<Self, SmoothingError> {
         Ok(Self {
-            springs: match weights {
+            elements: match weights {
                 Weights::Uniform => {
-                    Springs::Edges(mesh.edges().map(|e| mesh.edge_vertices(e)).collect())
+                    Elements::Edges(mesh.edges().map(|e| mesh.edge_vertices(e)).collect())
                 }
-                Weights::Cotangent => Springs::Triangles(triangles(mesh)?),
+                Weights::Cotangent => Elements::Triangles(triangles(mesh)?),
             },
-            rim: Rim::of(mesh, boundary),
+            boundary: BoundaryCurves::new(mesh, boundary),
         })
     }
 
-    /// Computes the pull at each vertex, with the vertices at `at`. All `pulls` must be zero
-    /// before.
-    pub(crate) fn pull(&self, at: &V::Map<DVec3>, pulls: &mut V::Map<Pull>) {
-        match &self.springs {
-            Springs::Edges(edges) => pull_ends(edges, at, pulls),
-            Springs::Triangles(triangles) => pull_corners(triangles, at, pulls),
+    /// Computes the sum over the neighbours of each vertex, with the vertices at `at`. All `sums`
+    /// must be zero before.
+    pub(crate) fn apply(&self, at: &V::Map<DVec3>, sums: &mut V::Map<WeightedSum>) {
+        match &self.elements {
+            Elements::Edges(edges) => add_uniform(edges, at, sums),
+            Elements::Triangles(triangles) => add_cotangent(triangles, at, sums),
         }
-        self.rim.pull(at, pulls);
+        self.boundary.apply(at, sums);
     }
 }
 
-/// The elements that connect vertices which pull each other.
-enum Springs<V> {
+/// The elements that connect a vertex to its neighbours.
+enum Elements<V> {
     /// Edges, all with the same weight.
     Edges(Vec<[V; 2]>),
     /// Triangles, weighted by their angles.
     Triangles(Vec<[V; 3]>),
 }
 
-/// Adds the pulls by uniform weights (Field 1988): all neighbours have the same weight.
+/// Adds the neighbours with uniform weights (Field 1988): all have the same weight.
 ///
 /// ```text
 ///      b ─── a                1
@@ -88,16 +88,16 @@ enum Springs<V> {
 ///     ╲ ╱   ╲ ╱
 ///      d ─── e
 /// ```
-fn pull_ends<V: Handle>(edges: &[[V; 2]], at: &V::Map<DVec3>, pulls: &mut V::Map<Pull>) {
+fn add_uniform<V: Handle>(edges: &[[V; 2]], at: &V::Map<DVec3>, sums: &mut V::Map<WeightedSum>) {
     for &[a, b] in edges {
-        let way = at[b] - at[a];
-        pulls[a].add(1.0, way);
-        pulls[b].add(1.0, -way);
+        let offset = at[b] - at[a];
+        sums[a].add(1.0, offset);
+        sums[b].add(1.0, -offset);
     }
 }
 
-/// Adds the pulls by cotangent weights (Pinkall & Polthier 1993): in the direction in which the
-/// area shrinks fastest.
+/// Adds the neighbours with cotangent weights (Pinkall & Polthier 1993). The mean then lies in the
+/// direction in which the area shrinks fastest.
 ///
 /// ```text
 ///        k                          Σ wᵢ (pᵢ − v)
@@ -112,7 +112,11 @@ fn pull_ends<V: Handle>(edges: &[[V; 2]], at: &V::Map<DVec3>, pulls: &mut V::Map
 /// A triangle adds the weight cot β + cot γ = sin α / (sin β sin γ) > 0 to its corner with angle α.
 /// The sum of the weights is therefore never negative, although a single weight may be. A triangle
 /// that is too flat for reliable angles contributes no weight.
-fn pull_corners<V: Handle>(triangles: &[[V; 3]], at: &V::Map<DVec3>, pulls: &mut V::Map<Pull>) {
+fn add_cotangent<V: Handle>(
+    triangles: &[[V; 3]],
+    at: &V::Map<DVec3>,
+    sums: &mut V::Map<WeightedSum>,
+) {
     for &[a, b, c] in triangles {
         let (pa, pb, pc) = (at[a], at[b], at[c]);
         let (ab, bc, ca) = (pb - pa, pc - pb, pa - pc);
@@ -121,21 +125,21 @@ fn pull_corners<V: Handle>(triangles: &[[V; 3]], at: &V::Map<DVec3>, pulls: &mut
             .length_squared()
             .max(bc.length_squared())
             .max(ca.length_squared());
-        let known = double_area > FLAT * longest;
-        if !known {
+        let is_reliable = double_area > MIN_HEIGHT * longest;
+        if !is_reliable {
             continue;
         }
         let cotangent = |u: DVec3, v: DVec3| -u.dot(v) / double_area;
         let (at_a, at_b, at_c) = (cotangent(ca, ab), cotangent(ab, bc), cotangent(bc, ca));
         let [to_a, to_b, to_c] = [bc * at_a, ca * at_b, ab * at_c];
         // The edge a–b is opposite to c, b–c to a, and c–a to b.
-        let mut give = |v: V, offset: DVec3, weight: f64| {
-            pulls[v].offset += offset;
-            pulls[v].weight += weight;
+        let mut add = |v: V, offset: DVec3, weight: f64| {
+            sums[v].offset += offset;
+            sums[v].weight += weight;
         };
-        give(a, to_c - to_b, at_c + at_b);
-        give(b, to_a - to_c, at_a + at_c);
-        give(c, to_b - to_a, at_b + at_a);
+        add(a, to_c - to_b, at_c + at_b);
+        add(b, to_a - to_c, at_a + at_c);
+        add(c, to_b - to_a, at_b + at_a);
     }
 }
 
@@ -155,25 +159,25 @@ fn triangles<M: MeshQuery>(mesh: &M) -> Result<Vec<[M::Vertex; 3]>, SmoothingErr
     Ok(triangles)
 }
 
-/// The boundary of a mesh. Interior vertices do not pull its vertices.
+/// The boundary of a mesh. Its vertices do not depend on interior vertices.
 ///
 /// ```text
 ///    ──── a ════ v ════ b ────     a curve:  L(v) = (a + b) / 2 − v
 ///         │      │      │
 /// ```
-struct Rim<V> {
+struct BoundaryCurves<V> {
     /// Vertices with a boundary edge.
     vertices: Vec<V>,
     /// The boundary edges, if the boundary is a curve.
     edges: Vec<[V; 2]>,
     /// Boundary vertices that do not have exactly two boundary edges: the curve ends or crosses
     /// itself.
-    knots: Vec<V>,
+    irregular: Vec<V>,
 }
 
-impl<V: Handle> Rim<V> {
+impl<V: Handle> BoundaryCurves<V> {
     /// Counts the faces of every edge in one pass over the faces: no structure searches for them.
-    fn of<M: MeshQuery<Vertex = V>>(mesh: &M, boundary: Boundary) -> Self {
+    fn new<M: MeshQuery<Vertex = V>>(mesh: &M, boundary: Boundary) -> Self {
         let mut faces = mesh.edge_map(0_u8);
         mesh.faces().for_each(|f| {
             mesh.face_edges(f).for_each(|e| {
@@ -191,25 +195,27 @@ impl<V: Handle> Rim<V> {
             }
             ends[v] += 1;
         }
-        let knots = vertices.iter().copied().filter(|&v| ends[v] != 2);
-        let (knots, edges) = match boundary {
+        let irregular = vertices.iter().copied().filter(|&v| ends[v] != 2);
+        let (irregular, edges) = match boundary {
             Boundary::Fixed => (Vec::new(), Vec::new()),
-            Boundary::Curve => (knots.collect(), edges),
+            Boundary::Curve => (irregular.collect(), edges),
         };
         Self {
             vertices,
             edges,
-            knots,
+            irregular,
         }
     }
 
-    /// Replaces the pulls at the boundary vertices.
-    fn pull(&self, at: &V::Map<DVec3>, pulls: &mut V::Map<Pull>) {
-        let let_go = |vertices: &[V], pulls: &mut V::Map<Pull>| {
-            vertices.iter().for_each(|&v| pulls[v] = Pull::default());
+    /// Replaces the sums at the boundary vertices.
+    fn apply(&self, at: &V::Map<DVec3>, sums: &mut V::Map<WeightedSum>) {
+        let reset = |vertices: &[V], sums: &mut V::Map<WeightedSum>| {
+            vertices
+                .iter()
+                .for_each(|&v| sums[v] = WeightedSum::default());
         };
-        let_go(&self.vertices, pulls);
-        pull_ends(&self.edges, at, pulls);
-        let_go(&self.knots, pulls);
+        reset(&self.vertices, sums);
+        add_uniform(&self.edges, at, sums);
+        reset(&self.irregular, sums);
     }
 }

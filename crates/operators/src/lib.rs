@@ -23,9 +23,9 @@
 //! use sixfold_core::{MeshQuery, Representation};
 //! use sixfold_operators::{Smoothing, Triangulation, oriented, smoothed, triangulated};
 //!
-//! let mended = oriented(&sixfold_shapes::cube(), Default::default())?;
-//! assert!(mended.turned.is_empty());
-//! let triangles = triangulated(&mended.polygons, Triangulation::EarClipping)?;
+//! let repaired = oriented(&sixfold_shapes::cube(), Default::default())?;
+//! assert!(repaired.reversed.is_empty());
+//! let triangles = triangulated(&repaired.polygons, Triangulation::EarClipping)?;
 //! let mut mesh = HalfEdgeMesh::from_polygons(&triangles)?;
 //! let moved = smoothed(&mesh, &Smoothing::default())?;
 //! mesh.set_positions(&moved)?;

@@ -31,7 +31,7 @@ pub fn face_normals<M: MeshQuery>(mesh: &M) -> FaceMap<M, Point> {
     mesh.faces().for_each(|f| {
         let mut newell = Newell::default();
         mesh.face_vertices(f)
-            .for_each(|v| newell.corner(mesh.position(v).as_dvec3()));
+            .for_each(|v| newell.add(mesh.position(v).as_dvec3()));
         normals[f] = unit(newell.normal);
     });
     normals
@@ -59,7 +59,7 @@ pub fn vertex_normals<M: MeshQuery>(mesh: &M, weights: NormalWeights) -> VertexM
         corners.clear();
         mesh.face_vertices(f).for_each(|v| {
             let at = mesh.position(v).as_dvec3();
-            newell.corner(at);
+            newell.add(at);
             corners.push((v, at));
         });
         match weights {
@@ -113,7 +113,7 @@ pub(crate) struct Newell {
 impl Newell {
     /// Adds the next corner.
     #[inline(always)]
-    pub(crate) fn corner(&mut self, at: DVec3) {
+    pub(crate) fn add(&mut self, at: DVec3) {
         let first = *self.first.get_or_insert(at);
         let next = at - first;
         self.normal += self.spoke.cross(next);

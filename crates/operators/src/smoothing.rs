@@ -4,7 +4,7 @@ use glam::DVec3;
 use sixfold_core::{MeshQuery, Point, VertexMap};
 
 use crate::error::SmoothingError;
-use crate::laplacian::{Laplacian, Pull};
+use crate::laplacian::{Laplacian, WeightedSum};
 
 /// The weight of each neighbour of a vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -126,21 +126,21 @@ pub fn smoothed<M: MeshQuery>(
     smoothing: &Smoothing,
 ) -> Result<VertexMap<M, Point>, SmoothingError> {
     smoothing.check()?;
-    let laplacian = Laplacian::of(mesh, smoothing.weights, smoothing.boundary)?;
+    let laplacian = Laplacian::new(mesh, smoothing.weights, smoothing.boundary)?;
     let vertices: Vec<M::Vertex> = mesh.vertices().collect();
     let mut at = mesh.vertex_map(DVec3::ZERO);
     for &v in &vertices {
         at[v] = mesh.position(v).as_dvec3();
     }
-    let mut pulls = mesh.vertex_map(Pull::default());
+    let mut sums = mesh.vertex_map(WeightedSum::default());
     for _ in 0..smoothing.iterations {
         for step in [Some(smoothing.step), smoothing.step_back]
             .into_iter()
             .flatten()
         {
-            laplacian.pull(&at, &mut pulls);
+            laplacian.apply(&at, &mut sums);
             for &v in &vertices {
-                at[v] += step * std::mem::take(&mut pulls[v]).way();
+                at[v] += step * std::mem::take(&mut sums[v]).mean();
             }
         }
     }

@@ -17,8 +17,8 @@ use crate::error::SphereError;
 ///
 /// # Errors
 ///
-/// Returns [`SphereError::NoSphere`] for a radius that is not above 0, or a radius or centre that
-/// is not finite, and [`SphereError::NoDirection`] for the first vertex at the centre or not
+/// Returns [`SphereError::InvalidSphere`] for a radius that is not above 0, or a radius or centre
+/// that is not finite, and [`SphereError::NoDirection`] for the first vertex at the centre or not
 /// finite.
 ///
 /// # Examples
@@ -77,7 +77,7 @@ pub fn projected_to_sphere<M: MeshQuery>(
 ) -> Result<VertexMap<M, Point>, SphereError> {
     if !(centre.is_finite() && radius.is_finite() && radius > 0.0) {
         let centre = centre.to_array();
-        return Err(SphereError::NoSphere { centre, radius });
+        return Err(SphereError::InvalidSphere { centre, radius });
     }
     let (from, length) = (centre.as_dvec3(), f64::from(radius));
     let mut projected = mesh.vertex_map(Point::ZERO);
@@ -140,10 +140,10 @@ mod tests {
             (Point::ZERO, f32::INFINITY),
             (Point::ZERO, f32::NAN),
         ] {
-            let refusal = project(centre, radius).err();
+            let error = project(centre, radius).err();
             assert!(
-                matches!(refusal, Some(SphereError::NoSphere { .. })),
-                "{refusal:?}"
+                matches!(error, Some(SphereError::InvalidSphere { .. })),
+                "{error:?}"
             );
         }
     }

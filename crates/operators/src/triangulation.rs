@@ -66,12 +66,12 @@ pub fn triangulated(
 ) -> Result<PolygonMesh, PolygonError> {
     match method {
         Triangulation::Fan => polygons.fan_triangulated(),
-        Triangulation::EarClipping => ears_cut(polygons),
+        Triangulation::EarClipping => clip_ears(polygons),
     }
 }
 
-fn ears_cut(polygons: &PolygonMesh) -> Result<PolygonMesh, PolygonError> {
-    let mut edges = edges_between_polygons(polygons.faces(), polygons.vertex_count());
+fn clip_ears(polygons: &PolygonMesh) -> Result<PolygonMesh, PolygonError> {
+    let mut edges = possible_diagonals(polygons.faces(), polygons.vertex_count());
     let mut triangles = FaceList::with_capacity(polygons.corner_count());
     let mut clipping = EarClipping::default();
     let mut cut = Vec::new();
@@ -81,9 +81,9 @@ fn ears_cut(polygons: &PolygonMesh) -> Result<PolygonMesh, PolygonError> {
             continue;
         }
         let corners = face.iter().map(|&v| polygons.position(v).as_dvec3());
-        let taken = |i: usize, j: usize| edges[Pair::new(face[i], face[j])];
+        let is_edge = |i: usize, j: usize| edges[Pair::new(face[i], face[j])];
         cut.clear();
-        clipping.clip(corners, taken, |triangle| cut.push(triangle));
+        clipping.clip(corners, is_edge, |triangle| cut.push(triangle));
         for &triangle in &cut {
             let [a, b, c] = triangle.map(|i| face[i]);
             triangles.push([a, b, c])?;
@@ -95,10 +95,7 @@ fn ears_cut(polygons: &PolygonMesh) -> Result<PolygonMesh, PolygonError> {
 
 /// Returns the edges that could be diagonals of a polygon: both ends are corners of polygons with
 /// more than three corners.
-fn edges_between_polygons(
-    faces: &FaceList,
-    vertices: usize,
-) -> HashHandleMap<Pair<VertexId>, bool> {
+fn possible_diagonals(faces: &FaceList, vertices: usize) -> HashHandleMap<Pair<VertexId>, bool> {
     let mut edges = HashHandleMap::filled(0, false);
     let mut on_polygon = vec![false; vertices];
     for (_, face) in faces.iter().filter(|(_, face)| face.len() > 3) {
@@ -150,7 +147,7 @@ mod tests {
 
     /// Checks that the triangles have the sides of the polygon, and each diagonal once in each
     /// direction.
-    fn cuts_up(mesh: &PolygonMesh, triangles: &PolygonMesh) {
+    fn assert_partition(mesh: &PolygonMesh, triangles: &PolygonMesh) {
         let sides = |mesh: &PolygonMesh| {
             let mut sides = Vec::new();
             for (_, face) in mesh.faces().iter() {
@@ -178,14 +175,14 @@ mod tests {
 
     /// Checks that all triangles have the orientation of the polygon, that no triangle is flat if
     /// `exact`, and that their areas sum to its area. Then they cover it without overlap.
-    fn covers(mesh: &PolygonMesh, exact: bool) {
+    fn assert_covered(mesh: &PolygonMesh, exact: bool) {
         let triangles = ears(mesh);
         let whole: DVec3 = areas(mesh).into_iter().sum();
         assert_eq!(
             triangles.face_count(),
             mesh.corner_count() - 2 * mesh.face_count()
         );
-        cuts_up(mesh, &triangles);
+        assert_partition(mesh, &triangles);
         let parts = areas(&triangles);
         let least = if exact { 0.0 } else { -1e-6 * whole.length() };
         assert!(
@@ -200,8 +197,9 @@ mod tests {
         );
     }
 
-    /// Bars side by side, with a corner at every integer point of the outline: most are collinear.
-    fn skyline() -> impl Strategy<Value = Vec<[f32; 2]>> {
+    /// A histogram: bars side by side, with a corner at every integer point of the outline. Most
+    /// corners are collinear.
+    fn histogram() -> impl Strategy<Value = Vec<[f32; 2]>> {
         collection::vec(1..5_u8, 1..9).prop_map(|heights| {
             let width = heights.len();
             let mut points: Vec<[f32; 2]> = (0..=width).map(|x| [x as f32, 0.0]).collect();
@@ -239,8 +237,8 @@ mod tests {
 
         /// Integer coordinates in integer planes: nothing is rounded, and no triangle may be flat.
         #[test]
-        fn skylines_in_any_plane_are_covered(
-            outline in skyline(),
+        fn histograms_in_any_plane_are_covered(
+            outline in histogram(),
             axes in prop::array::uniform2(prop::array::uniform3(-4..5_i8)),
             start in 0..40_usize,
         ) {
@@ -249,7 +247,7 @@ mod tests {
             let mut points: Vec<Point> = outline.iter().map(|&[x, y]| x * u + y * v).collect();
             let start = start % points.len();
             points.rotate_left(start);
-            covers(&one_face(points), true);
+            assert_covered(&one_face(points), true);
         }
 
         /// Corners around a centre at rising angles, near and far: simple, and mostly not convex.
@@ -265,12 +263,12 @@ mod tests {
                 let angle = std::f64::consts::TAU * i as f64 / radii.len() as f64;
                 (radius * angle.cos()) as f32 * u + (radius * angle.sin()) as f32 * v
             });
-            covers(&one_face(points.collect()), false);
+            assert_covered(&one_face(points.collect()), false);
         }
 
         /// Any polygon: one that crosses itself, lies on one line or in one point.
         #[test]
-        fn any_polygon_is_cut_up(
+        fn any_polygon_is_partitioned(
             points in collection::vec(prop::array::uniform3(-2..3_i8), 4..30),
             flat in any::<[bool; 3]>(),
         ) {
@@ -281,20 +279,20 @@ mod tests {
             let mesh = one_face(points.iter().map(point).collect());
             let triangles = ears(&mesh);
             prop_assert_eq!(triangles.face_count(), points.len() - 2);
-            cuts_up(&mesh, &triangles);
+            assert_partition(&mesh, &triangles);
         }
     }
 
     #[test]
     fn short_and_long_spirals_are_covered() {
-        covers(&polygon(&spiral(60, 3.0)), true);
-        covers(&polygon(&spiral(1500, 40.0)), false);
+        assert_covered(&polygon(&spiral(60, 3.0)), true);
+        assert_covered(&polygon(&spiral(1500, 40.0)), false);
     }
 
-    /// A square with a square hole. The outline runs twice along the slit between them.
+    /// A square with a square hole. The outline runs twice along the bridge between them.
     #[test]
-    fn a_polygon_with_a_slit_to_a_hole_is_covered() {
-        let slit = [
+    fn a_polygon_with_a_bridge_to_a_hole_is_covered() {
+        let outline = [
             [0.0, 0.0],
             [3.0, 0.0],
             [3.0, 3.0],
@@ -306,15 +304,15 @@ mod tests {
             [2.0, 1.0],
             [1.0, 1.0],
         ];
-        for start in 0..slit.len() {
-            let mut slit = slit;
-            slit.rotate_left(start);
-            covers(&polygon(&slit), true);
+        for start in 0..outline.len() {
+            let mut outline = outline;
+            outline.rotate_left(start);
+            assert_covered(&polygon(&outline), true);
         }
     }
 
     #[test]
-    fn large_degenerate_polygons_are_cut_up() {
+    fn large_degenerate_polygons_are_partitioned() {
         let line: Vec<[f32; 2]> = (0..1500).map(|i| [(i * 7 % 1500) as f32, 0.0]).collect();
         let zigzag: Vec<[f32; 2]> = (0..1500)
             .map(|i| [(i * 611 % 997) as f32, (i * i % 991) as f32])
@@ -362,9 +360,9 @@ mod tests {
         let prism = sixfold_shapes::prism(7).expect("small");
         let fan = triangulated(&prism, Triangulation::Fan);
         assert_eq!(fan, prism.fan_triangulated());
-        let lid = ears(&prism);
-        assert_eq!(lid.face_count(), 2 * 7 + 2 * 5);
-        assert_eq!(lid.faces().face(FaceId::new(0)).len(), 3);
-        assert_eq!(Capabilities::ORIENTED_MANIFOLDS.check(&lid), Ok(()));
+        let triangles = ears(&prism);
+        assert_eq!(triangles.face_count(), 2 * 7 + 2 * 5);
+        assert_eq!(triangles.faces().face(FaceId::new(0)).len(), 3);
+        assert_eq!(Capabilities::ORIENTED_MANIFOLDS.check(&triangles), Ok(()));
     }
 }

@@ -27,7 +27,7 @@ impl<E: Editing> Representation for AnyPolygonSoup<Untraced, E> {
     };
 
     fn type_path() -> &'static str {
-        match E::DELETES {
+        match E::CAN_DELETE {
             true => "sixfold_polygon_soup::EditablePolygonSoup",
             false => "sixfold_polygon_soup::PolygonSoup",
         }
@@ -41,7 +41,10 @@ impl<E: Editing> Representation for AnyPolygonSoup<Untraced, E> {
         let mesh = Self {
             faces: ScannedFaces::new(corners, faces.spans()),
         };
-        if has_isolated_vertex(polygons) || mesh.faces().any(|f| coincident(mesh.face_positions(f)))
+        if has_isolated_vertex(polygons)
+            || mesh
+                .faces()
+                .any(|f| has_coincident_corners(mesh.face_positions(f)))
         {
             Self::CAPABILITIES.check(polygons)?;
         }
@@ -68,11 +71,11 @@ impl<E: Editing> Representation for AnyPolygonSoup<Untraced, E> {
             .expect("I1 and I3: the corners of a face are distinct")
     }
 
-    fn vertex_name(polygons: &PolygonMesh, v: VertexId) -> SoupVertex {
+    fn vertex_handle(polygons: &PolygonMesh, v: VertexId) -> SoupVertex {
         SoupVertex::at(polygons.position(v))
     }
 
-    fn face_name(_: &PolygonMesh, f: FaceId) -> FaceId {
+    fn face_handle(_: &PolygonMesh, f: FaceId) -> FaceId {
         f
     }
 
@@ -84,11 +87,11 @@ impl<E: Editing> Representation for AnyPolygonSoup<Untraced, E> {
             if SoupVertex::BLANK.is_at(corner) {
                 return *corner;
             }
-            canonical(positions[SoupVertex::of(*corner)])
+            canonical(positions[SoupVertex::from_corner(*corner)])
         });
         let moved: Vec<Point> = moved.collect();
         for face in self.faces() {
-            if coincident(&moved[self.spans().range(face)]) {
+            if has_coincident_corners(&moved[self.spans().range(face)]) {
                 return Err(MoveError::CoincidentCorners { face });
             }
         }
@@ -133,13 +136,19 @@ fn has_isolated_vertex(polygons: &PolygonMesh) -> bool {
 }
 
 /// Returns whether two corners of a face are at the same position; expects canonical coordinates.
-fn coincident(face: &[Point]) -> bool {
+fn has_coincident_corners(face: &[Point]) -> bool {
     match *face {
         [a, b, c] => {
-            let [a, b, c] = [a, b, c].map(SoupVertex::of);
+            let [a, b, c] = [a, b, c].map(SoupVertex::from_corner);
             a == b || b == c || c == a
         }
-        _ => face.iter().map(|&p| SoupVertex::of(p)).distinct().count() < face.len(),
+        _ => {
+            face.iter()
+                .map(|&p| SoupVertex::from_corner(p))
+                .distinct()
+                .count()
+                < face.len()
+        }
     }
 }
 

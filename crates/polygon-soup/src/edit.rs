@@ -32,12 +32,12 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         ]
     };
 
-    type Whole = PolygonSoup<P>;
+    type Compact = PolygonSoup<P>;
 
-    fn into_whole(mut self) -> PolygonSoup<P> {
+    fn into_compact(mut self) -> PolygonSoup<P> {
         self.compact(&mut ());
         AnyPolygonSoup {
-            faces: self.faces.into_whole().expect("compacted"),
+            faces: self.faces.into_compact().expect("compacted"),
         }
     }
 
@@ -278,25 +278,25 @@ mod tests {
         let (mut soup, [a, b, _, _]) = square();
         soup.remove_face(FaceId::new(0), &mut ()).expect("a face");
         let stored = soup.corners()[0];
-        let strangers = [
+        let nan_points = [
             stored,
             Point::NAN,
             Point::splat(f32::from_bits(u32::MAX)),
             Point::new(stored.x, 0.0, 0.0),
         ];
-        for stranger in strangers.map(SoupVertex::at) {
-            assert_eq!(soup.vertex_faces(stranger).next(), None);
-            assert_eq!(soup.vertex_edges(stranger).next(), None);
-            let refusal = Err(EditError::NoSuchVertex { vertex: stranger });
-            assert_eq!(soup.remove_vertex(stranger, &mut ()), refusal);
-            let edge = Pair::new(stranger, a);
+        for nan in nan_points.map(SoupVertex::at) {
+            assert_eq!(soup.vertex_faces(nan).next(), None);
+            assert_eq!(soup.vertex_edges(nan).next(), None);
+            let refusal = Err(EditError::NoSuchVertex { vertex: nan });
+            assert_eq!(soup.remove_vertex(nan, &mut ()), refusal);
+            let edge = Pair::new(nan, a);
             assert_eq!(soup.edge_faces(edge).next(), None);
             // These positions are valid: a face may have a corner there.
             let mut soup = soup.clone();
-            let f = soup.add_face(&[a, b, stranger], &mut ()).expect("valid");
+            let f = soup.add_face(&[a, b, nan], &mut ()).expect("valid");
             assert_eq!(soup.validate(), Ok(()));
-            assert!(soup.vertex_faces(stranger).eq([f]));
-            assert!(soup.face_vertices(f).eq([a, b, stranger]));
+            assert!(soup.vertex_faces(nan).eq([f]));
+            assert!(soup.face_vertices(f).eq([a, b, nan]));
         }
     }
 
@@ -305,7 +305,7 @@ mod tests {
         let (mut soup, [a, b, c, d]) = square();
         let merged = soup.dissolve_edge(Pair::new(a, c), &mut ());
         assert_eq!(merged, Ok(FaceId::new(0)));
-        let names = soup.compact_with_names();
+        let names = soup.compact_with_map();
         assert_eq!(names.faces.values(), [Some(FaceId::new(0)), None]);
         assert_eq!(soup.corners(), [a, b, c, d].map(SoupVertex::position));
         assert_eq!(soup.memory().total(), 4 * 12);

@@ -1,7 +1,7 @@
 //! The table, its invariants, and access to it.
 
 use sixfold_core::{
-    Editable, Editing, FaceId, FaceSpans, Point, Probe, ScannedFaces, Untraced, Whole,
+    Compact, Editable, Editing, FaceId, FaceSpans, Point, Probe, ScannedFaces, Untraced,
 };
 
 use crate::vertex::SoupVertex;
@@ -93,7 +93,7 @@ pub struct AnyPolygonSoup<P: Probe, E: Editing> {
 sixfold_core::clone_by_field!(AnyPolygonSoup<P: Probe, E: Editing> { faces });
 
 /// A polygon soup that cannot delete faces: an [`AnyPolygonSoup`] without holes.
-pub type PolygonSoup<P = Untraced> = AnyPolygonSoup<P, Whole>;
+pub type PolygonSoup<P = Untraced> = AnyPolygonSoup<P, Compact>;
 
 /// A polygon soup that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an [`AnyPolygonSoup`]
 /// with holes.

@@ -111,7 +111,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyPolygonSoup<P, E> {
 
 #[cfg(test)]
 mod tests {
-    use sixfold_core::{Measured, PolygonMesh, Representation, Sought, Traced, VertexId};
+    use sixfold_core::{Measured, PolygonMesh, Representation, SearchSet, Traced, VertexId};
 
     use super::*;
     use crate::mesh::PolygonSoup;
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn each_neighbour_is_listed_once() {
         let (polygons, soup) = pillow();
-        let v = |i| PolygonSoup::vertex_name(&polygons, VertexId::new(i));
+        let v = |i| PolygonSoup::vertex_handle(&polygons, VertexId::new(i));
         let faces = |faces: &mut dyn Iterator<Item = FaceId>| {
             let mut rows: Vec<usize> = faces.map(FaceId::index).collect();
             rows.sort_unstable();
@@ -178,11 +178,11 @@ mod tests {
     #[test]
     fn a_diagonal_is_not_an_edge_and_a_missing_vertex_has_no_neighbours() {
         let (polygons, soup) = pillow();
-        let v = |i| PolygonSoup::vertex_name(&polygons, VertexId::new(i));
+        let v = |i| PolygonSoup::vertex_handle(&polygons, VertexId::new(i));
         assert_eq!(soup.edge_faces(Pair::new(v(0), v(2))).next(), None);
-        let stranger = SoupVertex::at(Point::splat(9.0));
-        assert_eq!(soup.vertex_vertices(stranger).next(), None);
-        assert_eq!(soup.vertex_edges(stranger).next(), None);
+        let missing = SoupVertex::at(Point::splat(9.0));
+        assert_eq!(soup.vertex_vertices(missing).next(), None);
+        assert_eq!(soup.vertex_edges(missing).next(), None);
     }
 
     /// Returns a fan of `sides` - 1 triangles around the origin.
@@ -200,16 +200,16 @@ mod tests {
             let soup = fan(sides);
             let hub = SoupVertex::at(Point::ZERO);
             let last = SoupVertex::at(Point::new(1.0, (sides - 1) as f32, 0.0));
-            let corners: Vec<usize> = soup.faces.scan(Sought::One(hub)).collect();
+            let corners: Vec<usize> = soup.faces.scan(SearchSet::One(hub)).collect();
             let expected: Vec<usize> = (2..soup.corners().len()).step_by(3).collect();
             assert_eq!(corners, expected, "{sides} sides");
-            let either = soup.faces.scan(Sought::Two([hub, last])).count();
+            let either = soup.faces.scan(SearchSet::Two([hub, last])).count();
             let far = [1, 2, 3].map(|i| SoupVertex::at(Point::splat(i as f32)));
             let many = [hub, last, far[0], far[1], far[2]];
-            let many = soup.faces.scan(Sought::all(&many)).count();
+            let many = soup.faces.scan(SearchSet::from_vertices(&many)).count();
             assert_eq!((either, many), (expected.len() + 1, expected.len() + 1));
-            let nowhere = SoupVertex::at(Point::NEG_ONE);
-            assert_eq!(soup.faces.scan(Sought::One(nowhere)).next(), None);
+            let missing = SoupVertex::at(Point::NEG_ONE);
+            assert_eq!(soup.faces.scan(SearchSet::One(missing)).next(), None);
         }
     }
 

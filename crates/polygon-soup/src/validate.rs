@@ -127,7 +127,7 @@ mod tests {
     #[test]
     fn i4_blank_corners_of_faces_and_used_corners_of_no_face() {
         let mut broken = soup(&[&[0, 1, 2], &[0, 2, 3]]);
-        broken.faces.holes.dig(1);
+        broken.faces.holes.insert(1);
         let expected = "I4 fails: corner 3 is not blank, but no face has it";
         assert_eq!(fault(&broken), expected);
         let mut broken = soup(&[&[0, 1, 2], &[0, 2, 3]]);

@@ -39,10 +39,10 @@ impl ScannedVertex for SoupVertex {
     type Corner = Point;
     type Set = FxHashSet<Self>;
     const BLANK: Self = Self([BLANK; 3]);
-    const IS_PLACE: bool = true;
+    const IS_POSITION: bool = true;
 
     #[inline]
-    fn of(corner: Point) -> Self {
+    fn from_corner(corner: Point) -> Self {
         Self(corner.to_array().map(f32::to_bits))
     }
 
@@ -64,7 +64,7 @@ impl ScannedVertex for SoupVertex {
 
     #[inline]
     fn is_in(corner: &Point, set: &FxHashSet<Self>) -> bool {
-        set.contains(&Self::of(*corner))
+        set.contains(&Self::from_corner(*corner))
     }
 }
 

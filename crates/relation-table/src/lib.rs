@@ -16,7 +16,7 @@
 //! use sixfold_relation_table::Numbering;
 //!
 //! let mesh = sixfold_half_edge::HalfEdgeMesh::from_polygons(&sixfold_shapes::icosahedron())?;
-//! let neighbours = Numbering::of(&mesh).vertex_vertices()?;
+//! let neighbours = Numbering::new(&mesh).vertex_vertices()?;
 //! assert!(neighbours.iter().all(|(_, ring)| ring.len() == 5));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -40,7 +40,7 @@ macro_rules! tabulate {
 
 impl<'m, M: MeshQuery> Numbering<'m, M> {
     /// Numbers the elements of `mesh`.
-    pub fn of(mesh: &'m M) -> Self {
+    pub fn new(mesh: &'m M) -> Self {
         Self {
             mesh,
             vertices: OnceCell::new(),

@@ -17,7 +17,7 @@ pub struct RelationTable<A, B> {
     stride: usize,
     rows: usize,
     items: Vec<B>,
-    asked_of: PhantomData<A>,
+    element_kind: PhantomData<A>,
 }
 
 /// The reason why the table of a relation could not be built.
@@ -63,7 +63,7 @@ impl<A: RowId, B: RowId> RelationTable<A, B> {
             stride,
             rows,
             items,
-            asked_of: PhantomData,
+            element_kind: PhantomData,
         })
     }
 
@@ -84,7 +84,7 @@ impl<A: RowId, B: RowId> RelationTable<A, B> {
     ///
     /// Panics if the table has no such row.
     #[inline]
-    pub fn of(&self, element: A) -> &[B] {
+    pub fn row(&self, element: A) -> &[B] {
         &self.items[self.range(element.row() as usize)]
     }
 

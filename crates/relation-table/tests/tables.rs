@@ -9,9 +9,9 @@ use sixfold_polygon_soup::PolygonSoup;
 use sixfold_relation_table::Numbering;
 
 /// Queries each element of the structure and compares the answer with its row.
-fn tables_are_answers<M: MeshQuery>(mesh: &M) -> Result<(), TestCaseError> {
-    let numbers = Numbering::of(mesh);
-    macro_rules! same {
+fn check_tables<M: MeshQuery>(mesh: &M) -> Result<(), TestCaseError> {
+    let numbers = Numbering::new(mesh);
+    macro_rules! check_table {
         ($relation:ident, $all:ident, $from:ident, $to:ident) => {
             let table = numbers.$relation().expect("few items");
             prop_assert_eq!(table.len(), mesh.$all().count());
@@ -26,7 +26,7 @@ fn tables_are_answers<M: MeshQuery>(mesh: &M) -> Result<(), TestCaseError> {
                     stringify!($relation),
                     element
                 );
-                prop_assert_eq!(table.of(number), row);
+                prop_assert_eq!(table.row(number), row);
                 prop_assert_eq!(number, numbers.$from(element));
                 prop_assert_eq!(number.index(), at);
             }
@@ -36,15 +36,15 @@ fn tables_are_answers<M: MeshQuery>(mesh: &M) -> Result<(), TestCaseError> {
             );
         };
     }
-    same!(vertex_vertices, vertices, vertex, vertex);
-    same!(vertex_edges, vertices, vertex, edge);
-    same!(vertex_faces, vertices, vertex, face);
-    same!(edge_vertices, edges, edge, vertex);
-    same!(edge_edges, edges, edge, edge);
-    same!(edge_faces, edges, edge, face);
-    same!(face_vertices, faces, face, vertex);
-    same!(face_edges, faces, face, edge);
-    same!(face_faces, faces, face, face);
+    check_table!(vertex_vertices, vertices, vertex, vertex);
+    check_table!(vertex_edges, vertices, vertex, edge);
+    check_table!(vertex_faces, vertices, vertex, face);
+    check_table!(edge_vertices, edges, edge, vertex);
+    check_table!(edge_edges, edges, edge, edge);
+    check_table!(edge_faces, edges, edge, face);
+    check_table!(face_vertices, faces, face, vertex);
+    check_table!(face_edges, faces, face, edge);
+    check_table!(face_faces, faces, face, face);
     let positions = numbers.positions();
     for v in mesh.vertices() {
         prop_assert_eq!(positions[numbers.vertex(v).index()], mesh.position(v));
@@ -52,9 +52,9 @@ fn tables_are_answers<M: MeshQuery>(mesh: &M) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-fn on<M: Representation>(polygons: &PolygonMesh) -> Result<(), TestCaseError> {
+fn check_structure<M: Representation>(polygons: &PolygonMesh) -> Result<(), TestCaseError> {
     match M::from_polygons(polygons) {
-        Ok(mesh) => tables_are_answers(&mesh),
+        Ok(mesh) => check_tables(&mesh),
         Err(_) => Ok(()), // this structure cannot hold the mesh
     }
 }
@@ -62,9 +62,9 @@ fn on<M: Representation>(polygons: &PolygonMesh) -> Result<(), TestCaseError> {
 proptest! {
     #[test]
     fn rows_equal_the_answers_of_the_structure(polygons in any_mesh()) {
-        on::<PolygonSoup>(&polygons)?;
-        on::<IndexedFaceSet>(&polygons)?;
-        on::<HalfEdgeMesh>(&polygons)?;
+        check_structure::<PolygonSoup>(&polygons)?;
+        check_structure::<IndexedFaceSet>(&polygons)?;
+        check_structure::<HalfEdgeMesh>(&polygons)?;
     }
 }
 
@@ -76,8 +76,8 @@ fn removed_elements_get_no_numbers() {
         .expect("it exists");
     mesh.remove_vertex(VertexId::new(0), &mut ())
         .expect("it exists");
-    tables_are_answers(&mesh).expect("the same answers");
-    let numbers = Numbering::of(&mesh);
+    check_tables(&mesh).expect("the same answers");
+    let numbers = Numbering::new(&mesh);
     assert_eq!(numbers.vertex(VertexId::new(1)), VertexId::new(0));
     assert_eq!(
         numbers.edge(mesh.edges().next().expect("edges")),
@@ -90,16 +90,16 @@ fn removed_elements_get_no_numbers() {
 fn tables_store_no_offsets_if_all_rows_have_one_length() {
     let ball = sixfold_shapes::icosahedron();
     let mesh = HalfEdgeMesh::from_polygons(&ball).expect("closed");
-    let numbers = Numbering::of(&mesh);
+    let numbers = Numbering::new(&mesh);
     assert_eq!(numbers.face_vertices().expect("few").bytes(), 4 * 60);
     assert_eq!(numbers.vertex_faces().expect("few").bytes(), 4 * 60);
     let grid = sixfold_shapes::grid(2, 2).expect("small");
     let mesh = HalfEdgeMesh::from_polygons(&grid).expect("open");
-    let table = Numbering::of(&mesh).vertex_faces().expect("few");
+    let table = Numbering::new(&mesh).vertex_faces().expect("few");
     assert_eq!(table.bytes(), 4 * (16 + 9 + 1));
-    let none = IndexedFaceSet::from_polygons(&PolygonMesh::default()).expect("empty");
+    let empty = IndexedFaceSet::from_polygons(&PolygonMesh::default()).expect("empty");
     assert!(
-        Numbering::of(&none)
+        Numbering::new(&empty)
             .vertex_faces()
             .expect("empty")
             .is_empty()

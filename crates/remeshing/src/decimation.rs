@@ -10,13 +10,13 @@ use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners};
 use crate::quadric::{Packed, Quadric};
 use crate::queue::{Entry, Queue};
-use crate::rules::{keeps_link, turns_nothing_over};
+use crate::rules::{keeps_orientation, meets_link_condition};
 
 /// The weight of a plane through a boundary edge, relative to a face beside it.
 const BOUNDARY_WEIGHT: f64 = 100.0;
 
 /// The number of collapses between two calls of `watch`.
-const WATCHED_EVERY: usize = 1024;
+const WATCH_INTERVAL: usize = 1024;
 
 /// The target of a decimation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ impl Target {
     /// # Errors
     ///
     /// Returns [`RemeshError::BadRatio`] if the ratio is not from 0 to 1.
-    pub fn of(self, faces: usize) -> Result<usize, RemeshError> {
+    pub fn face_count(self, faces: usize) -> Result<usize, RemeshError> {
         match self {
             Self::Faces(target) => Ok(target),
             Self::Ratio(ratio) if (0.0..=1.0).contains(&ratio) => {
@@ -85,7 +85,7 @@ pub struct Decimated {
     pub refused: usize,
     /// The largest quadric error of a collapse: squared distances to the planes of the faces, each
     /// weighted by the area of the face.
-    pub worst: f64,
+    pub max_error: f64,
     /// The reason why it ended.
     pub stop: Stop,
 }
@@ -132,13 +132,13 @@ pub fn decimate_watched<M: MeshEdit + Representation>(
     decimation: &Decimation,
     watch: &mut dyn FnMut(usize) -> ControlFlow<()>,
 ) -> Result<Decimated, RemeshError> {
-    let target = decimation.target.of(mesh.face_count())?;
-    let mut work = Work::of(mesh, decimation.boundary)?;
+    let target = decimation.target.face_count(mesh.face_count())?;
+    let mut work = Work::new(mesh, decimation.boundary)?;
     let mut report = Decimated {
         faces: mesh.face_count(),
         collapses: 0,
         refused: 0,
-        worst: 0.0,
+        max_error: 0.0,
         stop: Stop::Done,
     };
     if report.faces > target {
@@ -146,26 +146,26 @@ pub fn decimate_watched<M: MeshEdit + Representation>(
     }
     while report.faces > target {
         let Some(entry) = work.queue.pop() else {
-            report.stop = Stop::NothingLeft;
+            report.stop = Stop::NoLegalEdit;
             break;
         };
-        if !work.is_fresh(&entry) {
+        if !work.is_current(&entry) {
             continue;
         }
         let Some(error) = work.collapse(mesh, &entry) else {
             report.refused += 1;
             continue;
         };
-        report.worst = report.worst.max(error);
+        report.max_error = report.max_error.max(error);
         report.faces = mesh.face_count();
         report.collapses += 1;
-        if report.collapses.is_multiple_of(WATCHED_EVERY) && watch(report.faces).is_break() {
-            report.stop = Stop::Asked;
+        if report.collapses.is_multiple_of(WATCH_INTERVAL) && watch(report.faces).is_break() {
+            report.stop = Stop::Requested;
             break;
         }
     }
     // Areas and squared distances were computed in a box of unit size.
-    report.worst *= work.size.powi(4);
+    report.max_error *= work.size.powi(4);
     Ok(report)
 }
 
@@ -191,12 +191,12 @@ struct Work<M: MeshEdit> {
 }
 
 impl<M: MeshEdit + Representation> Work<M> {
-    fn of(mesh: &M, boundary: Boundary) -> Result<Self, RemeshError> {
-        let numbering = Numbering::of(mesh)?;
+    fn new(mesh: &M, boundary: Boundary) -> Result<Self, RemeshError> {
+        let numbering = Numbering::new(mesh)?;
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let mut vertices = Vec::with_capacity(numbering.len());
         for number in 0..row(numbering.len()) {
-            let at = mesh.position(numbering.name(number));
+            let at = mesh.position(numbering.handle(number));
             low = low.min(at.as_dvec3());
             high = high.max(at.as_dvec3());
             vertices.push(Vertex {
@@ -220,21 +220,21 @@ impl<M: MeshEdit + Representation> Work<M> {
     fn add_planes(&mut self, mesh: &M, boundary: Boundary) {
         // The number of faces of each edge, by one pass over the faces: no structure needs a search
         // for it.
-        let mut uses = mesh.edge_map(0_u8);
+        let mut face_counts = mesh.edge_map(0_u8);
         for f in mesh.faces() {
             for e in mesh.face_edges(f) {
-                uses[e] = uses[e].saturating_add(1);
+                face_counts[e] = face_counts[e].saturating_add(1);
             }
         }
         let mut quadrics = vec![Quadric::default(); self.vertices.len()];
-        let mut across: Vec<([u32; 2], Quadric)> = Vec::new();
+        let mut boundary_planes: Vec<([u32; 2], Quadric)> = Vec::new();
         for f in mesh.faces() {
             let mut numbers = corners(mesh, f).map(|v| self.numbering.number(v));
             // Starts at the lowest number, so that rounding is the same on every structure.
             let least = (0..3).min_by_key(|&i| numbers[i]).unwrap_or(0);
             numbers.rotate_left(least);
             let [a, b, c] = numbers;
-            let cross = self.way(a, b).cross(self.way(a, c));
+            let cross = self.offset(a, b).cross(self.offset(a, c));
             let Some(normal) = cross.try_normalize() else {
                 continue;
             };
@@ -244,11 +244,11 @@ impl<M: MeshEdit + Representation> Work<M> {
             }
             for e in mesh.face_edges(f) {
                 let (i, j) = self.ends(mesh, e);
-                if uses[e] == 1 {
-                    let along = self.way(i, j);
+                if face_counts[e] == 1 {
+                    let along = self.offset(i, j);
                     if let Some(normal) = along.cross(normal).try_normalize() {
                         let weight = BOUNDARY_WEIGHT * along.length_squared();
-                        across.push(([i, j], Quadric::plane(normal, weight)));
+                        boundary_planes.push(([i, j], Quadric::plane(normal, weight)));
                     }
                     if boundary == Boundary::Fixed {
                         self.vertices[i as usize].fixed = true;
@@ -258,8 +258,8 @@ impl<M: MeshEdit + Representation> Work<M> {
             }
         }
         // The order of the edges of a face depends on the structure.
-        across.sort_by_key(|&(ends, _)| ends);
-        for (ends, plane) in across {
+        boundary_planes.sort_by_key(|&(ends, _)| ends);
+        for (ends, plane) in boundary_planes {
             for n in ends {
                 quadrics[n as usize] += plane;
             }
@@ -271,7 +271,7 @@ impl<M: MeshEdit + Representation> Work<M> {
 
     /// Returns the vector from one vertex to another, in the unit box.
     #[inline]
-    fn way(&self, a: u32, b: u32) -> DVec3 {
+    fn offset(&self, a: u32, b: u32) -> DVec3 {
         let [p, q] = [a, b].map(|n| self.vertices[n as usize].at.as_dvec3());
         (q - p) / self.size
     }
@@ -284,15 +284,15 @@ impl<M: MeshEdit + Representation> Work<M> {
     fn fill_queue(&mut self, mesh: &M) {
         for e in mesh.edges() {
             let (a, b) = self.ends(mesh, e);
-            self.put(a, b);
+            self.push_edge(a, b);
         }
     }
 
     /// Adds an edge to the queue, unless both ends are fixed.
     #[inline]
-    fn put(&mut self, a: u32, b: u32) {
+    fn push_edge(&mut self, a: u32, b: u32) {
         let ends = [a.min(b), a.max(b)];
-        if let Some(Best { error, .. }) = self.best(ends) {
+        if let Some(Placement { error, .. }) = self.best_placement(ends) {
             let version = self.version(ends);
             self.queue.push(error as f32, Entry { ends, version });
         }
@@ -305,35 +305,39 @@ impl<M: MeshEdit + Representation> Work<M> {
         a.wrapping_add(b)
     }
 
-    fn is_fresh(&self, entry: &Entry) -> bool {
+    /// Returns whether both ends of `entry` are unchanged.
+    fn is_current(&self, entry: &Entry) -> bool {
         self.version(entry.ends) == entry.version
     }
 
     /// Returns the best place for the merged vertex, or `None` if both ends are fixed.
     #[inline]
-    fn best(&self, [a, b]: [u32; 2]) -> Option<Best> {
+    fn best_placement(&self, [a, b]: [u32; 2]) -> Option<Placement> {
         let [p, q] = [a, b].map(|n| &self.vertices[n as usize]);
-        let way = self.way(a, b);
-        let sum = Quadric::from(p.quadric).plus(&Quadric::from(q.quadric).seen_from(-way));
-        let at = |way: DVec3| Best {
-            way,
-            error: sum.at(way),
+        let edge = self.offset(a, b);
+        let sum = Quadric::from(p.quadric).plus(&Quadric::from(q.quadric).with_origin(-edge));
+        let at = |offset: DVec3| Placement {
+            offset,
+            error: sum.value(offset),
             sum,
         };
         match [p.fixed, q.fixed] {
             [true, true] => return None,
             [true, false] => return Some(at(DVec3::ZERO)),
-            [false, true] => return Some(at(way)),
+            [false, true] => return Some(at(edge)),
             [false, false] => {}
         }
-        let middle = way / 2.0;
+        let middle = edge / 2.0;
         // A place far from the edge comes from rounding, not from the shape.
-        let reach = 4.0 * way.length_squared();
-        if let Some(x) = sum.least().filter(|x| x.distance_squared(middle) <= reach) {
+        let max_distance_squared = 4.0 * edge.length_squared();
+        let minimizer = sum
+            .minimizer()
+            .filter(|x| x.distance_squared(middle) <= max_distance_squared);
+        if let Some(x) = minimizer {
             return Some(at(x));
         }
-        let places = [middle, DVec3::ZERO, way].map(at);
-        places
+        let placements = [middle, DVec3::ZERO, edge].map(at);
+        placements
             .into_iter()
             .min_by(|x, y| x.error.total_cmp(&y.error))
     }
@@ -343,42 +347,42 @@ impl<M: MeshEdit + Representation> Work<M> {
     fn collapse(&mut self, mesh: &mut M, entry: &Entry) -> Option<f64> {
         let [a, b] = entry.ends;
         let e = self.numbering.edge(mesh, entry.ends)?;
-        let best = self.best(entry.ends)?;
+        let placement = self.best_placement(entry.ends)?;
         let [p, q] = [a, b].map(|n| self.vertices[n as usize]);
         // A fixed end keeps its exact position.
         let to = match [p.fixed, q.fixed] {
             [true, _] => p.at,
             [_, true] => q.at,
-            _ => (p.at.as_dvec3() + best.way * self.size).as_vec3(),
+            _ => (p.at.as_dvec3() + placement.offset * self.size).as_vec3(),
         };
-        let ends = [a, b].map(|n| self.numbering.name(n));
-        if !turns_nothing_over(mesh, ends, to.as_dvec3()) || !keeps_link(mesh, e) {
+        let ends = [a, b].map(|n| self.numbering.handle(n));
+        if !keeps_orientation(mesh, ends, to.as_dvec3()) || !meets_link_condition(mesh, e) {
             return None;
         }
         let kept = mesh.collapse_edge(e, ends[0], to, &mut ()).ok()?;
-        self.numbering.renamed(a, kept);
+        self.numbering.set_handle(a, kept);
         self.numbering.remove(b);
         // The position as the structure stores it, rounded to f32.
-        let way = (to.as_dvec3() - p.at.as_dvec3()) / self.size;
+        let offset = (to.as_dvec3() - p.at.as_dvec3()) / self.size;
         self.vertices[a as usize] = Vertex {
-            quadric: best.sum.seen_from(way).into(),
+            quadric: placement.sum.with_origin(offset).into(),
             at: to,
             version: p.version.wrapping_add(1),
             fixed: p.fixed || q.fixed,
         };
-        // No number is used twice, so no entry with the removed end becomes fresh again.
+        // No number is used twice, so no entry with the removed end becomes current again.
         self.vertices[b as usize].version = q.version.wrapping_add(1);
         for v in mesh.vertex_vertices(kept) {
-            self.put(a, self.numbering.number(v));
+            self.push_edge(a, self.numbering.number(v));
         }
-        Some(best.error)
+        Some(placement.error)
     }
 }
 
 /// The best place for the merged vertex, relative to the first end, in the unit box.
 #[derive(Clone, Copy, Debug)]
-struct Best {
-    way: DVec3,
+struct Placement {
+    offset: DVec3,
     error: f64,
     /// The quadric of both ends, with its origin at the first end.
     sum: Quadric,

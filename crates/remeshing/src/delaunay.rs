@@ -15,7 +15,7 @@ const FLIPS_PER_EDGE: usize = 16;
 
 /// Edges are flipped if the cotangents add up to less than minus this, so that rounding alone flips
 /// nothing.
-const MARGIN: f64 = 1e-7;
+const TOLERANCE: f64 = 1e-7;
 
 /// The result of [`flip_to_delaunay`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,37 +54,39 @@ pub struct Flipped {
 pub fn flip_to_delaunay<M: MeshEdit + Representation>(
     mesh: &mut M,
 ) -> Result<Flipped, RemeshError> {
-    let numbering = Numbering::of(mesh)?;
-    let mut waiting = numbering.edges(mesh);
-    waiting.reverse();
-    let bound = waiting.len().saturating_mul(FLIPS_PER_EDGE);
-    let mut waits: FxHashSet<[u32; 2]> = waiting.iter().copied().collect();
+    let numbering = Numbering::new(mesh)?;
+    let mut stack = numbering.edges(mesh);
+    stack.reverse();
+    let limit = stack.len().saturating_mul(FLIPS_PER_EDGE);
+    let mut on_stack: FxHashSet<[u32; 2]> = stack.iter().copied().collect();
     let mut report = Flipped {
         flips: 0,
         refused: 0,
         stop: Stop::Done,
     };
-    while let Some(ends) = waiting.pop() {
-        waits.remove(&ends);
-        let Some(quad) = Quad::around(mesh, &numbering, ends) else {
+    while let Some(ends) = stack.pop() {
+        on_stack.remove(&ends);
+        let Some(quad) = Quad::from_edge(mesh, &numbering, ends) else {
             continue;
         };
-        if quad.cotangents() >= -MARGIN {
+        if quad.cotangent_sum() >= -TOLERANCE {
             continue;
         }
-        if report.flips == bound {
-            report.stop = Stop::WorkBound;
+        if report.flips == limit {
+            report.stop = Stop::LimitReached;
             break;
         }
-        let edge = numbering.edge(mesh, ends).filter(|_| quad.stays_flat());
+        let edge = numbering
+            .edge(mesh, ends)
+            .filter(|_| quad.flip_keeps_orientation());
         if edge.is_none_or(|e| mesh.flip_edge(e, &mut ()).is_err()) {
             report.refused += 1;
             continue;
         }
         report.flips += 1;
         for side in quad.sides() {
-            if waits.insert(side) {
-                waiting.push(side);
+            if on_stack.insert(side) {
+                stack.push(side);
             }
         }
     }
@@ -100,7 +102,7 @@ struct Quad {
 impl Quad {
     /// Returns the quad of the edge between two numbers, or `None` if the edge is missing or does
     /// not have two faces.
-    fn around<M: MeshEdit + Representation>(
+    fn from_edge<M: MeshEdit + Representation>(
         mesh: &M,
         numbering: &Numbering<M>,
         [a, b]: [u32; 2],
@@ -119,11 +121,12 @@ impl Quad {
         let numbers = [a, b, apexes[0]?, apexes[1]?];
         (faces == 2).then(|| Self {
             numbers,
-            at: numbers.map(|n| at(mesh, numbering.name(n))),
+            at: numbers.map(|n| at(mesh, numbering.handle(n))),
         })
     }
 
-    fn cotangents(&self) -> f64 {
+    /// Returns the sum of the cotangents of the two angles opposite to the edge.
+    fn cotangent_sum(&self) -> f64 {
         let [a, b, c, d] = self.at;
         let cotangent = |apex: DVec3| {
             let (u, v) = (a - apex, b - apex);
@@ -140,11 +143,11 @@ impl Quad {
     }
 
     /// Returns whether both new triangles face in the direction of the sum of the two old normals.
-    fn stays_flat(&self) -> bool {
+    fn flip_keeps_orientation(&self) -> bool {
         let [a, b, c, d] = self.at;
-        let together = (b - a).cross(c - a) + (a - b).cross(d - b);
+        let normal_sum = (b - a).cross(c - a) + (a - b).cross(d - b);
         let new = [(d - a).cross(c - a), (c - b).cross(d - b)];
-        new.into_iter().all(|n| n.dot(together) > 0.0)
+        new.into_iter().all(|n| n.dot(normal_sum) > 0.0)
     }
 
     fn sides(&self) -> [[u32; 2]; 4] {

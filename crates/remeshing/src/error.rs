@@ -25,13 +25,13 @@ pub enum RemeshError {
     BadLength { length: f64 },
     /// The edge length is too short for the precision of the positions.
     #[error(
-        "the edge length {length} is too short so far from the origin: at the coordinate {far}, positions are {step} apart; move the mesh to the origin, or choose a length of {least} or more"
+        "the edge length {length} is too short so far from the origin: at the coordinate {coordinate}, positions are {step} apart; move the mesh to the origin, or choose a length of {minimum} or more"
     )]
-    TooFar {
+    BelowPrecision {
         length: f64,
-        far: f64,
+        coordinate: f64,
         step: f64,
-        least: f64,
+        minimum: f64,
     },
     /// The edge length would need more faces than allowed.
     #[error(

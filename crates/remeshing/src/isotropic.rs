@@ -8,7 +8,7 @@ use sixfold_core::{MeshEdit, Representation};
 use crate::Stop;
 use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners, corners_from};
-use crate::rules::{at, is_boundary, keeps_link, turns_nothing_over};
+use crate::rules::{at, is_boundary, keeps_orientation, meets_link_condition};
 
 /// Edges longer than `LONG` times the target length are split, and edges shorter than `SHORT` times
 /// the target length are collapsed. With these factors, a later pass does not at once undo a split
@@ -20,11 +20,11 @@ const SHORT: f64 = 4.0 / 5.0;
 const STRAIGHT: f64 = 0.9962; // 5 degrees
 
 /// The minimum edge length, in steps between neighbouring f32 coordinates.
-const FEWEST_STEPS: f64 = 4.0;
+const MIN_STEPS: f64 = 4.0;
 
 /// Remeshing ends early if an iteration changes no edge, and moves no vertex by more than this
 /// fraction of the length.
-const SETTLED: f64 = 1e-3;
+const TOLERANCE: f64 = 1e-3;
 
 /// Options of remeshing. Set the length; the default is at most 10 iterations and 10 million faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,16 +34,16 @@ pub struct Remeshing {
     /// The maximum number of iterations; each splits, collapses, flips and smooths.
     pub iterations: usize,
     /// The maximum number of faces for splitting. A length that would need more is refused.
-    pub most_faces: usize,
+    pub max_faces: usize,
 }
 
 impl Remeshing {
     /// Returns the default options with edges of `edge_length`.
-    pub fn to(edge_length: f64) -> Self {
+    pub fn with_edge_length(edge_length: f64) -> Self {
         Self {
             edge_length,
             iterations: 10,
-            most_faces: 10_000_000,
+            max_faces: 10_000_000,
         }
     }
 }
@@ -115,7 +115,7 @@ pub fn remesh_watched<M: MeshEdit + Representation>(
         return Err(RemeshError::BadLength { length });
     }
     let mut work = Work {
-        numbering: Numbering::of(mesh)?,
+        numbering: Numbering::new(mesh)?,
         long: (LONG * length) * (LONG * length),
         short: (SHORT * length) * (SHORT * length),
     };
@@ -129,7 +129,7 @@ pub fn remesh_watched<M: MeshEdit + Representation>(
     let along: f64 = lengths.filter(|&along| along > LONG * length).sum();
     let over_area = area / (length * length * 3_f64.sqrt() / 4.0);
     let faces = over_area.max(along / length * 2.0 / 3.0);
-    let limit = remeshing.most_faces;
+    let limit = remeshing.max_faces;
     if faces > limit as f64 {
         return Err(RemeshError::TooFine {
             length,
@@ -137,7 +137,7 @@ pub fn remesh_watched<M: MeshEdit + Representation>(
             limit,
         });
     }
-    check_steps(mesh, length)?;
+    check_precision(mesh, length)?;
     let mut report = Remeshed {
         faces: mesh.face_count(),
         splits: 0,
@@ -148,22 +148,26 @@ pub fn remesh_watched<M: MeshEdit + Representation>(
     };
     for done in 0..remeshing.iterations {
         if watch(done).is_break() {
-            report.stop = Stop::Asked;
+            report.stop = Stop::Requested;
             break;
         }
-        let (splits, whole) = work.split_long(mesh, limit);
+        let (splits, complete) = work.split_long(mesh, limit);
         let collapses = work.collapse_short(mesh);
-        let flips = work.even_valences(mesh);
+        let flips = work.equalize_valences(mesh);
         let moved = work.smooth(mesh);
         report.splits += splits;
         report.collapses += collapses;
         report.flips += flips;
         report.iterations += 1;
         report.faces = mesh.face_count();
-        report.stop = if whole { Stop::Done } else { Stop::WorkBound };
+        report.stop = if complete {
+            Stop::Done
+        } else {
+            Stop::LimitReached
+        };
         // Collapses make room for more splits.
-        let settled = splits + collapses + flips == 0 && moved <= SETTLED * length;
-        if settled || (!whole && collapses == 0) {
+        let converged = splits + collapses + flips == 0 && moved <= TOLERANCE * length;
+        if converged || (!complete && collapses == 0) {
             break;
         }
     }
@@ -171,19 +175,19 @@ pub fn remesh_watched<M: MeshEdit + Representation>(
 }
 
 /// Checks that positions are precise enough for edges of `length`.
-fn check_steps<M: MeshEdit>(mesh: &M, length: f64) -> Result<(), RemeshError> {
-    let far = mesh
+fn check_precision<M: MeshEdit>(mesh: &M, length: f64) -> Result<(), RemeshError> {
+    let coordinates = mesh
         .vertices()
         .map(|v| mesh.position(v).abs().max_element());
-    let far = far.fold(0.0, f32::max);
-    let step = f64::from(far.next_up()) - f64::from(far);
-    let least = FEWEST_STEPS * step;
-    if length < least {
-        return Err(RemeshError::TooFar {
+    let largest = coordinates.fold(0.0, f32::max);
+    let step = f64::from(largest.next_up()) - f64::from(largest);
+    let minimum = MIN_STEPS * step;
+    if length < minimum {
+        return Err(RemeshError::BelowPrecision {
             length,
-            far: f64::from(far),
+            coordinate: f64::from(largest),
             step,
-            least,
+            minimum,
         });
     }
     Ok(())
@@ -198,7 +202,7 @@ struct Work<M: MeshEdit> {
 
 impl<M: MeshEdit + Representation> Work<M> {
     fn ends(&self, mesh: &M, ends: [u32; 2]) -> [DVec3; 2] {
-        ends.map(|n| at(mesh, self.numbering.name(n)))
+        ends.map(|n| at(mesh, self.numbering.handle(n)))
     }
 
     fn length_squared(&self, mesh: &M, ends: [u32; 2]) -> f64 {
@@ -206,19 +210,19 @@ impl<M: MeshEdit + Representation> Work<M> {
         a.distance_squared(b)
     }
 
-    /// Splits long edges, including new ones, up to `most_faces` faces. Returns the number of
+    /// Splits long edges, including new ones, up to `max_faces` faces. Returns the number of
     /// splits, and false if the maximum was reached.
-    fn split_long(&mut self, mesh: &mut M, most_faces: usize) -> (usize, bool) {
-        let mut waiting = self.numbering.edges(mesh);
-        waiting.retain(|&ends| self.length_squared(mesh, ends) > self.long);
+    fn split_long(&mut self, mesh: &mut M, max_faces: usize) -> (usize, bool) {
+        let mut queue = self.numbering.edges(mesh);
+        queue.retain(|&ends| self.length_squared(mesh, ends) > self.long);
         let mut splits = 0;
         let mut next = 0;
-        while let Some(&ends) = waiting.get(next) {
+        while let Some(&ends) = queue.get(next) {
             next += 1;
             let Some(e) = self.numbering.edge(mesh, ends) else {
                 continue;
             };
-            if mesh.face_count() + 2 > most_faces {
+            if mesh.face_count() + 2 > max_faces {
                 return (splits, false);
             }
             let [a, b] = self.ends(mesh, ends);
@@ -240,7 +244,7 @@ impl<M: MeshEdit + Representation> Work<M> {
                 .collect();
             spokes.sort_unstable();
             spokes.retain(|&ends| self.length_squared(mesh, ends) > self.long);
-            waiting.extend(spokes);
+            queue.extend(spokes);
         }
         (splits, true)
     }
@@ -256,24 +260,27 @@ impl<M: MeshEdit + Representation> Work<M> {
             if self.length_squared(mesh, ends) >= self.short {
                 continue;
             }
-            let Some((keep, to)) = self.meeting_place(mesh, e, ends) else {
+            let Some((keep, to)) = self.collapse_target(mesh, e, ends) else {
                 continue;
             };
-            let handles = ends.map(|n| self.numbering.name(n));
+            let handles = ends.map(|n| self.numbering.handle(n));
             let stays_short = handles.into_iter().all(|v| {
                 let mut around = mesh.vertex_vertices(v);
                 around
                     .all(|u| handles.contains(&u) || at(mesh, u).distance_squared(to) <= self.long)
             });
-            if !stays_short || !turns_nothing_over(mesh, handles, to) || !keeps_link(mesh, e) {
+            if !stays_short
+                || !keeps_orientation(mesh, handles, to)
+                || !meets_link_condition(mesh, e)
+            {
                 continue;
             }
             let place = to.as_vec3();
             if !place.is_finite() {
                 continue;
             }
-            if let Ok(kept) = mesh.collapse_edge(e, self.numbering.name(keep), place, &mut ()) {
-                self.numbering.renamed(keep, kept);
+            if let Ok(kept) = mesh.collapse_edge(e, self.numbering.handle(keep), place, &mut ()) {
+                self.numbering.set_handle(keep, kept);
                 let [a, b] = ends;
                 self.numbering.remove(if keep == a { b } else { a });
                 collapses += 1;
@@ -284,9 +291,9 @@ impl<M: MeshEdit + Representation> Work<M> {
 
     /// Returns the end that stays and its new position, or `None` if a boundary would change its
     /// shape.
-    fn meeting_place(&self, mesh: &M, e: M::Edge, ends: [u32; 2]) -> Option<(u32, DVec3)> {
+    fn collapse_target(&self, mesh: &M, e: M::Edge, ends: [u32; 2]) -> Option<(u32, DVec3)> {
         let [p, q] = self.ends(mesh, ends);
-        let handles = ends.map(|n| self.numbering.name(n));
+        let handles = ends.map(|n| self.numbering.handle(n));
         match handles.map(|v| is_boundary(mesh, v)) {
             [false, false] => Some((ends[0], (p + q) / 2.0)),
             [true, false] => Some((ends[0], p)),
@@ -306,29 +313,29 @@ impl<M: MeshEdit + Representation> Work<M> {
 
     /// Returns whether the boundary is straight at a vertex on it.
     fn is_straight(&self, mesh: &M, number: u32) -> bool {
-        let v = self.numbering.name(number);
+        let v = self.numbering.handle(number);
         let from = at(mesh, v);
         let spokes = mesh
             .vertex_edges(v)
             .filter(|&e| mesh.edge_faces(e).count() == 1);
-        let ways: Vec<DVec3> = spokes
+        let directions: Vec<DVec3> = spokes
             .map(|e| {
                 let [a, b] = mesh.edge_vertices(e);
                 (at(mesh, if a == v { b } else { a }) - from).normalize_or_zero()
             })
             .collect();
-        matches!(ways[..], [one, other] if one.dot(other) <= -STRAIGHT)
+        matches!(directions[..], [one, other] if one.dot(other) <= -STRAIGHT)
     }
 
     /// Flips edges if this brings the valences around closer to the regular ones; returns the
     /// number of flips.
-    fn even_valences(&mut self, mesh: &mut M) -> usize {
+    fn equalize_valences(&mut self, mesh: &mut M) -> usize {
         let mut flips = 0;
         for ends in self.numbering.edges(mesh) {
             let Some(e) = self.numbering.edge(mesh, ends) else {
                 continue;
             };
-            let handles = ends.map(|n| self.numbering.name(n));
+            let handles = ends.map(|n| self.numbering.handle(n));
             let mut apexes = Vec::with_capacity(2);
             for f in mesh.edge_faces(e) {
                 let [x, y, z] = corners(mesh, f);
@@ -339,14 +346,14 @@ impl<M: MeshEdit + Representation> Work<M> {
             };
             let [a, b] = handles;
             let excess = |v: M::Vertex| {
-                let due = if is_boundary(mesh, v) { 4 } else { 6 };
-                mesh.vertex_edges(v).count() as i64 - due
+                let regular = if is_boundary(mesh, v) { 4 } else { 6 };
+                mesh.vertex_edges(v).count() as i64 - regular
             };
             let [va, vb, vc, vd] = [a, b, c, d].map(excess);
-            let now = va.pow(2) + vb.pow(2) + vc.pow(2) + vd.pow(2);
-            let then = (va - 1).pow(2) + (vb - 1).pow(2) + (vc + 1).pow(2) + (vd + 1).pow(2);
-            if then < now
-                && flip_stays_flat(mesh, [a, b, c, d], e)
+            let before = va.pow(2) + vb.pow(2) + vc.pow(2) + vd.pow(2);
+            let after = (va - 1).pow(2) + (vb - 1).pow(2) + (vc + 1).pow(2) + (vd + 1).pow(2);
+            if after < before
+                && flip_keeps_orientation(mesh, [a, b, c, d], e)
                 && mesh.flip_edge(e, &mut ()).is_ok()
             {
                 flips += 1;
@@ -362,7 +369,7 @@ impl<M: MeshEdit + Representation> Work<M> {
         let mut vertices: Vec<u32> = mesh.vertices().map(|v| self.numbering.number(v)).collect();
         vertices.sort_unstable();
         for number in vertices.into_iter().filter(|&n| n != u32::MAX) {
-            let v = self.numbering.name(number);
+            let v = self.numbering.handle(number);
             if is_boundary(mesh, v) {
                 continue;
             }
@@ -383,14 +390,14 @@ impl<M: MeshEdit + Representation> Work<M> {
             let Some(normal) = normal.try_normalize().filter(|_| !fan.is_empty()) else {
                 continue;
             };
-            let way = middle - from;
-            moves.push((number, from + way - normal * normal.dot(way)));
+            let offset = middle - from;
+            moves.push((number, from + offset - normal * normal.dot(offset)));
         }
         let mut longest: f64 = 0.0;
         for (number, to) in moves {
-            let v = self.numbering.name(number);
+            let v = self.numbering.handle(number);
             let place = to.as_vec3();
-            if place.is_finite() && turns_nothing_over(mesh, [v, v], to) {
+            if place.is_finite() && keeps_orientation(mesh, [v, v], to) {
                 longest = longest.max(at(mesh, v).distance(to));
                 self.numbering.set_position(mesh, number, place);
             }
@@ -407,12 +414,12 @@ fn cross<M: MeshEdit>(mesh: &M, f: M::Face) -> DVec3 {
 
 /// Returns whether both triangles of the flipped edge would face in the direction of the sum of the
 /// two old normals.
-fn flip_stays_flat<M: MeshEdit>(mesh: &M, quad: [M::Vertex; 4], e: M::Edge) -> bool {
-    let together: DVec3 = mesh.edge_faces(e).map(|f| cross(mesh, f)).sum();
+fn flip_keeps_orientation<M: MeshEdit>(mesh: &M, quad: [M::Vertex; 4], e: M::Edge) -> bool {
+    let normal_sum: DVec3 = mesh.edge_faces(e).map(|f| cross(mesh, f)).sum();
     let [a, b, c, d] = quad.map(|v| at(mesh, v));
     // It does not matter which apex is on the left: both cross products change sign together.
     let new = [(d - a).cross(c - a), (c - b).cross(d - b)];
-    let signs = new.map(|n| n.dot(together));
+    let signs = new.map(|n| n.dot(normal_sum));
     signs.iter().all(|&s| s > 0.0) || signs.iter().all(|&s| s < 0.0)
 }
 

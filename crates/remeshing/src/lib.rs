@@ -52,9 +52,9 @@ pub enum Stop {
     /// It did everything that was requested.
     Done,
     /// No edit was left that is legal and turns no face over.
-    NothingLeft,
+    NoLegalEdit,
     /// It reached the limit of its work.
-    WorkBound,
+    LimitReached,
     /// The `watch` function ended it.
-    Asked,
+    Requested,
 }

@@ -11,10 +11,10 @@ use crate::error::RemeshError;
 /// numbers follow the order in which the faces list the vertices, each face from its least corner
 /// (by coordinates).
 pub(crate) struct Numbering<M: MeshEdit> {
-    names: Vec<M::Vertex>,
+    handles: Vec<M::Vertex>,
     /// Whether the vertex of a number has been removed, so that its handle must not be used any
     /// more.
-    gone: Vec<bool>,
+    removed: Vec<bool>,
     numbers: VertexMap<M, u32>,
 }
 
@@ -25,7 +25,7 @@ impl<M: MeshEdit + Representation> Numbering<M> {
     ///
     /// Returns an error for the first face that is not a triangle, or for the first position that
     /// is not finite.
-    pub(crate) fn of(mesh: &M) -> Result<Self, RemeshError> {
+    pub(crate) fn new(mesh: &M) -> Result<Self, RemeshError> {
         for (i, f) in (0..).zip(mesh.faces()) {
             let degree = mesh.face_vertices(f).count();
             if degree != 3 {
@@ -41,8 +41,8 @@ impl<M: MeshEdit + Representation> Numbering<M> {
             }
         }
         let mut numbering = Self {
-            names: Vec::new(),
-            gone: Vec::new(),
+            handles: Vec::new(),
+            removed: Vec::new(),
             numbers: mesh.vertex_map(u32::MAX),
         };
         for f in mesh.faces() {
@@ -51,14 +51,14 @@ impl<M: MeshEdit + Representation> Numbering<M> {
             let place = |v| mesh.position(v) + Point::ZERO;
             let bits = |v| place(v).to_array().map(f32::to_bits);
             let least = bits(a).min(bits(b)).min(bits(c));
-            let turned = if least == bits(a) {
+            let rotated = if least == bits(a) {
                 [a, b, c]
             } else if least == bits(b) {
                 [b, c, a]
             } else {
                 [c, a, b]
             };
-            for v in turned {
+            for v in rotated {
                 if numbering.numbers[v] == u32::MAX {
                     numbering.push(v);
                 }
@@ -69,46 +69,46 @@ impl<M: MeshEdit + Representation> Numbering<M> {
 
     /// Numbers a new vertex; returns its number.
     pub(crate) fn push(&mut self, v: M::Vertex) -> u32 {
-        let number = row(self.names.len());
+        let number = row(self.handles.len());
         self.numbers.insert(v, number);
-        self.names.push(v);
-        self.gone.push(false);
+        self.handles.push(v);
+        self.removed.push(false);
         number
     }
 
     /// Marks the vertex as removed.
     #[inline]
     pub(crate) fn remove(&mut self, number: u32) {
-        self.gone[number as usize] = true;
+        self.removed[number as usize] = true;
     }
 
     /// Sets the handle of the vertex after an edit.
     #[inline]
-    pub(crate) fn renamed(&mut self, number: u32, new: M::Vertex) {
-        let old = self.names[number as usize];
+    pub(crate) fn set_handle(&mut self, number: u32, new: M::Vertex) {
+        let old = self.handles[number as usize];
         if old != new {
             self.numbers.remove(old);
             self.numbers.insert(new, number);
-            self.names[number as usize] = new;
+            self.handles[number as usize] = new;
         }
     }
 
     /// Moves a vertex. If a vertex is its coordinates and another one is at `to`, it stays.
     pub(crate) fn set_position(&mut self, mesh: &mut M, number: u32, to: Point) {
-        if let Ok(v) = mesh.set_position(self.name(number), to, &mut ()) {
-            self.renamed(number, v);
+        if let Ok(v) = mesh.set_position(self.handle(number), to, &mut ()) {
+            self.set_handle(number, v);
         }
     }
 
     /// Returns how many numbers are in use, including those of removed vertices.
     pub(crate) fn len(&self) -> usize {
-        self.names.len()
+        self.handles.len()
     }
 
     /// Returns the handle of the vertex.
     #[inline]
-    pub(crate) fn name(&self, number: u32) -> M::Vertex {
-        self.names[number as usize]
+    pub(crate) fn handle(&self, number: u32) -> M::Vertex {
+        self.handles[number as usize]
     }
 
     /// Returns the number of a vertex.
@@ -131,10 +131,10 @@ impl<M: MeshEdit + Representation> Numbering<M> {
     /// Returns the edge between two numbers, if it exists.
     #[inline]
     pub(crate) fn edge(&self, mesh: &M, [a, b]: [u32; 2]) -> Option<M::Edge> {
-        if self.gone[a as usize] || self.gone[b as usize] {
+        if self.removed[a as usize] || self.removed[b as usize] {
             return None;
         }
-        mesh.edge_between(self.name(a), self.name(b))
+        mesh.edge_between(self.handle(a), self.handle(b))
     }
 }
 

@@ -67,7 +67,7 @@ impl Quadric {
 
     /// Returns the same quadric with the origin moved by `d`.
     #[inline]
-    pub(crate) fn seen_from(&self, d: DVec3) -> Self {
+    pub(crate) fn with_origin(&self, d: DVec3) -> Self {
         let ad = self.times(d);
         Self {
             a: self.a,
@@ -96,7 +96,7 @@ impl Quadric {
 
     /// Returns the value at `x`; 0 if rounding makes it slightly negative.
     #[inline]
-    pub(crate) fn at(&self, x: DVec3) -> f64 {
+    pub(crate) fn value(&self, x: DVec3) -> f64 {
         let ax = self.times(x);
         (x.dot(ax) - 2.0 * self.b.dot(x) + self.c).max(0.0)
     }
@@ -104,7 +104,7 @@ impl Quadric {
     /// Returns the point with the least value, or `None` if it is not well determined, as on a flat
     /// or straight part.
     #[inline]
-    pub(crate) fn least(&self) -> Option<DVec3> {
+    pub(crate) fn minimizer(&self) -> Option<DVec3> {
         let [xx, xy, xz, yy, yz, zz] = self.a;
         // Cofactors of a symmetric matrix; its trace gives the scale.
         let c0 = yy * zz - yz * yz;
@@ -144,29 +144,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn three_planes_meet_where_the_sum_is_least() {
+    fn the_minimizer_of_three_planes_is_their_intersection() {
         let corner = DVec3::new(1.0, -2.0, 3.0);
         let mut sum = Quadric::default();
         for (n, weight) in [(DVec3::X, 1.0), (DVec3::Y, 2.0), (DVec3::Z, 0.5)] {
             // All three planes contain the corner; then the origin is moved away from it.
-            sum += Quadric::plane(n, weight).seen_from(-corner);
+            sum += Quadric::plane(n, weight).with_origin(-corner);
         }
-        let least = sum.least().expect("three planes");
-        assert!(least.distance(corner) < 1e-12);
-        assert!(sum.at(corner) < 1e-12);
+        let minimizer = sum.minimizer().expect("three planes");
+        assert!(minimizer.distance(corner) < 1e-12);
+        assert!(sum.value(corner) < 1e-12);
         let off = corner + DVec3::new(1.0, 1.0, 2.0);
-        assert!((sum.at(off) - (1.0 + 2.0 + 0.5 * 4.0)).abs() < 1e-12);
-        let moved = sum.seen_from(DVec3::ONE);
-        assert!((moved.at(off - DVec3::ONE) - sum.at(off)).abs() < 1e-12);
+        assert!((sum.value(off) - (1.0 + 2.0 + 0.5 * 4.0)).abs() < 1e-12);
+        let moved = sum.with_origin(DVec3::ONE);
+        assert!((moved.value(off - DVec3::ONE) - sum.value(off)).abs() < 1e-12);
     }
 
     #[test]
-    fn a_plane_and_a_ridge_have_no_single_least_point() {
+    fn a_plane_and_a_ridge_have_no_unique_minimizer() {
         let flat = Quadric::plane(DVec3::Z, 1.0);
-        assert_eq!(flat.least(), None);
+        assert_eq!(flat.minimizer(), None);
         let ridge = flat.plus(&Quadric::plane(DVec3::X, 1.0));
-        assert_eq!(ridge.least(), None);
-        assert_eq!(Quadric::default().least(), None);
+        assert_eq!(ridge.minimizer(), None);
+        assert_eq!(Quadric::default().minimizer(), None);
     }
 
     #[test]
@@ -176,10 +176,10 @@ mod tests {
             .into_iter()
             .enumerate()
         {
-            sum += Quadric::plane(n, 1.0 + i as f64).seen_from(DVec3::new(1e-4, 0.0, -2e-4));
+            sum += Quadric::plane(n, 1.0 + i as f64).with_origin(DVec3::new(1e-4, 0.0, -2e-4));
         }
         let packed = Quadric::from(Packed::from(sum));
         let x = DVec3::new(3e-4, 1e-4, -1e-4);
-        assert!((packed.at(x) - sum.at(x)).abs() < 1e-6 * sum.at(x));
+        assert!((packed.value(x) - sum.value(x)).abs() < 1e-6 * sum.value(x));
     }
 }

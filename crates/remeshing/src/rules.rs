@@ -5,8 +5,8 @@ use sixfold_core::{MeshEdit, Representation};
 
 use crate::numbering::{corners, corners_from};
 
-/// The maximum turn of a normal, as a cosine.
-const TURN: f64 = 0.2;
+/// The minimum cosine of the angle between the normals of a face before and after an edit.
+const MIN_COSINE: f64 = 0.2;
 
 /// Returns the position of `v` in f64.
 #[inline]
@@ -14,8 +14,8 @@ pub(crate) fn at<M: MeshEdit>(mesh: &M, v: M::Vertex) -> DVec3 {
     mesh.position(v).as_dvec3()
 }
 
-/// Returns whether moving both ends of an edge to `to` turns over none of the remaining triangles.
-pub(crate) fn turns_nothing_over<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], to: DVec3) -> bool {
+/// Returns whether no remaining triangle is turned over if both ends of an edge move to `to`.
+pub(crate) fn keeps_orientation<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], to: DVec3) -> bool {
     [(a, b), (b, a)].into_iter().all(|(end, other)| {
         let from = at(mesh, end);
         mesh.vertex_faces(end).all(|f| {
@@ -27,15 +27,16 @@ pub(crate) fn turns_nothing_over<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], 
             let before = (p - from).cross(q - from);
             let after = (p - to).cross(q - to);
             // A face without area has no orientation to keep.
-            before == DVec3::ZERO || before.dot(after) > TURN * before.length() * after.length()
+            before == DVec3::ZERO
+                || before.dot(after) > MIN_COSINE * before.length() * after.length()
         })
     })
 }
 
-/// Returns whether a collapse keeps the link condition (Dey et al. 1999) in a mesh of triangles.
+/// Returns whether a collapse meets the link condition (Dey et al. 1999) in a mesh of triangles.
 /// Only structures that hold non-manifold edges need this test; the others refuse the collapse
 /// themselves.
-pub(crate) fn keeps_link<M: MeshEdit + Representation>(mesh: &M, e: M::Edge) -> bool {
+pub(crate) fn meets_link_condition<M: MeshEdit + Representation>(mesh: &M, e: M::Edge) -> bool {
     if !M::CAPABILITIES.non_manifold_edges {
         return true;
     }

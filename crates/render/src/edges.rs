@@ -18,7 +18,7 @@ pub(crate) struct Edges(Vec<Side>);
 
 impl Edges {
     /// Collects the sides of `mesh`.
-    pub(crate) fn of(mesh: &PolygonMesh) -> Self {
+    pub(crate) fn new(mesh: &PolygonMesh) -> Self {
         let mut sides = Vec::with_capacity(mesh.corner_count());
         for (f, face) in mesh.faces().iter() {
             let start = mesh.faces().range(f).start;

@@ -4,7 +4,7 @@ use glam::DVec3;
 use sixfold_core::{PolygonMesh, VertexId};
 
 use crate::error::{MeshFault, RenderError};
-use crate::settings::{Settings, Subject, View};
+use crate::settings::{RenderMesh, Settings, View};
 
 /// The empty part of a panel at each side, as a fraction of the panel.
 const MARGIN: f64 = 0.07;
@@ -19,7 +19,7 @@ pub(crate) struct Panel {
     pub(crate) height: usize,
     /// Coordinates by vertex, in pixels: to the right and down from the upper left corner of the
     /// panel, and towards the viewer. Vertices without faces can have any coordinates.
-    pub(crate) places: Vec<DVec3>,
+    pub(crate) positions: Vec<DVec3>,
 }
 
 impl Panel {
@@ -29,12 +29,12 @@ impl Panel {
     }
 
     /// Returns the coordinates of `v` in the panel.
-    pub(crate) fn place(&self, v: VertexId) -> DVec3 {
-        self.places[v.index()]
+    pub(crate) fn position(&self, v: VertexId) -> DVec3 {
+        self.positions[v.index()]
     }
 }
 
-/// The least and the greatest coordinates of a mesh, in the axes of the picture.
+/// The minimum and maximum coordinates of a mesh, in the axes of the picture.
 struct Bounds([DVec3; 2]);
 
 impl Bounds {
@@ -42,7 +42,7 @@ impl Bounds {
         self.0[1] - self.0[0]
     }
 
-    fn of(mesh: &PolygonMesh, view: &View) -> Result<Self, MeshFault> {
+    fn new(mesh: &PolygonMesh, view: &View) -> Result<Self, MeshFault> {
         if mesh.face_count() == 0 {
             return Err(MeshFault::NoFaces);
         }
@@ -50,9 +50,11 @@ impl Bounds {
         if let Some(&vertex) = corners.iter().find(|v| !mesh.position(**v).is_finite()) {
             return Err(MeshFault::NotFinite { vertex });
         }
-        let places = corners.iter().map(|&v| view.place(mesh.position(v)));
-        let least = DVec3::splat(f64::INFINITY);
-        let bounds = places.fold([least, -least], |[low, high], p| [low.min(p), high.max(p)]);
+        let positions = corners.iter().map(|&v| view.project(mesh.position(v)));
+        let infinity = DVec3::splat(f64::INFINITY);
+        let bounds = positions.fold([infinity, -infinity], |[low, high], p| {
+            [low.min(p), high.max(p)]
+        });
         let bounds = Self(bounds);
         if bounds.size().max_element() == 0.0 {
             return Err(MeshFault::NoExtent);
@@ -63,45 +65,48 @@ impl Bounds {
 
 /// Returns the panels from left to right, each with a centred mesh, all at one scale; O(corners).
 pub(crate) fn layout(
-    subjects: &[Subject<'_>],
+    render_meshes: &[RenderMesh<'_>],
     settings: &Settings,
 ) -> Result<Vec<Panel>, RenderError> {
-    if subjects.is_empty() {
+    if render_meshes.is_empty() {
         return Err(RenderError::NoMesh);
     }
-    settings.size.check(subjects.len())?;
+    settings.size.check(render_meshes.len())?;
     let (width, height) = (settings.size.width as usize, settings.size.height as usize);
-    let column = |panel: usize| panel * width / subjects.len();
-    let of_mesh = |(mesh, subject): (usize, &Subject<'_>)| {
-        let bounds = Bounds::of(subject.mesh, &settings.view);
+    let column = |panel: usize| panel * width / render_meshes.len();
+    let mesh_bounds = |(mesh, render_mesh): (usize, &RenderMesh<'_>)| {
+        let bounds = Bounds::new(render_mesh.mesh, &settings.view);
         bounds.map_err(|fault| RenderError::Mesh { mesh, fault })
     };
-    let bounds = subjects.iter().enumerate().map(of_mesh);
+    let bounds = render_meshes.iter().enumerate().map(mesh_bounds);
     let bounds = bounds.collect::<Result<Vec<Bounds>, RenderError>>()?;
     // All panels count as wide as the narrowest; rounding makes a difference of one pixel.
-    let free = |side: usize| side as f64 * (1.0 - 2.0 * MARGIN);
+    let usable = |side: usize| side as f64 * (1.0 - 2.0 * MARGIN);
     let scales = bounds.iter().map(|bounds| {
         let size = bounds.size();
         // Limits the scale of a mesh that is seen from its edge.
-        let least = size.max_element() * 0.01;
-        let across = free(width / subjects.len()) / size.x.max(least);
-        across.min(free(height) / size.y.max(least))
+        let min_size = size.max_element() * 0.01;
+        let horizontal = usable(width / render_meshes.len()) / size.x.max(min_size);
+        horizontal.min(usable(height) / size.y.max(min_size))
     });
     let scale = scales.fold(f64::INFINITY, f64::min);
-    let panels = subjects.iter().zip(&bounds).enumerate();
-    let panels = panels.map(|(i, (subject, Bounds([low, high])))| {
+    let panels = render_meshes.iter().zip(&bounds).enumerate();
+    let panels = panels.map(|(i, (render_mesh, Bounds([low, high])))| {
         let (left, width) = (column(i), column(i + 1) - column(i));
-        let middle = (*low + *high) / 2.0;
-        let places = subject.mesh.positions().iter().map(|&p| {
-            let place = (settings.view.place(p) - middle) * scale;
-            let (x, y) = (width as f64 / 2.0 + place.x, height as f64 / 2.0 - place.y);
-            DVec3::new(x, y, place.z)
+        let centre = (*low + *high) / 2.0;
+        let positions = render_mesh.mesh.positions().iter().map(|&p| {
+            let position = (settings.view.project(p) - centre) * scale;
+            let (x, y) = (
+                width as f64 / 2.0 + position.x,
+                height as f64 / 2.0 - position.y,
+            );
+            DVec3::new(x, y, position.z)
         });
         Panel {
             left,
             width,
             height,
-            places: places.collect(),
+            positions: positions.collect(),
         }
     });
     Ok(panels.collect())

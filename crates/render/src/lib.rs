@@ -1,12 +1,12 @@
 //! A software renderer for meshes with their edges and creases, in parallel projection.
 //!
 //! Start at [`draw`] for pixels, which [`Picture::write_png`] writes, or at [`draw_svg`] for lines
-//! and polygons. Several [`Subject`]s are drawn in a row, each in its own panel and all at one
+//! and polygons. Several [`RenderMesh`]s are drawn in a row, each in its own panel and all at one
 //! scale, for example to compare the levels of a subdivision.
 //!
 //! ```text
-//!               ┌ layout: place of each vertex ┐
-//! subjects ─────┤                              ├─ depth buffer ─┬─ shaded samples ─┬─ picture
+//!               ┌ layout: vertex positions     ┐
+//! meshes ───────┤                              ├─ depth buffer ─┬─ shaded samples ─┬─ picture
 //!               └ normals: for the lighting    ┘                └─ visible strokes ┴─ SVG
 //! ```
 //!
@@ -14,14 +14,14 @@
 //! Catmull (1974). Lines are tested along their middle, so that the faces at a thick line do not
 //! hide half of it. The same input gives the same bytes.
 
+mod depth_order;
 mod edges;
 mod error;
-mod fill;
 mod layout;
 mod light;
 mod normals;
-mod order;
 mod picture;
+mod rasterise;
 mod samples;
 mod settings;
 mod strokes;
@@ -29,5 +29,7 @@ mod svg;
 
 pub use error::{MeshFault, RenderError};
 pub use picture::{Picture, draw};
-pub use settings::{MAX_PIXELS, MAX_SIDE, MIN_PANEL, Settings, Shading, Size, Subject, Up, View};
+pub use settings::{
+    MAX_PIXELS, MAX_SIDE, MIN_PANEL, RenderMesh, Settings, Shading, Size, Up, View,
+};
 pub use svg::{MAX_SVG_FACES, draw_svg};

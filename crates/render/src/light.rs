@@ -19,12 +19,12 @@ pub(crate) const CREASE: Colour = Colour(DVec3::new(0.86, 0.075, 0.020));
 
 impl Colour {
     /// Returns the mixture of `share` parts of `other` and `1 - share` parts of this colour.
-    pub(crate) fn mixed(self, other: Self, share: f64) -> Self {
+    pub(crate) fn mix(self, other: Self, share: f64) -> Self {
         Self(self.0.lerp(other.0, share))
     }
 
     /// Returns the sRGB codes (IEC 61966-2-1).
-    pub(crate) fn codes(self) -> [u8; 3] {
+    pub(crate) fn srgb_codes(self) -> [u8; 3] {
         self.0.to_array().map(|light| {
             let light = light.clamp(0.0, 1.0);
             let code = if light <= 0.003_130_8 {
@@ -37,8 +37,8 @@ impl Colour {
     }
 
     /// Returns the colour in the form `#9fb4c8`.
-    pub(crate) fn web(self) -> String {
-        let [r, g, b] = self.codes();
+    pub(crate) fn to_hex(self) -> String {
+        let [r, g, b] = self.srgb_codes();
         format!("#{r:02x}{g:02x}{b:02x}")
     }
 }
@@ -49,7 +49,7 @@ impl Colour {
 /// Uses Lambert's law (1760) for a key light from the upper left and a weak light from the right,
 /// light from the sky above, a soft highlight after Blinn (1977), and light along the rim, where
 /// the surface turns away from the viewer.
-pub(crate) fn lit(normal: DVec3, inside: bool) -> Colour {
+pub(crate) fn shade(normal: DVec3, inside: bool) -> Colour {
     let normal = normal.normalize_or(DVec3::Z);
     let (normal, base) = if inside {
         (-normal, INSIDE)
@@ -73,20 +73,20 @@ mod tests {
 
     #[test]
     fn linear_light_is_converted_to_srgb() {
-        let grey = |light| Colour(DVec3::splat(light)).codes()[0];
+        let grey = |light| Colour(DVec3::splat(light)).srgb_codes()[0];
         // By the standard, half the light has code 188. Values out of range are clamped.
         let codes = [-1.0, 0.0, 0.002, 0.215_861, 0.5, 1.0, 7.0].map(grey);
         assert_eq!(codes, [0, 0, 7, 128, 188, 255, 255]);
-        assert_eq!(Colour(DVec3::X).web(), "#ff0000");
+        assert_eq!(Colour(DVec3::X).to_hex(), "#ff0000");
     }
 
     #[test]
     fn light_comes_from_the_upper_left_and_a_surface_has_two_sides() {
-        let bright = |x, y, z| lit(DVec3::new(x, y, z), false).0.element_sum();
+        let bright = |x, y, z| shade(DVec3::new(x, y, z), false).0.element_sum();
         assert!(bright(-1.0, 1.0, 1.0) > bright(1.0, 1.0, 1.0));
         assert!(bright(0.0, 1.0, 1.0) > bright(0.0, -1.0, 1.0));
-        let inside = lit(DVec3::NEG_Z, true);
-        assert!(inside.0.x > inside.0.z && lit(DVec3::Z, false).0.z > lit(DVec3::Z, false).0.x);
-        assert!(lit(DVec3::ZERO, false).0.is_finite());
+        let inside = shade(DVec3::NEG_Z, true);
+        assert!(inside.0.x > inside.0.z && shade(DVec3::Z, false).0.z > shade(DVec3::Z, false).0.x);
+        assert!(shade(DVec3::ZERO, false).0.is_finite());
     }
 }

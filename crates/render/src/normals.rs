@@ -7,10 +7,10 @@ use crate::edges::Edges;
 use crate::settings::{Shading, View};
 
 /// The cosine of 40°: faces at a larger angle are not one smooth surface.
-const SMOOTH: f64 = 0.766_044_443_118_978;
+const MIN_SMOOTH_COSINE: f64 = 0.766_044_443_118_978;
 
-/// The least sharpness that breaks smooth shading: a lower one is rounded off in the next level.
-const BREAKS: f32 = 1.0;
+/// Minimum sharpness that breaks smooth shading: a lower one is rounded off in the next level.
+const MIN_CREASE_SHARPNESS: f32 = 1.0;
 
 /// Unit normals in the axes of the picture; zero for a face without area.
 pub(crate) struct Normals {
@@ -25,7 +25,7 @@ impl Normals {
     ///
     /// Corners joined by smooth edges are one surface, whose normal is the mean of its face
     /// normals, weighted by area.
-    pub(crate) fn of(
+    pub(crate) fn new(
         mesh: &PolygonMesh,
         creases: &Creases,
         edges: &Edges,
@@ -34,7 +34,7 @@ impl Normals {
     ) -> Self {
         let faces = mesh.faces().iter();
         let areas: Vec<DVec3> = faces
-            .map(|(_, face)| view.turned(area(mesh, face)))
+            .map(|(_, face)| view.rotate(area_vector(mesh, face)))
             .collect();
         let units: Vec<DVec3> = areas.iter().map(|n| n.normalize_or_zero()).collect();
         let by_corner = |of_face: &[DVec3]| -> Vec<DVec3> {
@@ -50,24 +50,27 @@ impl Normals {
                 corners,
             };
         }
-        let mut surfaces = Surfaces::apart(mesh.corner_count());
+        let mut surfaces = Surfaces::new(mesh.corner_count());
         let all = mesh.faces().corners();
         for sides in edges.iter() {
-            let &[one, other] = sides else { continue };
-            let [n, m] = [one, other].map(|side| units[side.face as usize]);
-            let agree = all[one.corners[0] as usize] == all[other.corners[1] as usize];
-            let [a, b] = one.edge.ends();
-            if agree && n.dot(m) >= SMOOTH && creases.edge(a, b) < BREAKS {
-                surfaces.join(one.corners[0], other.corners[1]);
-                surfaces.join(one.corners[1], other.corners[0]);
+            let &[first, second] = sides else { continue };
+            let [n, m] = [first, second].map(|side| units[side.face as usize]);
+            let is_oriented = all[first.corners[0] as usize] == all[second.corners[1] as usize];
+            let [a, b] = first.edge.ends();
+            if is_oriented
+                && n.dot(m) >= MIN_SMOOTH_COSINE
+                && creases.edge(a, b) < MIN_CREASE_SHARPNESS
+            {
+                surfaces.union(first.corners[0], second.corners[1]);
+                surfaces.union(first.corners[1], second.corners[0]);
             }
         }
         let mut sums = vec![DVec3::ZERO; all.len()];
         let areas = by_corner(&areas);
         for (corner, &area) in (0..).zip(&areas) {
-            sums[surfaces.of(corner) as usize] += area;
+            sums[surfaces.find(corner) as usize] += area;
         }
-        let corner = |corner| sums[surfaces.of(corner) as usize].normalize_or_zero();
+        let corner = |corner| sums[surfaces.find(corner) as usize].normalize_or_zero();
         Self {
             faces: units,
             corners: (0..row(all.len())).map(corner).collect(),
@@ -78,12 +81,12 @@ impl Normals {
 /// Returns the normal of a face, with twice its area as length (Newell's method).
 ///
 /// Products of the 32-bit coordinates do not overflow 64-bit floats.
-fn area(mesh: &PolygonMesh, face: &[VertexId]) -> DVec3 {
-    let place = |v: VertexId| mesh.position(v).as_dvec3();
-    let origin = place(face[0]);
+fn area_vector(mesh: &PolygonMesh, face: &[VertexId]) -> DVec3 {
+    let position = |v: VertexId| mesh.position(v).as_dvec3();
+    let origin = position(face[0]);
     let sides = face[1..].windows(2);
     sides
-        .map(|pair| (place(pair[0]) - origin).cross(place(pair[1]) - origin))
+        .map(|pair| (position(pair[0]) - origin).cross(position(pair[1]) - origin))
         .sum()
 }
 
@@ -91,22 +94,22 @@ fn area(mesh: &PolygonMesh, face: &[VertexId]) -> DVec3 {
 struct Surfaces(Vec<u32>);
 
 impl Surfaces {
-    fn apart(corners: usize) -> Self {
+    fn new(corners: usize) -> Self {
         Self((0..row(corners)).collect())
     }
 
-    fn of(&mut self, corner: u32) -> u32 {
-        let mut at = corner;
-        while self.0[at as usize] != at {
-            let parent = self.0[at as usize];
-            self.0[at as usize] = self.0[parent as usize];
-            at = self.0[at as usize];
+    fn find(&mut self, corner: u32) -> u32 {
+        let mut root = corner;
+        while self.0[root as usize] != root {
+            let parent = self.0[root as usize];
+            self.0[root as usize] = self.0[parent as usize];
+            root = self.0[root as usize];
         }
-        at
+        root
     }
 
-    fn join(&mut self, a: u32, b: u32) {
-        let [a, b] = [self.of(a), self.of(b)];
+    fn union(&mut self, a: u32, b: u32) {
+        let [a, b] = [self.find(a), self.find(b)];
         // The lowest corner represents the set, in whichever order sets are joined.
         self.0[a.max(b) as usize] = a.min(b);
     }

@@ -9,8 +9,8 @@ use crate::error::RenderError;
 use crate::layout::{Panel, layout};
 use crate::light::{BACKGROUND, CREASE, Colour, EDGE};
 use crate::normals::Normals;
-use crate::samples::{Samples, table};
-use crate::settings::{Settings, Size, Subject};
+use crate::samples::{Samples, allocate};
+use crate::settings::{RenderMesh, Settings, Size};
 use crate::strokes::{Stroke, Strokes};
 
 /// A picture with three bytes per pixel.
@@ -50,7 +50,7 @@ impl Picture {
     }
 }
 
-/// Draws the subjects in a row; O(corners · log corners + samples covered).
+/// Draws the meshes in a row; O(corners · log corners + samples covered).
 ///
 /// Memory: 14 bytes per sample, at most sixteen samples per pixel, for one panel at a time.
 ///
@@ -62,7 +62,7 @@ impl Picture {
 ///
 /// ```
 /// use sixfold_core::{Creases, Point, PolygonMesh};
-/// use sixfold_render::{Settings, Shading, Size, Subject, Up, View};
+/// use sixfold_render::{Settings, Shading, Size, RenderMesh, Up, View};
 ///
 /// let mesh = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]])?;
 /// let creases = Creases::new(&mesh, [([0, 1], 2.0)], [])?;
@@ -74,31 +74,31 @@ impl Picture {
 ///     edges: true,
 ///     wireframe: false,
 /// };
-/// let subject = Subject { mesh: &mesh, creases: &creases };
-/// let picture = sixfold_render::draw(&[subject], &settings)?;
+/// let render_mesh = RenderMesh { mesh: &mesh, creases: &creases };
+/// let picture = sixfold_render::draw(&[render_mesh], &settings)?;
 /// assert_eq!(picture.bytes().len(), 64 * 48 * 3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn draw(subjects: &[Subject<'_>], settings: &Settings) -> Result<Picture, RenderError> {
-    let panels = layout(subjects, settings)?;
+pub fn draw(render_meshes: &[RenderMesh<'_>], settings: &Settings) -> Result<Picture, RenderError> {
+    let panels = layout(render_meshes, settings)?;
     let Size { width, height } = settings.size;
-    let mut bytes = table(width as usize * height as usize * 3, 0)?;
-    for (subject, panel) in subjects.iter().zip(&panels) {
-        let drawn = Drawn::of(subject, panel, settings)?;
-        let edges = Ink::of(panel, [(&drawn.strokes.edges, drawn.strokes.edge_width)])?;
+    let mut bytes = allocate(width as usize * height as usize * 3, 0)?;
+    for (render_mesh, panel) in render_meshes.iter().zip(&panels) {
+        let parts = VisibleParts::new(render_mesh, panel, settings)?;
+        let edges = LineCoverage::new(panel, [(&parts.strokes.edges, parts.strokes.edge_width)])?;
         let sharp = [
-            (&drawn.strokes.creases, drawn.strokes.crease_width),
-            (&drawn.strokes.corners, drawn.strokes.corner_width),
+            (&parts.strokes.creases, parts.strokes.crease_width),
+            (&parts.strokes.corners, parts.strokes.corner_width),
         ];
-        let sharp = Ink::of(panel, sharp)?;
+        let sharp = LineCoverage::new(panel, sharp)?;
         for row in 0..panel.height {
             for column in 0..panel.width {
-                let surface = drawn.samples.as_ref();
+                let surface = parts.samples.as_ref();
                 let colour = surface.map_or(BACKGROUND, |s| s.pixel(column, row, BACKGROUND));
-                let colour = edges.over(colour, EDGE, column, row);
-                let colour = sharp.over(colour, CREASE, column, row);
+                let colour = edges.blend(colour, EDGE, column, row);
+                let colour = sharp.blend(colour, CREASE, column, row);
                 let at = 3 * (row * width as usize + panel.left + column);
-                bytes[at..at + 3].copy_from_slice(&colour.codes());
+                bytes[at..at + 3].copy_from_slice(&colour.srgb_codes());
             }
         }
     }
@@ -106,28 +106,28 @@ pub fn draw(subjects: &[Subject<'_>], settings: &Settings) -> Result<Picture, Re
     Ok(Picture { size, bytes })
 }
 
-/// The visible parts of one subject.
-pub(crate) struct Drawn {
+/// The visible parts of one mesh.
+pub(crate) struct VisibleParts {
     pub(crate) normals: Normals,
     /// `None` in a wireframe.
     pub(crate) samples: Option<Samples>,
     pub(crate) strokes: Strokes,
 }
 
-impl Drawn {
-    pub(crate) fn of(
-        subject: &Subject<'_>,
+impl VisibleParts {
+    pub(crate) fn new(
+        render_mesh: &RenderMesh<'_>,
         panel: &Panel,
         settings: &Settings,
     ) -> Result<Self, RenderError> {
-        let &Subject { mesh, creases } = subject;
-        let edges = Edges::of(mesh);
-        let normals = Normals::of(mesh, creases, &edges, settings.shading, &settings.view);
+        let &RenderMesh { mesh, creases } = render_mesh;
+        let edges = Edges::new(mesh);
+        let normals = Normals::new(mesh, creases, &edges, settings.shading, &settings.view);
         let samples = match settings.wireframe {
             true => None,
-            false => Some(Samples::of(subject, panel, &normals)?),
+            false => Some(Samples::new(render_mesh, panel, &normals)?),
         };
-        let strokes = Strokes::of(subject, panel, &edges, samples.as_ref(), settings);
+        let strokes = Strokes::new(render_mesh, panel, &edges, samples.as_ref(), settings);
         Ok(Self {
             normals,
             samples,
@@ -138,61 +138,63 @@ impl Drawn {
 
 /// The share of each pixel of a panel that lines of one colour cover. If lines meet, the larger
 /// share counts, so that joints are invisible.
-struct Ink {
+struct LineCoverage {
     width: usize,
     shares: Vec<u8>,
 }
 
-impl Ink {
-    /// Returns the ink of strokes of these widths.
-    fn of<const N: usize>(
+impl LineCoverage {
+    /// Computes the coverage of strokes of these widths.
+    fn new<const N: usize>(
         panel: &Panel,
         strokes: [(&Vec<Stroke>, f64); N],
     ) -> Result<Self, RenderError> {
         let Panel { width, height, .. } = *panel;
-        let shares = table(width * height, 0)?;
-        let mut ink = Self { width, shares };
+        let shares = allocate(width * height, 0)?;
+        let mut coverage = Self { width, shares };
         for (strokes, width) in strokes {
             for stroke in strokes {
-                ink.draw(stroke, width / 2.0, height);
+                coverage.draw(stroke, width / 2.0, height);
             }
         }
-        Ok(ink)
+        Ok(coverage)
     }
 
     fn draw(&mut self, stroke: &Stroke, radius: f64, height: usize) {
         let [a, b] = stroke.ends;
         let along = b - a;
-        let reach = DVec2::splat(radius + 1.0);
-        let (low, high) = (a.min(b) - reach, a.max(b) + reach);
+        let margin = DVec2::splat(radius + 1.0);
+        let (low, high) = (a.min(b) - margin, a.max(b) + margin);
         // The cast turns negative values into 0.
         let pixels = |low: f64, high: f64, count| low as usize..(high.ceil() as usize).min(count);
         // A line thinner than a pixel is drawn paler.
-        let most = (2.0 * radius).min(1.0);
+        let max_cover = (2.0 * radius).min(1.0);
         for row in pixels(low.y, high.y, height) {
-            for column in self.near(row, [a, b], reach.x, pixels(low.x, high.x, self.width)) {
-                let middle = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
-                let t = (middle - a).dot(along) / along.length_squared();
+            for column in
+                self.columns_near_line(row, [a, b], margin.x, pixels(low.x, high.x, self.width))
+            {
+                let centre = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
+                let t = (centre - a).dot(along) / along.length_squared();
                 // A dot has no direction: `t` is NaN.
                 let t = if t.is_finite() {
                     t.clamp(0.0, 1.0)
                 } else {
                     0.0
                 };
-                let distance = middle.distance(a + along * t);
-                let cover = (radius.max(0.5) + 0.5 - distance).clamp(0.0, 1.0) * most;
+                let distance = centre.distance(a + along * t);
+                let cover = (radius.max(0.5) + 0.5 - distance).clamp(0.0, 1.0) * max_cover;
                 let share = &mut self.shares[row * self.width + column];
-                *share = (*share).max((cover * stroke.share * 255.0).round() as u8);
+                *share = (*share).max((cover * stroke.opacity * 255.0).round() as u8);
             }
         }
     }
 
     /// Returns the columns of `row` that a sloping line can reach, not its whole bounding box.
-    fn near(
+    fn columns_near_line(
         &self,
         row: usize,
         [a, b]: [DVec2; 2],
-        reach: f64,
+        margin: f64,
         columns: std::ops::Range<usize>,
     ) -> std::ops::Range<usize> {
         let height = b.y - a.y;
@@ -200,15 +202,15 @@ impl Ink {
             return columns;
         }
         let x_at = |y: f64| a.x + (b.x - a.x) * ((y - a.y) / height).clamp(0.0, 1.0);
-        let (above, below) = (x_at(row as f64 - reach), x_at(row as f64 + 1.0 + reach));
-        let first = (above.min(below) - reach).max(0.0) as usize;
-        let end = (above.max(below) + reach).ceil().max(0.0) as usize;
+        let (above, below) = (x_at(row as f64 - margin), x_at(row as f64 + 1.0 + margin));
+        let first = (above.min(below) - margin).max(0.0) as usize;
+        let end = (above.max(below) + margin).ceil().max(0.0) as usize;
         first.max(columns.start)..end.min(columns.end)
     }
 
-    /// Returns `below` covered with this ink in `colour`.
-    fn over(&self, below: Colour, colour: Colour, column: usize, row: usize) -> Colour {
+    /// Returns `below` covered with lines in `colour`.
+    fn blend(&self, below: Colour, colour: Colour, column: usize, row: usize) -> Colour {
         let share = self.shares[row * self.width + column];
-        below.mixed(colour, f64::from(share) / 255.0)
+        below.mix(colour, f64::from(share) / 255.0)
     }
 }

@@ -4,108 +4,110 @@ use glam::DVec3;
 use sixfold_core::{FaceId, RowId, Slot};
 
 use crate::error::RenderError;
-use crate::fill::{Corner, Filler, Sample};
 use crate::layout::Panel;
-use crate::light::{Colour, lit};
+use crate::light::{Colour, shade};
 use crate::normals::Normals;
-use crate::settings::Subject;
+use crate::rasterise::{Corner, Rasteriser, Sample};
+use crate::settings::RenderMesh;
 
-/// The samples of one panel: `fine` × `fine` for each pixel.
+/// The samples of one panel: `per_side` × `per_side` for each pixel.
 ///
 /// # Invariants
 ///
 /// The vectors are one table of `columns` × `rows`, row by row.
 pub(crate) struct Samples {
-    pub(crate) fine: usize,
+    pub(crate) per_side: usize,
     pub(crate) columns: usize,
     pub(crate) rows: usize,
     /// The depth of the nearest surface towards the viewer, in samples; −∞ if there is no surface.
     depths: Vec<f32>,
     /// The face of this surface.
     faces: Vec<Slot<FaceId>>,
-    /// The colour of this surface, in shares of [`FULL`].
+    /// The colour of this surface, in shares of [`FULL_LIGHT`].
     lights: Vec<[u16; 3]>,
 }
 
 /// The code of full light. Brighter highlights are clamped, as on a screen.
-const FULL: f64 = 65535.0;
+const FULL_LIGHT: f64 = 65535.0;
 
 impl Samples {
-    /// Draws the faces of `subject`; O(corners + samples covered).
+    /// Draws the faces of `render_mesh`; O(corners + samples covered).
     ///
     /// # Errors
     ///
     /// Returns [`RenderError::Memory`] if there is not enough memory.
-    pub(crate) fn of(
-        subject: &Subject<'_>,
+    pub(crate) fn new(
+        render_mesh: &RenderMesh<'_>,
         panel: &Panel,
         normals: &Normals,
     ) -> Result<Self, RenderError> {
         let mut samples = Self::empty(panel)?;
-        let mut filler = Filler::new(samples.columns, samples.rows);
-        let fine = samples.fine as f64;
+        let mut rasteriser = Rasteriser::new(samples.columns, samples.rows);
+        let per_side = samples.per_side as f64;
         let mut corners = Vec::new();
-        for (f, face) in subject.mesh.faces().iter() {
-            let of_corners = &normals.corners[subject.mesh.faces().range(f)];
+        for (f, face) in render_mesh.mesh.faces().iter() {
+            let of_corners = &normals.corners[render_mesh.mesh.faces().range(f)];
             let inside = normals.faces[f.index()].z < 0.0;
             corners.clear();
             corners.extend(face.iter().zip(of_corners).map(|(&v, &normal)| Corner {
-                place: panel.place(v) * fine,
+                position: panel.position(v) * per_side,
                 normal,
             }));
-            filler.fill(&corners, |sample| samples.put(f, &sample, inside));
+            rasteriser.rasterise(&corners, |sample| {
+                samples.store_if_nearer(f, &sample, inside)
+            });
         }
         Ok(samples)
     }
 
     fn empty(panel: &Panel) -> Result<Self, RenderError> {
         // More samples per pixel for small pictures, which are viewed closely.
-        let fine = match panel.width * panel.height {
+        let per_side = match panel.width * panel.height {
             ..=1_000_000 => 4,
             1_000_001..=3_000_000 => 3,
             _ => 2,
         };
-        let (columns, rows) = (panel.width * fine, panel.height * fine);
+        let (columns, rows) = (panel.width * per_side, panel.height * per_side);
         let count = columns * rows;
         Ok(Self {
-            fine,
+            per_side,
             columns,
             rows,
-            depths: table(count, f32::NEG_INFINITY)?,
-            faces: table(count, Slot::NONE)?,
-            lights: table(count, [0; 3])?,
+            depths: allocate(count, f32::NEG_INFINITY)?,
+            faces: allocate(count, Slot::NONE)?,
+            lights: allocate(count, [0; 3])?,
         })
     }
 
-    fn put(&mut self, face: FaceId, sample: &Sample, inside: bool) {
+    fn store_if_nearer(&mut self, face: FaceId, sample: &Sample, inside: bool) {
         let at = sample.row * self.columns + sample.column;
         let depth = sample.depth as f32;
         if depth > self.depths[at] {
             self.depths[at] = depth;
             self.faces[at] = Slot::some(face);
-            let light = lit(sample.normal, inside).0.to_array();
-            self.lights[at] = light.map(|light| (light * FULL).round() as u16);
+            let light = shade(sample.normal, inside).0.to_array();
+            self.lights[at] = light.map(|light| (light * FULL_LIGHT).round() as u16);
         }
     }
 
-    /// Returns whether, at one of the nine samples around `place`, there is no surface, or `near`
-    /// is true for the depth and the face row of the nearest surface.
-    pub(crate) fn any_around(&self, place: DVec3, near: impl Fn(f32, u32) -> bool) -> bool {
-        let around = |at: f64, count: usize| {
+    /// Returns whether, at one of the nine samples around `position`, there is no surface, or
+    /// `predicate` is true for the depth and the face row of the nearest surface.
+    pub(crate) fn any_around(&self, position: DVec3, predicate: impl Fn(f32, u32) -> bool) -> bool {
+        let neighbours = |at: f64, count: usize| {
             let at = (at.max(0.0) as usize).min(count - 1);
             at.saturating_sub(1)..(at + 2).min(count)
         };
-        around(place.y, self.rows).any(|row| {
-            around(place.x, self.columns).any(|column| {
+        neighbours(position.y, self.rows).any(|row| {
+            neighbours(position.x, self.columns).any(|column| {
                 let at = row * self.columns + column;
                 let face = self.faces[at].get();
-                face.is_none_or(|face| near(self.depths[at], face.row()))
+                face.is_none_or(|face| predicate(self.depths[at], face.row()))
             })
         })
     }
 
     /// Returns for each face whether it is the nearest at any sample.
-    pub(crate) fn visible(&self, faces: usize) -> Vec<bool> {
+    pub(crate) fn visible_faces(&self, faces: usize) -> Vec<bool> {
         let mut visible = vec![false; faces];
         for face in self.faces.iter().filter_map(|face| face.get()) {
             visible[face.index()] = true;
@@ -116,21 +118,21 @@ impl Samples {
     /// Returns the mean colour of the samples of a pixel, with `background` for empty samples.
     pub(crate) fn pixel(&self, column: usize, row: usize, background: Colour) -> Colour {
         let mut sum = DVec3::ZERO;
-        for row in row * self.fine..(row + 1) * self.fine {
-            let start = row * self.columns + column * self.fine;
-            for at in start..start + self.fine {
+        for row in row * self.per_side..(row + 1) * self.per_side {
+            let start = row * self.columns + column * self.per_side;
+            for at in start..start + self.per_side {
                 sum += match self.faces[at].get() {
-                    Some(_) => DVec3::from_array(self.lights[at].map(f64::from)) / FULL,
+                    Some(_) => DVec3::from_array(self.lights[at].map(f64::from)) / FULL_LIGHT,
                     None => background.0,
                 };
             }
         }
-        Colour(sum / (self.fine * self.fine) as f64)
+        Colour(sum / (self.per_side * self.per_side) as f64)
     }
 }
 
-/// Returns a table of `count` cells, or an error if there is not enough memory.
-pub(crate) fn table<T: Clone>(count: usize, cell: T) -> Result<Vec<T>, RenderError> {
+/// Allocates a table of `count` cells, or an error if there is not enough memory.
+pub(crate) fn allocate<T: Clone>(count: usize, cell: T) -> Result<Vec<T>, RenderError> {
     let mut table = Vec::new();
     let bytes = count.saturating_mul(size_of::<T>());
     let memory = |_| RenderError::Memory { bytes };

@@ -1,4 +1,4 @@
-//! The subjects and settings of a picture.
+//! The meshes and settings of a picture.
 
 use glam::DVec3;
 use sixfold_core::{Creases, Point, PolygonMesh};
@@ -16,7 +16,7 @@ pub const MIN_PANEL: u32 = 16;
 
 /// A mesh to draw, with its creases.
 #[derive(Clone, Copy, Debug)]
-pub struct Subject<'a> {
+pub struct RenderMesh<'a> {
     /// The mesh.
     pub mesh: &'a PolygonMesh,
     /// The sharp edges and corners, drawn in colour; smooth shading breaks at a sharpness of 1 or
@@ -35,7 +35,7 @@ pub struct Size {
 
 impl Size {
     /// Returns the default size of a picture with this number of panels.
-    pub fn of_row(panels: usize) -> Self {
+    pub fn for_panels(panels: usize) -> Self {
         const PANEL: u32 = 480;
         let panels = u32::try_from(panels.max(1)).unwrap_or(u32::MAX);
         Self {
@@ -114,13 +114,13 @@ impl View {
         Ok(Self { axes })
     }
 
-    /// Returns the place of `p` in the picture: to the right, upwards, and towards the viewer.
-    pub(crate) fn place(&self, p: Point) -> DVec3 {
-        self.turned(p.as_dvec3())
+    /// Returns the position of `p` in the picture: to the right, upwards, and towards the viewer.
+    pub(crate) fn project(&self, p: Point) -> DVec3 {
+        self.rotate(p.as_dvec3())
     }
 
     /// Returns a direction in the same axes.
-    pub(crate) fn turned(&self, direction: DVec3) -> DVec3 {
+    pub(crate) fn rotate(&self, direction: DVec3) -> DVec3 {
         let [right, up, viewer] = self.axes.map(|axis| axis.dot(direction));
         DVec3::new(right, up, viewer)
     }
@@ -159,7 +159,7 @@ mod tests {
     fn azimuth_and_elevation_turn_the_view() {
         let at = |azimuth, elevation, up, p: Point| {
             let view = View::new(azimuth, elevation, up).expect("a view");
-            view.place(p).round().to_array()
+            view.project(p).round().to_array()
         };
         // From the front; from the right; from above, with the front at the bottom.
         let p = Point::new(1.0, 2.0, 3.0);
@@ -172,14 +172,19 @@ mod tests {
         let [azimuth, elevation] = View::ISO;
         let view = View::new(azimuth, elevation, Up::Z).expect("a view");
         for axis in [Point::X, Point::Y, Point::Z] {
-            let length = view.place(axis).truncate().length();
+            let length = view.project(axis).truncate().length();
             assert!((length - (2.0_f64 / 3.0).sqrt()).abs() < 1e-12);
         }
     }
 
     #[test]
     fn the_default_size_grows_with_the_number_of_panels() {
-        let of = |panels| (Size::of_row(panels).width, Size::of_row(panels).height);
+        let of = |panels| {
+            (
+                Size::for_panels(panels).width,
+                Size::for_panels(panels).height,
+            )
+        };
         assert_eq!([of(0), of(1), of(3)], [(480, 480), (480, 480), (1440, 480)]);
         assert_eq!(of(usize::MAX), (MAX_SIDE, 480));
     }

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use crate::edges::{Edges, Side};
 use crate::layout::Panel;
 use crate::samples::Samples;
-use crate::settings::{Settings, Subject};
+use crate::settings::{RenderMesh, Settings};
 
 /// Width of an edge, in units of the panel.
 const EDGE_WIDTH: f64 = 1.1;
@@ -15,17 +15,17 @@ const EDGE_WIDTH: f64 = 1.1;
 const CREASE_WIDTH: f64 = 3.0;
 /// Width of a sharp corner, in units of the panel.
 const CORNER_WIDTH: f64 = 8.0;
-/// Maximum share of the colour of an edge.
-const EDGE_SHARE: f64 = 0.62;
+/// Maximum opacity of an edge.
+const EDGE_OPACITY: f64 = 0.62;
 /// Below this mean length, in units of the panel, edges are drawn paler, to keep faces visible.
-const LONG: f64 = 14.0;
+const FULL_OPACITY_LENGTH: f64 = 14.0;
 
 /// A straight line with round ends, in pixels of a panel; a dot if both ends are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stroke {
     pub(crate) ends: [DVec2; 2],
-    /// The share of its colour: lower for distant strokes in a wireframe.
-    pub(crate) share: f64,
+    /// Lower for distant strokes in a wireframe.
+    pub(crate) opacity: f64,
 }
 
 /// The lines of one panel.
@@ -41,8 +41,8 @@ pub(crate) struct Strokes {
 impl Strokes {
     /// Collects the visible parts of edges and corners; all of them without `samples`, as in a
     /// wireframe. O(corners + pixels along edges).
-    pub(crate) fn of(
-        subject: &Subject<'_>,
+    pub(crate) fn new(
+        render_mesh: &RenderMesh<'_>,
         panel: &Panel,
         edges: &Edges,
         samples: Option<&Samples>,
@@ -57,15 +57,15 @@ impl Strokes {
             corners: Vec::new(),
             corner_width: CORNER_WIDTH * unit,
         };
-        let eye = Eye::of(panel, samples, subject);
+        let visibility = VisibilityTest::new(panel, samples, render_mesh);
         let (mut length, mut count) = (0.0, 0.0);
         for sides in edges.iter() {
             let [a, b] = sides[0].edge.ends();
-            let sharp = subject.creases.edge(a, b) > 0.0;
+            let sharp = render_mesh.creases.edge(a, b) > 0.0;
             if !(sharp || settings.edges || settings.wireframe) {
                 continue;
             }
-            let ends = [a, b].map(|v| panel.place(v));
+            let ends = [a, b].map(|v| panel.position(v));
             length += ends[0].truncate().distance(ends[1].truncate());
             count += 1.0;
             let into = if sharp {
@@ -73,19 +73,20 @@ impl Strokes {
             } else {
                 &mut strokes.edges
             };
-            eye.see(ends, sides, into);
+            visibility.add_visible_parts(ends, sides, into);
         }
-        let dark = EDGE_SHARE * (length / f64::max(count, 1.0) / (LONG * unit)).clamp(0.3, 1.0);
+        let opacity = EDGE_OPACITY
+            * (length / f64::max(count, 1.0) / (FULL_OPACITY_LENGTH * unit)).clamp(0.3, 1.0);
         for stroke in &mut strokes.edges {
-            stroke.share *= dark;
+            stroke.opacity *= opacity;
         }
-        for &(v, _) in subject.creases.corners() {
+        for &(v, _) in render_mesh.creases.corners() {
             // It may be a corner of no face, and then have any coordinates.
-            let place = panel.place(v);
-            if place.is_finite() && eye.sees_corner(place) {
+            let position = panel.position(v);
+            if position.is_finite() && visibility.is_corner_visible(position) {
                 strokes.corners.push(Stroke {
-                    ends: [place.truncate(); 2],
-                    share: eye.share(place.z),
+                    ends: [position.truncate(); 2],
+                    opacity: visibility.opacity(position.z),
                 });
             }
         }
@@ -94,16 +95,16 @@ impl Strokes {
 }
 
 /// The visibility test for edges.
-struct Eye<'a> {
+struct VisibilityTest<'a> {
     samples: Option<&'a Samples>,
     /// The depths of the farthest and the nearest vertex.
     depths: Range<f64>,
 }
 
-impl<'a> Eye<'a> {
-    fn of(panel: &Panel, samples: Option<&'a Samples>, subject: &Subject<'_>) -> Self {
-        let corners = subject.mesh.faces().corners().iter();
-        let depths = corners.map(|&v| panel.place(v).z);
+impl<'a> VisibilityTest<'a> {
+    fn new(panel: &Panel, samples: Option<&'a Samples>, render_mesh: &RenderMesh<'_>) -> Self {
+        let corners = render_mesh.mesh.faces().corners().iter();
+        let depths = corners.map(|&v| panel.position(v).z);
         let depths = depths.fold(f64::INFINITY..f64::NEG_INFINITY, |range, z| {
             range.start.min(z)..range.end.max(z)
         });
@@ -114,48 +115,49 @@ impl<'a> Eye<'a> {
     ///
     /// The line is tested along its middle, in steps of at most half a pixel. A point is visible if
     /// one of the samples around it has no surface, a surface behind it, or a face at this edge.
-    fn see(&self, ends: [DVec3; 2], sides: &[Side], into: &mut Vec<Stroke>) {
+    fn add_visible_parts(&self, ends: [DVec3; 2], sides: &[Side], into: &mut Vec<Stroke>) {
         let at = |t: f64| ends[0].lerp(ends[1], t);
         let mut add = |from: f64, to: f64| {
             let stroke = [from, to].map(|t| at(t).truncate());
             into.push(Stroke {
                 ends: stroke,
-                share: self.share(at((from + to) / 2.0).z),
+                opacity: self.opacity(at((from + to) / 2.0).z),
             });
         };
         let Some(samples) = self.samples else {
             return add(0.0, 1.0);
         };
         /// Maximum length in pixels of visible or hidden parts that are ignored as sampling errors.
-        const LEAST: f64 = 1.0;
+        const MIN_LENGTH: f64 = 1.0;
         let pixels = ends[0].truncate().distance(ends[1].truncate());
-        let steps = (pixels * samples.fine as f64).ceil().max(1.0);
-        let own = |face| sides.iter().any(|side| side.face == face);
-        let seen = |step: usize| nearest(samples, at((step as f64 + 0.5) / steps), own);
+        let steps = (pixels * samples.per_side as f64).ceil().max(1.0);
+        let is_own = |face| sides.iter().any(|side| side.face == face);
+        let is_step_visible =
+            |step: usize| is_visible(samples, at((step as f64 + 0.5) / steps), is_own);
         let mut runs: Vec<Range<usize>> = Vec::new();
-        for step in (0..steps as usize).filter(|&step| seen(step)) {
+        for step in (0..steps as usize).filter(|&step| is_step_visible(step)) {
             match runs.last_mut() {
-                Some(run) if (step - run.end) as f64 * pixels / steps <= LEAST => {
+                Some(run) if (step - run.end) as f64 * pixels / steps <= MIN_LENGTH => {
                     run.end = step + 1;
                 }
                 _ => runs.push(step..step + 1),
             }
         }
         for run in runs {
-            let whole = run.len() as f64 >= steps;
-            if whole || run.len() as f64 * pixels / steps > LEAST {
+            let is_whole = run.len() as f64 >= steps;
+            if is_whole || run.len() as f64 * pixels / steps > MIN_LENGTH {
                 add(run.start as f64 / steps, run.end as f64 / steps);
             }
         }
     }
 
-    fn sees_corner(&self, place: DVec3) -> bool {
+    fn is_corner_visible(&self, position: DVec3) -> bool {
         let samples = self.samples;
-        samples.is_none_or(|samples| nearest(samples, place, |_| false))
+        samples.is_none_or(|samples| is_visible(samples, position, |_| false))
     }
 
-    /// Returns the share of a stroke: lower for distant strokes in a wireframe.
-    fn share(&self, depth: f64) -> f64 {
+    /// Returns the opacity of a stroke: lower for distant strokes in a wireframe.
+    fn opacity(&self, depth: f64) -> f64 {
         let Range { start, end } = self.depths;
         if self.samples.is_some() || start >= end {
             return 1.0;
@@ -164,12 +166,15 @@ impl<'a> Eye<'a> {
     }
 }
 
-/// Returns whether no face except its `own` faces hides `place`, which is in pixels.
-fn nearest(samples: &Samples, place: DVec3, own: impl Fn(u32) -> bool) -> bool {
+/// Returns whether no face hides `position`, which is in pixels. Faces for which `is_own` returns
+/// true do not count.
+fn is_visible(samples: &Samples, position: DVec3, is_own: impl Fn(u32) -> bool) -> bool {
     /// Minimum distance, in pixels, by which a face must be nearer to hide an edge. A smaller
     /// distance can come from the slope of the face.
-    const BEFORE: f64 = 1.0;
-    let fine = samples.fine as f64;
-    let hides = ((place.z + BEFORE) * fine) as f32;
-    samples.any_around(place * fine, |depth, face| depth <= hides || own(face))
+    const DEPTH_TOLERANCE: f64 = 1.0;
+    let scale = samples.per_side as f64;
+    let hiding_depth = ((position.z + DEPTH_TOLERANCE) * scale) as f32;
+    samples.any_around(position * scale, |depth, face| {
+        depth <= hiding_depth || is_own(face)
+    })
 }

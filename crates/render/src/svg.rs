@@ -4,18 +4,18 @@ use std::fmt::Write;
 
 use glam::{DVec2, DVec3};
 
+use crate::depth_order::back_to_front;
 use crate::error::{MeshFault, RenderError};
 use crate::layout::{Panel, layout};
-use crate::light::{BACKGROUND, CREASE, EDGE, lit};
-use crate::order::back_to_front;
-use crate::picture::Drawn;
-use crate::settings::{Settings, Size, Subject};
+use crate::light::{BACKGROUND, CREASE, EDGE, shade};
+use crate::picture::VisibleParts;
+use crate::settings::{RenderMesh, Settings, Size};
 use crate::strokes::Stroke;
 
 /// Maximum number of visible faces per mesh: viewers fail with more, and a PNG is smaller.
 pub const MAX_SVG_FACES: usize = 50_000;
 
-/// Draws the subjects in a row, as the text of an SVG file; same cost as [`draw`](crate::draw).
+/// Draws the meshes in a row, as the text of an SVG file; same cost as [`draw`](crate::draw).
 ///
 /// Visible faces are polygons, each in one colour, painted from back to front. Lines are the
 /// visible parts of edges, hidden as in [`draw`](crate::draw). Faces that intersect each other
@@ -24,29 +24,32 @@ pub const MAX_SVG_FACES: usize = 50_000;
 /// # Errors
 ///
 /// Returns the errors of [`draw`](crate::draw), and [`MeshFault::TooManyFaces`].
-pub fn draw_svg(subjects: &[Subject<'_>], settings: &Settings) -> Result<String, RenderError> {
-    let panels = layout(subjects, settings)?;
+pub fn draw_svg(
+    render_meshes: &[RenderMesh<'_>],
+    settings: &Settings,
+) -> Result<String, RenderError> {
+    let panels = layout(render_meshes, settings)?;
     let Size { width, height } = settings.size;
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
          viewBox=\"0 0 {width} {height}\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"{}\"/>\n",
-        BACKGROUND.web()
+        BACKGROUND.to_hex()
     );
-    for (mesh, (subject, panel)) in subjects.iter().zip(&panels).enumerate() {
-        let drawn = Drawn::of(subject, panel, settings)?;
+    for (mesh, (render_mesh, panel)) in render_meshes.iter().zip(&panels).enumerate() {
+        let parts = VisibleParts::new(render_mesh, panel, settings)?;
         svg += &format!(
             "<g transform=\"translate({})\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n",
             panel.left
         );
-        paint(subject, panel, &drawn, &mut svg)
+        draw_faces(render_mesh, panel, &parts, &mut svg)
             .map_err(|fault| RenderError::Mesh { mesh, fault })?;
-        let strokes = &drawn.strokes;
+        let strokes = &parts.strokes;
         for (strokes, width, colour) in [
             (&strokes.edges, strokes.edge_width, EDGE),
             (&strokes.creases, strokes.crease_width, CREASE),
             (&strokes.corners, strokes.corner_width, CREASE),
         ] {
-            draw_lines(strokes, width, &colour.web(), &mut svg);
+            draw_lines(strokes, width, &colour.to_hex(), &mut svg);
         }
         svg += "</g>\n";
     }
@@ -55,31 +58,31 @@ pub fn draw_svg(subjects: &[Subject<'_>], settings: &Settings) -> Result<String,
 }
 
 /// Adds the visible faces.
-fn paint(
-    subject: &Subject<'_>,
+fn draw_faces(
+    render_mesh: &RenderMesh<'_>,
     panel: &Panel,
-    drawn: &Drawn,
+    parts: &VisibleParts,
     svg: &mut String,
 ) -> Result<(), MeshFault> {
-    let Some(samples) = &drawn.samples else {
+    let Some(samples) = &parts.samples else {
         return Ok(());
     };
-    let mesh = subject.mesh;
-    let visible = samples.visible(mesh.face_count());
+    let mesh = render_mesh.mesh;
+    let visible = samples.visible_faces(mesh.face_count());
     let faces = visible.iter().filter(|&&visible| visible).count();
     if faces > MAX_SVG_FACES {
         return Err(MeshFault::TooManyFaces { faces });
     }
     let mut shapes = vec![String::new(); mesh.face_count()];
     for (f, face) in mesh.faces().iter() {
-        let corners = &drawn.normals.corners[mesh.faces().range(f)];
+        let corners = &parts.normals.corners[mesh.faces().range(f)];
         if !visible[f.index()] {
             continue;
         }
-        let inside = drawn.normals.faces[f.index()].z < 0.0;
-        let colour = lit(corners.iter().sum::<DVec3>(), inside).web();
-        let places = face.iter().map(|&v| panel.place(v).truncate());
-        let outline = path(places);
+        let inside = parts.normals.faces[f.index()].z < 0.0;
+        let colour = shade(corners.iter().sum::<DVec3>(), inside).to_hex();
+        let points = face.iter().map(|&v| panel.position(v).truncate());
+        let outline = path(points);
         shapes[f.index()] =
             format!("<path d=\"{outline}Z\" fill=\"{colour}\" stroke=\"{colour}\"/>\n");
     }
@@ -92,28 +95,28 @@ fn paint(
     Ok(())
 }
 
-/// Adds lines of one colour. Lines of the same share are one path, so that joints are invisible.
+/// Adds lines of one colour. Lines of the same opacity are one path, so that joints are invisible.
 fn draw_lines(strokes: &[Stroke], width: f64, colour: &str, svg: &mut String) {
     let mut strokes = strokes.to_vec();
-    // Rounds the shares of a wireframe, because each share is a separate path.
-    let step = |stroke: &Stroke| (stroke.share * 50.0).round();
+    // Rounds the opacities of a wireframe, because each opacity is a separate path.
+    let step = |stroke: &Stroke| (stroke.opacity * 50.0).round();
     strokes.sort_by(|a, b| step(a).total_cmp(&step(b)));
-    for same in strokes.chunk_by(|a, b| step(a) == step(b)) {
-        let lines: String = same.iter().map(|stroke| path(stroke.ends)).collect();
-        let share = Number(step(&same[0]) / 50.0);
+    for group in strokes.chunk_by(|a, b| step(a) == step(b)) {
+        let lines: String = group.iter().map(|stroke| path(stroke.ends)).collect();
+        let opacity = Number(step(&group[0]) / 50.0);
         let width = Number(width);
         *svg += &format!(
-            "<path d=\"{lines}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" stroke-opacity=\"{share}\"/>\n"
+            "<path d=\"{lines}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" stroke-opacity=\"{opacity}\"/>\n"
         );
     }
 }
 
 /// Returns `M1 2L3 4`, or `M1 2L1 2` for equal points, which round line ends make a dot.
-fn path(places: impl IntoIterator<Item = DVec2>) -> String {
+fn path(points: impl IntoIterator<Item = DVec2>) -> String {
     let mut text = String::new();
-    for (i, place) in places.into_iter().enumerate() {
+    for (i, point) in points.into_iter().enumerate() {
         let letter = if i == 0 { 'M' } else { 'L' };
-        let (x, y) = (Number(place.x), Number(place.y));
+        let (x, y) = (Number(point.x), Number(point.y));
         write!(text, "{letter}{x} {y}").expect("a String accepts all writes");
     }
     text

@@ -2,7 +2,7 @@
 
 use sixfold_core::{Creases, Point, PolygonMesh, VertexId};
 use sixfold_render::{
-    MAX_PIXELS, MAX_SIDE, MeshFault, Picture, RenderError, Settings, Shading, Size, Subject, Up,
+    MAX_PIXELS, MAX_SIDE, MeshFault, Picture, RenderError, RenderMesh, Settings, Shading, Size, Up,
     View, draw, draw_svg,
 };
 
@@ -18,8 +18,8 @@ const CUBE: [[u32; 4]; 6] = [
 
 fn cube(half: f32) -> PolygonMesh {
     let coordinate = |n: u32, bit: u32| if n & bit == 0 { -half } else { half };
-    let place = |n| Point::new(coordinate(n, 1), coordinate(n, 2), coordinate(n, 4));
-    PolygonMesh::new((0..8).map(place).collect::<Vec<_>>(), CUBE).expect("valid")
+    let position = |n| Point::new(coordinate(n, 1), coordinate(n, 2), coordinate(n, 4));
+    PolygonMesh::new((0..8).map(position).collect::<Vec<_>>(), CUBE).expect("valid")
 }
 
 /// The view from the front, the right and above; it hides only vertex 0 and what is at it.
@@ -40,17 +40,17 @@ fn edges(mesh: &PolygonMesh, edges: &[[u32; 2]]) -> Creases {
     Creases::new(mesh, edges.iter().map(|&ends| (ends, 2.0)), []).expect("edges")
 }
 
-fn drawn(mesh: &PolygonMesh, creases: &Creases, settings: &Settings) -> Picture {
-    draw(&[Subject { mesh, creases }], settings).unwrap_or_else(|error| panic!("{error}"))
+fn draw_mesh(mesh: &PolygonMesh, creases: &Creases, settings: &Settings) -> Picture {
+    draw(&[RenderMesh { mesh, creases }], settings).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn svg(mesh: &PolygonMesh, creases: &Creases, settings: &Settings) -> String {
-    draw_svg(&[Subject { mesh, creases }], settings).unwrap_or_else(|error| panic!("{error}"))
+    draw_svg(&[RenderMesh { mesh, creases }], settings).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The content of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Shows {
+enum PixelContent {
     Background,
     Outside,
     Inside,
@@ -58,25 +58,25 @@ enum Shows {
     Other,
 }
 
-fn shows(picture: &Picture) -> Vec<Shows> {
+fn classify(picture: &Picture) -> Vec<PixelContent> {
     let background = &picture.bytes()[..3];
     let pixels = picture.bytes().chunks_exact(3);
     pixels
         .map(|pixel| {
             let [r, g, b] = [pixel[0], pixel[1], pixel[2]].map(i32::from);
             match () {
-                () if pixel == background => Shows::Background,
-                () if r > g + 70 && r > b + 70 && g < 140 => Shows::Crease,
-                () if b > r + 12 => Shows::Outside,
-                () if r > b + 12 => Shows::Inside,
-                () => Shows::Other,
+                () if pixel == background => PixelContent::Background,
+                () if r > g + 70 && r > b + 70 && g < 140 => PixelContent::Crease,
+                () if b > r + 12 => PixelContent::Outside,
+                () if r > b + 12 => PixelContent::Inside,
+                () => PixelContent::Other,
             }
         })
         .collect()
 }
 
-fn count(picture: &Picture, what: Shows) -> usize {
-    shows(picture)
+fn count(picture: &Picture, what: PixelContent) -> usize {
+    classify(picture)
         .iter()
         .filter(|&&shown| shown == what)
         .count()
@@ -102,18 +102,22 @@ const CREASE: &str = "#ef4d27";
 #[test]
 fn a_picture_has_its_size_a_margin_and_is_reproducible() {
     let (mesh, creases) = (cube(1.0), Creases::default());
-    let picture = drawn(&mesh, &creases, &settings());
+    let picture = draw_mesh(&mesh, &creases, &settings());
     assert_eq!(picture.size(), settings().size);
     assert_eq!(picture.bytes().len(), 120 * 100 * 3);
-    let shown = shows(&picture);
+    let shown = classify(&picture);
     let rim = |i: usize| i % 120 < 4 || i % 120 >= 116 || i / 120 < 4 || i / 120 >= 96;
     let outside = (0..shown.len()).filter(|&i| rim(i));
     assert!(outside.clone().count() > 500);
-    assert!(outside.into_iter().all(|i| shown[i] == Shows::Background));
-    assert_eq!(count(&picture, Shows::Inside), 0, "a cube is closed");
-    let covered = count(&picture, Shows::Outside);
+    assert!(
+        outside
+            .into_iter()
+            .all(|i| shown[i] == PixelContent::Background)
+    );
+    assert_eq!(count(&picture, PixelContent::Inside), 0, "a cube is closed");
+    let covered = count(&picture, PixelContent::Outside);
     assert!(covered > 3000, "only {covered} pixels");
-    assert_eq!(picture, drawn(&mesh, &creases, &settings()));
+    assert_eq!(picture, draw_mesh(&mesh, &creases, &settings()));
     assert_eq!(
         svg(&mesh, &creases, &settings()),
         svg(&mesh, &creases, &settings())
@@ -157,8 +161,8 @@ fn three_faces_and_nine_edges_of_a_cube_are_visible() {
     );
     let none = svg(&mesh, &Creases::default(), &settings());
     assert_eq!(lines(&none, EDGE), [""; 0]);
-    let picture = drawn(&mesh, &Creases::default(), &wireframe);
-    let background = count(&picture, Shows::Background);
+    let picture = draw_mesh(&mesh, &Creases::default(), &wireframe);
+    let background = count(&picture, PixelContent::Background);
     assert!((5000..11_500).contains(&background), "{background}");
 }
 
@@ -167,12 +171,23 @@ fn visible_creases_are_red() {
     let mesh = cube(1.0);
     let seen = edges(&mesh, &[[7, 5], [7, 6], [7, 3]]);
     let hidden = edges(&mesh, &[[0, 1], [0, 2], [0, 4]]);
-    assert!(count(&drawn(&mesh, &seen, &settings()), Shows::Crease) > 60);
-    assert_eq!(count(&drawn(&mesh, &hidden, &settings()), Shows::Crease), 0);
+    assert!(count(&draw_mesh(&mesh, &seen, &settings()), PixelContent::Crease) > 60);
+    assert_eq!(
+        count(
+            &draw_mesh(&mesh, &hidden, &settings()),
+            PixelContent::Crease
+        ),
+        0
+    );
     assert_eq!(lines(&svg(&mesh, &seen, &settings()), CREASE).len(), 3);
     assert_eq!(lines(&svg(&mesh, &hidden, &settings()), CREASE).len(), 0);
     let corner = |v| Creases::new(&mesh, [], [(v, 1.0)]).expect("a vertex");
-    let of_corner = |v| count(&drawn(&mesh, &corner(v), &settings()), Shows::Crease);
+    let of_corner = |v| {
+        count(
+            &draw_mesh(&mesh, &corner(v), &settings()),
+            PixelContent::Crease,
+        )
+    };
     assert!(of_corner(7) > 0);
     assert_eq!(of_corner(0), 0);
 }
@@ -229,23 +244,23 @@ fn a_surface_has_two_sides() {
     let triangle = PolygonMesh::new(corners, [[0, 1, 2]]).expect("valid");
     let from = |azimuth| {
         let view = View::new(azimuth, 0.0, Up::Y).expect("a view");
-        drawn(
+        draw_mesh(
             &triangle,
             &Creases::default(),
             &Settings { view, ..settings() },
         )
     };
     let (front, back) = (from(0.0), from(180.0));
-    assert!(count(&front, Shows::Outside) > 1000);
-    assert_eq!(count(&front, Shows::Inside), 0);
-    assert!(count(&back, Shows::Inside) > 1000);
-    assert_eq!(count(&back, Shows::Outside), 0);
+    assert!(count(&front, PixelContent::Outside) > 1000);
+    assert_eq!(count(&front, PixelContent::Inside), 0);
+    assert!(count(&back, PixelContent::Inside) > 1000);
+    assert_eq!(count(&back, PixelContent::Outside), 0);
 }
 
 #[test]
 fn meshes_in_a_row_have_the_same_scale() {
     let (small, large, creases) = (cube(1.0), cube(2.0), Creases::default());
-    let subject = |mesh| Subject {
+    let render_mesh = |mesh| RenderMesh {
         mesh,
         creases: &creases,
     };
@@ -256,13 +271,17 @@ fn meshes_in_a_row_have_the_same_scale() {
         },
         ..settings()
     };
-    let subjects = [subject(&small), subject(&large), subject(&small)];
-    let picture = draw(&subjects, &row).expect("a picture");
-    let shown = shows(&picture);
+    let render_meshes = [
+        render_mesh(&small),
+        render_mesh(&large),
+        render_mesh(&small),
+    ];
+    let picture = draw(&render_meshes, &row).expect("a picture");
+    let shown = classify(&picture);
     let height = |columns: std::ops::Range<usize>| {
         let filled = |row: &usize| {
             let mut columns = columns.clone();
-            columns.any(|column| shown[row * 300 + column] != Shows::Background)
+            columns.any(|column| shown[row * 300 + column] != PixelContent::Background)
         };
         (0..100).filter(filled).count()
     };
@@ -296,7 +315,7 @@ fn shading_is_smooth_unless_an_angle_or_a_crease_breaks_it() {
     };
     // Returns the number of runs of one colour along the middle row.
     let colours = |creases: &Creases, settings: &Settings| {
-        let picture = drawn(&roof, creases, settings);
+        let picture = draw_mesh(&roof, creases, settings);
         let mut colours: Vec<&[u8]> = (0..120)
             .map(|column| &picture.bytes()[3 * (60 * 120 + column)..][..3])
             .collect();
@@ -357,11 +376,11 @@ fn polygons_are_painted_from_back_to_front() {
                 .expect("a path")
                 .trim_end_matches('Z');
             let columns = path.trim_start_matches('M').split('L');
-            let columns = columns.map(|place| place.split(' ').next().map(str::parse::<f64>));
+            let columns = columns.map(|point| point.split(' ').next().map(str::parse::<f64>));
             let columns: Vec<f64> = columns.map(|x| x.expect("x").expect("a number")).collect();
             columns
                 .iter()
-                .fold(0.0, |most, x| f64::max(most, x - columns[0]))
+                .fold(0.0, |max, x| f64::max(max, x - columns[0]))
         });
         let widths: Vec<f64> = widths.collect();
         assert_eq!(widths.len(), 2, "{text}");
@@ -381,9 +400,9 @@ fn extreme_meshes_can_be_drawn() {
             edges: true,
             ..settings()
         };
-        let picture = drawn(&mesh, &edges(&mesh, &[[0, 1]]), &all);
-        assert!(count(&picture, Shows::Crease) > 20, "{scale}");
-        assert!(count(&picture, Shows::Outside) > 500, "{scale}");
+        let picture = draw_mesh(&mesh, &edges(&mesh, &[[0, 1]]), &all);
+        assert!(count(&picture, PixelContent::Crease) > 20, "{scale}");
+        assert!(count(&picture, PixelContent::Outside) > 500, "{scale}");
     }
     // Seen from its edge, from its end, and a mesh without area.
     let line = [Point::ZERO, Point::X, Point::X * 2.0];
@@ -396,9 +415,9 @@ fn extreme_meshes_can_be_drawn() {
                 view,
                 ..settings()
             };
-            let picture = drawn(&mesh, &Creases::default(), &all);
+            let picture = draw_mesh(&mesh, &Creases::default(), &all);
             assert!(
-                count(&picture, Shows::Background) < 120 * 100,
+                count(&picture, PixelContent::Background) < 120 * 100,
                 "{azimuth} {elevation}"
             );
             svg(&mesh, &Creases::default(), &all);
@@ -408,8 +427,8 @@ fn extreme_meshes_can_be_drawn() {
     let corners = [Point::ZERO, Point::X, Point::Y, Point::NAN, Point::MAX];
     let mesh = PolygonMesh::new(corners, [[0, 1, 2]]).expect("valid");
     let creases = Creases::new(&mesh, [], [(3, 1.0), (4, 1.0)]).expect("vertices");
-    let picture = drawn(&mesh, &creases, &settings());
-    assert_eq!(count(&picture, Shows::Crease), 0);
+    let picture = draw_mesh(&mesh, &creases, &settings());
+    assert_eq!(count(&picture, PixelContent::Crease), 0);
     let svg = svg(&mesh, &creases, &settings());
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
 }
@@ -417,14 +436,14 @@ fn extreme_meshes_can_be_drawn() {
 #[test]
 fn invalid_sizes_views_and_meshes_are_refused() {
     let (mesh, creases) = (cube(1.0), Creases::default());
-    let subject = Subject {
+    let render_mesh = RenderMesh {
         mesh: &mesh,
         creases: &creases,
     };
     let of_size = |width, height, panels| {
         let size = Size { width, height };
         let wanted = Settings { size, ..settings() };
-        draw(&vec![subject; panels], &wanted).expect_err("refused")
+        draw(&vec![render_mesh; panels], &wanted).expect_err("refused")
     };
     for (width, height) in [
         (MAX_SIDE + 1, 16),
@@ -457,18 +476,18 @@ fn invalid_sizes_views_and_meshes_are_refused() {
         let error = View::new(azimuth, elevation, Up::Y).expect_err("no view");
         assert!(matches!(error, RenderError::View { .. }));
     }
-    let fault = |places: [Point; 3], faces: Vec<[u32; 3]>| {
-        let mesh = PolygonMesh::new(places, faces).expect("valid");
+    let fault = |positions: [Point; 3], faces: Vec<[u32; 3]>| {
+        let mesh = PolygonMesh::new(positions, faces).expect("valid");
         let creases = Creases::default();
-        let subjects = [
-            subject,
-            Subject {
+        let render_meshes = [
+            render_mesh,
+            RenderMesh {
                 mesh: &mesh,
                 creases: &creases,
             },
         ];
-        let error = draw(&subjects, &settings()).expect_err("refused");
-        assert_eq!(draw_svg(&subjects, &settings()), Err(error.clone()));
+        let error = draw(&render_meshes, &settings()).expect_err("refused");
+        assert_eq!(draw_svg(&render_meshes, &settings()), Err(error.clone()));
         match error {
             RenderError::Mesh { mesh: 1, fault } => fault,
             other => panic!("{other}"),
@@ -501,11 +520,11 @@ fn an_svg_with_too_many_faces_is_refused() {
         view,
         ..settings()
     };
-    let subject = Subject {
+    let render_mesh = RenderMesh {
         mesh: &mesh,
         creases: &creases,
     };
-    let error = draw_svg(&[subject], &settings).expect_err("too many");
+    let error = draw_svg(&[render_mesh], &settings).expect_err("too many");
     let message = "mesh 1 of the row: 90000 faces are visible, an SVG can have 50000: write a PNG";
     assert_eq!(error.to_string(), message);
 }

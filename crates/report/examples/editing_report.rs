@@ -5,7 +5,7 @@
 //! Every round runs each edit at many places of each mesh, and each workload, once on each
 //! structure, on a fresh copy. The tables show medians of thread-CPU time over the rounds.
 
-mod opening;
+mod common;
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -13,12 +13,12 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use opening::median;
+use common::median;
 use serde_json::json;
 use sixfold::{Edit, PolygonMesh, QueryCost, roster, shapes};
 use sixfold_report::{Panel, panels};
 use sixfold_study::{
-    Editing, Editor, Environment, MachineClock, Policy, Series, SingleEdit, pages,
+    EditPass, Editor, Environment, MachineClock, Policy, Series, SingleEdit, pages,
 };
 
 /// Sides of the tori: 1,058, 4,232, 16,200, 64,800, 259,200 and 1,036,800 triangles.
@@ -30,16 +30,16 @@ const PLACES: usize = 4096;
 const PLACES_SCANNED: usize = 12;
 
 /// Smallest total number of faces of all copies of a mesh.
-const COPIES: usize = 64_000;
+const MIN_TOTAL_FACES: usize = 64_000;
 
 /// Largest number of faces for a workload of edits on a structure that scans.
-const MOST_SCANNED: usize = 5_000;
+const MAX_SCANNED_FACES: usize = 5_000;
 
 /// Largest number of faces at which the tables of every structure fit into the second-level cache.
-const IN_CACHE: usize = 20_000;
+const MAX_CACHED_FACES: usize = 20_000;
 
 /// Conclusions that hold on every machine.
-const READING: &str = include_str!("opening/editing.md");
+const CONCLUSIONS: &str = include_str!("common/editing.md");
 
 /// One line of a figure: an edit or a workload, on a structure.
 type Line = (&'static str, &'static str);
@@ -54,8 +54,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         .ok_or("usage: editing_report FOLDER [ROUNDS]")?;
     let rounds = words.next().map_or(Ok(5), |word| word.parse())?;
     let machine = Environment {
-        heap: Some(pages::put_in_force(Policy::Kept)),
-        ..Environment::here(0, 0.0)
+        heap: Some(pages::set_policy(Policy::Kept)),
+        ..Environment::detect(0, 0.0)
     };
     let mut samples = Samples::new();
     for side in SIDES {
@@ -106,14 +106,14 @@ fn measure(
                 places
             };
             let job = SingleEdit { edit, places };
-            if let Some(editor) = job.on(backend.name, polygons) {
+            if let Some(editor) = job.prepare(backend.name, polygons) {
                 jobs.push(((edit.name(), backend.name), editor?));
             }
         }
-        if faces <= MOST_SCANNED || !scans(&backend) {
-            for editing in Editing::ALL {
-                if let Some(editor) = editing.on(backend.name, polygons) {
-                    jobs.push(((editing.name(), backend.name), editor?));
+        if faces <= MAX_SCANNED_FACES || !scans(&backend) {
+            for pass in EditPass::ALL {
+                if let Some(editor) = pass.prepare(backend.name, polygons) {
+                    jobs.push(((pass.name(), backend.name), editor?));
                 }
             }
         }
@@ -123,11 +123,11 @@ fn measure(
         for (line, editor) in &mut jobs {
             // A small mesh has few places: use more runs, so that reading the clock takes no
             // visible time.
-            let copies = (COPIES / faces).max(1);
-            let series = Series::of_runs(copies as u32, &clock).after(1);
+            let copies = (MIN_TOTAL_FACES / faces).max(1);
+            let series = Series::with_runs(copies as u32, &clock).with_untimed(1);
             let time = editor.time(&series).scaled(1.0 / copies as f64);
             let edits = editor.result();
-            if edits.refused > 0 && !Editing::ALL.iter().any(|e| e.name() == line.0) {
+            if edits.refused > 0 && !EditPass::ALL.iter().any(|e| e.name() == line.0) {
                 return Err(format!("{line:?}: {edits:?}").into());
             }
             let ns = time.ns() / edits.elements.max(1) as f64;
@@ -154,12 +154,12 @@ fn exponent(points: &[(f64, f64)]) -> Option<f64> {
     let n = logs.len() as f64;
     let mean = |f: fn(&(f64, f64)) -> f64| logs.iter().map(f).sum::<f64>() / n;
     let (mx, my) = (mean(|p| p.0), mean(|p| p.1));
-    let across: f64 = logs.iter().map(|(x, y)| (x - mx) * (y - my)).sum();
-    let along: f64 = logs.iter().map(|(x, _)| (x - mx).powi(2)).sum();
-    (logs.len() > 1).then(|| across / along)
+    let covariance: f64 = logs.iter().map(|(x, y)| (x - mx) * (y - my)).sum();
+    let variance: f64 = logs.iter().map(|(x, _)| (x - mx).powi(2)).sum();
+    (logs.len() > 1).then(|| covariance / variance)
 }
 
-fn figures(ns: f64) -> String {
+fn time_text(ns: f64) -> String {
     match ns {
         ns if ns >= 1e6 => format!("{:.1} ms", ns / 1e6),
         ns if ns >= 1e4 => format!("{:.0} µs", ns / 1e3),
@@ -174,7 +174,7 @@ fn text(
     samples: &Samples,
 ) -> Result<String, std::fmt::Error> {
     let mut text = String::from("# Cost of edits on each structure, as the mesh grows\n\n");
-    text += &opening::opening(machine, "editing_report", "reports/editing", rounds);
+    text += &common::introduction(machine, "editing_report", "reports/editing", rounds);
     writeln!(
         text,
         " The meshes are tori of 1,058 to 1,036,800 triangles. Each edit is done at up to {PLACES} places spread over a fresh copy of the mesh, in no particular order ({PLACES_SCANNED} places if the structure scans). An untimed edit comes first, because it reallocates full tables. Legality is checked as usual; edit records are not used.\n\n![Time per edit over the faces of the mesh](growth.svg)\n"
@@ -184,15 +184,24 @@ fn text(
         "\n## One edit\n\nTime at 16,200 faces, then two exponents of growth: from 1,058 to 16,200 faces (in cache), and from there to 1,036,800 (beyond). About 0 means constant time, about 1 a scan.\n"
     )?;
     table(&mut text, samples, Edit::ALL.map(Edit::name), |points| {
-        let at = points.iter().rev().find(|p| p.0 <= IN_CACHE as f64)?;
-        let (near, far): (Vec<_>, Vec<_>) = points.iter().partition(|p| p.0 <= IN_CACHE as f64);
-        let far: Vec<_> = near.last().into_iter().chain(&far).copied().collect();
+        let at = points
+            .iter()
+            .rev()
+            .find(|p| p.0 <= MAX_CACHED_FACES as f64)?;
+        let (in_cache, beyond): (Vec<_>, Vec<_>) =
+            points.iter().partition(|p| p.0 <= MAX_CACHED_FACES as f64);
+        let beyond: Vec<_> = in_cache
+            .last()
+            .into_iter()
+            .chain(&beyond)
+            .copied()
+            .collect();
         let slope = |points: &[_]| exponent(points).map_or("–".into(), |e| format!("{e:+.2}"));
         Some(format!(
             "{} {} {}",
-            figures(at.1),
-            slope(&near),
-            slope(&far)
+            time_text(at.1),
+            slope(&in_cache),
+            slope(&beyond)
         ))
     })?;
     writeln!(
@@ -202,7 +211,7 @@ fn text(
     table(
         &mut text,
         samples,
-        Editing::ALL.map(Editing::name),
+        EditPass::ALL.map(EditPass::name),
         |points| {
             let (first, last) = (points.first()?, points.last()?);
             let large: Vec<_> = points
@@ -213,13 +222,13 @@ fn text(
             let slope = exponent(&large).map_or("–".into(), |e| format!("{e:.2}"));
             Some(format!(
                 "{} – {}, {slope}",
-                figures(first.1),
-                figures(last.1)
+                time_text(first.1),
+                time_text(last.1)
             ))
         },
     )?;
     text += "\n";
-    text += READING;
+    text += CONCLUSIONS;
     Ok(text)
 }
 

@@ -9,7 +9,7 @@
 //! Every round runs each scheme, method and structure once at each level, on one thread. The table
 //! and the figure show medians of thread-CPU time over the rounds.
 
-mod opening;
+mod common;
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -21,7 +21,9 @@ use serde_json::json;
 use sixfold::subdivision::{Scheme, SubdivisionError};
 use sixfold::{Creases, PolygonMesh, roster, shapes};
 use sixfold_report::{Panel, panels};
-use sixfold_study::{Clock, Environment, MachineClock, Policy, Refiner, Refining, Way, pages};
+use sixfold_study::{
+    Clock, Environment, MachineClock, Policy, Refiner, SubdivisionJob, Way, pages,
+};
 
 /// The schemes of the report; both take the control mesh, of triangles.
 const SCHEMES: [Scheme; 2] = [Scheme::CatmullClark, Scheme::Loop];
@@ -30,10 +32,10 @@ const SCHEMES: [Scheme; 2] = [Scheme::CatmullClark, Scheme::Loop];
 const LEVELS: u32 = 4;
 
 /// If a run takes longer than this, the next level is left out.
-const TOO_LONG_NS: f64 = 4e8;
+const MAX_RUN_NS: f64 = 4e8;
 
 /// Conclusions that hold on every machine.
-const READING: &str = "
+const CONCLUSIONS: &str = "
 ## What it shows
 
 Gathering queries EF and VV at every point. A soup and an indexed face set have to search for these, so their time per
@@ -54,12 +56,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         .ok_or("usage: subdivision_report FOLDER [ROUNDS]")?;
     let rounds = words.next().map_or(Ok(5), |word| word.parse())?;
     let machine = Environment {
-        heap: Some(pages::put_in_force(Policy::Kept)),
-        ..Environment::here(0, 0.0)
+        heap: Some(pages::set_policy(Policy::Kept)),
+        ..Environment::detect(0, 0.0)
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let polygons = shapes::geodesic(16)?;
-    let samples = pool.install(|| measured(&polygons, rounds))?;
+    let samples = pool.install(|| measure(&polygons, rounds))?;
     let folder = Path::new(&folder);
     fs::create_dir_all(folder)?;
     fs::write(folder.join("README.md"), text(&machine, rounds, &samples)?)?;
@@ -87,13 +89,13 @@ struct Sample {
 impl Sample {
     /// Returns the median time per face of the last level, in nanoseconds.
     fn ns_per_face(&self) -> f64 {
-        opening::median(&self.ns) / self.faces as f64
+        common::median(&self.ns) / self.faces as f64
     }
 }
 
 type Samples = BTreeMap<(Line, u32), Sample>;
 
-fn measured(polygons: &PolygonMesh, rounds: usize) -> Result<Samples, SubdivisionError> {
+fn measure(polygons: &PolygonMesh, rounds: usize) -> Result<Samples, SubdivisionError> {
     let mut samples = Samples::new();
     let mut jobs: Vec<(Line, u32, Box<dyn Refiner>)> = Vec::new();
     let clock = MachineClock::start();
@@ -102,16 +104,16 @@ fn measured(polygons: &PolygonMesh, rounds: usize) -> Result<Samples, Subdivisio
             for backend in roster() {
                 let line = (scheme.name(), way.name(), backend.name);
                 for level in 1..=LEVELS {
-                    let job = Refining::new(scheme, way, level);
-                    let ready = job.on(backend.name, polygons, &Creases::default());
+                    let job = SubdivisionJob::new(scheme, way, level);
+                    let ready = job.prepare(backend.name, polygons, &Creases::default());
                     let Some(Ok(mut refiner)) = ready else { break };
-                    let began = clock.now();
+                    let start = clock.now();
                     if refiner.run().is_err() {
                         break;
                     }
-                    let time = (clock.now() - began).ns();
+                    let time = (clock.now() - start).ns();
                     jobs.push((line, level, refiner));
-                    if time > TOO_LONG_NS {
+                    if time > MAX_RUN_NS {
                         break;
                     }
                 }
@@ -120,9 +122,9 @@ fn measured(polygons: &PolygonMesh, rounds: usize) -> Result<Samples, Subdivisio
     }
     for _ in 0..rounds {
         for (line, level, refiner) in &mut jobs {
-            let began = clock.now();
+            let start = clock.now();
             refiner.run()?;
-            let time = clock.now() - began;
+            let time = clock.now() - start;
             let sample = samples.entry((*line, *level)).or_default();
             sample.faces = refiner.result().0;
             sample.ns.push(time.ns());
@@ -137,7 +139,7 @@ fn text(
     samples: &Samples,
 ) -> Result<String, std::fmt::Error> {
     let mut text = String::from("# Cost of subdivision on each structure\n\n");
-    text += &opening::opening(machine, "subdivision_report", "reports/subdivision", rounds);
+    text += &common::introduction(machine, "subdivision_report", "reports/subdivision", rounds);
     text += " The control mesh is a geodesic sphere of 5,120 triangles. Times are for all levels, in nanoseconds per face of the last level.\n\n";
     text += "`gather` queries the neighbourhood of each new point, `scatter` makes one pass over the faces; after both, the structure is built again from polygons. `native_fresh` splits the structure's own tables into newly allocated tables, `native` into those of the previous run.\n\n![Nanoseconds per new face, by size](growth.svg)\n";
     for scheme in SCHEMES {
@@ -168,7 +170,7 @@ fn text(
             }
         }
     }
-    text += READING;
+    text += CONCLUSIONS;
     text += "\n–: left out, because the previous level took more than 0.4 s, or the structure cannot hold quads.\n";
     Ok(text)
 }

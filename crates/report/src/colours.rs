@@ -4,13 +4,13 @@
 //! override presentation attributes of SVG, so a rule for `[fill="#17181a"]` is enough.
 
 /// Colour of text and axes.
-pub(crate) const INK: &str = "#17181a";
+pub(crate) const TEXT_COLOUR: &str = "#17181a";
 /// Colour of the background.
-pub(crate) const PAPER: &str = "#fdfdfc";
+pub(crate) const BACKGROUND: &str = "#fdfdfc";
 /// Colour of grid lines.
-pub(crate) const GRID: &str = "#dcdcda";
+pub(crate) const GRID_COLOUR: &str = "#dcdcda";
 /// Colour of intervals over bars.
-pub(crate) const WHISKER: &str = "#33353a";
+pub(crate) const INTERVAL_COLOUR: &str = "#33353a";
 
 /// Name, colour on light pages and colour on dark pages of each column; after Okabe and Ito (2008),
 /// for all types of colour vision.
@@ -42,7 +42,7 @@ const TABLES: [(&str, &str); 8] = [
 ];
 
 /// Returns the colour of a column.
-pub(crate) fn of_column(name: &str) -> &'static str {
+pub(crate) fn column_colour(name: &str) -> &'static str {
     let ours = COLUMNS.iter().find(|(column, ..)| *column == name);
     let other = || {
         let turn = name.bytes().map(usize::from).sum::<usize>() % OTHERS.len();
@@ -52,17 +52,17 @@ pub(crate) fn of_column(name: &str) -> &'static str {
 }
 
 /// Returns the colour of table `number` within a structure.
-pub(crate) fn of_table(number: usize) -> &'static str {
+pub(crate) fn table_colour(number: usize) -> &'static str {
     TABLES[number % TABLES.len()].0
 }
 
 /// Returns the style rules for dark pages.
 pub(crate) fn dark_rules() -> String {
     let page = [
-        (INK, "#e4e4e2"),
-        (PAPER, "#17181a"),
-        (GRID, "#3a3b3e"),
-        (WHISKER, "#d0d0ce"),
+        (TEXT_COLOUR, "#e4e4e2"),
+        (BACKGROUND, "#17181a"),
+        (GRID_COLOUR, "#3a3b3e"),
+        (INTERVAL_COLOUR, "#d0d0ce"),
     ];
     let columns = COLUMNS.iter().map(|&(_, light, dark)| (light, dark));
     let pairs = page.into_iter().chain(columns).chain(OTHERS).chain(TABLES);
@@ -80,13 +80,13 @@ mod tests {
     fn all_colours_are_different() {
         let mut all: Vec<&str> = COLUMNS.iter().map(|(_, light, _)| *light).collect();
         all.extend(OTHERS.iter().map(|(light, _)| *light));
-        all.extend([INK, PAPER, GRID, WHISKER]);
+        all.extend([TEXT_COLOUR, BACKGROUND, GRID_COLOUR, INTERVAL_COLOUR]);
         all.extend(TABLES.iter().map(|(light, _)| *light));
         let count = all.len();
         all.sort_unstable();
         all.dedup();
         assert_eq!(all.len(), count);
         assert!(all.iter().all(|hex| hex.len() == 7 && hex.starts_with('#')));
-        assert_ne!(of_column("half-edge"), of_column("lox"));
+        assert_ne!(column_colour("half-edge"), column_colour("lox"));
     }
 }

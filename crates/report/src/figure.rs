@@ -9,7 +9,7 @@ use kuva::render::render::{Scene, render_multiple};
 use kuva::{Theme, TickFormat};
 use sixfold_study::numbers::times;
 
-use crate::colours::{GRID, INK, PAPER, dark_rules};
+use crate::colours::{BACKGROUND, GRID_COLOUR, TEXT_COLOUR, dark_rules};
 
 /// A figure with its numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,28 +51,28 @@ impl Table {
 }
 
 /// Length of the shortest bar, as a part of the longest: the logarithm of the ratio 1 is 0.
-pub(crate) const LEAST: f64 = 0.02;
+pub(crate) const MIN_BAR_LENGTH: f64 = 0.02;
 
-/// Returns a format that shows logarithms as ratios, for an axis up to `most`.
-pub(crate) fn ratios(most: f64) -> TickFormat {
-    let close = most < 0.5;
+/// Returns a format that shows logarithms as ratios, for an axis up to `max_log`.
+pub(crate) fn ratio_ticks(max_log: f64) -> TickFormat {
+    let close = max_log < 0.5;
     TickFormat::Custom(Arc::new(move |log: f64| match 10_f64.powf(log) {
         ratio if close => format!("{ratio:.2} ×"),
         ratio => times(ratio),
     }))
 }
 
-/// Returns a layout in the colours and fonts of the report.
-pub(crate) fn laid_out(plots: &[Plot], width: f64, height: f64) -> Layout {
+/// Returns a layout with the colours and fonts of the report, and the given size.
+pub(crate) fn base_layout(plots: &[Plot], width: f64, height: f64) -> Layout {
     let theme = Theme {
-        background: PAPER.into(),
-        axis_color: INK.into(),
-        grid_color: GRID.into(),
-        tick_color: INK.into(),
-        text_color: INK.into(),
-        legend_bg: PAPER.into(),
-        legend_border: GRID.into(),
-        colorbar_border: INK.into(),
+        background: BACKGROUND.into(),
+        axis_color: TEXT_COLOUR.into(),
+        grid_color: GRID_COLOUR.into(),
+        tick_color: TEXT_COLOUR.into(),
+        text_color: TEXT_COLOUR.into(),
+        legend_bg: BACKGROUND.into(),
+        legend_border: GRID_COLOUR.into(),
+        colorbar_border: TEXT_COLOUR.into(),
         font_family: Some("system-ui, sans-serif".into()),
         ..Theme::light()
     };
@@ -86,13 +86,13 @@ pub(crate) fn laid_out(plots: &[Plot], width: f64, height: f64) -> Layout {
 }
 
 /// Draws `plots` as SVG.
-pub(crate) fn drawn(title: &str, plots: Vec<Plot>, layout: Layout) -> String {
-    finished(title, &render_multiple(plots, layout))
+pub(crate) fn render_svg(title: &str, plots: Vec<Plot>, layout: Layout) -> String {
+    scene_svg(title, &render_multiple(plots, layout))
 }
 
 /// Renders `scene` as SVG that scales to the page, follows its dark mode, and has `title` as a
 /// label for screen readers.
-pub(crate) fn finished(title: &str, scene: &Scene) -> String {
+pub(crate) fn scene_svg(title: &str, scene: &Scene) -> String {
     let svg = SvgBackend::new().render_scene(scene);
     let Some((head, body)) = svg.split_once('>') else {
         return svg;

@@ -11,7 +11,7 @@ mod roofline;
 use sixfold_study::numbers::{counted, grouped};
 use sixfold_study::{Collection, Environment, Labs, MeshReport, Report};
 
-use crate::{Figure, Page, Section};
+use crate::{Figure, ReportPage, Section};
 
 /// One row of a ranking: a structure or an external program.
 pub(crate) struct Row<'a> {
@@ -27,7 +27,7 @@ pub(crate) struct Row<'a> {
     pub(crate) note: String,
 }
 
-pub(crate) fn page(collection: &Collection, command: &str) -> Page {
+pub(crate) fn page(collection: &Collection, command: &str) -> ReportPage {
     let single = match (&collection.studies[..], collection.meshes.len()) {
         ([study], 1) => Some(study),
         _ => None,
@@ -43,7 +43,8 @@ pub(crate) fn page(collection: &Collection, command: &str) -> Page {
         }
     };
     // The recorded command if all results share one.
-    let mut commands = environments(collection).map(|environment| made_by(environment, command));
+    let mut commands =
+        environments(collection).map(|environment| recorded_command(environment, command));
     let first = commands.next().unwrap_or(command);
     let command = match commands.all(|other| other == first) {
         true => first,
@@ -59,25 +60,25 @@ pub(crate) fn page(collection: &Collection, command: &str) -> Page {
     let section = |(place, study): (usize, &Report)| Section {
         title: study.mesh.name.clone(),
         facts: facts(&study.mesh),
-        words: study.words.clone(),
-        figures: of_one_of_many(study, place + 1, command),
+        sentences: study.sentences.clone(),
+        figures: section_figures(study, place + 1, command),
     };
-    Page {
+    ReportPage {
         title,
         command: command.into(),
         machines,
-        words: match single {
-            Some(study) => [vec![facts(&study.mesh)], study.words.clone()].concat(),
-            None => collection.words.clone(),
+        sentences: match single {
+            Some(study) => [vec![facts(&study.mesh)], study.sentences.clone()].concat(),
+            None => collection.sentences.clone(),
         },
         warnings: {
             let warnings = single.map_or_else(Vec::new, |study| study.warnings.clone());
-            let cut = is_cut_short(collection).then(|| CUT_SHORT.to_owned());
-            warnings.into_iter().chain(cut).collect()
+            let interrupted = is_interrupted(collection).then(|| INTERRUPTED.to_owned());
+            warnings.into_iter().chain(interrupted).collect()
         },
         figures: match single {
-            Some(study) => of_one(study, command),
-            None => pooled(collection, command),
+            Some(study) => study_figures(study, command),
+            None => pooled_figures(collection, command),
         },
         meshes: match single {
             Some(_) => Vec::new(),
@@ -92,9 +93,9 @@ pub(crate) fn page(collection: &Collection, command: &str) -> Page {
 }
 
 /// Warning about interrupted results.
-const CUT_SHORT: &str = "Interrupted: some results rest only on the finished part; `sixfold study --resume` continues the report.";
+const INTERRUPTED: &str = "Interrupted: some results rest only on the finished part; `sixfold study --resume` continues the report.";
 
-fn is_cut_short(collection: &Collection) -> bool {
+fn is_interrupted(collection: &Collection) -> bool {
     let mut studies = collection.studies.iter();
     studies.any(|study| study.interrupted) || collection.labs.interrupted()
 }
@@ -106,7 +107,7 @@ fn environments(collection: &Collection) -> impl Iterator<Item = &Environment> {
 }
 
 /// Returns the recorded command of these results, or else that of the page.
-fn made_by<'a>(environment: &'a Environment, command: &'a str) -> &'a str {
+fn recorded_command<'a>(environment: &'a Environment, command: &'a str) -> &'a str {
     environment.command.as_deref().unwrap_or(command)
 }
 
@@ -123,11 +124,11 @@ fn labs(labs: &Labs, command: &str) -> Vec<Section> {
         sections.push(Section {
             title: format!("What the order of {} costs", orders.mesh.name),
             facts: facts(&orders.mesh),
-            words: orders.words.clone(),
-            figures: orders::of_orders(
+            sentences: orders.sentences.clone(),
+            figures: orders::from_orders(
                 orders,
-                &numbered("orders", i),
-                made_by(&orders.environment, command),
+                &numbered_id("orders", i),
+                recorded_command(&orders.environment, command),
             ),
         });
     }
@@ -141,34 +142,36 @@ fn labs(labs: &Labs, command: &str) -> Vec<Section> {
         sections.push(Section {
             title: format!("How costs grow: {}, {}", growth.shape, growth.order),
             facts: sizes,
-            words: growth.words.clone(),
-            figures: growth::of_growth(
+            sentences: growth.sentences.clone(),
+            figures: growth::from_growth(
                 growth,
-                &numbered("growth", i),
-                made_by(&growth.environment, command),
+                &numbered_id("growth", i),
+                recorded_command(&growth.environment, command),
             ),
         });
     }
     for (i, why) in why.iter().enumerate() {
         let environment = why.environment.as_ref();
-        let command = environment.map_or(command, |environment| made_by(environment, command));
-        let figure = roofline::of_why(why, &numbered("roofline", i), command);
+        let command = environment.map_or(command, |environment| {
+            recorded_command(environment, command)
+        });
+        let figure = roofline::from_why(why, &numbered_id("roofline", i), command);
         sections.extend(figure.map(|figure| Section {
             title: format!("What limits queries on {}", why.mesh.name),
             facts: facts(&why.mesh),
-            words: Vec::new(),
+            sentences: Vec::new(),
             figures: vec![figure],
         }));
     }
-    for (i, answer) in picks.iter().enumerate() {
-        let command = made_by(&answer.environment, command);
-        let id = numbered("pick", i);
-        let ranked = ranking::of_workload(answer, &id, command);
-        let curves = break_even::of_workload(answer, &format!("{id}-break-even"), command);
+    for (i, pick) in picks.iter().enumerate() {
+        let command = recorded_command(&pick.environment, command);
+        let id = numbered_id("pick", i);
+        let ranked = ranking::from_workload(pick, &id, command);
+        let curves = break_even::from_workload(pick, &format!("{id}-break-even"), command);
         sections.push(Section {
-            title: format!("{} on {}", answer.workload.name, answer.meshes.join(", ")),
-            facts: answer.workload.summary.trim().to_owned(),
-            words: [&answer.words[..], &answer.warnings].concat(),
+            title: format!("{} on {}", pick.workload.name, pick.meshes.join(", ")),
+            facts: pick.workload.summary.trim().to_owned(),
+            sentences: [&pick.sentences[..], &pick.warnings].concat(),
             figures: ranked.into_iter().chain(curves).collect(),
         });
     }
@@ -176,7 +179,7 @@ fn labs(labs: &Labs, command: &str) -> Vec<Section> {
 }
 
 /// Returns `orders`, `orders-2`, and so on for places 0, 1, …
-fn numbered(name: &str, place: usize) -> String {
+fn numbered_id(name: &str, place: usize) -> String {
     match place {
         0 => name.into(),
         _ => format!("{name}-{}", place + 1),
@@ -184,28 +187,28 @@ fn numbered(name: &str, place: usize) -> String {
 }
 
 /// Draws all figures of a single study.
-fn of_one(study: &Report, command: &str) -> Vec<Figure> {
-    let command = made_by(&study.environment, command);
+fn study_figures(study: &Report, command: &str) -> Vec<Figure> {
+    let command = recorded_command(&study.environment, command);
     let mut figures = Vec::new();
-    figures.extend(heat_map::of_study(study, "", command));
-    figures.extend(memory::of_study(study, "", command));
-    figures.extend(break_even::of_study(study, "", command));
-    figures.extend(ranking::of_study(study, command));
+    figures.extend(heat_map::from_study(study, "", command));
+    figures.extend(memory::from_study(study, "", command));
+    figures.extend(break_even::from_study(study, "", command));
+    figures.extend(ranking::from_study(study, command));
     figures
 }
 
 /// Draws the figures of one of many studies: fewer, to keep the page short.
-fn of_one_of_many(study: &Report, place: usize, command: &str) -> Vec<Figure> {
+fn section_figures(study: &Report, place: usize, command: &str) -> Vec<Figure> {
     // Different names can have the same slug, so add the place.
-    let of = format!("mesh-{place}-{}-", slug(&study.mesh.name));
-    let command = made_by(&study.environment, command);
+    let id_prefix = format!("mesh-{place}-{}-", slug(&study.mesh.name));
+    let command = recorded_command(&study.environment, command);
     let mut figures = Vec::new();
-    figures.extend(heat_map::of_study(study, &of, command));
-    figures.extend(memory::of_study(study, &of, command));
+    figures.extend(heat_map::from_study(study, &id_prefix, command));
+    figures.extend(memory::from_study(study, &id_prefix, command));
     figures
 }
 
-fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
+fn pooled_figures(collection: &Collection, command: &str) -> Vec<Figure> {
     let mut figures = Vec::new();
     figures.extend(heat_map::pooled(collection, command));
     figures.extend(ranking::pooled(collection, command));
@@ -213,20 +216,20 @@ fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
 }
 
 /// Returns `per vertex`, `per edge`, and so on.
-pub(crate) fn one(per: &str) -> String {
-    format!("per {per}")
+pub(crate) fn per_unit(unit: &str) -> String {
+    format!("per {unit}")
 }
 
 /// Converts a name for use in links and file names.
 fn slug(mesh: &str) -> String {
-    let fine = |c: char| {
+    let safe = |c: char| {
         if c.is_ascii_alphanumeric() {
             c.to_ascii_lowercase()
         } else {
             '-'
         }
     };
-    mesh.chars().map(fine).collect()
+    mesh.chars().map(safe).collect()
 }
 
 fn facts(mesh: &MeshReport) -> String {

@@ -4,13 +4,13 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::colours::dark_rules;
 use crate::figure::{Figure, Table};
-use crate::{Page, Section};
+use crate::{ReportPage, Section};
 
 /// Style sheet: fonts, light and dark mode, printing, small screens.
 const STYLE: &str = "\
-:root{color-scheme:light dark;--ink:#17181a;--paper:#fdfdfc;--faint:#66686c;--line:#dcdcda;--link:#1f6fb0}\
-@media (prefers-color-scheme:dark){:root{--ink:#e4e4e2;--paper:#17181a;--faint:#a0a2a6;--line:#3a3b3e;--link:#5ba4e6}}\
-body{margin:0 auto;max-width:60rem;padding:1rem;background:var(--paper);color:var(--ink);\
+:root{color-scheme:light dark;--text:#17181a;--background:#fdfdfc;--faint:#66686c;--line:#dcdcda;--link:#1f6fb0}\
+@media (prefers-color-scheme:dark){:root{--text:#e4e4e2;--background:#17181a;--faint:#a0a2a6;--line:#3a3b3e;--link:#5ba4e6}}\
+body{margin:0 auto;max-width:60rem;padding:1rem;background:var(--background);color:var(--text);\
 font:16px/1.5 system-ui,sans-serif}\
 h1{font-size:1.6rem;line-height:1.2}h2{font-size:1.25rem;margin-top:2.5rem;overflow-wrap:anywhere}\
 h3{font-size:1.05rem}a{color:var(--link)}code,pre{font:.9em/1.4 ui-monospace,monospace}\
@@ -23,7 +23,7 @@ td:first-child,th:first-child{text-align:left}summary{cursor:pointer;color:var(-
 .warning::before{content:'! ';font-weight:bold}\
 @media print{body{max-width:none}details::details-content{content-visibility:visible}.scroll{overflow:visible}}";
 
-impl Page {
+impl ReportPage {
     /// Returns the page as HTML; it loads nothing from a network.
     pub fn html(&self) -> String {
         let dark = format!("@media (prefers-color-scheme:dark){{{}}}", dark_rules());
@@ -42,7 +42,7 @@ impl Page {
                     h1 { (self.title) }
                     pre { code { (self.command) } }
                     @for machine in &self.machines { p { (machine) } }
-                    (sentences(&self.words))
+                    (list(&self.sentences))
                     @for warning in &self.warnings { p.warning { (warning) } }
                     @if !self.failures.is_empty() {
                         h2 { "Not studied" }
@@ -56,16 +56,16 @@ impl Page {
                         h2 { "Still to be done" }
                         ul { @for mesh in &self.missing { li { code { (mesh) } } } }
                     }
-                    @for figure in &self.figures { (shown(figure, "h2", None)) }
+                    @for figure in &self.figures { (figure_section(figure, "h2", None)) }
                     @for lab in &self.labs {
                         h2 { (lab.title) }
                         p { (lab.facts) }
-                        (sentences(&lab.words))
-                        @for figure in &lab.figures { (shown(figure, "h3", None)) }
+                        (list(&lab.sentences))
+                        @for figure in &lab.figures { (figure_section(figure, "h3", None)) }
                     }
                     @if !self.meshes.is_empty() {
                         h2 { "Mesh by mesh" }
-                        @for section in &self.meshes { (of_mesh(section)) }
+                        @for section in &self.meshes { (mesh_section(section)) }
                     }
                 }
             }
@@ -74,27 +74,27 @@ impl Page {
     }
 }
 
-fn sentences(words: &[String]) -> Markup {
+fn list(sentences: &[String]) -> Markup {
     html! {
-        @if !words.is_empty() {
-            ul { @for sentence in words { li { (sentence) } } }
+        @if !sentences.is_empty() {
+            ul { @for sentence in sentences { li { (sentence) } } }
         }
     }
 }
 
 /// Returns the section of one mesh, collapsed at first so that a page with many of them opens fast.
-fn of_mesh(section: &Section) -> Markup {
+fn mesh_section(section: &Section) -> Markup {
     html! {
         details {
             summary { (section.title) " – " (section.facts) }
-            (sentences(&section.words))
-            @for figure in &section.figures { (shown(figure, "h3", Some(&section.title))) }
+            (list(&section.sentences))
+            @for figure in &section.figures { (figure_section(figure, "h3", Some(&section.title))) }
         }
     }
 }
 
 /// Returns a figure under a heading; `mesh` is the name of its mesh if the page has several.
-fn shown(figure: &Figure, heading: &str, mesh: Option<&str>) -> Markup {
+fn figure_section(figure: &Figure, heading: &str, mesh: Option<&str>) -> Markup {
     html! {
         section id=(figure.id) {
             @if heading == "h2" { h2 { (figure.title) } } @else { h3 { (figure.title) } }
@@ -105,7 +105,7 @@ fn shown(figure: &Figure, heading: &str, mesh: Option<&str>) -> Markup {
             }
             details {
                 summary { "Numbers and command" }
-                (rows(&figure.table))
+                (table_markup(&figure.table))
                 pre { code { (figure.command) } }
             }
         }
@@ -120,7 +120,7 @@ fn without_style(svg: &str) -> String {
     }
 }
 
-fn rows(table: &Table) -> Markup {
+fn table_markup(table: &Table) -> Markup {
     html! {
         div.scroll {
             table {

@@ -1,10 +1,11 @@
 //! Reports on studies: one self-contained HTML page, or Markdown with figures.
 //!
-//! [`Page::of`] draws the figures of a [`Collection`] and of its labs. Each figure has a table of
-//! its numbers, and the command that reproduces it. [`Page::html`] returns one file that needs no
-//! network; it supports light and dark mode, printing and small screens. [`Page::markdown`] returns
-//! a text for a repository, with the figures as SVG files beside it. Each mark of a figure has its
-//! name and value as a title, which is shown when pointing at it and can be read by programs.
+//! [`ReportPage::new`] draws the figures of a [`Collection`] and of its labs. Each figure has a table
+//! of its numbers, and the command that reproduces it. [`ReportPage::html`] returns one file that
+//! needs no network; it supports light and dark mode, printing and small screens.
+//! [`ReportPage::markdown`] returns a text for a repository, with the figures as SVG files beside it.
+//! Each mark of a figure has its name and value as a title, which is shown when pointing at it and
+//! can be read by programs.
 
 mod colours;
 mod figure;
@@ -20,7 +21,7 @@ pub use panels::{Panel, panels};
 
 /// A report, before it is written as HTML or Markdown.
 #[derive(Clone, Debug)]
-pub struct Page {
+pub struct ReportPage {
     /// Title.
     pub title: String,
     /// The command that reproduces the report.
@@ -28,7 +29,7 @@ pub struct Page {
     /// Descriptions of the different machines, one line each.
     pub machines: Vec<String>,
     /// Sentences on the figures.
-    pub words: Vec<String>,
+    pub sentences: Vec<String>,
     /// Possible problems, with advice.
     pub warnings: Vec<String>,
     /// Figures over all meshes, or of the only mesh.
@@ -51,21 +52,21 @@ pub struct Section {
     /// Facts about its subject, in one line.
     pub facts: String,
     /// Sentences on the figures.
-    pub words: Vec<String>,
+    pub sentences: Vec<String>,
     /// Its figures.
     pub figures: Vec<Figure>,
 }
 
-impl Page {
+impl ReportPage {
     /// Draws `collection`. `command` is used for results that do not record their own command.
-    pub fn of(collection: &Collection, command: &str) -> Self {
+    pub fn new(collection: &Collection, command: &str) -> Self {
         figures::page(collection, command)
     }
 
     /// Iterates over all figures, in the order of the page.
     pub fn all_figures(&self) -> impl Iterator<Item = &Figure> {
         let sections = self.labs.iter().chain(&self.meshes);
-        let of_sections = sections.flat_map(|section| &section.figures);
-        self.figures.iter().chain(of_sections)
+        let section_figures = sections.flat_map(|section| &section.figures);
+        self.figures.iter().chain(section_figures)
     }
 }

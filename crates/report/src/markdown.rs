@@ -2,74 +2,74 @@
 
 use std::fmt::Write as _;
 
-use crate::Page;
+use crate::ReportPage;
 use crate::figure::{Figure, Table};
 
-impl Page {
+impl ReportPage {
     /// Returns the page as Markdown; it links to its figures as `figures/ID.svg`.
     pub fn markdown(&self) -> String {
         let mut text = format!(
             "# {}\n\n```sh\n{}\n```\n\n",
-            plain(&self.title),
+            escape(&self.title),
             self.command
         );
         for machine in &self.machines {
-            let _ = writeln!(text, "{}\n", plain(machine));
+            let _ = writeln!(text, "{}\n", escape(machine));
         }
-        sentences(&mut text, &self.words);
+        write_list(&mut text, &self.sentences);
         for warning in &self.warnings {
-            let _ = writeln!(text, "> {}\n", plain(warning));
+            let _ = writeln!(text, "> {}\n", escape(warning));
         }
         if !self.failures.is_empty() {
             text.push_str("## Not studied\n\n");
             for (mesh, reason) in &self.failures {
-                let _ = writeln!(text, "- {}: {}", plain(mesh), plain(reason));
+                let _ = writeln!(text, "- {}: {}", escape(mesh), escape(reason));
             }
             text.push('\n');
         }
         if !self.missing.is_empty() {
             text.push_str("## Still to be done\n\n");
-            sentences(&mut text, &self.missing);
+            write_list(&mut text, &self.missing);
         }
         for figure in &self.figures {
-            shown(&mut text, figure, "##");
+            write_figure(&mut text, figure, "##");
         }
         for section in self.labs.iter().chain(&self.meshes) {
             let _ = writeln!(
                 text,
                 "## {}\n\n{}\n",
-                plain(&section.title),
-                plain(&section.facts)
+                escape(&section.title),
+                escape(&section.facts)
             );
-            sentences(&mut text, &section.words);
+            write_list(&mut text, &section.sentences);
             for figure in &section.figures {
-                shown(&mut text, figure, "###");
+                write_figure(&mut text, figure, "###");
             }
         }
         text
     }
 }
 
-fn sentences(text: &mut String, words: &[String]) {
-    for sentence in words {
-        let _ = writeln!(text, "- {}", plain(sentence));
+fn write_list(text: &mut String, sentences: &[String]) {
+    for sentence in sentences {
+        let _ = writeln!(text, "- {}", escape(sentence));
     }
-    if !words.is_empty() {
+    if !sentences.is_empty() {
         text.push('\n');
     }
 }
 
-fn shown(text: &mut String, figure: &Figure, heading: &str) {
-    let (title, id) = (plain(&figure.title), &figure.id);
+fn write_figure(text: &mut String, figure: &Figure, heading: &str) {
+    let (title, id) = (escape(&figure.title), &figure.id);
     let _ = writeln!(text, "{heading} {title}\n\n![{title}](figures/{id}.svg)\n");
-    let _ = writeln!(text, "{}\n", plain(&figure.caption));
-    rows(text, &figure.table);
+    let _ = writeln!(text, "{}\n", escape(&figure.caption));
+    write_table(text, &figure.table);
     let _ = writeln!(text, "```sh\n{}\n```\n", figure.command);
 }
 
-fn rows(text: &mut String, table: &Table) {
+fn write_table(text: &mut String, table: &Table) {
     let line = |cells: &[String]| {
-        let cells: Vec<String> = cells.iter().map(|cell| plain(cell)).collect();
+        let cells: Vec<String> = cells.iter().map(|cell| escape(cell)).collect();
         format!("| {} |\n", cells.join(" | "))
     };
     text.push_str(&line(&table.header));
@@ -84,7 +84,7 @@ fn rows(text: &mut String, table: &Table) {
 }
 
 /// Escapes the special characters of Markdown and replaces line breaks by spaces.
-fn plain(text: &str) -> String {
+fn escape(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -105,8 +105,8 @@ mod tests {
 
     #[test]
     fn file_names_are_escaped() {
-        assert_eq!(plain("a|b_[c](d).obj"), "a\\|b\\_\\[c\\](d).obj");
-        assert_eq!(plain("a\nb"), "a b");
+        assert_eq!(escape("a|b_[c](d).obj"), "a\\|b\\_\\[c\\](d).obj");
+        assert_eq!(escape("a\nb"), "a b");
     }
 
     #[test]
@@ -114,7 +114,7 @@ mod tests {
         let mut table = Table::new(["", "x"]);
         table.row(vec!["a".into(), "1".into()]);
         let mut text = String::new();
-        rows(&mut text, &table);
+        write_table(&mut text, &table);
         assert_eq!(text, "|  | x |\n|---|---:|\n| a | 1 |\n\n");
     }
 }

@@ -4,8 +4,8 @@ use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::figure::Figure as Grid;
 use kuva::render::plots::Plot;
 
-use crate::colours::of_column;
-use crate::figure::{finished, laid_out};
+use crate::colours::column_colour;
+use crate::figure::{base_layout, scene_svg};
 
 /// Width and height of one panel.
 const SIZE: [f64; 2] = [400.0, 320.0];
@@ -32,7 +32,7 @@ pub fn panels(title: &str, columns: usize, panels: &[Panel]) -> String {
         let drawn: Vec<Plot> = lines
             .flat_map(|(name, points)| line(name, points))
             .collect();
-        let layout = laid_out(&drawn, SIZE[0], SIZE[1])
+        let layout = base_layout(&drawn, SIZE[0], SIZE[1])
             .with_title(panel.title.clone())
             .with_title_size(14)
             .with_x_label(panel.x_label.clone())
@@ -46,12 +46,12 @@ pub fn panels(title: &str, columns: usize, panels: &[Panel]) -> String {
         .with_layouts(layouts)
         .with_cell_size(SIZE[0], SIZE[1])
         .with_shared_legend_bottom();
-    finished(title, &grid.render())
+    scene_svg(title, &grid.render())
 }
 
 /// Returns a line through `points`, and marks for the points.
 fn line(name: &str, points: &[(f64, f64)]) -> [Plot; 2] {
-    let colour = of_column(name);
+    let colour = column_colour(name);
     let line = LinePlot::new()
         .with_data(points.to_vec())
         .with_color(colour)

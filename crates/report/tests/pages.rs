@@ -4,19 +4,19 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use sixfold::shapes;
-use sixfold_report::{Figure, Page};
-use sixfold_study::{Asked, Collection, Operation, Report, Settings, Specimen, study};
+use sixfold_report::{Figure, ReportPage};
+use sixfold_study::{Collection, Operation, Report, Settings, SharedSettings, StudyMesh, study};
 
-const HOSTILE: &str = "<script>alert('a|b')</script>&.obj";
+const NAME_WITH_MARKUP: &str = "<script>alert('a|b')</script>&.obj";
 
 fn report(mesh: &str) -> Report {
-    let specimen = Specimen::new(mesh, shapes::icosahedron());
+    let study_mesh = StudyMesh::new(mesh, shapes::icosahedron());
     let settings = Settings {
         operations: operations(),
         budget: Duration::from_millis(80),
         ..Settings::default()
     };
-    let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ());
+    let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ());
     report.expect("a study")
 }
 
@@ -30,23 +30,23 @@ fn operations() -> Vec<Operation> {
 
 fn collection(meshes: &[&str]) -> Collection {
     let names: Vec<String> = meshes.iter().map(|&mesh| mesh.to_owned()).collect();
-    let asked = Asked {
+    let settings = SharedSettings {
         operations: operations(),
         budget_s: 0.08,
-        ..Asked::default()
+        ..SharedSettings::default()
     };
-    let mut collection = Collection::new(names, asked);
+    let mut collection = Collection::new(names, settings);
     for mesh in meshes {
-        collection.finish(report(mesh));
+        collection.add_study(report(mesh));
     }
     collection
 }
 
-fn marks(figure: &Figure) -> usize {
+fn mark_count(figure: &Figure) -> usize {
     figure.svg.matches("<title>").count()
 }
 
-fn named<'p>(page: &'p Page, id: &str) -> &'p Figure {
+fn figure_by_id<'p>(page: &'p ReportPage, id: &str) -> &'p Figure {
     let mut figures = page.all_figures();
     figures
         .find(|figure| figure.id == id)
@@ -55,14 +55,14 @@ fn named<'p>(page: &'p Page, id: &str) -> &'p Figure {
 
 #[test]
 fn every_figure_has_as_many_marks_as_numbers() {
-    let page = Page::of(&collection(&["ball.obj"]), "sixfold study ball.obj");
-    let heat_map = named(&page, "heat-map");
-    assert_eq!(marks(heat_map), 3 * 6);
+    let page = ReportPage::new(&collection(&["ball.obj"]), "sixfold study ball.obj");
+    let heat_map = figure_by_id(&page, "heat-map");
+    assert_eq!(mark_count(heat_map), 3 * 6);
     assert_eq!(heat_map.table.rows.len(), 3);
     for operation in operations() {
         let id = format!("ranking-{}", operation.name().replace('_', "-"));
-        let ranking = named(&page, &id);
-        assert_eq!(marks(ranking), 6, "{id}");
+        let ranking = figure_by_id(&page, &id);
+        assert_eq!(mark_count(ranking), 6, "{id}");
         // The table is ranked, the fastest first.
         let ratios = ranking.table.rows.iter().map(|row| row[1].parse::<f64>());
         let ratios: Vec<f64> = ratios.map(|ratio| ratio.expect("a number")).collect();
@@ -73,9 +73,9 @@ fn every_figure_has_as_many_marks_as_numbers() {
         );
         assert!(ratios.is_sorted(), "{id}: {ratios:?}");
     }
-    let memory = named(&page, "memory");
+    let memory = figure_by_id(&page, "memory");
     assert!(memory.table.rows.len() >= 12, "{:?}", memory.table);
-    let break_even = named(&page, "break-even");
+    let break_even = figure_by_id(&page, "break-even");
     assert_eq!(break_even.table.rows.len(), 6);
     for figure in page.all_figures() {
         let columns = figure.table.header.len();
@@ -97,21 +97,21 @@ fn every_figure_has_as_many_marks_as_numbers() {
 #[test]
 fn an_interrupted_page_has_a_warning() {
     let mut whole = collection(&["ball.obj"]);
-    let said = |collection: &Collection| {
-        let page = Page::of(collection, "sixfold study ball.obj");
+    let has_warning = |collection: &Collection| {
+        let page = ReportPage::new(collection, "sixfold study ball.obj");
         [page.html(), page.markdown()].map(|text| text.contains("Interrupted: "))
     };
-    assert_eq!(said(&whole), [false; 2]);
+    assert_eq!(has_warning(&whole), [false; 2]);
     whole.studies[0].interrupted = true;
-    assert_eq!(said(&whole), [true; 2]);
+    assert_eq!(has_warning(&whole), [true; 2]);
 }
 
 #[test]
 fn a_page_of_several_meshes_has_pooled_figures_and_one_section_each() {
-    let mut both = collection(&["a.obj", HOSTILE]);
+    let mut both = collection(&["a.obj", NAME_WITH_MARKUP]);
     both.meshes.push("gone.obj".into());
-    both.fail("gone.obj", "no such file".into());
-    let page = Page::of(&both, "sixfold study a.obj");
+    both.add_failure("gone.obj", "no such file".into());
+    let page = ReportPage::new(&both, "sixfold study a.obj");
     assert_eq!(page.meshes.len(), 2);
     assert!(page.figures.iter().any(|figure| figure.id == "heat-map"));
     assert!(
@@ -134,7 +134,7 @@ fn a_page_of_several_meshes_has_pooled_figures_and_one_section_each() {
 
 #[test]
 fn pages_load_nothing_and_names_are_escaped() {
-    let page = Page::of(&collection(&[HOSTILE]), "sixfold study '<b>'");
+    let page = ReportPage::new(&collection(&[NAME_WITH_MARKUP]), "sixfold study '<b>'");
     let html = page.html();
     assert!(!html.contains("<script"), "a name became code");
     assert!(!html.contains("<b>"), "a command became code");

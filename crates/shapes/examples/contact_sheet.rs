@@ -1,4 +1,5 @@
-//! Draws every shape of [`sixfold_shapes::RECIPES`], and the orders of one mesh, into one SVG file.
+//! Draws every shape of [`sixfold_shapes::GENERATORS`], and the orders of one mesh, into one SVG
+//! file.
 //!
 //! The projection is orthographic. The painter's algorithm draws far faces first and near faces
 //! over them (Newell, Newell and Sancha 1972). Coordinates are rounded to a tenth of a pixel, and
@@ -9,14 +10,14 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 
 use sixfold_core::{Facts, PolygonMesh, VertexId};
-use sixfold_shapes::{Order, RECIPES, Recipe};
+use sixfold_shapes::{GENERATORS, Generator, Order};
 
 /// First line of the picture. It is a processing instruction, because an XML comment must not
 /// contain two hyphens in a row.
 const COMMAND: &str = "<?made-by cargo run --release -p sixfold-shapes --example contact_sheet > reports/shapes/contact-sheet.svg?>";
 
 /// Parameters for shapes whose defaults are too dense for a cell or hide details.
-const SMALLER: &[(&str, &[(&str, f64)])] = &[
+const PARAMETERS: &[(&str, &[(&str, f64)])] = &[
     ("grid", &[("m", 8.0), ("n", 8.0)]),
     ("triangle-grid", &[("m", 8.0), ("n", 8.0)]),
     ("mixed-grid", &[("m", 8.0), ("n", 8.0)]),
@@ -35,7 +36,7 @@ const SMALLER: &[(&str, &[(&str, f64)])] = &[
 ];
 
 /// Maximum number of faces with drawn edges; a cell is too small for the edges of more.
-const MOST_EDGED: usize = 2_000;
+const MAX_FACES_WITH_EDGES: usize = 2_000;
 
 const COLUMNS: usize = 6;
 const CELL: [f64; 2] = [190.0, 226.0];
@@ -48,32 +49,32 @@ const GAP: f64 = 10.0;
 const TONES: usize = 24;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    if let Some((name, _)) = SMALLER
+    if let Some((name, _)) = PARAMETERS
         .iter()
-        .find(|(name, _)| sixfold_shapes::recipe(name).is_none())
+        .find(|(name, _)| sixfold_shapes::generator(name).is_none())
     {
         return Err(format!("unknown shape {name:?}").into());
     }
     let mut cells = Vec::new();
-    for recipe in RECIPES {
-        let given = SMALLER.iter().find(|(name, _)| *name == recipe.name);
+    for generator in GENERATORS {
+        let given = PARAMETERS.iter().find(|(name, _)| *name == generator.name);
         let given = given.map_or(&[][..], |(_, parameters)| parameters);
-        let mesh = recipe.make(given)?;
+        let mesh = generator.build(given)?;
         cells.push(cell(
-            recipe.name,
-            &settings(recipe, given, mesh.face_count()),
+            generator.name,
+            &settings(generator, given, mesh.face_count()),
             &mesh,
-            Paint::Light,
+            Colouring::Light,
         ));
     }
     let ordered = sixfold_shapes::triangle_torus(32, 14)?;
     for order in Order::ALL {
-        let mesh = order.of(&ordered, 1);
+        let mesh = order.apply(&ordered, 1);
         cells.push(cell(
             "triangle-torus",
             &format!("order: {order}"),
             &mesh,
-            Paint::Order,
+            Colouring::Order,
         ));
     }
     std::io::stdout().write_all(sheet(&cells)?.as_bytes())?;
@@ -82,14 +83,14 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Returns the parameters of a shape as drawn, such as `m 8 · n 8`, or the summary if the shape has
 /// no parameters.
-fn settings(recipe: &Recipe, given: &[(&str, f64)], faces: usize) -> String {
-    if faces > MOST_EDGED {
+fn settings(generator: &Generator, given: &[(&str, f64)], faces: usize) -> String {
+    if faces > MAX_FACES_WITH_EDGES {
         return "edges not drawn".to_owned();
     }
-    if recipe.parameters.is_empty() {
-        return recipe.summary.to_owned();
+    if generator.parameters.is_empty() {
+        return generator.summary.to_owned();
     }
-    let shown = recipe.parameters.iter().map(|parameter| {
+    let shown = generator.parameters.iter().map(|parameter| {
         let given = given.iter().find(|(name, _)| *name == parameter.name);
         let value = given.map_or(parameter.default, |(_, value)| *value);
         format!("{} {value}", parameter.name)
@@ -130,7 +131,7 @@ fn sheet(cells: &[String]) -> Result<String, std::fmt::Error> {
 
 /// How the faces of a cell are coloured.
 #[derive(Clone, Copy, PartialEq)]
-enum Paint {
+enum Colouring {
     /// By brightness, from one light.
     Light,
     /// By their row in the face list.
@@ -206,7 +207,7 @@ struct View([Vector; 3]);
 
 impl View {
     /// Views flat meshes from above, and others from a corner and above.
-    fn of(mesh: &PolygonMesh) -> Self {
+    fn new(mesh: &PolygonMesh) -> Self {
         let mut heights = mesh.positions().iter().map(|p| p.z);
         let flat = heights
             .next()
@@ -223,13 +224,13 @@ impl View {
         Self([right, cross(towards, right), towards])
     }
 
-    fn see(&self, p: Vector) -> Vector {
+    fn project(&self, p: Vector) -> Vector {
         self.0.map(|axis| dot(axis, p))
     }
 }
 
 /// A projected face: its corners in the picture, its depth, and its tone.
-struct Seen {
+struct ProjectedFace {
     corners: Vec<[i64; 2]>,
     depth: f64,
     ramp: char,
@@ -237,18 +238,18 @@ struct Seen {
 }
 
 /// Draws one cell: the mesh, its name, its parameters and its counts.
-fn cell(name: &str, settings: &str, mesh: &PolygonMesh, paint: Paint) -> String {
-    let facts = Facts::of(mesh);
+fn cell(name: &str, settings: &str, mesh: &PolygonMesh, colouring: Colouring) -> String {
+    let facts = Facts::from_polygons(mesh);
     let weight = match mesh.face_count() {
         0..=100 => "bold",
-        101..=MOST_EDGED => "fine",
+        101..=MAX_FACES_WITH_EDGES => "fine",
         _ => "fine plain",
     };
     let mut svg = format!(
         "<rect class=\"card\" width=\"{}\" height=\"{}\" rx=\"6\"/>\n<g class=\"{weight}\" transform=\"translate({} {}) scale(.1)\">\n",
         CELL[0], CELL[1], CENTRE[0], CENTRE[1]
     );
-    for face in seen(mesh, facts.closed, paint) {
+    for face in project_faces(mesh, facts.closed, colouring) {
         svg.push_str(&path(&face));
         svg.push('\n');
     }
@@ -271,14 +272,14 @@ fn cell(name: &str, settings: &str, mesh: &PolygonMesh, paint: Paint) -> String 
 
 /// Projects the faces and sorts them from far to near. Of a closed mesh, only the faces that look
 /// towards the viewer are returned.
-fn seen(mesh: &PolygonMesh, closed: bool, paint: Paint) -> Vec<Seen> {
-    let view = View::of(mesh);
+fn project_faces(mesh: &PolygonMesh, closed: bool, colouring: Colouring) -> Vec<ProjectedFace> {
+    let view = View::new(mesh);
     let points: Vec<Vector> = mesh
         .positions()
         .iter()
-        .map(|p| view.see(p.as_dvec3().to_array()))
+        .map(|p| view.project(p.as_dvec3().to_array()))
         .collect();
-    let (middle, scale) = frame(&points);
+    let (middle, scale) = fit(&points);
     let light = unit([-0.45, 0.6, 0.75]);
     let mut faces = Vec::new();
     for (f, face) in mesh.faces().iter() {
@@ -288,16 +289,16 @@ fn seen(mesh: &PolygonMesh, closed: bool, paint: Paint) -> Vec<Seen> {
         if closed && normal[2] <= 0.0 {
             continue;
         }
-        let towards_us = if front { normal } else { normal.map(|x| -x) };
-        let (ramp, brightness) = match paint {
-            Paint::Light => {
-                let lit = dot(towards_us, light).max(0.0);
+        let towards_viewer = if front { normal } else { normal.map(|x| -x) };
+        let (ramp, brightness) = match colouring {
+            Colouring::Light => {
+                let lit = dot(towards_viewer, light).max(0.0);
                 (if front { 'a' } else { 'b' }, 0.15 + 0.85 * lit)
             }
-            Paint::Order => ('c', 1.0 - f.index() as f64 / mesh.face_count() as f64),
+            Colouring::Order => ('c', 1.0 - f.index() as f64 / mesh.face_count() as f64),
         };
         let depth: f64 = face.iter().map(|v| corner(v)[2]).sum();
-        faces.push(Seen {
+        faces.push(ProjectedFace {
             corners: face
                 .iter()
                 .map(|v| {
@@ -316,7 +317,7 @@ fn seen(mesh: &PolygonMesh, closed: bool, paint: Paint) -> Vec<Seen> {
 }
 
 /// Returns the centre of the projected points, and the scale at which they fill the picture.
-fn frame(points: &[Vector]) -> ([f64; 2], f64) {
+fn fit(points: &[Vector]) -> ([f64; 2], f64) {
     let side = |i: usize| {
         let low = points.iter().map(|p| p[i]).fold(f64::INFINITY, f64::min);
         let high = points
@@ -325,8 +326,8 @@ fn frame(points: &[Vector]) -> ([f64; 2], f64) {
             .fold(f64::NEG_INFINITY, f64::max);
         (low.midpoint(high), high - low)
     };
-    let [(x, wide), (y, high)] = [side(0), side(1)];
-    ([x, y], PICTURE / wide.max(high))
+    let [(x, width), (y, high)] = [side(0), side(1)];
+    ([x, y], PICTURE / width.max(high))
 }
 
 /// Returns a vector along the normal of a polygon whose length is twice the area (Newell).
@@ -345,7 +346,7 @@ fn area(mut corners: impl Iterator<Item = Vector>) -> Vector {
 
 /// Formats a face as a path in tenths of a pixel. Every corner except the first is relative to the
 /// previous one.
-fn path(face: &Seen) -> String {
+fn path(face: &ProjectedFace) -> String {
     let mut path = format!("<path class=\"{}{}\" d=\"M", face.ramp, face.tone);
     let mut last = [0, 0];
     for (i, corner) in face.corners.iter().enumerate() {

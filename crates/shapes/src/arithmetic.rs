@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, LN_2, LOG2_E};
 ///
 /// Integer arithmetic reduces the turn to one of eight mirrored octants. So points that mirror each
 /// other do so to the last bit.
-pub(crate) fn turn(k: usize, n: usize) -> [f64; 2] {
+pub(crate) fn unit_circle(k: usize, n: usize) -> [f64; 2] {
     let eighths = 8 * (k % n);
     let (octant, rest) = (eighths / n, eighths % n);
     let part = if octant % 2 == 0 { rest } else { n - rest };
@@ -64,16 +64,16 @@ mod tests {
 
     #[test]
     fn a_turn_agrees_with_the_platform_and_is_exact_at_the_quarters() {
-        assert_eq!(turn(0, 7), [1.0, 0.0]);
-        assert_eq!(turn(1, 4), [0.0, 1.0]);
-        assert_eq!(turn(9, 3), [1.0, 0.0]);
+        assert_eq!(unit_circle(0, 7), [1.0, 0.0]);
+        assert_eq!(unit_circle(1, 4), [0.0, 1.0]);
+        assert_eq!(unit_circle(9, 3), [1.0, 0.0]);
         for n in 1..100 {
             for k in 0..2 * n {
-                let [c, s] = turn(k, n);
+                let [c, s] = unit_circle(k, n);
                 let angle = std::f64::consts::TAU * k as f64 / n as f64;
                 assert!((c - angle.cos()).abs() < 4e-15, "cos of {k}/{n}");
                 assert!((s - angle.sin()).abs() < 4e-15, "sin of {k}/{n}");
-                let [mirrored, opposite] = turn(2 * n - k, n);
+                let [mirrored, opposite] = unit_circle(2 * n - k, n);
                 assert_eq!([c, s], [mirrored, -opposite], "{k}/{n}");
             }
         }
@@ -81,8 +81,8 @@ mod tests {
 
     #[test]
     fn neighbours_differ_on_the_finest_circle() {
-        let n = crate::error::MAX_AROUND;
-        let point = |k| turn(k, n).map(|x| x as f32);
+        let n = crate::error::MAX_SEGMENTS;
+        let point = |k| unit_circle(k, n).map(|x| x as f32);
         for k in 0..n {
             assert_ne!(point(k), point(k + 1), "{k}/{n}");
         }

@@ -19,7 +19,7 @@ pub(crate) struct Bounds {
 impl Bounds {
     /// Builds the box that extends by `half` in both directions from `centre`; `None` if a side is
     /// negative.
-    pub(crate) fn around(centre: [f64; 3], half: [f64; 3]) -> Option<Self> {
+    pub(crate) fn from_centre(centre: [f64; 3], half: [f64; 3]) -> Option<Self> {
         half.iter().all(|&side| side >= 0.0).then(|| Self {
             low: std::array::from_fn(|axis| centre[axis] - half[axis]),
             high: std::array::from_fn(|axis| centre[axis] + half[axis]),
@@ -27,18 +27,18 @@ impl Bounds {
     }
 
     /// Returns the smallest box that contains both boxes.
-    pub(crate) fn hull(a: Option<Self>, b: Option<Self>) -> Option<Self> {
+    pub(crate) fn union(a: Option<Self>, b: Option<Self>) -> Option<Self> {
         match (a, b) {
             (Some(a), Some(b)) => Some(Self {
                 low: std::array::from_fn(|axis| a.low[axis].min(b.low[axis])),
                 high: std::array::from_fn(|axis| a.high[axis].max(b.high[axis])),
             }),
-            (one, other) => one.or(other),
+            (a, b) => a.or(b),
         }
     }
 
     /// Returns the intersection of both boxes.
-    pub(crate) fn overlap(a: Option<Self>, b: Option<Self>) -> Option<Self> {
+    pub(crate) fn intersection(a: Option<Self>, b: Option<Self>) -> Option<Self> {
         let (a, b) = (a?, b?);
         let low: [f64; 3] = std::array::from_fn(|axis| a.low[axis].max(b.low[axis]));
         let high: [f64; 3] = std::array::from_fn(|axis| a.high[axis].min(b.high[axis]));
@@ -49,12 +49,12 @@ impl Bounds {
 
     /// Returns whether a point is in the box.
     #[cfg(test)]
-    pub(crate) fn holds(&self, point: [f64; 3]) -> bool {
+    pub(crate) fn contains(&self, point: [f64; 3]) -> bool {
         (0..3).all(|axis| (self.low[axis]..=self.high[axis]).contains(&point[axis]))
     }
 
     /// Returns the length of the longest side.
-    pub(crate) fn longest(&self) -> f64 {
+    pub(crate) fn longest_side(&self) -> f64 {
         let [x, y, z]: [f64; 3] = std::array::from_fn(|axis| self.high[axis] - self.low[axis]);
         x.max(y).max(z)
     }
@@ -69,20 +69,24 @@ impl Bounds {
             std::array::from_fn(|axis| (self.high[axis] - self.low[axis]) / SLICES as f64);
         let [x, y, z] = step;
         let radius = (x * x + y * y + z * z).sqrt() / 2.0;
-        let mut left = None;
+        let mut remaining = None;
         for block in 0..SLICES.pow(3) {
-            let at = [
+            let index = [
                 block % SLICES,
                 block / SLICES % SLICES,
                 block / (SLICES * SLICES),
             ];
-            let centre =
-                std::array::from_fn(|axis| self.low[axis] + (at[axis] as f64 + 0.5) * step[axis]);
+            let centre = std::array::from_fn(|axis| {
+                self.low[axis] + (index[axis] as f64 + 0.5) * step[axis]
+            });
             if !empty(centre, radius) {
-                left = Self::hull(left, Self::around(centre, step.map(|side| side / 2.0)));
+                remaining = Self::union(
+                    remaining,
+                    Self::from_centre(centre, step.map(|side| side / 2.0)),
+                );
             }
         }
-        left
+        remaining
     }
 
     /// Builds a lattice of cubes of side `spacing` that extends beyond the box by one or two cubes

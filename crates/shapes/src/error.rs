@@ -6,31 +6,31 @@
 #[expect(missing_docs, reason = "the message shows the meaning of each field")]
 pub enum ShapeError {
     /// A parameter is outside the range of the shape.
-    #[error("{parameter} = {value}: choose from {least} to {greatest}")]
+    #[error("{parameter} = {value}: choose from {min} to {max}")]
     OutOfRange {
         parameter: &'static str,
         value: f64,
-        least: f64,
-        greatest: f64,
+        min: f64,
+        max: f64,
     },
     /// Each parameter is in its range, but together they give too many corners.
-    #[error("{shape} with {} has {corners} corners, more than {limit}: choose smaller numbers", list(.parameters))]
-    TooMany {
+    #[error("{shape} with {} has {corners} corners, more than {limit}: choose smaller numbers", format_parameters(.parameters))]
+    TooManyCorners {
         shape: &'static str,
         parameters: Vec<(&'static str, usize)>,
         corners: u64,
         limit: u64,
     },
     /// A count is not a whole number.
-    #[error("{parameter} = {value}: choose a whole number from {least} to {greatest}")]
-    NotWhole {
+    #[error("{parameter} = {value}: choose a whole number from {min} to {max}")]
+    NotInteger {
         parameter: &'static str,
         value: f64,
-        least: f64,
-        greatest: f64,
+        min: f64,
+        max: f64,
     },
     /// The shape has no parameter of this name.
-    #[error("{shape} has no parameter {given:?}: {}", allowed(.parameters))]
+    #[error("{shape} has no parameter {given:?}: {}", format_allowed(.parameters))]
     UnknownParameter {
         shape: &'static str,
         given: String,
@@ -50,7 +50,7 @@ pub enum ShapeError {
     Unbounded,
     /// The solid is empty, or too thin for the lattice.
     #[error("the solid contains no lattice point: make it thicker, or choose more faces")]
-    Nothing,
+    Empty,
     /// The lattice is too large for memory, or too fine for `f32`.
     #[error(
         "a lattice of spacing {spacing:e} is too fine for this solid: choose fewer faces, or move the solid to the origin"
@@ -58,7 +58,7 @@ pub enum ShapeError {
     TooFine { spacing: f64 },
     /// No lattice gives the requested number of faces, because the number changes in jumps.
     #[error("no lattice gives {faces} faces: choose about {nearest}")]
-    Missed { faces: usize, nearest: usize },
+    UnreachableFaceCount { faces: usize, nearest: usize },
 }
 
 /// Maximum number of corners of a shape: every structure can number this many (2³¹ − 1).
@@ -69,54 +69,54 @@ pub(crate) const MAX_CORNERS: u64 = (1 << 31) - 1;
 pub(crate) const MAX_SIDE: usize = 1 << 22;
 
 /// Maximum number of steps around a circle. With `f32`, adjacent points still differ everywhere.
-pub(crate) const MAX_AROUND: usize = 1 << 20;
+pub(crate) const MAX_SEGMENTS: usize = 1 << 20;
 
-/// Returns an error if `value` is outside `least..=greatest`.
-pub(crate) fn within(
+/// Returns an error if `value` is outside `min..=max`.
+pub(crate) fn check_count(
     parameter: &'static str,
     value: usize,
-    least: usize,
-    greatest: usize,
+    min: usize,
+    max: usize,
 ) -> Result<(), ShapeError> {
-    if (least..=greatest).contains(&value) {
+    if (min..=max).contains(&value) {
         return Ok(());
     }
-    let [value, least, greatest] = [value, least, greatest].map(|x| x as f64);
+    let [value, min, max] = [value, min, max].map(|x| x as f64);
     Err(ShapeError::OutOfRange {
         parameter,
         value,
-        least,
-        greatest,
+        min,
+        max,
     })
 }
 
-/// Returns an error if `value` is NaN or outside `least..=greatest`.
-pub(crate) fn between(
+/// Returns an error if `value` is NaN or outside `min..=max`.
+pub(crate) fn check_value(
     parameter: &'static str,
     value: f64,
-    least: f64,
-    greatest: f64,
+    min: f64,
+    max: f64,
 ) -> Result<(), ShapeError> {
-    if (least..=greatest).contains(&value) {
+    if (min..=max).contains(&value) {
         return Ok(());
     }
     Err(ShapeError::OutOfRange {
         parameter,
         value,
-        least,
-        greatest,
+        min,
+        max,
     })
 }
 
 /// Returns an error if there are more than [`MAX_CORNERS`] corners.
-pub(crate) fn corners_within(
+pub(crate) fn check_corners(
     shape: &'static str,
     parameters: &[(&'static str, usize)],
     corners: u64,
 ) -> Result<usize, ShapeError> {
     match usize::try_from(corners) {
         Ok(count) if corners <= MAX_CORNERS => Ok(count),
-        _ => Err(ShapeError::TooMany {
+        _ => Err(ShapeError::TooManyCorners {
             shape,
             parameters: parameters.to_vec(),
             corners,
@@ -126,7 +126,7 @@ pub(crate) fn corners_within(
 }
 
 /// Formats parameters as `m = 3, n = 4`.
-fn list(parameters: &[(&'static str, usize)]) -> String {
+fn format_parameters(parameters: &[(&'static str, usize)]) -> String {
     let pairs: Vec<String> = parameters
         .iter()
         .map(|(name, value)| format!("{name} = {value}"))
@@ -135,7 +135,7 @@ fn list(parameters: &[(&'static str, usize)]) -> String {
 }
 
 /// Formats the allowed names as `choose from m, n`.
-fn allowed(parameters: &[&'static str]) -> String {
+fn format_allowed(parameters: &[&'static str]) -> String {
     match parameters {
         [] => "it has no parameters".to_owned(),
         names => format!("choose from {}", names.join(", ")),

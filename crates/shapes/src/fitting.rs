@@ -3,8 +3,8 @@
 use sixfold_core::PolygonMesh;
 
 use crate::bounds::Bounds;
-use crate::error::{ShapeError, within};
-use crate::marching::{Solid, polygonised as marched};
+use crate::error::{ShapeError, check_count};
+use crate::marching::{Solid, polygonised as triangulate};
 
 /// Minimum number of faces that can be requested.
 pub(crate) const MIN_FACES: usize = 100;
@@ -13,14 +13,14 @@ pub(crate) const MIN_FACES: usize = 100;
 pub(crate) const MAX_FACES: usize = 4_000_000;
 
 /// Maximum number of lattices that are tried.
-const TRIES: u32 = 24;
+const MAX_ATTEMPTS: u32 = 24;
 
-/// Size of a lattice, in cubes, above which the solid counts as empty if no face was found.
-const FRUITLESS: f64 = (1 << 22) as f64;
+/// Maximum number of cubes of a lattice without faces; above it, the solid counts as empty.
+const MAX_EMPTY_CUBES: f64 = (1 << 22) as f64;
 
 /// Returns an error if the number of faces is out of range.
 pub(crate) fn check_faces(faces: usize) -> Result<(), ShapeError> {
-    within("faces", faces, MIN_FACES, MAX_FACES)
+    check_count("faces", faces, MIN_FACES, MAX_FACES)
 }
 
 /// Builds the surface of `solid`, which lies within `bounds`, from about `faces` triangles.
@@ -34,19 +34,19 @@ pub(crate) fn polygonised(
     faces: usize,
 ) -> Result<PolygonMesh, ShapeError> {
     let tolerance = (faces / 20).max(20);
-    let mut spacing = bounds.longest() / 16.0;
+    let mut spacing = bounds.longest_side() / 16.0;
     if spacing == 0.0 {
-        return Err(ShapeError::Nothing); // The bounds are a single point.
+        return Err(ShapeError::Empty); // The bounds are a single point.
     }
     let mut nearest = 0;
-    for attempt in 0..TRIES {
+    for attempt in 0..MAX_ATTEMPTS {
         let lattice = bounds.lattice(spacing, shift(attempt))?;
-        let draft = marched(solid, &lattice);
-        let count = draft.face_count();
+        let builder = triangulate(solid, &lattice);
+        let count = builder.face_count();
         if count.abs_diff(faces) <= tolerance {
-            return Ok(draft.finish());
+            return Ok(builder.build());
         }
-        if count == 0 && nearest == 0 && lattice.cubes() > FRUITLESS {
+        if count == 0 && nearest == 0 && lattice.cubes() > MAX_EMPTY_CUBES {
             break;
         }
         if count.abs_diff(faces) < faces.abs_diff(nearest) {
@@ -55,8 +55,8 @@ pub(crate) fn polygonised(
         spacing *= (count as f64 / faces as f64).sqrt().clamp(0.5, 2.0);
     }
     match nearest {
-        0 => Err(ShapeError::Nothing),
-        nearest => Err(ShapeError::Missed { faces, nearest }),
+        0 => Err(ShapeError::Empty),
+        nearest => Err(ShapeError::UnreachableFaceCount { faces, nearest }),
     }
 }
 

@@ -2,8 +2,8 @@
 
 use sixfold_core::PolygonMesh;
 
-use crate::draft::Draft;
-use crate::error::{ShapeError, within};
+use crate::builder::MeshBuilder;
+use crate::error::{ShapeError, check_count};
 use crate::platonic::{ICOSAHEDRON_FACES, ICOSAHEDRON_VERTICES};
 
 /// Maximum frequency: 60 f² corners must not exceed 2³¹ − 1.
@@ -28,59 +28,59 @@ pub(crate) const MAX_FREQUENCY: usize = 5_982;
 ///
 /// Fails if `frequency` is outside 1 to 5982.
 pub fn geodesic(frequency: usize) -> Result<PolygonMesh, ShapeError> {
-    within("frequency", frequency, 1, MAX_FREQUENCY)?;
+    check_count("frequency", frequency, 1, MAX_FREQUENCY)?;
     let f = frequency;
-    let mut draft = Draft::with_capacity(10 * f * f + 2, 60 * f * f);
+    let mut builder = MeshBuilder::with_capacity(10 * f * f + 2, 60 * f * f);
     for corner in 0..12 {
-        draft.vertex(on_sphere([(corner, 1), (corner, 0), (corner, 0)]));
+        builder.add_vertex(on_sphere([(corner, 1), (corner, 0), (corner, 0)]));
     }
     let edges = edges();
     for &[a, b] in &edges {
         for k in 1..f {
-            draft.vertex(on_sphere([(a, f - k), (b, k), (b, 0)]));
+            builder.add_vertex(on_sphere([(a, f - k), (b, k), (b, 0)]));
         }
     }
     for face in ICOSAHEDRON_FACES {
-        let mut names = Triangle::of(f, face, &edges);
+        let mut numbers = FaceLattice::new(f, face, &edges);
         // Row j lies j steps from the side ab towards c.
         for j in 1..f {
             for i in 1..f - j {
                 let [a, b, c] = face;
-                let inner = draft.vertex(on_sphere([(a, f - i - j), (b, i), (c, j)]));
-                names.set(i, j, inner);
+                let inner = builder.add_vertex(on_sphere([(a, f - i - j), (b, i), (c, j)]));
+                numbers.set(i, j, inner);
             }
         }
         for j in 0..f {
             for i in 0..f - j {
-                draft.face([names.at(i, j), names.at(i + 1, j), names.at(i, j + 1)]);
+                builder.add_face([numbers.at(i, j), numbers.at(i + 1, j), numbers.at(i, j + 1)]);
                 if i + j + 1 < f {
-                    let right = names.at(i + 1, j + 1);
-                    draft.face([names.at(i + 1, j), right, names.at(i, j + 1)]);
+                    let right = numbers.at(i + 1, j + 1);
+                    builder.add_face([numbers.at(i + 1, j), right, numbers.at(i, j + 1)]);
                 }
             }
         }
     }
-    Ok(draft.finish())
+    Ok(builder.build())
 }
 
 /// Vertex numbers of the lattice points of one subdivided face, row by row.
-struct Triangle {
+struct FaceLattice {
     frequency: usize,
-    names: Vec<u32>,
+    numbers: Vec<u32>,
 }
 
-impl Triangle {
+impl FaceLattice {
     /// Fills in the points that the face shares with other faces. The inner points are set later.
-    fn of(frequency: usize, [a, b, c]: [u32; 3], edges: &[[u32; 2]]) -> Self {
+    fn new(frequency: usize, [a, b, c]: [u32; 3], edges: &[[u32; 2]]) -> Self {
         let f = frequency;
-        let names = vec![0; (f + 1) * (f + 2) / 2];
-        let mut triangle = Self { frequency, names };
+        let numbers = vec![0; (f + 1) * (f + 2) / 2];
+        let mut lattice = Self { frequency, numbers };
         for k in 0..f {
-            triangle.set(k, 0, on_edge(f, a, b, k, edges));
-            triangle.set(f - k, k, on_edge(f, b, c, k, edges));
-            triangle.set(0, f - k, on_edge(f, c, a, k, edges));
+            lattice.set(k, 0, on_edge(f, a, b, k, edges));
+            lattice.set(f - k, k, on_edge(f, b, c, k, edges));
+            lattice.set(0, f - k, on_edge(f, c, a, k, edges));
         }
-        triangle
+        lattice
     }
 
     fn index(&self, i: usize, j: usize) -> usize {
@@ -89,12 +89,12 @@ impl Triangle {
     }
 
     fn at(&self, i: usize, j: usize) -> u32 {
-        self.names[self.index(i, j)]
+        self.numbers[self.index(i, j)]
     }
 
-    fn set(&mut self, i: usize, j: usize, name: u32) {
+    fn set(&mut self, i: usize, j: usize, number: u32) {
         let index = self.index(i, j);
-        self.names[index] = name;
+        self.numbers[index] = number;
     }
 }
 

@@ -27,15 +27,15 @@
 
 use sixfold_core::PolygonMesh;
 
-use crate::error::{ShapeError, between, within};
+use crate::error::{ShapeError, check_count, check_value};
 use crate::fitting;
-use crate::node::{Node, square};
+use crate::node::{Node, length_squared};
 
 /// Maximum radius, level and absolute value of a coordinate.
-const GREATEST: f64 = 1e6;
+const MAX_VALUE: f64 = 1e6;
 
 /// Minimum radius, level and sharpness.
-const LEAST: f64 = 1e-6;
+const MIN_VALUE: f64 = 1e-6;
 
 /// Maximum nesting depth of fields. A chain of unions is as deep as it is long. To join many parts,
 /// join them in pairs, then join the pairs in pairs.
@@ -68,7 +68,7 @@ impl Field {
     /// Fails if a coordinate is beyond ±10⁶ or the radius is outside 10⁻⁶ to 10⁶.
     pub fn sphere(centre: [f64; 3], radius: f64) -> Result<Self, ShapeError> {
         check_point("centre", centre)?;
-        between("radius", radius, LEAST, GREATEST)?;
+        check_value("radius", radius, MIN_VALUE, MAX_VALUE)?;
         Ok(Self::simple(Node::Sphere { centre, radius }))
     }
 
@@ -87,10 +87,10 @@ impl Field {
     ) -> Result<Self, ShapeError> {
         check_point("centre", centre)?;
         check_point("axis", axis)?;
-        let length = square(axis).sqrt();
-        between("axis length", length, LEAST, GREATEST)?;
-        between("ring", ring, LEAST, GREATEST)?;
-        between("tube", tube, LEAST, GREATEST)?;
+        let length = length_squared(axis).sqrt();
+        check_value("axis length", length, MIN_VALUE, MAX_VALUE)?;
+        check_value("ring", ring, MIN_VALUE, MAX_VALUE)?;
+        check_value("tube", tube, MIN_VALUE, MAX_VALUE)?;
         let axis = axis.map(|x| x / length);
         Ok(Self::simple(Node::Torus {
             centre,
@@ -109,7 +109,7 @@ impl Field {
     pub fn cuboid(centre: [f64; 3], half: [f64; 3]) -> Result<Self, ShapeError> {
         check_point("centre", centre)?;
         for side in half {
-            between("half", side, LEAST, GREATEST)?;
+            check_value("half", side, MIN_VALUE, MAX_VALUE)?;
         }
         Ok(Self::simple(Node::Cuboid { centre, half }))
     }
@@ -121,13 +121,13 @@ impl Field {
     /// Fails if a coordinate or strength is beyond ±10⁶, if a sharpness or the level is outside
     /// 10⁻⁶ to 10⁶, or if there are more than 10⁶ blobs.
     pub fn blobs(blobs: &[Blob], level: f64) -> Result<Self, ShapeError> {
-        between("blobs", blobs.len() as f64, 0.0, GREATEST)?;
+        check_value("blobs", blobs.len() as f64, 0.0, MAX_VALUE)?;
         for blob in blobs {
             check_point("centre", blob.centre)?;
-            between("strength", blob.strength, -GREATEST, GREATEST)?;
-            between("sharpness", blob.sharpness, LEAST, GREATEST)?;
+            check_value("strength", blob.strength, -MAX_VALUE, MAX_VALUE)?;
+            check_value("sharpness", blob.sharpness, MIN_VALUE, MAX_VALUE)?;
         }
-        between("level", level, LEAST, GREATEST)?;
+        check_value("level", level, MIN_VALUE, MAX_VALUE)?;
         let blobs = blobs.to_vec();
         Ok(Self::simple(Node::Blobs { blobs, level }))
     }
@@ -138,7 +138,7 @@ impl Field {
     ///
     /// Fails if the nesting depth exceeds 500.
     pub fn union(self, other: Self) -> Result<Self, ShapeError> {
-        self.with(other, Node::Union)
+        self.combined(other, Node::Union)
     }
 
     /// Returns the intersection: the points that are in both solids.
@@ -147,7 +147,7 @@ impl Field {
     ///
     /// Fails if the nesting depth exceeds 500.
     pub fn intersection(self, other: Self) -> Result<Self, ShapeError> {
-        self.with(other, Node::Intersection)
+        self.combined(other, Node::Intersection)
     }
 
     /// Returns the difference: the points that are in this solid and not in `other`.
@@ -156,7 +156,7 @@ impl Field {
     ///
     /// Fails if the nesting depth exceeds 500.
     pub fn difference(self, other: Self) -> Result<Self, ShapeError> {
-        self.with(other, Node::Difference)
+        self.combined(other, Node::Difference)
     }
 
     /// Returns the union with smooth levels around it: smoothest for `alpha` = 0, not smoothed for
@@ -166,8 +166,8 @@ impl Field {
     ///
     /// Fails if `alpha` is outside 0 to 1 or the nesting depth exceeds 500.
     pub fn smooth_union(self, other: Self, alpha: f64) -> Result<Self, ShapeError> {
-        between("alpha", alpha, 0.0, 1.0)?;
-        self.with(other, |parts| Node::SmoothUnion { parts, alpha })
+        check_value("alpha", alpha, 0.0, 1.0)?;
+        self.combined(other, |parts| Node::SmoothUnion { parts, alpha })
     }
 
     /// Moves the surface to the level `by`: the solid grows, or shrinks if `by` is negative.
@@ -176,12 +176,12 @@ impl Field {
     ///
     /// Fails if `by` is beyond ±10⁶ or the nesting depth exceeds 500.
     pub fn inflated(self, by: f64) -> Result<Self, ShapeError> {
-        between("by", by, -GREATEST, GREATEST)?;
+        check_value("by", by, -MAX_VALUE, MAX_VALUE)?;
         let part = Box::new(self.node);
         Self::nested(Node::Inflated { part, by }, self.depth)
     }
 
-    fn with(
+    fn combined(
         self,
         other: Self,
         join: impl FnOnce(Box<[Node; 2]>) -> Node,
@@ -192,7 +192,7 @@ impl Field {
 
     /// Builds a field from parts that are nested at most `depth` deep.
     fn nested(node: Node, depth: usize) -> Result<Self, ShapeError> {
-        within("depth", depth + 1, 1, MAX_DEPTH)?;
+        check_count("depth", depth + 1, 1, MAX_DEPTH)?;
         let depth = depth + 1;
         Ok(Self { node, depth })
     }
@@ -220,21 +220,21 @@ impl Field {
     /// memory or for `f32` at these coordinates.
     pub fn polygonised(&self, faces: usize) -> Result<PolygonMesh, ShapeError> {
         fitting::check_faces(faces)?;
-        let bounds = self.node.bounds()?.ok_or(ShapeError::Nothing)?;
+        let bounds = self.node.bounds()?.ok_or(ShapeError::Empty)?;
         fitting::polygonised(&self.node, bounds, faces)
     }
 
     /// Builds the surface on a lattice of the given spacing.
     pub(crate) fn polygonised_at(&self, spacing: f64) -> Result<PolygonMesh, ShapeError> {
-        let bounds = self.node.bounds()?.ok_or(ShapeError::Nothing)?;
+        let bounds = self.node.bounds()?.ok_or(ShapeError::Empty)?;
         let lattice = bounds.lattice(spacing, [0.0; 3])?;
-        Ok(crate::marching::polygonised(&self.node, &lattice).finish())
+        Ok(crate::marching::polygonised(&self.node, &lattice).build())
     }
 }
 
 fn check_point(parameter: &'static str, point: [f64; 3]) -> Result<(), ShapeError> {
     for coordinate in point {
-        between(parameter, coordinate, -GREATEST, GREATEST)?;
+        check_value(parameter, coordinate, -MAX_VALUE, MAX_VALUE)?;
     }
     Ok(())
 }

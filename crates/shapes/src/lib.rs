@@ -27,23 +27,24 @@
 //! from above. No two vertices share a position (for a patch, this depends on the control net). The
 //! code calls no trigonometric function of the platform, so a shape is the same on every machine.
 //! Parameters outside the documented ranges return a [`ShapeError`] before anything is allocated.
-//! [`Order`] changes the order of any mesh; [`RECIPES`] lists all shapes by name.
+//! [`Order`] changes the order of any mesh; [`GENERATORS`] lists all shapes by name.
 //!
 //! ```
 //! use sixfold_core::Facts;
 //!
-//! let torus = sixfold_shapes::recipe("torus").expect("a shape of that name");
-//! let mesh = torus.make(&[("m", 40.0), ("n", 20.0)])?;
+//! let torus = sixfold_shapes::generator("torus").expect("a shape of that name");
+//! let mesh = torus.build(&[("m", 40.0), ("n", 20.0)])?;
 //! assert_eq!(mesh, sixfold_shapes::torus(40, 20)?);
-//! assert_eq!(Facts::of(&sixfold_shapes::morton(&mesh)).genus, Some(1));
+//! assert_eq!(Facts::from_polygons(&sixfold_shapes::morton(&mesh)).genus, Some(1));
 //! # Ok::<(), sixfold_shapes::ShapeError>(())
 //! ```
 
 mod arithmetic;
 mod bounds;
-mod draft;
+mod builder;
 mod error;
 mod fitting;
+mod generator;
 mod genus;
 mod geodesic;
 pub mod implicit;
@@ -53,12 +54,12 @@ mod order;
 mod patch;
 mod planar;
 mod platonic;
-mod recipe;
 mod solids;
 mod study;
 mod surfaces;
 
 pub use error::ShapeError;
+pub use generator::{GENERATORS, Generator, Parameter, generator};
 pub use genus::genus;
 pub use geodesic::geodesic;
 pub use order::{Order, Reordered, UnknownOrder, breadth_first, morton, shuffled};
@@ -68,7 +69,6 @@ pub use planar::{
     triangle_tiling,
 };
 pub use platonic::{cube, dodecahedron, icosahedron, octahedron, tetrahedron};
-pub use recipe::{Parameter, RECIPES, Recipe, recipe};
 pub use solids::{antiprism, prism, uv_sphere};
 pub use study::default_study;
 pub use surfaces::{moebius, torus, triangle_torus};

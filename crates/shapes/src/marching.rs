@@ -1,6 +1,6 @@
 //! Marching tetrahedra: triangulates the surface of a solid.
 
-use crate::draft::Draft;
+use crate::builder::MeshBuilder;
 
 /// Minimum distance of a crossing from a lattice point, as a fraction of the lattice edge.
 ///
@@ -69,13 +69,13 @@ const PATHS: [[usize; 4]; 6] = [
 /// count as outside. So the surface is a closed, consistently oriented manifold for any values.
 /// Time: O(lattice points). The solid is evaluated near the surface only, and two layers of values
 /// are kept.
-pub(crate) fn polygonised<S: Solid>(solid: &S, lattice: &Lattice) -> Draft {
+pub(crate) fn polygonised<S: Solid>(solid: &S, lattice: &Lattice) -> MeshBuilder {
     let [nx, ny, nz] = lattice.cells;
-    let mut march = March {
+    let mut sweep = Sweep {
         solid,
         lattice,
         signs: Vec::new(),
-        draft: Draft::with_capacity(0, 0),
+        builder: MeshBuilder::with_capacity(0, 0),
         values: [
             vec![1.0; (nx + 1) * (ny + 1)],
             vec![1.0; (nx + 1) * (ny + 1)],
@@ -88,27 +88,27 @@ pub(crate) fn polygonised<S: Solid>(solid: &S, lattice: &Lattice) -> Draft {
     };
     // The lowest layer is outermost, so all its points are outside, which is the initial value.
     for z in 0..nz {
-        march.sample(z + 1);
+        sweep.sample(z + 1);
         for y in 0..ny {
             for x in 0..nx {
-                march.cube([x, y, z]);
+                sweep.add_cube([x, y, z]);
             }
         }
-        march.values.swap(0, 1);
-        march.crossings.swap(0, 1);
-        march.touched.swap(0, 1);
-        for column in march.touched[1].drain(..) {
-            march.crossings[1][column] = [None; 8];
+        sweep.values.swap(0, 1);
+        sweep.crossings.swap(0, 1);
+        sweep.touched.swap(0, 1);
+        for column in sweep.touched[1].drain(..) {
+            sweep.crossings[1][column] = [None; 8];
         }
     }
-    march.draft
+    sweep.builder
 }
 
 /// Two layers of the lattice, which move upwards.
-struct March<'a, S> {
+struct Sweep<'a, S> {
     solid: &'a S,
     lattice: &'a Lattice,
-    draft: Draft,
+    builder: MeshBuilder,
     /// Values on the lower and on the upper layer.
     values: [Vec<f64>; 2],
     /// For each lattice point and direction (bits zyx): the vertex on that lattice edge.
@@ -119,7 +119,7 @@ struct March<'a, S> {
     signs: Vec<Option<f64>>,
 }
 
-impl<S: Solid> March<'_, S> {
+impl<S: Solid> Sweep<'_, S> {
     /// Computes the values on the upper layer, which is layer `z`.
     fn sample(&mut self, z: usize) {
         let [nx, ny, _] = self.lattice.cells;
@@ -157,14 +157,14 @@ impl<S: Solid> March<'_, S> {
         }
     }
 
-    fn cube(&mut self, cube: [usize; 3]) {
+    fn add_cube(&mut self, cube: [usize; 3]) {
         let corner = |bits: usize| self.values[bits >> 2][self.column(cube, bits)] < 0.0;
         let inside: [bool; 8] = std::array::from_fn(corner);
         if inside == [inside[0]; 8] {
             return;
         }
         for (i, path) in PATHS.into_iter().enumerate() {
-            self.tetrahedron(cube, path, &inside, i < 3);
+            self.add_tetrahedron(cube, path, &inside, i < 3);
         }
     }
 
@@ -173,25 +173,26 @@ impl<S: Solid> March<'_, S> {
         (y + (bits >> 1 & 1)) * (self.lattice.cells[0] + 1) + x + (bits & 1)
     }
 
-    fn tetrahedron(
+    fn add_tetrahedron(
         &mut self,
         cube: [usize; 3],
         path: [usize; 4],
         inside: &[bool; 8],
-        leftward: bool,
+        is_positive: bool,
     ) {
-        // Sorts the corners that are inside to the front; `even` is the orientation of the result.
+        // Sorts the corners that are inside to the front; `is_even` is the orientation of the
+        // result.
         let mut corners = path;
-        let mut even = leftward;
+        let mut is_even = is_positive;
         for end in (1..4).rev() {
             for i in 0..end {
                 if !inside[corners[i]] && inside[corners[i + 1]] {
                     corners.swap(i, i + 1);
-                    even = !even;
+                    is_even = !is_even;
                 }
             }
         }
-        if !even {
+        if !is_even {
             // Swaps two corners on the same side of the surface: the first two, or the last two.
             if inside[corners[2]] {
                 corners.swap(0, 1);
@@ -202,17 +203,19 @@ impl<S: Solid> March<'_, S> {
         let [a, b, c, d] = corners;
         match corners.map(|corner| inside[corner]) {
             [true, false, ..] => {
-                let triangle = [(a, b), (a, c), (a, d)].map(|edge| self.crossing(cube, edge));
-                self.draft.face(triangle);
+                let triangle =
+                    [(a, b), (a, c), (a, d)].map(|edge| self.crossing_vertex(cube, edge));
+                self.builder.add_face(triangle);
             }
             [true, true, false, _] => {
                 let quad = [(a, c), (a, d), (b, d), (b, c)];
-                let quad = quad.map(|edge| self.crossing(cube, edge));
-                self.quad(quad);
+                let quad = quad.map(|edge| self.crossing_vertex(cube, edge));
+                self.add_quad(quad);
             }
             [true, true, true, false] => {
-                let triangle = [(a, d), (b, d), (c, d)].map(|edge| self.crossing(cube, edge));
-                self.draft.face(triangle);
+                let triangle =
+                    [(a, d), (b, d), (c, d)].map(|edge| self.crossing_vertex(cube, edge));
+                self.builder.add_face(triangle);
             }
             _ => {}
         }
@@ -222,34 +225,34 @@ impl<S: Solid> March<'_, S> {
     ///
     /// The numbers decide, not the lengths. So the faces depend only on which lattice points are
     /// inside, and the valences vary as they do in meshes from scanners.
-    fn quad(&mut self, [a, b, c, d]: [u32; 4]) {
+    fn add_quad(&mut self, [a, b, c, d]: [u32; 4]) {
         if a.min(c) < b.min(d) {
-            self.draft.face([a, b, c]);
-            self.draft.face([a, c, d]);
+            self.builder.add_face([a, b, c]);
+            self.builder.add_face([a, c, d]);
         } else {
-            self.draft.face([a, b, d]);
-            self.draft.face([b, c, d]);
+            self.builder.add_face([a, b, d]);
+            self.builder.add_face([b, c, d]);
         }
     }
 
     /// Returns the vertex on the lattice edge between two corners of a cube; one of them is inside.
-    fn crossing(&mut self, cube: [usize; 3], (p, q): (usize, usize)) -> u32 {
+    fn crossing_vertex(&mut self, cube: [usize; 3], (p, q): (usize, usize)) -> u32 {
         // Along a path, bits are only added. So the bits of one end are a subset of the other's
         // bits.
         let (low, high) = (p & q, p | q);
         let (layer, column) = (low >> 2, self.column(cube, low));
-        if let Some(name) = self.crossings[layer][column][high ^ low] {
-            return name;
+        if let Some(vertex) = self.crossings[layer][column][high ^ low] {
+            return vertex;
         }
         let values = [
             self.values[layer][column],
             self.values[high >> 2][self.column(cube, high)],
         ];
-        let ends = [low, high].map(|bits| self.lattice.point(corner(cube, bits)));
-        let name = self.draft.vertex(self.root(ends, values));
-        self.crossings[layer][column][high ^ low] = Some(name);
+        let ends = [low, high].map(|bits| self.lattice.point(corner_index(cube, bits)));
+        let vertex = self.builder.add_vertex(self.root(ends, values));
+        self.crossings[layer][column][high ^ low] = Some(vertex);
         self.touched[layer].push(column);
-        name
+        vertex
     }
 
     /// Finds a point where the field is zero, between two points on opposite sides of the surface
@@ -264,7 +267,7 @@ impl<S: Solid> March<'_, S> {
         };
         let mut part = crossing(low, high, start, end);
         for _ in 0..REFINEMENTS {
-            let value = self.solid.at(along(ends, part));
+            let value = self.solid.at(interpolate(ends, part));
             if (value < 0.0) == (start < 0.0) {
                 (low, start) = (part, value);
             } else {
@@ -272,17 +275,17 @@ impl<S: Solid> March<'_, S> {
             }
             part = crossing(low, high, start, end);
         }
-        along(ends, part.clamp(MARGIN, 1.0 - MARGIN))
+        interpolate(ends, part.clamp(MARGIN, 1.0 - MARGIN))
     }
 }
 
 /// Interpolates between two points; `part` is from 0 to 1.
-fn along([a, b]: [[f64; 3]; 2], part: f64) -> [f64; 3] {
+fn interpolate([a, b]: [[f64; 3]; 2], part: f64) -> [f64; 3] {
     std::array::from_fn(|axis| a[axis] + part * (b[axis] - a[axis]))
 }
 
 /// Returns the lattice point at a corner of a cube.
-fn corner([x, y, z]: [usize; 3], bits: usize) -> [usize; 3] {
+fn corner_index([x, y, z]: [usize; 3], bits: usize) -> [usize; 3] {
     [x + (bits & 1), y + (bits >> 1 & 1), z + (bits >> 2)]
 }
 
@@ -319,8 +322,8 @@ mod tests {
                 });
                 (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
             };
-            let mesh = polygonised(&noise, &lattice).finish();
-            let facts = Facts::of(&mesh);
+            let mesh = polygonised(&noise, &lattice).build();
+            let facts = Facts::from_polygons(&mesh);
             assert!(facts.closed && facts.faces > 1000, "seed {seed}");
             assert_eq!(facts.consistently_oriented, Some(true), "seed {seed}");
             let none = [
@@ -341,7 +344,7 @@ mod tests {
             cells: [2; 3],
         };
         let inside = |point: [f64; 3]| if point == [0.0; 3] { -1.0 } else { 1.0 };
-        let mesh = polygonised(&inside, &lattice).finish();
+        let mesh = polygonised(&inside, &lattice).build();
         // The link of a lattice point: one vertex on each of its 14 edges, and one triangle in each
         // of its 24 tetrahedra.
         assert_eq!((mesh.vertex_count(), mesh.face_count()), (14, 24));
@@ -358,7 +361,7 @@ mod tests {
             spacing: 1.0,
             cells: [5; 3],
         };
-        for odd in [
+        for special in [
             f64::NAN,
             f64::INFINITY,
             f64::NEG_INFINITY,
@@ -366,14 +369,14 @@ mod tests {
             f64::MIN,
         ] {
             let field = |[x, y, z]: [f64; 3]| match (x + y + z) as u32 % 3 {
-                0 => odd,
+                0 => special,
                 1 => -1.0,
                 _ => 1.0,
             };
-            let draft = polygonised(&field, &lattice);
-            let mesh = draft.finish();
-            assert!(mesh.positions().iter().all(|p| p.is_finite()), "{odd}");
-            assert!(Facts::of(&mesh).closed, "{odd}");
+            let builder = polygonised(&field, &lattice);
+            let mesh = builder.build();
+            assert!(mesh.positions().iter().all(|p| p.is_finite()), "{special}");
+            assert!(Facts::from_polygons(&mesh).closed, "{special}");
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::marching::Solid;
 
 /// Minimum number of rounds of tightening the bounds. Each further round must shorten the longest
 /// side by at least a quarter.
-const TIGHTENINGS: u32 = 3;
+const MIN_TIGHTENING_ROUNDS: u32 = 3;
 
 /// A node of the expression tree of a field.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,28 +49,30 @@ impl Node {
     /// Evaluates the field at a point.
     pub(crate) fn at(&self, point: [f64; 3]) -> f64 {
         match self {
-            Self::Sphere { centre, radius } => square(from(*centre, point)).sqrt() - radius,
+            Self::Sphere { centre, radius } => {
+                length_squared(offset(*centre, point)).sqrt() - radius
+            }
             Self::Torus {
                 centre,
                 axis,
                 ring,
                 tube,
             } => {
-                let out = from(*centre, point);
-                let along = out[0] * axis[0] + out[1] * axis[1] + out[2] * axis[2];
+                let offset = offset(*centre, point);
+                let along = offset[0] * axis[0] + offset[1] * axis[1] + offset[2] * axis[2];
                 // Rounding may make the difference negative near the axis.
-                let off = (square(out) - along * along).max(0.0).sqrt() - ring;
-                (off * off + along * along).sqrt() - tube
+                let radial = (length_squared(offset) - along * along).max(0.0).sqrt() - ring;
+                (radial * radial + along * along).sqrt() - tube
             }
             Self::Cuboid { centre, half } => {
-                let out = from(*centre, point);
-                let over: [f64; 3] = std::array::from_fn(|axis| out[axis].abs() - half[axis]);
+                let offset = offset(*centre, point);
+                let over: [f64; 3] = std::array::from_fn(|axis| offset[axis].abs() - half[axis]);
                 let inside = over[0].max(over[1]).max(over[2]).min(0.0);
-                square(over.map(|x| x.max(0.0))).sqrt() + inside
+                length_squared(over.map(|x| x.max(0.0))).sqrt() + inside
             }
             Self::Blobs { blobs, level } => {
                 let bells = blobs.iter().map(|blob| {
-                    let r2 = square(from(blob.centre, point));
+                    let r2 = length_squared(offset(blob.centre, point));
                     blob.strength * exp_minus(blob.sharpness * r2)
                 });
                 level - bells.sum::<f64>()
@@ -87,7 +89,7 @@ impl Node {
 
     /// Returns a lower and an upper bound of the field over a ball.
     fn range(&self, centre: [f64; 3], radius: f64) -> [f64; 2] {
-        let both = |parts: &[Self; 2]| [0, 1].map(|i| parts[i].range(centre, radius));
+        let ranges = |parts: &[Self; 2]| [0, 1].map(|i| parts[i].range(centre, radius));
         match self {
             // A distance field changes at most as fast as the point moves.
             Self::Sphere { .. } | Self::Torus { .. } | Self::Cuboid { .. } => {
@@ -97,8 +99,8 @@ impl Node {
             Self::Blobs { blobs, level } => {
                 let mut range = [*level; 2];
                 for blob in blobs {
-                    let away = square(from(blob.centre, centre)).sqrt();
-                    let [near, far] = [(away - radius).max(0.0), away + radius]
+                    let distance = length_squared(offset(blob.centre, centre)).sqrt();
+                    let [near, far] = [(distance - radius).max(0.0), distance + radius]
                         .map(|r| blob.strength * exp_minus(blob.sharpness * r * r));
                     range[0] -= near.max(far);
                     range[1] -= near.min(far);
@@ -107,19 +109,19 @@ impl Node {
             }
             // The other operations are monotonic in their parts.
             Self::Union(parts) => {
-                let [f, g] = both(parts);
+                let [f, g] = ranges(parts);
                 [0, 1].map(|end| f[end].min(g[end]))
             }
             Self::Intersection(parts) => {
-                let [f, g] = both(parts);
+                let [f, g] = ranges(parts);
                 [0, 1].map(|end| f[end].max(g[end]))
             }
             Self::Difference(parts) => {
-                let [f, g] = both(parts);
+                let [f, g] = ranges(parts);
                 [0, 1].map(|end| f[end].max(-g[1 - end]))
             }
             Self::SmoothUnion { parts, alpha } => {
-                let [f, g] = both(parts);
+                let [f, g] = ranges(parts);
                 [0, 1].map(|end| smooth_union(f[end], g[end], *alpha))
             }
             Self::Inflated { part, by } => part.range(centre, radius).map(|value| value - by),
@@ -128,7 +130,7 @@ impl Node {
 
     /// Returns bounds of the solid; `None` if the solid is certainly empty.
     pub(crate) fn bounds(&self) -> Result<Option<Bounds>, ShapeError> {
-        let Some(mut bounds) = self.reach(0.0)? else {
+        let Some(mut bounds) = self.sublevel_bounds(0.0)? else {
             return Ok(None);
         };
         // The bounds of a chain of smooth unions can be much larger than the solid.
@@ -137,7 +139,9 @@ impl Node {
             let Some(tighter) = bounds.tightened(empty) else {
                 return Ok(None);
             };
-            if round >= TIGHTENINGS && tighter.longest() >= 0.75 * bounds.longest() {
+            if round >= MIN_TIGHTENING_ROUNDS
+                && tighter.longest_side() >= 0.75 * bounds.longest_side()
+            {
                 break;
             }
             bounds = tighter;
@@ -147,33 +151,40 @@ impl Node {
 
     /// Returns bounds of the points where the field is at most `level`; `None` if there are no such
     /// points.
-    fn reach(&self, level: f64) -> Result<Option<Bounds>, ShapeError> {
+    fn sublevel_bounds(&self, level: f64) -> Result<Option<Bounds>, ShapeError> {
         Ok(match self {
-            Self::Sphere { centre, radius } => Bounds::around(*centre, [radius + level; 3]),
+            Self::Sphere { centre, radius } => Bounds::from_centre(*centre, [radius + level; 3]),
             Self::Torus {
                 centre, ring, tube, ..
             } => {
                 // The bounds of a ball are sufficient, whatever the direction of the axis.
                 let thickness = tube + level;
                 (thickness >= 0.0)
-                    .then(|| Bounds::around(*centre, [ring + thickness; 3]))
+                    .then(|| Bounds::from_centre(*centre, [ring + thickness; 3]))
                     .flatten()
             }
-            Self::Cuboid { centre, half } => Bounds::around(*centre, half.map(|x| x + level)),
-            Self::Blobs { blobs, level: sum } => blob_reach(blobs, sum - level)?,
-            Self::Union(parts) => Bounds::hull(parts[0].reach(level)?, parts[1].reach(level)?),
-            Self::Intersection(parts) => {
-                Bounds::overlap(parts[0].reach(level)?, parts[1].reach(level)?)
-            }
-            Self::Difference(parts) => parts[0].reach(level)?,
+            Self::Cuboid { centre, half } => Bounds::from_centre(*centre, half.map(|x| x + level)),
+            Self::Blobs { blobs, level: sum } => blob_bounds(blobs, sum - level)?,
+            Self::Union(parts) => Bounds::union(
+                parts[0].sublevel_bounds(level)?,
+                parts[1].sublevel_bounds(level)?,
+            ),
+            Self::Intersection(parts) => Bounds::intersection(
+                parts[0].sublevel_bounds(level)?,
+                parts[1].sublevel_bounds(level)?,
+            ),
+            Self::Difference(parts) => parts[0].sublevel_bounds(level)?,
             Self::SmoothUnion { parts, alpha } => {
                 // It grows with f and with g. Relative to min(f, g), it is smallest if f and g are
                 // equal.
                 let share = (2.0 - (2.0 - 2.0 * alpha).sqrt()) / (1.0 + alpha);
                 let level = level.max(0.0) / share;
-                Bounds::hull(parts[0].reach(level)?, parts[1].reach(level)?)
+                Bounds::union(
+                    parts[0].sublevel_bounds(level)?,
+                    parts[1].sublevel_bounds(level)?,
+                )
             }
-            Self::Inflated { part, by } => part.reach(level + by)?,
+            Self::Inflated { part, by } => part.sublevel_bounds(level + by)?,
         })
     }
 }
@@ -194,12 +205,12 @@ impl Solid for Node {
 
 /// Evaluates Rvachev's smooth union, which is monotonically increasing in `f` and in `g`.
 fn smooth_union(f: f64, g: f64, alpha: f64) -> f64 {
-    let under = f * f + g * g - 2.0 * alpha * f * g;
-    (f + g - under.max(0.0).sqrt()) / (1.0 + alpha)
+    let radicand = f * f + g * g - 2.0 * alpha * f * g;
+    (f + g - radicand.max(0.0).sqrt()) / (1.0 + alpha)
 }
 
 /// Returns bounds of the points where the blobs add up to `sum` or more.
-fn blob_reach(blobs: &[Blob], sum: f64) -> Result<Option<Bounds>, ShapeError> {
+fn blob_bounds(blobs: &[Blob], sum: f64) -> Result<Option<Bounds>, ShapeError> {
     if sum <= 0.0 {
         return Err(ShapeError::Unbounded);
     }
@@ -212,17 +223,17 @@ fn blob_reach(blobs: &[Blob], sum: f64) -> Result<Option<Bounds>, ShapeError> {
         }
         // exp(−x) ≤ (1 + x/8)⁻⁸, and this bound can be solved for x with square roots.
         let x = 8.0 * (ratio.sqrt().sqrt().sqrt() - 1.0);
-        Bounds::around(blob.centre, [(x / blob.sharpness).sqrt(); 3])
+        Bounds::from_centre(blob.centre, [(x / blob.sharpness).sqrt(); 3])
     });
-    Ok(bounds.fold(None, Bounds::hull))
+    Ok(bounds.fold(None, Bounds::union))
 }
 
-fn from(centre: [f64; 3], point: [f64; 3]) -> [f64; 3] {
+fn offset(centre: [f64; 3], point: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| point[axis] - centre[axis])
 }
 
 /// Returns the square of the length of a vector.
-pub(crate) fn square([x, y, z]: [f64; 3]) -> f64 {
+pub(crate) fn length_squared([x, y, z]: [f64; 3]) -> f64 {
     x * x + y * y + z * z
 }
 
@@ -286,9 +297,10 @@ mod tests {
             inflated(&blobs, 0.1),
         ];
         // Tests the points of a lattice, and balls around some of them that contain other points.
-        let place = |i: usize, n: usize| 4.0 * i as f64 / n as f64 - 2.0;
+        let coordinate = |i: usize, n: usize| 4.0 * i as f64 / n as f64 - 2.0;
         let lattice = |n: usize| {
-            let index = move |i: usize| [i % n, i / n % n, i / (n * n)].map(|i| place(i, n - 1));
+            let index =
+                move |i: usize| [i % n, i / n % n, i / (n * n)].map(|i| coordinate(i, n - 1));
             (0..n * n * n).map(index)
         };
         for node in nodes {
@@ -296,29 +308,33 @@ mod tests {
             let mut inside = 0;
             for point in lattice(41) {
                 if node.at(point) <= 0.0 {
-                    assert!(bounds.holds(point), "{node:?} at {point:?}");
+                    assert!(bounds.contains(point), "{node:?} at {point:?}");
                     inside += 1;
                 }
             }
             assert!(inside > 0, "{node:?}");
             // Skipping whole blocks must not change the mesh.
             let fine = bounds.lattice(0.08, [0.3; 3]).expect("a coarse lattice");
-            let all = polygonised(&|point: [f64; 3]| node.at(point), &fine).finish();
-            let some = polygonised(&node, &fine).finish();
+            let all = polygonised(&|point: [f64; 3]| node.at(point), &fine).build();
+            let some = polygonised(&node, &fine).build();
             assert!(all == some, "{node:?}");
             for centre in lattice(5) {
                 for radius in [0.1, 0.5, 1.5] {
                     let [least, greatest] = node.range(centre, radius);
                     for point in lattice(13) {
-                        let off = square(from(centre, point)).sqrt();
-                        let scale = if off > 0.0 { radius / off } else { 0.0 };
-                        let on: [f64; 3] =
+                        let distance = length_squared(offset(centre, point)).sqrt();
+                        let scale = if distance > 0.0 {
+                            radius / distance
+                        } else {
+                            0.0
+                        };
+                        let sample: [f64; 3] =
                             std::array::from_fn(|i| centre[i] + scale * (point[i] - centre[i]));
-                        let value = node.at(on);
+                        let value = node.at(sample);
                         let within = least - 1e-12 <= value && value <= greatest + 1e-12;
                         assert!(
                             within,
-                            "{node:?} at {on:?}: {value} of {least} to {greatest}"
+                            "{node:?} at {sample:?}: {value} of {least} to {greatest}"
                         );
                     }
                 }

@@ -44,21 +44,21 @@ impl Order {
     }
 
     /// Returns the mesh in this order. Only [`Shuffled`](Self::Shuffled) uses `seed`.
-    pub fn of(self, mesh: &PolygonMesh, seed: u64) -> PolygonMesh {
-        self.with_names(mesh, seed).mesh
+    pub fn apply(self, mesh: &PolygonMesh, seed: u64) -> PolygonMesh {
+        self.apply_with_handles(mesh, seed).mesh
     }
 
     /// Returns the mesh in this order, and the new handle of each element.
-    pub fn with_names(self, mesh: &PolygonMesh, seed: u64) -> Reordered {
+    pub fn apply_with_handles(self, mesh: &PolygonMesh, seed: u64) -> Reordered {
         match self {
             Self::Given => Reordered {
                 mesh: mesh.clone(),
                 vertices: mesh.vertices().collect(),
                 faces: mesh.faces().iter().map(|(f, _)| f).collect(),
             },
-            Self::Shuffled => by_chance(mesh, seed),
-            Self::Morton => along_the_curve(mesh),
-            Self::BreadthFirst => by_a_walk(mesh),
+            Self::Shuffled => shuffle(mesh, seed),
+            Self::Morton => sort_by_morton_code(mesh),
+            Self::BreadthFirst => sort_breadth_first(mesh),
         }
     }
 }
@@ -104,14 +104,14 @@ impl FromStr for Order {
 ///
 /// The same seed gives the same order on every machine (ChaCha8, shuffle of Fisher and Yates).
 pub fn shuffled(mesh: &PolygonMesh, seed: u64) -> PolygonMesh {
-    by_chance(mesh, seed).mesh
+    shuffle(mesh, seed).mesh
 }
 
-fn by_chance(mesh: &PolygonMesh, seed: u64) -> Reordered {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let vertices = permutation(mesh.vertex_count(), &mut random);
-    let faces = permutation(mesh.face_count(), &mut random);
-    reordered(mesh, &vertices, &faces, |degree| below(degree, &mut random))
+fn shuffle(mesh: &PolygonMesh, seed: u64) -> Reordered {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let vertices = permutation(mesh.vertex_count(), &mut rng);
+    let faces = permutation(mesh.face_count(), &mut rng);
+    reordered(mesh, &vertices, &faces, |degree| below(degree, &mut rng))
 }
 
 /// Returns the mesh in the order of the space-filling curve of Morton (1966): elements that are
@@ -121,10 +121,10 @@ fn by_chance(mesh: &PolygonMesh, seed: u64) -> Reordered {
 /// are interleaved. Vertices are sorted by this code; faces by the code of the mean of their
 /// vertices. Elements with equal codes keep their order. O(n log n).
 pub fn morton(mesh: &PolygonMesh) -> PolygonMesh {
-    along_the_curve(mesh).mesh
+    sort_by_morton_code(mesh).mesh
 }
 
-fn along_the_curve(mesh: &PolygonMesh) -> Reordered {
+fn sort_by_morton_code(mesh: &PolygonMesh) -> Reordered {
     let finite = mesh.positions().iter().filter(|p| p.is_finite());
     let (low, high) = finite.fold((Point::INFINITY, Point::NEG_INFINITY), |(low, high), &p| {
         (low.min(p), high.max(p))
@@ -139,15 +139,15 @@ fn along_the_curve(mesh: &PolygonMesh) -> Reordered {
         let spread = |axis: usize| spread_bits(((point[axis] - low[axis]) * scale) as u32);
         spread(0) | spread(1) << 1 | spread(2) << 2
     };
-    let place = |v: VertexId| mesh.position(v).to_array().map(f64::from);
+    let position = |v: VertexId| mesh.position(v).to_array().map(f64::from);
     let mut vertices: Vec<u32> = (0..row(mesh.vertex_count())).collect();
-    vertices.sort_by_cached_key(|&v| code(place(VertexId::new(v))));
+    vertices.sort_by_cached_key(|&v| code(position(VertexId::new(v))));
     let mut faces: Vec<u32> = (0..row(mesh.face_count())).collect();
     faces.sort_by_cached_key(|&f| {
         let corners = mesh.faces().face(FaceId::new(f));
         let sum = corners.iter().fold([0.0; 3], |sum: [f64; 3], &v| {
-            let place = place(v);
-            std::array::from_fn(|axis| sum[axis] + place[axis])
+            let position = position(v);
+            std::array::from_fn(|axis| sum[axis] + position[axis])
         });
         code(sum.map(|x| x / corners.len() as f64))
     });
@@ -159,31 +159,31 @@ fn along_the_curve(mesh: &PolygonMesh) -> Reordered {
 /// For each vertex in turn, the walk visits the faces around it and appends their vertices that are
 /// new. When no vertex is waiting, it continues at the lowest vertex not reached so far.
 pub fn breadth_first(mesh: &PolygonMesh) -> PolygonMesh {
-    by_a_walk(mesh).mesh
+    sort_breadth_first(mesh).mesh
 }
 
-fn by_a_walk(mesh: &PolygonMesh) -> Reordered {
-    let around = FacesAround::of(mesh);
+fn sort_breadth_first(mesh: &PolygonMesh) -> Reordered {
+    let vertex_faces = VertexFaces::new(mesh);
     let mut vertices = Vec::with_capacity(mesh.vertex_count());
     let mut faces = Vec::with_capacity(mesh.face_count());
-    let mut called = vec![false; mesh.vertex_count()];
+    let mut reached = vec![false; mesh.vertex_count()];
     let mut visited = vec![false; mesh.face_count()];
     for start in mesh.vertices() {
-        if called[start.index()] {
+        if reached[start.index()] {
             continue;
         }
-        called[start.index()] = true;
+        reached[start.index()] = true;
         let mut next = vertices.len();
         vertices.push(row(start.index()));
         while let Some(&v) = vertices.get(next) {
             next += 1;
-            for &f in around.vertex(v) {
+            for &f in vertex_faces.faces_at(v) {
                 if std::mem::replace(&mut visited[f as usize], true) {
                     continue;
                 }
                 faces.push(f);
                 for &w in mesh.faces().face(FaceId::new(f)) {
-                    if !std::mem::replace(&mut called[w.index()], true) {
+                    if !std::mem::replace(&mut reached[w.index()], true) {
                         vertices.push(row(w.index()));
                     }
                 }
@@ -194,14 +194,14 @@ fn by_a_walk(mesh: &PolygonMesh) -> Reordered {
 }
 
 /// The faces around every vertex, in ascending order.
-struct FacesAround {
+struct VertexFaces {
     faces: Vec<u32>,
     /// End of each vertex's range in `faces`.
     ends: Vec<u32>,
 }
 
-impl FacesAround {
-    fn of(mesh: &PolygonMesh) -> Self {
+impl VertexFaces {
+    fn new(mesh: &PolygonMesh) -> Self {
         let mut ends = vec![0_u32; mesh.vertex_count()];
         for v in mesh.faces().corners() {
             ends[v.index()] += 1;
@@ -213,15 +213,15 @@ impl FacesAround {
         let mut faces = vec![0; total as usize];
         for (f, corners) in (0..).zip(mesh.faces().iter().map(|(_, corners)| corners)) {
             for v in corners {
-                let at = &mut ends[v.index()];
-                faces[*at as usize] = f;
-                *at += 1;
+                let end = &mut ends[v.index()];
+                faces[*end as usize] = f;
+                *end += 1;
             }
         }
         Self { faces, ends }
     }
 
-    fn vertex(&self, v: u32) -> &[u32] {
+    fn faces_at(&self, v: u32) -> &[u32] {
         let v = v as usize;
         let start = if v == 0 { 0 } else { self.ends[v - 1] };
         &self.faces[start as usize..self.ends[v] as usize]
@@ -236,43 +236,43 @@ fn reordered(
     faces: &[u32],
     mut start: impl FnMut(usize) -> usize,
 ) -> Reordered {
-    let mut names = vec![VertexId::new(0); vertices.len()];
-    for (name, &v) in (0..).zip(vertices) {
-        names[v as usize] = VertexId::new(name);
+    let mut new_vertices = vec![VertexId::new(0); vertices.len()];
+    for (number, &v) in (0..).zip(vertices) {
+        new_vertices[v as usize] = VertexId::new(number);
     }
     let position = |&v: &u32| mesh.position(VertexId::new(v));
     let positions = vertices.iter().map(position).collect();
     let mut list = FaceList::with_capacity(mesh.corner_count());
-    let mut places = vec![FaceId::new(0); faces.len()];
-    for (place, &face) in (0..).zip(faces) {
-        places[face as usize] = FaceId::new(place);
+    let mut new_faces = vec![FaceId::new(0); faces.len()];
+    for (number, &face) in (0..).zip(faces) {
+        new_faces[face as usize] = FaceId::new(number);
         let corners = mesh.faces().face(FaceId::new(face));
-        let (late, early) = corners.split_at(start(corners.len()));
-        let corners = early.iter().chain(late).map(|v| names[v.index()]);
+        let (tail, head) = corners.split_at(start(corners.len()));
+        let corners = head.iter().chain(tail).map(|v| new_vertices[v.index()]);
         list.push(corners)
             .expect("the number of corners is unchanged");
     }
     Reordered {
         mesh: PolygonMesh::from_faces(positions, list)
             .expect("the faces are those of a valid mesh"),
-        vertices: names,
-        faces: places,
+        vertices: new_vertices,
+        faces: new_faces,
     }
 }
 
 /// Returns the numbers below `count` in random order.
-fn permutation(count: usize, random: &mut ChaCha8Rng) -> Vec<u32> {
+fn permutation(count: usize, rng: &mut ChaCha8Rng) -> Vec<u32> {
     let mut numbers: Vec<u32> = (0..row(count)).collect();
     for last in (1..count).rev() {
-        numbers.swap(last, below(last + 1, random));
+        numbers.swap(last, below(last + 1, rng));
     }
     numbers
 }
 
 /// Returns a random number below `bound`: the high half of a product. Its bias, bound / 2⁶⁴, is
 /// negligible.
-fn below(bound: usize, random: &mut ChaCha8Rng) -> usize {
-    ((u128::from(random.next_u64()) * bound as u128) >> 64) as usize
+fn below(bound: usize, rng: &mut ChaCha8Rng) -> usize {
+    ((u128::from(rng.next_u64()) * bound as u128) >> 64) as usize
 }
 
 /// Returns the low 21 bits of `x`, each followed by two zero bits.
@@ -299,9 +299,9 @@ mod tests {
 
     #[test]
     fn a_permutation_contains_every_number_once() {
-        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
         for count in [0, 1, 2, 3, 100] {
-            let mut numbers = permutation(count, &mut random);
+            let mut numbers = permutation(count, &mut rng);
             numbers.sort_unstable();
             assert!(numbers.into_iter().eq(0..count as u32), "{count}");
         }
@@ -310,7 +310,7 @@ mod tests {
     #[test]
     fn a_seed_gives_a_fixed_order() {
         // These values must never change: results published with a seed must stay reproducible.
-        let mut random = ChaCha8Rng::seed_from_u64(1);
-        assert_eq!(permutation(8, &mut random), [5, 6, 2, 4, 1, 7, 0, 3]);
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        assert_eq!(permutation(8, &mut rng), [5, 6, 2, 4, 1, 7, 0, 3]);
     }
 }

@@ -2,14 +2,14 @@
 
 use sixfold_core::{Point, PolygonMesh};
 
-use crate::error::{MAX_AROUND, ShapeError, between, within};
-use crate::planar::sheet;
+use crate::error::{MAX_SEGMENTS, ShapeError, check_count, check_value};
+use crate::planar::quad_grid;
 
 /// Maximum degree of a curve in a patch.
 pub(crate) const MAX_DEGREE: usize = 32;
 
 /// Maximum number of control points along one direction.
-pub(crate) const MAX_NET: usize = 1024;
+pub(crate) const MAX_CONTROL_POINTS: usize = 1024;
 
 /// A grid of control points, row by row, for a patch.
 ///
@@ -31,18 +31,18 @@ impl ControlNet {
     /// Fails if the last row is not full, if there are fewer than 2 or more than 1024 rows or
     /// columns, or if a coordinate is not finite.
     pub fn new(columns: usize, points: &[Point]) -> Result<Self, ShapeError> {
-        within("columns", columns, 2, MAX_NET)?;
+        check_count("columns", columns, 2, MAX_CONTROL_POINTS)?;
         if !points.len().is_multiple_of(columns) {
             let points = points.len();
             return Err(ShapeError::RaggedNet { points, columns });
         }
-        within("rows", points.len() / columns, 2, MAX_NET)?;
+        check_count("rows", points.len() / columns, 2, MAX_CONTROL_POINTS)?;
         let points: Vec<[f64; 3]> = points
             .iter()
             .map(|point| point.to_array().map(f64::from))
             .collect();
         for &coordinate in points.iter().flatten() {
-            between(
+            check_value(
                 "coordinate",
                 coordinate,
                 f64::from(f32::MIN),
@@ -76,12 +76,12 @@ impl ControlNet {
         rows: usize,
         height: impl Fn(usize, usize, f64, f64) -> f64,
     ) -> Result<Self, ShapeError> {
-        within("columns", columns, 2, MAX_NET)?;
-        within("rows", rows, 2, MAX_NET)?;
-        let place = |i: usize, count: usize| 2.0 * i as f64 / (count - 1) as f64 - 1.0;
+        check_count("columns", columns, 2, MAX_CONTROL_POINTS)?;
+        check_count("rows", rows, 2, MAX_CONTROL_POINTS)?;
+        let coordinate = |i: usize, count: usize| 2.0 * i as f64 / (count - 1) as f64 - 1.0;
         let points = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
         let points = points.map(|(i, j)| {
-            let (x, y) = (place(i, columns), place(j, rows));
+            let (x, y) = (coordinate(i, columns), coordinate(j, rows));
             [x, y, height(i, j, x, y)]
         });
         Ok(Self {
@@ -117,8 +117,8 @@ impl ControlNet {
 /// Fails if the net has more than 33 rows or columns, if `m` or `n` is outside 1 to 2²⁰, or if
 /// there are more than 2³¹ − 1 corners.
 pub fn bezier_patch(net: &ControlNet, m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
-    within("columns", net.columns(), 2, MAX_DEGREE + 1)?;
-    within("rows", net.rows(), 2, MAX_DEGREE + 1)?;
+    check_count("columns", net.columns(), 2, MAX_DEGREE + 1)?;
+    check_count("rows", net.rows(), 2, MAX_DEGREE + 1)?;
     tessellated("bezier-patch", net, [m, n], |points, k, steps| {
         de_casteljau(points, k as f64 / steps as f64)
     })
@@ -141,8 +141,8 @@ pub fn b_spline_patch(
     m: usize,
     n: usize,
 ) -> Result<PolygonMesh, ShapeError> {
-    let least = net.columns().min(net.rows());
-    within("degree", degree, 1, MAX_DEGREE.min(least - 1))?;
+    let points = net.columns().min(net.rows());
+    check_count("degree", degree, 1, MAX_DEGREE.min(points - 1))?;
     tessellated("b-spline-patch", net, [m, n], |points, k, steps| {
         // Integer arithmetic selects the piece, so that the ends are reached exactly.
         let pieces = points.len() - degree;
@@ -160,19 +160,19 @@ fn tessellated(
     [m, n]: [usize; 2],
     curve: impl Fn(&mut [[f64; 3]], usize, usize) -> [f64; 3],
 ) -> Result<PolygonMesh, ShapeError> {
-    within("m", m, 1, MAX_AROUND)?;
-    within("n", n, 1, MAX_AROUND)?;
+    check_count("m", m, 1, MAX_SEGMENTS)?;
+    check_count("n", n, 1, MAX_SEGMENTS)?;
     let mut row = vec![[0.0; 3]; net.columns()];
     let mut scratch = Vec::new();
-    let mut at = None;
-    sheet(shape, m, n, |i, j| {
-        if at != Some(j) {
+    let mut current_row = None;
+    quad_grid(shape, m, n, |i, j| {
+        if current_row != Some(j) {
             for (column, point) in row.iter_mut().enumerate() {
                 scratch.clear();
                 scratch.extend(net.column(column));
                 *point = curve(&mut scratch, j, n);
             }
-            at = Some(j);
+            current_row = Some(j);
         }
         scratch.clear();
         scratch.extend(&row);
@@ -184,7 +184,7 @@ fn tessellated(
 fn de_casteljau(points: &mut [[f64; 3]], t: f64) -> [f64; 3] {
     for last in (1..points.len()).rev() {
         for i in 0..last {
-            points[i] = between_points(points[i], points[i + 1], t);
+            points[i] = interpolate(points[i], points[i + 1], t);
         }
     }
     points[0]
@@ -197,14 +197,14 @@ fn de_boor(points: &mut [[f64; 3]], t: f64) -> [f64; 3] {
     for round in 1..=degree {
         for i in (round..=degree).rev() {
             let part = (t + (degree - i) as f64) / (degree + 1 - round) as f64;
-            points[i] = between_points(points[i - 1], points[i], part);
+            points[i] = interpolate(points[i - 1], points[i], part);
         }
     }
     points[degree]
 }
 
 /// Interpolates from `a` at `part` = 0 to `b` at `part` = 1; both ends are exact.
-fn between_points(a: [f64; 3], b: [f64; 3], part: f64) -> [f64; 3] {
+fn interpolate(a: [f64; 3], b: [f64; 3], part: f64) -> [f64; 3] {
     std::array::from_fn(|axis| (1.0 - part) * a[axis] + part * b[axis])
 }
 
@@ -294,7 +294,7 @@ mod tests {
                 columns: 4
             })
         );
-        for columns in [0, 1, 6, MAX_NET + 1] {
+        for columns in [0, 1, 6, MAX_CONTROL_POINTS + 1] {
             assert!(
                 ControlNet::new(columns, &points).is_err(),
                 "{columns} columns"

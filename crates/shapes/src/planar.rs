@@ -2,8 +2,8 @@
 
 use sixfold_core::PolygonMesh;
 
-use crate::draft::Draft;
-use crate::error::{MAX_SIDE, ShapeError, corners_within, within};
+use crate::builder::MeshBuilder;
+use crate::error::{MAX_SIDE, ShapeError, check_corners, check_count};
 
 /// Builds `m` × `n` unit squares: the regular tiling {4, 4}.
 ///
@@ -13,19 +13,19 @@ use crate::error::{MAX_SIDE, ShapeError, corners_within, within};
 ///
 /// Fails if `m` or `n` is outside 1 to 2²², or if there are more than 2³¹ − 1 corners.
 pub fn grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
-    sheet("grid", m, n, |i, j| [i as f64, j as f64, 0.0])
+    quad_grid("grid", m, n, |i, j| [i as f64, j as f64, 0.0])
 }
 
 /// Builds `m` × `n` quads, row by row. The vertex at column `i` and row `j` has the position
-/// `place(i, j)`.
-pub(crate) fn sheet(
+/// `position(i, j)`.
+pub(crate) fn quad_grid(
     shape: &'static str,
     m: usize,
     n: usize,
-    place: impl FnMut(usize, usize) -> [f64; 3],
+    position: impl FnMut(usize, usize) -> [f64; 3],
 ) -> Result<PolygonMesh, ShapeError> {
-    let corners = 4 * area(m, n)?;
-    cells(shape, [m, n], corners, place, |_, _| Cell::Quad)
+    let corners = 4 * square_count(m, n)?;
+    grid_of_cells(shape, [m, n], corners, position, |_, _| Cell::Quad)
 }
 
 /// Builds `m` × `n` unit squares, each cut in two by the diagonal from lower left to upper right.
@@ -36,10 +36,14 @@ pub(crate) fn sheet(
 ///
 /// Fails if `m` or `n` is outside 1 to 2²², or if there are more than 2³¹ − 1 corners.
 pub fn triangle_grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
-    let corners = 6 * area(m, n)?;
-    cells("triangle-grid", [m, n], corners, on_lattice, |_, _| {
-        Cell::Rising
-    })
+    let corners = 6 * square_count(m, n)?;
+    grid_of_cells(
+        "triangle-grid",
+        [m, n],
+        corners,
+        lattice_position,
+        |_, _| Cell::Rising,
+    )
 }
 
 /// Builds `m` × `n` unit squares, every second one cut in two, like the squares of a chess board.
@@ -50,14 +54,18 @@ pub fn triangle_grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
 ///
 /// Fails if `m` or `n` is outside 1 to 2²², or if there are more than 2³¹ − 1 corners.
 pub fn mixed_grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
-    let squares = area(m, n)?;
+    let squares = square_count(m, n)?;
     let corners = 4 * squares + 2 * (squares / 2);
-    cells("mixed-grid", [m, n], corners, on_lattice, |i, j| {
-        match (i + j) % 2 {
+    grid_of_cells(
+        "mixed-grid",
+        [m, n],
+        corners,
+        lattice_position,
+        |i, j| match (i + j) % 2 {
             0 => Cell::Quad,
             _ => Cell::Rising,
-        }
-    })
+        },
+    )
 }
 
 /// Builds `m` × `n` pairs of equilateral triangles of side 1: the regular tiling {3, 6}.
@@ -73,9 +81,9 @@ pub fn mixed_grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
 ///
 /// Fails if `m` or `n` is outside 1 to 2²², or if there are more than 2³¹ − 1 corners.
 pub fn triangle_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
-    let corners = 6 * area(m, n)?;
+    let corners = 6 * square_count(m, n)?;
     let height = 3.0_f64.sqrt() / 2.0;
-    let place = |i: usize, j: usize| {
+    let position = |i: usize, j: usize| {
         let shift = 0.5 * (j % 2) as f64;
         [i as f64 + shift, j as f64 * height, 0.0]
     };
@@ -83,7 +91,7 @@ pub fn triangle_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
         0 => Cell::Falling,
         _ => Cell::Rising,
     };
-    cells("triangle-tiling", [m, n], corners, place, cell)
+    grid_of_cells("triangle-tiling", [m, n], corners, position, cell)
 }
 
 /// Builds a frame: `m` × `n` unit squares without the a × b squares in the middle, a = ⌊m/3⌋ and
@@ -95,16 +103,16 @@ pub fn triangle_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
 ///
 /// Fails if `m` or `n` is outside 3 to 2²², or if there are more than 2³¹ − 1 corners.
 pub fn grid_with_hole(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
-    within("m", m, 3, MAX_SIDE)?;
-    within("n", n, 3, MAX_SIDE)?;
+    check_count("m", m, 3, MAX_SIDE)?;
+    check_count("n", n, 3, MAX_SIDE)?;
     let (a, b) = (m / 3, n / 3);
-    let corners = 4 * (area(m, n)? - area(a, b)?);
+    let corners = 4 * (square_count(m, n)? - square_count(a, b)?);
     let (left, low) = ((m - a) / 2, (n - b) / 2);
     let cell = |i: usize, j: usize| {
         let hole = (left..left + a).contains(&i) && (low..low + b).contains(&j);
         if hole { Cell::Hole } else { Cell::Quad }
     };
-    cells("grid-with-hole", [m, n], corners, on_lattice, cell)
+    grid_of_cells("grid-with-hole", [m, n], corners, lattice_position, cell)
 }
 
 /// Builds `m` × `n` unit squares without `holes` of them. No two holes touch.
@@ -124,19 +132,19 @@ pub fn grid_with_hole(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
 /// Fails if `m` or `n` is outside 1 to 2²², if `holes` exceeds ⌊(m − 1)/2⌋ · ⌊(n − 1)/2⌋, or if
 /// there are more than 2³¹ − 1 corners.
 pub fn grid_with_holes(m: usize, n: usize, holes: usize) -> Result<PolygonMesh, ShapeError> {
-    let squares = area(m, n)?;
-    let (across, up) = ((m - 1) / 2, (n - 1) / 2);
+    let squares = square_count(m, n)?;
+    let (max_columns, max_rows) = ((m - 1) / 2, (n - 1) / 2);
     // If the product overflows, the number of squares is too large as well.
-    within("holes", holes, 0, across.saturating_mul(up))?;
+    check_count("holes", holes, 0, max_columns.saturating_mul(max_rows))?;
     let corners = 4 * (squares - holes as u64);
     let cell = |i: usize, j: usize| {
-        let place = i % 2 == 1 && j % 2 == 1 && i + 1 < m && j + 1 < n;
-        match place && (j / 2) * across + i / 2 < holes {
+        let can_be_hole = i % 2 == 1 && j % 2 == 1 && i + 1 < m && j + 1 < n;
+        match can_be_hole && (j / 2) * max_columns + i / 2 < holes {
             true => Cell::Hole,
             false => Cell::Quad,
         }
     };
-    cells("grid-with-holes", [m, n], corners, on_lattice, cell)
+    grid_of_cells("grid-with-holes", [m, n], corners, lattice_position, cell)
 }
 
 /// Builds `m` × `n` regular hexagons of side 1: the regular tiling {6, 3}. Every second row is
@@ -155,12 +163,12 @@ pub fn grid_with_holes(m: usize, n: usize, holes: usize) -> Result<PolygonMesh, 
 ///
 /// Fails if `m` or `n` is outside 1 to 2²², or if there are more than 2³¹ − 1 corners.
 pub fn hexagon_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
-    let corners = 6 * area(m, n)?;
-    let corners = corners_within("hexagon-tiling", &[("m", m), ("n", n)], corners)?;
-    let mut draft = Draft::with_capacity(2 * (m + 1) * (n + 1) - 2, corners);
+    let corners = 6 * square_count(m, n)?;
+    let corners = check_corners("hexagon-tiling", &[("m", m), ("n", n)], corners)?;
+    let mut builder = MeshBuilder::with_capacity(2 * (m + 1) * (n + 1) - 2, corners);
     let half_width = 3.0_f64.sqrt() / 2.0;
     // For each zigzag, the number to add to the step of a vertex to get the number of the vertex.
-    let mut before = Vec::with_capacity(n + 1);
+    let mut offsets = Vec::with_capacity(n + 1);
     let mut count = 0_i64;
     for j in 0..=n {
         let shift = j % 2;
@@ -169,24 +177,24 @@ pub fn hexagon_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
             _ if j == n => (1 - shift)..2 * m + 2 - shift,
             _ => 0..2 * m + 2,
         };
-        before.push(count - steps.start as i64);
+        offsets.push(count - steps.start as i64);
         count += steps.len() as i64;
         for k in steps {
             let low = (k + shift) % 2 == 1;
             let y = 1.5 * j as f64 - if low { 0.5 } else { 0.0 };
-            draft.vertex([k as f64 * half_width, y, 0.0]);
+            builder.add_vertex([k as f64 * half_width, y, 0.0]);
         }
     }
-    let at = |j: usize, k: usize| (before[j] + k as i64) as u32;
+    let at = |j: usize, k: usize| (offsets[j] + k as i64) as u32;
     for j in 0..n {
         for i in 0..m {
             let k = 2 * i + j % 2;
             let below = [at(j, k), at(j, k + 1), at(j, k + 2)];
             let above = [at(j + 1, k + 2), at(j + 1, k + 1), at(j + 1, k)];
-            draft.face(below.into_iter().chain(above));
+            builder.add_face(below.into_iter().chain(above));
         }
     }
-    Ok(draft.finish())
+    Ok(builder.build())
 }
 
 /// How one square of a grid is meshed.
@@ -203,58 +211,58 @@ enum Cell {
 }
 
 /// Returns the number of squares, or an error if a side is out of range.
-fn area(m: usize, n: usize) -> Result<u64, ShapeError> {
-    within("m", m, 1, MAX_SIDE)?;
-    within("n", n, 1, MAX_SIDE)?;
+fn square_count(m: usize, n: usize) -> Result<u64, ShapeError> {
+    check_count("m", m, 1, MAX_SIDE)?;
+    check_count("n", n, 1, MAX_SIDE)?;
     Ok(m as u64 * n as u64)
 }
 
-fn on_lattice(i: usize, j: usize) -> [f64; 3] {
+fn lattice_position(i: usize, j: usize) -> [f64; 3] {
     [i as f64, j as f64, 0.0]
 }
 
 /// Builds `m` × `n` squares, row by row. `cell(i, j)` selects how each square is meshed; `corners`
 /// is the total number of corners.
-fn cells(
+fn grid_of_cells(
     shape: &'static str,
     [m, n]: [usize; 2],
     corners: u64,
-    mut place: impl FnMut(usize, usize) -> [f64; 3],
+    mut position: impl FnMut(usize, usize) -> [f64; 3],
     cell: impl Fn(usize, usize) -> Cell,
 ) -> Result<PolygonMesh, ShapeError> {
-    let corners = corners_within(shape, &[("m", m), ("n", n)], corners)?;
-    let mut draft = Draft::with_capacity((m + 1) * (n + 1), corners);
+    let corners = check_corners(shape, &[("m", m), ("n", n)], corners)?;
+    let mut builder = MeshBuilder::with_capacity((m + 1) * (n + 1), corners);
     let hole = |i: usize, j: usize| matches!(cell(i, j), Cell::Hole);
     // The vertex of each column, if it exists, on the line below the current row of cells and on
     // the line above it.
     let mut below = vec![None; m + 1];
     let mut above = vec![None; m + 1];
     for j in 0..=n {
-        for (i, name) in above.iter_mut().enumerate() {
+        for (i, vertex) in above.iter_mut().enumerate() {
             let inner = 0 < i && i < m && 0 < j && j < n;
-            let swallowed =
+            let in_hole =
                 inner && hole(i - 1, j - 1) && hole(i, j - 1) && hole(i - 1, j) && hole(i, j);
-            *name = (!swallowed).then(|| draft.vertex(place(i, j)));
+            *vertex = (!in_hole).then(|| builder.add_vertex(position(i, j)));
         }
         for i in (0..m).filter(|_| j > 0) {
-            let ring = [below[i], below[i + 1], above[i + 1], above[i]];
-            let [Some(a), Some(b), Some(c), Some(d)] = ring else {
+            let square = [below[i], below[i + 1], above[i + 1], above[i]];
+            let [Some(a), Some(b), Some(c), Some(d)] = square else {
                 continue;
             };
             match cell(i, j - 1) {
-                Cell::Quad => draft.face([a, b, c, d]),
+                Cell::Quad => builder.add_face([a, b, c, d]),
                 Cell::Rising => {
-                    draft.face([a, b, c]);
-                    draft.face([a, c, d]);
+                    builder.add_face([a, b, c]);
+                    builder.add_face([a, c, d]);
                 }
                 Cell::Falling => {
-                    draft.face([a, b, d]);
-                    draft.face([b, c, d]);
+                    builder.add_face([a, b, d]);
+                    builder.add_face([b, c, d]);
                 }
                 Cell::Hole => {}
             }
         }
         std::mem::swap(&mut below, &mut above);
     }
-    Ok(draft.finish())
+    Ok(builder.build())
 }

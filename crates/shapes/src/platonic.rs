@@ -10,7 +10,7 @@
 
 use sixfold_core::PolygonMesh;
 
-use crate::draft::Draft;
+use crate::builder::MeshBuilder;
 
 /// The golden ratio, (1 + √5) / 2. The standard library has it since Rust 1.94.
 const PHI: f64 = 1.618_033_988_749_895;
@@ -177,12 +177,12 @@ pub(crate) const ICOSAHEDRON_FACES: [[u32; 3]; 20] = [
 ];
 
 fn solid<const DEGREE: usize>(vertices: &[[f64; 3]], faces: &[[u32; DEGREE]]) -> PolygonMesh {
-    let mut draft = Draft::with_capacity(vertices.len(), DEGREE * faces.len());
+    let mut builder = MeshBuilder::with_capacity(vertices.len(), DEGREE * faces.len());
     for &position in vertices {
-        draft.vertex(position);
+        builder.add_vertex(position);
     }
     for &face in faces {
-        draft.face(face);
+        builder.add_face(face);
     }
-    draft.finish()
+    builder.build()
 }

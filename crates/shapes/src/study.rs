@@ -47,5 +47,5 @@ fn rings_and_balls() -> Result<Field, ShapeError> {
     let parts = parts.into_iter().map(Ok);
     let blended = parts.reduce(|a, b| a?.smooth_union(b?, 0.0));
     // The blend is visible on a level other than zero only.
-    blended.unwrap_or(Err(ShapeError::Nothing))?.inflated(0.03)
+    blended.unwrap_or(Err(ShapeError::Empty))?.inflated(0.03)
 }

@@ -2,9 +2,9 @@
 
 use sixfold_core::PolygonMesh;
 
-use crate::arithmetic::turn;
-use crate::draft::Draft;
-use crate::error::{MAX_AROUND, ShapeError, corners_within, within};
+use crate::arithmetic::unit_circle;
+use crate::builder::MeshBuilder;
+use crate::error::{MAX_SEGMENTS, ShapeError, check_corners, check_count};
 
 /// Radius of the tube of the torus, and half the width of the strip. The circle along the centre
 /// has radius 1.
@@ -18,8 +18,8 @@ const TUBE: f64 = 0.4;
 ///
 /// Fails if `m` or `n` is outside 3 to 2²⁰, or if there are more than 2³¹ − 1 corners.
 pub fn torus(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
-    rolled("torus", m, n, 4, |draft, [a, b, c, d]| {
-        draft.face([a, b, c, d]);
+    build_torus("torus", m, n, 4, |builder, [a, b, c, d]| {
+        builder.add_face([a, b, c, d]);
     })
 }
 
@@ -31,41 +31,41 @@ pub fn torus(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
 ///
 /// Fails if `m` or `n` is outside 3 to 2²⁰, or if there are more than 2³¹ − 1 corners.
 pub fn triangle_torus(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
-    rolled("triangle-torus", m, n, 6, |draft, [a, b, c, d]| {
-        draft.face([a, b, c]);
-        draft.face([a, c, d]);
+    build_torus("triangle-torus", m, n, 6, |builder, [a, b, c, d]| {
+        builder.add_face([a, b, c]);
+        builder.add_face([a, c, d]);
     })
 }
 
 /// Builds a torus. `cell` adds the faces of one cell, which have `degrees` corners in total.
-fn rolled(
+fn build_torus(
     shape: &'static str,
     m: usize,
     n: usize,
     degrees: u64,
-    cell: impl Fn(&mut Draft, [u32; 4]),
+    cell: impl Fn(&mut MeshBuilder, [u32; 4]),
 ) -> Result<PolygonMesh, ShapeError> {
-    within("m", m, 3, MAX_AROUND)?;
-    within("n", n, 3, MAX_AROUND)?;
+    check_count("m", m, 3, MAX_SEGMENTS)?;
+    check_count("n", n, 3, MAX_SEGMENTS)?;
     let corners = degrees * m as u64 * n as u64;
-    let corners = corners_within(shape, &[("m", m), ("n", n)], corners)?;
-    let mut draft = Draft::with_capacity(m * n, corners);
-    let tube: Vec<[f64; 2]> = (0..n).map(|j| turn(j, n)).collect();
+    let corners = check_corners(shape, &[("m", m), ("n", n)], corners)?;
+    let mut builder = MeshBuilder::with_capacity(m * n, corners);
+    let tube: Vec<[f64; 2]> = (0..n).map(|j| unit_circle(j, n)).collect();
     for i in 0..m {
-        let [x, y] = turn(i, m);
+        let [x, y] = unit_circle(i, m);
         for [out, up] in &tube {
             let radius = 1.0 + TUBE * out;
-            draft.vertex([radius * x, radius * y, TUBE * up]);
+            builder.add_vertex([radius * x, radius * y, TUBE * up]);
         }
     }
     let at = |i: usize, j: usize| ((i % m) * n + j % n) as u32;
     for i in 0..m {
         for j in 0..n {
             let corners = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-            cell(&mut draft, corners);
+            cell(&mut builder, corners);
         }
     }
-    Ok(draft.finish())
+    Ok(builder.build())
 }
 
 /// Builds a strip of `n` quads that is joined to its start with half a twist: a one-sided surface
@@ -83,15 +83,15 @@ fn rolled(
 ///
 /// Fails if `n` is outside 3 to 2²⁰.
 pub fn moebius(n: usize) -> Result<PolygonMesh, ShapeError> {
-    within("n", n, 3, MAX_AROUND)?;
-    let mut draft = Draft::with_capacity(2 * n, 4 * n);
+    check_count("n", n, 3, MAX_SEGMENTS)?;
+    let mut builder = MeshBuilder::with_capacity(2 * n, 4 * n);
     for i in 0..n {
-        let [x, y] = turn(i, n);
+        let [x, y] = unit_circle(i, n);
         // The rung rotates by half a turn while it moves once around the axis.
-        let [out, up] = turn(i, 2 * n).map(|x| TUBE * x);
+        let [out, up] = unit_circle(i, 2 * n).map(|x| TUBE * x);
         for side in [-1.0, 1.0] {
             let radius = 1.0 + side * out;
-            draft.vertex([radius * x, radius * y, side * up]);
+            builder.add_vertex([radius * x, radius * y, side * up]);
         }
     }
     let at = |i: usize, side: usize| {
@@ -99,7 +99,7 @@ pub fn moebius(n: usize) -> Result<PolygonMesh, ShapeError> {
         (2 * (i % n) + side) as u32
     };
     for i in 0..n {
-        draft.face([at(i, 0), at(i + 1, 0), at(i + 1, 1), at(i, 1)]);
+        builder.add_face([at(i, 0), at(i + 1, 0), at(i + 1, 1), at(i, 1)]);
     }
-    Ok(draft.finish())
+    Ok(builder.build())
 }

@@ -3,7 +3,7 @@
 use sixfold_core::{Facts, Point, PolygonMesh, VertexId};
 use sixfold_shapes::{ControlNet, ShapeError};
 
-type Made = Result<PolygonMesh, ShapeError>;
+type ShapeResult = Result<PolygonMesh, ShapeError>;
 
 /// The expected counts and topology of a shape.
 struct Expected {
@@ -36,7 +36,7 @@ impl Expected {
 
 /// Compares `mesh` with what is expected, and checks what holds for all shapes. Returns its facts.
 fn check(name: &str, mesh: &PolygonMesh, expected: &Expected) -> Facts {
-    let facts = Facts::of(mesh);
+    let facts = Facts::from_polygons(mesh);
     assert_eq!(facts.vertices, expected.vertices, "vertices of {name}");
     assert_eq!(facts.edges, expected.edges, "edges of {name}");
     assert_eq!(facts.faces, expected.faces, "faces of {name}");
@@ -79,11 +79,11 @@ fn check(name: &str, mesh: &PolygonMesh, expected: &Expected) -> Facts {
     );
 
     assert!(mesh.positions().iter().all(|p| p.is_finite()), "{name}");
-    let mut places: Vec<[u32; 3]> = mesh.positions().iter().map(bits).collect();
-    places.sort_unstable();
-    places.dedup();
+    let mut positions: Vec<[u32; 3]> = mesh.positions().iter().map(bits).collect();
+    positions.sort_unstable();
+    positions.dedup();
     assert_eq!(
-        places.len(),
+        positions.len(),
         mesh.vertex_count(),
         "two vertices of {name} at one position"
     );
@@ -101,9 +101,9 @@ fn bits(point: &Point) -> [u32; 3] {
 fn volume(mesh: &PolygonMesh) -> f64 {
     let mut volume = 0.0;
     for (_, face) in mesh.faces().iter() {
-        let place = |v: VertexId| mesh.position(v).as_dvec3();
+        let position = |v: VertexId| mesh.position(v).as_dvec3();
         for pair in face[1..].windows(2) {
-            volume += place(face[0]).dot(place(pair[0]).cross(place(pair[1]))) / 6.0;
+            volume += position(face[0]).dot(position(pair[0]).cross(position(pair[1]))) / 6.0;
         }
     }
     volume
@@ -112,13 +112,13 @@ fn volume(mesh: &PolygonMesh) -> f64 {
 /// Checks that every face of a flat shape runs counter-clockwise as seen from above.
 fn check_flat(name: &str, mesh: &PolygonMesh) {
     for (f, face) in mesh.faces().iter() {
-        let mut doubled = 0.0;
+        let mut double_area = 0.0;
         for (&a, &b) in face.iter().zip(face.iter().cycle().skip(1)) {
             let [a, b] = [a, b].map(|v| mesh.position(v));
-            doubled += a.x * b.y - a.y * b.x;
+            double_area += a.x * b.y - a.y * b.x;
             assert_eq!(a.z, 0.0, "{name}");
         }
-        assert!(doubled > 0.0, "{f} of {name} is turned over");
+        assert!(double_area > 0.0, "{f} of {name} is turned over");
     }
 }
 
@@ -136,7 +136,7 @@ fn check_sides(name: &str, mesh: &PolygonMesh, length: f32) {
 }
 
 /// Returns pairs of a value and its number of occurrences.
-fn hist(spread: &Option<sixfold_core::Spread>) -> Vec<(usize, usize)> {
+fn hist(spread: &Option<sixfold_core::Distribution>) -> Vec<(usize, usize)> {
     let hist = spread.as_ref().and_then(|spread| spread.hist.clone());
     hist.expect("a mesh with few different degrees")
         .into_iter()
@@ -261,9 +261,9 @@ fn grids_and_tilings() {
     for m in 1..10 {
         for n in 1..10 {
             let (v, e, f) = ((m + 1) * (n + 1), 2 * m * n + m + n, m * n);
-            let flat = |name: &str, made: Made, expected: Expected| {
+            let flat = |name: &str, result: ShapeResult, expected: Expected| {
                 let name = format!("{name} {m} {n}");
-                let mesh = made.expect(&name);
+                let mesh = result.expect(&name);
                 check_flat(&name, &mesh);
                 (check(&name, &mesh, &expected), mesh)
             };
@@ -323,8 +323,8 @@ fn grids_with_holes() {
                 };
                 check(&name, &mesh, &expected);
             }
-            let room = ((m - 1) / 2) * ((n - 1) / 2);
-            for holes in 0..=room {
+            let max_holes = ((m - 1) / 2) * ((n - 1) / 2);
+            for holes in 0..=max_holes {
                 let name = format!("grid-with-holes {m} {n} {holes}");
                 let mesh = sixfold_shapes::grid_with_holes(m, n, holes).expect(&name);
                 let expected = Expected {
@@ -333,8 +333,8 @@ fn grids_with_holes() {
                 };
                 check(&name, &mesh, &expected);
             }
-            let error = sixfold_shapes::grid_with_holes(m, n, room + 1).expect_err("no room");
-            let message = format!("holes = {}: choose from 0 to {room}", room + 1);
+            let error = sixfold_shapes::grid_with_holes(m, n, max_holes + 1).expect_err("no room");
+            let message = format!("holes = {}: choose from 0 to {max_holes}", max_holes + 1);
             assert_eq!(error.to_string(), message);
         }
     }

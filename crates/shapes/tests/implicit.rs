@@ -1,8 +1,8 @@
 //! Implicit surfaces: checks fields against their formulas, and surfaces against their topology.
 
 use sixfold_core::{Facts, PolygonMesh};
+use sixfold_shapes::generator;
 use sixfold_shapes::implicit::{Blob, Field};
-use sixfold_shapes::recipe;
 
 fn ball(x: f64, radius: f64) -> Field {
     Field::sphere([x, 0.0, 0.0], radius).expect("a ball")
@@ -14,29 +14,29 @@ fn ring(axis: [f64; 3]) -> Field {
 
 #[test]
 fn fields_follow_their_formulas() {
-    let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} is not {b}");
-    close(ball(1.0, 0.5).at([1.0, 3.0, 4.0]), 4.5);
-    close(ring([0.0, 0.0, 7.0]).at([0.0, 5.0, 3.0]), 4.7);
-    close(ring([2.0, 0.0, 0.0]).at([0.0, 0.0, 0.0]), 0.7);
+    let assert_close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} is not {b}");
+    assert_close(ball(1.0, 0.5).at([1.0, 3.0, 4.0]), 4.5);
+    assert_close(ring([0.0, 0.0, 7.0]).at([0.0, 5.0, 3.0]), 4.7);
+    assert_close(ring([2.0, 0.0, 0.0]).at([0.0, 0.0, 0.0]), 0.7);
     let cuboid = Field::cuboid([0.0; 3], [1.0, 2.0, 3.0]).expect("a box");
-    close(cuboid.at([4.0, 6.0, 0.0]), 5.0);
-    close(cuboid.at([0.9, 0.0, 0.0]), -0.1);
+    assert_close(cuboid.at([4.0, 6.0, 0.0]), 5.0);
+    assert_close(cuboid.at([0.9, 0.0, 0.0]), -0.1);
     let [f, g] = [ball(0.0, 1.0), ball(1.0, 1.0)];
     for i in -20..20 {
         let point = [f64::from(i) / 7.0, 0.3, -0.2];
         let [a, b] = [f.at(point), g.at(point)];
-        close(
+        assert_close(
             f.clone().union(g.clone()).expect("two parts").at(point),
             a.min(b),
         );
-        close(
+        assert_close(
             f.clone()
                 .intersection(g.clone())
                 .expect("two parts")
                 .at(point),
             a.max(b),
         );
-        close(
+        assert_close(
             f.clone()
                 .difference(g.clone())
                 .expect("two parts")
@@ -46,11 +46,11 @@ fn fields_follow_their_formulas() {
         for alpha in [0.0, 0.3, 1.0] {
             let smooth = f.clone().smooth_union(g.clone(), alpha).expect("alpha");
             let expected = (a + b - (a * a + b * b - 2.0 * alpha * a * b).sqrt()) / (1.0 + alpha);
-            close(smooth.at(point), expected);
+            assert_close(smooth.at(point), expected);
             // Outside the union, a blend only adds to the solid.
             assert!(smooth.at(point) <= a.min(b) + 1e-12 || a.min(b) < 0.0);
         }
-        close(f.clone().inflated(0.25).expect("by").at(point), a - 0.25);
+        assert_close(f.clone().inflated(0.25).expect("by").at(point), a - 0.25);
     }
     let blobs = [([0.0; 3], 2.0, 0.5), ([1.0, 0.0, 0.0], -0.5, 3.0)];
     let blobs = blobs.map(|(centre, strength, sharpness)| Blob {
@@ -60,12 +60,12 @@ fn fields_follow_their_formulas() {
     });
     let sum = Field::blobs(&blobs, 0.7).expect("two blobs");
     let expected = 0.7 - 2.0 * (-0.5_f64 * 5.0).exp() + 0.5 * (-3.0_f64 * 4.0).exp();
-    close(sum.at([1.0, 2.0, 0.0]), expected);
+    assert_close(sum.at([1.0, 2.0, 0.0]), expected);
 }
 
 /// Checks for a closed, oriented manifold with about `faces` triangles and distinct positions.
 fn check(name: &str, mesh: &PolygonMesh, faces: usize) -> Facts {
-    let facts = Facts::of(mesh);
+    let facts = Facts::from_polygons(mesh);
     let tolerance = (faces / 20).max(20);
     assert!(
         facts.faces.abs_diff(faces) <= tolerance,
@@ -80,14 +80,14 @@ fn check(name: &str, mesh: &PolygonMesh, faces: usize) -> Facts {
         facts.isolated_vertices,
     ];
     assert_eq!(none, [0; 3], "{name}");
-    let mut places: Vec<_> = mesh
+    let mut positions: Vec<_> = mesh
         .positions()
         .iter()
         .map(|p| p.to_array().map(f32::to_bits))
         .collect();
-    places.sort_unstable();
-    places.dedup();
-    assert_eq!(places.len(), mesh.vertex_count(), "{name}");
+    positions.sort_unstable();
+    positions.dedup();
+    assert_eq!(positions.len(), mesh.vertex_count(), "{name}");
     let mut volume = 0.0;
     for (_, face) in mesh.faces().iter() {
         let [a, b, c] = [0, 1, 2].map(|i| mesh.position(face[i]).as_dvec3());
@@ -153,9 +153,9 @@ fn surfaces_have_their_topology_at_every_size() {
 #[test]
 fn recipes_have_their_topology() {
     for (name, genus) in [("blobs", 0), ("csg", 5), ("smooth-union", 2)] {
-        let recipe = recipe(name).expect(name);
+        let generator = generator(name).expect(name);
         for faces in [4_000_u32, 9_000] {
-            let mesh = recipe.make(&[("faces", f64::from(faces))]).expect(name);
+            let mesh = generator.build(&[("faces", f64::from(faces))]).expect(name);
             let facts = check(name, &mesh, faces as usize);
             assert_eq!(
                 (facts.components, facts.genus),
@@ -174,29 +174,32 @@ fn vertices_lie_on_the_surface() {
     // twice as many faces. A crossing is moved away from a lattice point by at most 0.08 √3 h.
     let area = 4.0 * std::f64::consts::PI.powi(2) * 0.3;
     let spacing = (8.98 * area / mesh.face_count() as f64).sqrt();
-    let off = |p: &sixfold_core::Point| field.at(p.to_array().map(f64::from)).abs() / spacing;
-    let off: Vec<f64> = mesh.positions().iter().map(off).collect();
+    let distance = |p: &sixfold_core::Point| field.at(p.to_array().map(f64::from)).abs() / spacing;
+    let distances: Vec<f64> = mesh.positions().iter().map(distance).collect();
     assert!(
-        off.iter().all(|&off| off < 0.16),
+        distances.iter().all(|&distance| distance < 0.16),
         "a vertex is far from the surface"
     );
-    let near = off.iter().filter(|&&off| off < 1e-3).count();
+    let near = distances
+        .iter()
+        .filter(|&&distance| distance < 1e-3)
+        .count();
     assert!(
-        near > off.len() * 3 / 4,
+        near > distances.len() * 3 / 4,
         "only {near} of {} vertices are near the surface",
-        off.len()
+        distances.len()
     );
 }
 
 #[test]
 fn a_long_chain_of_blended_balls_has_genus_zero() {
-    let bead = |i: u32| ball(0.5 * f64::from(i), 1.0);
-    let worm = (1..60).try_fold(bead(0), |worm, i| worm.smooth_union(bead(i), 0.0));
-    let worm = worm
-        .and_then(|worm| worm.inflated(0.05))
-        .expect("sixty beads");
-    let mesh = worm.polygonised(5_000).expect("a worm");
-    let facts = check("worm", &mesh, 5_000);
+    let ball_at = |i: u32| ball(0.5 * f64::from(i), 1.0);
+    let chain = (1..60).try_fold(ball_at(0), |chain, i| chain.smooth_union(ball_at(i), 0.0));
+    let chain = chain
+        .and_then(|chain| chain.inflated(0.05))
+        .expect("sixty balls");
+    let mesh = chain.polygonised(5_000).expect("a chain");
+    let facts = check("chain", &mesh, 5_000);
     assert_eq!((facts.components, facts.genus), (1, Some(0)));
 }
 
@@ -207,14 +210,16 @@ fn small_targets_keep_the_topology_of_the_recipe() {
         ("smooth-union", 2, [1_500.0, 1_777.0, 2_100.0, 2_345.0]),
     ] {
         for target in targets {
-            let recipe = sixfold_shapes::recipe(name).expect("listed");
-            let mesh = recipe.make(&[("faces", target)]).expect("within its range");
-            let facts = Facts::of(&mesh);
+            let generator = sixfold_shapes::generator(name).expect("listed");
+            let mesh = generator
+                .build(&[("faces", target)])
+                .expect("within its range");
+            let facts = Facts::from_polygons(&mesh);
             assert_eq!(facts.genus, Some(genus), "{name} faces={target}");
             assert_eq!(facts.components, 1, "{name} faces={target}");
-            let off = (facts.faces as f64 - target).abs();
+            let difference = (facts.faces as f64 - target).abs();
             assert!(
-                off <= 20.0_f64.max(0.05 * target),
+                difference <= 20.0_f64.max(0.05 * target),
                 "{name}: {} for {target}",
                 facts.faces
             );

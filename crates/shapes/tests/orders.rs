@@ -4,7 +4,7 @@ use sixfold_core::{Facts, Point, PolygonMesh, VertexId};
 use sixfold_shapes::{Order, breadth_first, morton, shuffled};
 
 fn meshes() -> Vec<PolygonMesh> {
-    let made = [
+    let meshes = [
         sixfold_shapes::genus(2),
         sixfold_shapes::mixed_grid(6, 7),
         sixfold_shapes::moebius(9),
@@ -13,24 +13,24 @@ fn meshes() -> Vec<PolygonMesh> {
             .map_err(|_| unreachable!("a triangle and an isolated vertex are valid")),
         Ok(PolygonMesh::default()),
     ];
-    made.map(|mesh| mesh.expect("small parameters")).into()
+    meshes.map(|mesh| mesh.expect("small parameters")).into()
 }
 
 /// Returns the sorted positions, and the sorted faces as cycles of positions. Each cycle starts at
 /// its least position.
 fn content(mesh: &PolygonMesh) -> (Vec<[u32; 3]>, Vec<Vec<[u32; 3]>>) {
-    let place = |v: VertexId| mesh.position(v).to_array().map(f32::to_bits);
-    let mut places: Vec<_> = mesh.vertices().map(place).collect();
-    places.sort_unstable();
+    let position = |v: VertexId| mesh.position(v).to_array().map(f32::to_bits);
+    let mut positions: Vec<_> = mesh.vertices().map(position).collect();
+    positions.sort_unstable();
     let mut faces: Vec<Vec<_>> = Vec::new();
     for (_, face) in mesh.faces().iter() {
-        let mut cycle: Vec<_> = face.iter().map(|&v| place(v)).collect();
+        let mut cycle: Vec<_> = face.iter().map(|&v| position(v)).collect();
         let least = (0..cycle.len()).min_by_key(|&i| cycle[i]).unwrap_or(0);
         cycle.rotate_left(least);
         faces.push(cycle);
     }
     faces.sort_unstable();
-    (places, faces)
+    (positions, faces)
 }
 
 #[test]
@@ -38,11 +38,15 @@ fn every_order_keeps_the_mesh() {
     for mesh in meshes() {
         for order in Order::ALL {
             assert_eq!(order.name().parse(), Ok(order));
-            let ordered = order.of(&mesh, 3);
+            let ordered = order.apply(&mesh, 3);
             assert_eq!(content(&ordered), content(&mesh), "{order}");
-            assert_eq!(Facts::of(&ordered), Facts::of(&mesh), "{order}");
+            assert_eq!(
+                Facts::from_polygons(&ordered),
+                Facts::from_polygons(&mesh),
+                "{order}"
+            );
         }
-        assert_eq!(Order::Given.of(&mesh, 3), mesh);
+        assert_eq!(Order::Given.apply(&mesh, 3), mesh);
     }
 }
 
@@ -50,18 +54,22 @@ fn every_order_keeps_the_mesh() {
 fn new_handles_have_the_same_positions_and_corners() {
     for mesh in meshes() {
         for order in Order::ALL {
-            let after = order.with_names(&mesh, 3);
-            assert_eq!(after.mesh, order.of(&mesh, 3), "{order}");
+            let after = order.apply_with_handles(&mesh, 3);
+            assert_eq!(after.mesh, order.apply(&mesh, 3), "{order}");
             for v in mesh.vertices() {
-                let now = after.vertices[v.index()];
-                assert_eq!(after.mesh.position(now), mesh.position(v), "{order}: {v}");
+                let new_handle = after.vertices[v.index()];
+                assert_eq!(
+                    after.mesh.position(new_handle),
+                    mesh.position(v),
+                    "{order}: {v}"
+                );
             }
             for (f, face) in mesh.faces().iter() {
                 let mut renamed: Vec<_> = face.iter().map(|v| after.vertices[v.index()]).collect();
-                let mut now = after.mesh.faces().face(after.faces[f.index()]).to_vec();
+                let mut new_handle = after.mesh.faces().face(after.faces[f.index()]).to_vec();
                 renamed.sort_unstable();
-                now.sort_unstable();
-                assert_eq!(now, renamed, "{order}: {f}");
+                new_handle.sort_unstable();
+                assert_eq!(new_handle, renamed, "{order}: {f}");
             }
         }
     }
@@ -77,10 +85,10 @@ fn shuffling_depends_only_on_the_seed() {
     // about a quarter of them do.
     let mesh = sixfold_shapes::grid(10, 10).expect("small");
     let mut starts = [0; 4];
-    let turned = shuffled(&mesh, 5);
-    for (_, face) in turned.faces().iter() {
+    let shuffled_mesh = shuffled(&mesh, 5);
+    for (_, face) in shuffled_mesh.faces().iter() {
         let height = |&i: &usize| {
-            let p = turned.position(face[i]);
+            let p = shuffled_mesh.position(face[i]);
             p.x + p.y
         };
         let lower_left = (0..4).min_by(|a, b| height(a).total_cmp(&height(b)));
@@ -110,33 +118,34 @@ fn morton_and_breadth_first_improve_a_shuffled_order() {
         "morton: {} of {random}",
         step(&sorted)
     );
-    let walked = breadth_first(&shuffled(&mesh, 1));
+    let ordered = breadth_first(&shuffled(&mesh, 1));
     assert!(
-        10 * step(&walked) < random,
+        10 * step(&ordered) < random,
         "breadth first: {} of {random}",
-        step(&walked)
+        step(&ordered)
     );
 }
 
 #[test]
 fn breadth_first_faces_are_sorted_by_their_lowest_vertex() {
     for mesh in meshes() {
-        let walked = breadth_first(&shuffled(&mesh, 2));
-        let firsts = walked
+        let ordered = breadth_first(&shuffled(&mesh, 2));
+        let firsts = ordered
             .faces()
             .iter()
             .map(|(_, face)| face.iter().min().copied());
-        assert!(firsts.is_sorted(), "{walked:?}");
+        assert!(firsts.is_sorted(), "{ordered:?}");
         // Every vertex is reached through a face of an earlier vertex, except the starts of walks.
-        let components = Facts::of(&mesh).components + Facts::of(&mesh).isolated_vertices;
-        let mut called = vec![false; walked.vertex_count()];
-        for (_, face) in walked.faces().iter() {
+        let components =
+            Facts::from_polygons(&mesh).components + Facts::from_polygons(&mesh).isolated_vertices;
+        let mut reached = vec![false; ordered.vertex_count()];
+        for (_, face) in ordered.faces().iter() {
             let first = face.iter().min().expect("a corner");
             for v in face {
-                called[v.index()] |= v != first;
+                reached[v.index()] |= v != first;
             }
         }
-        let starts = called.iter().filter(|&&called| !called).count();
+        let starts = reached.iter().filter(|&&reached| !reached).count();
         assert_eq!(starts, components);
     }
 }

@@ -2,33 +2,30 @@
 
 use sixfold_core::PolygonMesh;
 use sixfold_shapes::implicit::{Blob, Field};
-use sixfold_shapes::{RECIPES, ShapeError, recipe};
+use sixfold_shapes::{GENERATORS, ShapeError, generator};
 
 /// Functions that build a shape from one parameter, or from two.
-type One = fn(usize) -> Result<PolygonMesh, ShapeError>;
-type Two = fn(usize, usize) -> Result<PolygonMesh, ShapeError>;
+type OneParameter = fn(usize) -> Result<PolygonMesh, ShapeError>;
+type TwoParameters = fn(usize, usize) -> Result<PolygonMesh, ShapeError>;
 
 #[test]
 fn counts_out_of_range() {
     let around = 1 << 20;
     let side = 1 << 22;
-    let ones: [(&str, One, usize, usize); 5] = [
+    let one_parameter: [(&str, OneParameter, usize, usize); 5] = [
         ("n", sixfold_shapes::prism, 3, around),
         ("n", sixfold_shapes::antiprism, 3, around),
         ("n", sixfold_shapes::moebius, 3, around),
         ("frequency", sixfold_shapes::geodesic, 1, 5982),
         ("g", sixfold_shapes::genus, 0, side),
     ];
-    for (parameter, make, least, greatest) in ones {
-        for value in (0..least).chain([greatest + 1, usize::MAX]) {
+    for (parameter, make, min, max) in one_parameter {
+        for value in (0..min).chain([max + 1, usize::MAX]) {
             let error = make(value).expect_err(parameter);
-            assert_eq!(
-                error,
-                out_of_range(parameter, value as f64, least, greatest)
-            );
+            assert_eq!(error, out_of_range(parameter, value as f64, min, max));
         }
     }
-    let twos: [(Two, [usize; 2], usize); 9] = [
+    let two_parameters: [(TwoParameters, [usize; 2], usize); 9] = [
         (sixfold_shapes::grid, [1, 1], side),
         (sixfold_shapes::triangle_grid, [1, 1], side),
         (sixfold_shapes::mixed_grid, [1, 1], side),
@@ -39,18 +36,18 @@ fn counts_out_of_range() {
         (sixfold_shapes::triangle_torus, [3, 3], around),
         (sixfold_shapes::uv_sphere, [3, 2], around),
     ];
-    for (make, [m, n], greatest) in twos {
-        for value in (0..m).chain([greatest + 1, usize::MAX]) {
+    for (make, [m, n], max) in two_parameters {
+        for value in (0..m).chain([max + 1, usize::MAX]) {
             let error = make(value, n).expect_err("m");
-            assert_eq!(error, out_of_range("m", value as f64, m, greatest));
+            assert_eq!(error, out_of_range("m", value as f64, m, max));
         }
-        for value in (0..n).chain([greatest + 1, usize::MAX]) {
+        for value in (0..n).chain([max + 1, usize::MAX]) {
             let error = make(m, value).expect_err("n");
-            assert_eq!(error, out_of_range("n", value as f64, n, greatest));
+            assert_eq!(error, out_of_range("n", value as f64, n, max));
         }
         // Each value is allowed, but about 10¹² cells would take terabytes.
-        let error = make(greatest, greatest).expect_err("too many");
-        let ShapeError::TooMany {
+        let error = make(max, max).expect_err("too many");
+        let ShapeError::TooManyCorners {
             parameters,
             corners,
             limit,
@@ -59,17 +56,17 @@ fn counts_out_of_range() {
         else {
             panic!("{error}");
         };
-        assert_eq!(parameters, [("m", greatest), ("n", greatest)]);
+        assert_eq!(parameters, [("m", max), ("n", max)]);
         assert!(corners > limit);
     }
 }
 
-fn out_of_range(parameter: &'static str, value: f64, least: usize, greatest: usize) -> ShapeError {
+fn out_of_range(parameter: &'static str, value: f64, min: usize, max: usize) -> ShapeError {
     ShapeError::OutOfRange {
         parameter,
         value,
-        least: least as f64,
-        greatest: greatest as f64,
+        min: min as f64,
+        max: max as f64,
     }
 }
 
@@ -84,26 +81,26 @@ fn messages_name_parameter_value_and_range() {
         message(sixfold_shapes::grid(40_000, 50_000)),
         "grid with m = 40000, n = 50000 has 8000000000 corners, more than 2147483647: choose smaller numbers"
     );
-    let torus = recipe("torus").expect("a shape");
+    let torus = generator("torus").expect("a shape");
     assert_eq!(
-        message(torus.make(&[("m", 3.5)])),
+        message(torus.build(&[("m", 3.5)])),
         "m = 3.5: choose a whole number from 3 to 1048576"
     );
     assert_eq!(
-        message(torus.make(&[("m", f64::NAN)])),
+        message(torus.build(&[("m", f64::NAN)])),
         "m = NaN: choose from 3 to 1048576"
     );
     assert_eq!(
-        message(torus.make(&[("q", 3.0)])),
+        message(torus.build(&[("q", 3.0)])),
         "torus has no parameter \"q\": choose from m, n"
     );
     assert_eq!(
-        message(torus.make(&[("m", 3.0), ("m", 4.0)])),
+        message(torus.build(&[("m", 3.0), ("m", 4.0)])),
         "parameter m of torus is given twice: remove one"
     );
-    let cube = recipe("cube").expect("a shape");
+    let cube = generator("cube").expect("a shape");
     assert_eq!(
-        message(cube.make(&[("n", 3.0)])),
+        message(cube.build(&[("n", 3.0)])),
         "cube has no parameter \"n\": it has no parameters"
     );
     let error = "spiral"
@@ -118,36 +115,36 @@ fn messages_name_parameter_value_and_range() {
 
 #[test]
 fn every_recipe_works_and_refuses() {
-    let mut names: Vec<&str> = RECIPES.iter().map(|recipe| recipe.name).collect();
-    for recipe in RECIPES {
-        let kebab = recipe
+    let mut names: Vec<&str> = GENERATORS.iter().map(|generator| generator.name).collect();
+    for generator in GENERATORS {
+        let kebab = generator
             .name
             .bytes()
             .all(|b| b.is_ascii_lowercase() || b == b'-');
-        assert!(kebab && !recipe.summary.is_empty(), "{}", recipe.name);
+        assert!(kebab && !generator.summary.is_empty(), "{}", generator.name);
         assert_eq!(
-            sixfold_shapes::recipe(recipe.name).map(|found| found.name),
-            Some(recipe.name)
+            sixfold_shapes::generator(generator.name).map(|found| found.name),
+            Some(generator.name)
         );
-        let mesh = recipe.make(&[]).expect(recipe.name);
-        assert!(mesh.face_count() > 0, "{}", recipe.name);
-        for parameter in recipe.parameters {
-            let with = |value| recipe.make(&[(parameter.name, value)]);
+        let mesh = generator.build(&[]).expect(generator.name);
+        assert!(mesh.face_count() > 0, "{}", generator.name);
+        for parameter in generator.parameters {
+            let with = |value| generator.build(&[(parameter.name, value)]);
             assert_eq!(
                 with(parameter.default).as_ref(),
                 Ok(&mesh),
                 "{}",
-                recipe.name
+                generator.name
             );
             // The minimum may be too small for the default of another parameter. Then the error
             // names that parameter.
-            if let Err(error) = with(parameter.least) {
+            if let Err(error) = with(parameter.min) {
                 let other = matches!(error, ShapeError::OutOfRange { parameter: p, .. } if p != parameter.name);
-                assert!(other, "{} {}: {error}", recipe.name, parameter.name);
+                assert!(other, "{} {}: {error}", generator.name, parameter.name);
             }
             let beyond = [
-                parameter.least - 1.0,
-                parameter.greatest * 2.0,
+                parameter.min - 1.0,
+                parameter.max * 2.0,
                 -1.0,
                 1e300,
                 f64::NAN,
@@ -155,24 +152,24 @@ fn every_recipe_works_and_refuses() {
                 f64::NEG_INFINITY,
             ];
             for value in beyond {
-                let error = with(value).expect_err(recipe.name);
+                let error = with(value).expect_err(generator.name);
                 let name = matches!(error, ShapeError::OutOfRange { parameter: p, .. } if p == parameter.name);
                 assert!(
                     name,
                     "{} {} = {value}: {error}",
-                    recipe.name, parameter.name
+                    generator.name, parameter.name
                 );
             }
-            if parameter.whole {
-                let error = with(parameter.default + 0.5).expect_err(recipe.name);
-                assert!(matches!(error, ShapeError::NotWhole { .. }), "{error}");
+            if parameter.is_integer {
+                let error = with(parameter.default + 0.5).expect_err(generator.name);
+                assert!(matches!(error, ShapeError::NotInteger { .. }), "{error}");
             }
         }
     }
     names.sort_unstable();
     names.dedup();
-    assert_eq!(names.len(), RECIPES.len());
-    assert!(sixfold_shapes::recipe("teapot").is_none());
+    assert_eq!(names.len(), GENERATORS.len());
+    assert!(sixfold_shapes::generator("teapot").is_none());
 }
 
 #[test]
@@ -224,7 +221,7 @@ fn invalid_fields_and_empty_solids() {
         Err(ShapeError::Unbounded)
     );
     let far = Field::sphere([10.0, 0.0, 0.0], 1.0).expect("a ball");
-    let nothing = [
+    let empty_solids = [
         ball().intersection(far).expect("two parts"),
         ball().difference(ball()).expect("two parts"),
         ball().inflated(-2.0).expect("an empty solid"),
@@ -232,12 +229,8 @@ fn invalid_fields_and_empty_solids() {
         Field::blobs(&[blob], 2.0).expect("a level that is never reached"),
         Field::blobs(&[], 1.0).expect("no blobs"),
     ];
-    for field in nothing {
-        assert_eq!(
-            field.polygonised(500),
-            Err(ShapeError::Nothing),
-            "{field:?}"
-        );
+    for field in empty_solids {
+        assert_eq!(field.polygonised(500), Err(ShapeError::Empty), "{field:?}");
     }
     let distant = Field::sphere([1e6, 0.0, 0.0], 0.01).expect("small and far away");
     let error = distant

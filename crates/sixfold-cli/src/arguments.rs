@@ -25,7 +25,7 @@ pub(crate) use reshaping::{Dual, Smooth, Triangulate};
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
 pub(crate) use why::Why;
 
-use crate::many::{Chosen, Shard};
+use crate::many::{LabSelection, Shard};
 
 const EXAMPLES: &str = "Examples:
   sixfold                                    study the built-in mesh
@@ -196,7 +196,7 @@ pub(crate) struct Study {
     pub(crate) report: Option<PathBuf>,
     /// Labs of a one-mesh report: orders,growth,why; all (default); none
     #[arg(long, value_name = "NAME,…", requires = "report")]
-    pub(crate) labs: Option<Chosen>,
+    pub(crate) labs: Option<LabSelection>,
     /// Continue the study in the folder of --report
     #[arg(long, requires = "report")]
     pub(crate) resume: bool,
@@ -263,7 +263,7 @@ impl Default for Study {
             seed: settings.seed,
             memory: MemoryState::default(),
             externals: Vec::new(),
-            patience: settings.patience,
+            patience: settings.external_timeout,
             triangulate: false,
             strict: false,
             json: None,
@@ -328,16 +328,14 @@ fn operation(name: &str) -> Result<Operation, String> {
 
 /// Parses `20s`, `500ms` or `2m`: above 0 and at most a week.
 fn duration(text: &str) -> Result<Duration, String> {
-    const LONGEST_S: f64 = 7.0 * 24.0 * 3600.0;
+    const MAX_S: f64 = 7.0 * 24.0 * 3600.0;
     let units = [("ms", 1e-3), ("s", 1.0), ("m", 60.0)];
     let parsed = units.into_iter().find_map(|(unit, seconds)| {
         let number: f64 = text.strip_suffix(unit)?.parse().ok()?;
         Some(number * seconds)
     });
     match parsed {
-        Some(seconds) if seconds > 0.0 && seconds <= LONGEST_S => {
-            Ok(Duration::from_secs_f64(seconds))
-        }
+        Some(seconds) if seconds > 0.0 && seconds <= MAX_S => Ok(Duration::from_secs_f64(seconds)),
         Some(_) => Err("a time must be above 0 and at most a week".into()),
         None => Err("write a time as 20s, 500ms or 2m".into()),
     }

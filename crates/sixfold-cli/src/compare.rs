@@ -4,14 +4,14 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use comfy_table::{Cell, CellAlignment};
-use sixfold_study::{Change, Changes, Comparing, Report, Verdict, compare};
+use sixfold_study::{Change, Changes, CompareSettings, Report, Verdict, compare};
 
 use crate::arguments::Compare;
 use crate::failure::Failure;
 use crate::load;
-use crate::output::{Output, check_kept, is_stdout};
+use crate::output::{Output, check_not_overwritten, is_stdout};
 use crate::tables::table;
-use crate::text::{Text, hanging};
+use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::{duration, grouped};
 
 /// The exit code if a figure is slower, with `--fail-if-slower`.
@@ -21,16 +21,16 @@ const SLOWER: u8 = 1;
 pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     let Compare { before, after, .. } = arguments;
     for study in [before, after] {
-        check_kept("the study", study, &[("--json", arguments.json.as_ref())])?;
+        check_not_overwritten("the study", study, &[("--json", arguments.json.as_ref())])?;
     }
-    let read = |path: &Path| load::results(&load::results_in(path), Report::read_json);
+    let read = |path: &Path| load::read_results(&load::results_path(path), Report::read_json);
     let [before, after] = [read(before)?, read(after)?];
     let json = Output::open_if(arguments.json.as_ref())?;
-    let how = Comparing {
+    let settings = CompareSettings {
         relative: arguments.relative,
         drift: arguments.noise,
     };
-    let changes = compare(&before, &after, how).map_err(Failure::usage)?;
+    let changes = compare(&before, &after, settings).map_err(Failure::usage)?;
     if changes.rows.is_empty() {
         return Err(Failure::usage(format!(
             "{} and {} have no operation on the same backend in common: nothing to compare",
@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
             arguments.after.display()
         )));
     }
-    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
+    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
     print(&changes, arguments.all, &mut text);
     let mut done = text.finish();
     if let Some(output) = json {
@@ -52,25 +52,25 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     })
 }
 
-fn print(changes: &Changes, all: bool, text: &mut Text) {
+fn print(changes: &Changes, all: bool, text: &mut TextOutput) {
     for setting in &changes.environment {
         let first = format!("{:<13}", setting.what);
         let both = format!("{} → {}", setting.before, setting.after);
-        text.say(&hanging(&first, &both));
+        text.print_line(&hanging_indent(&first, &both));
     }
     for (backend, before, after) in &changes.bytes {
         let (before, after) = (grouped(*before), grouped(*after));
-        text.say(&format!("{backend:<13}{before} bytes → {after} bytes"));
+        text.print_line(&format!("{backend:<13}{before} bytes → {after} bytes"));
     }
     let rows: Vec<&Change> = match all {
         true => changes.rows.iter().collect(),
         false => changes.changed().collect(),
     };
     if !rows.is_empty() {
-        text.say(&shown(&rows));
+        text.print_line(&changes_table(&rows));
     }
-    for words in &changes.words {
-        text.say(&hanging("- ", words));
+    for sentence in &changes.sentences {
+        text.print_line(&hanging_indent("- ", sentence));
     }
     for (which, only) in [
         ("first", &changes.only_before),
@@ -78,12 +78,12 @@ fn print(changes: &Changes, all: bool, text: &mut Text) {
     ] {
         if !only.is_empty() {
             let words = format!("Only in the {which} study: {}.", only.join(", "));
-            text.say(&hanging("- ", &words));
+            text.print_line(&hanging_indent("- ", &words));
         }
     }
 }
 
-fn shown(rows: &[&Change]) -> String {
+fn changes_table(rows: &[&Change]) -> String {
     let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
     let header = ["operation", "backend"].map(Cell::new);
     let figures = ["before", "after", "ratio", "95 %"].map(|name| right(name.into()));

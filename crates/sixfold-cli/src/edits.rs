@@ -10,15 +10,15 @@ use crate::arguments::Edits;
 use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
 use crate::tables::table_of_backends;
-use crate::text::{Text, hanging};
+use crate::text::{TextOutput, hanging_indent};
 
 /// Prints the table of edits and backends.
 pub(crate) fn run(arguments: &Edits) -> Result<ExitCode, Failure> {
     let json = Output::open_if(arguments.json.as_ref())?;
-    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
-    text.say(&matrix());
-    text.say("");
-    text.say(&legend());
+    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
+    text.print_line(&matrix());
+    text.print_line("");
+    text.print_line(&legend());
     let mut done = text.finish();
     if let Some(output) = json {
         let rows = Edit::ALL.map(row);
@@ -70,7 +70,7 @@ fn legend() -> String {
             manifold.join(", ")
         ),
     ];
-    lines.map(|line| hanging("", &line)).join("\n")
+    lines.map(|line| hanging_indent("", &line)).join("\n")
 }
 
 /// Returns the JSON of one edit.

@@ -1,28 +1,28 @@
 //! Text of the facts about a mesh, and of the verdict of each backend.
 
-use sixfold::{Facts, Spread};
+use sixfold::{Distribution, Facts};
 use sixfold_study::{BackendReport, MeshReport};
 
-use crate::text::{hanging, tame};
+use crate::text::{hanging_indent, sanitize};
 use sixfold_study::numbers::{counted, grouped};
 
 /// Returns the facts about a mesh as a compact block of lines.
 pub(crate) fn facts_text(mesh: &MeshReport) -> String {
     let facts = &mesh.facts;
-    let mut lines = vec![hanging("mesh         ", &tame(&mesh.name))];
+    let mut lines = vec![hanging_indent("mesh         ", &sanitize(&mesh.name))];
     if !mesh.changes.is_empty() {
-        lines.push(hanging("changed      ", &mesh.changes.join(", ")));
+        lines.push(hanging_indent("changed      ", &mesh.changes.join(", ")));
     }
-    lines.push(hanging("elements     ", &elements(facts)));
+    lines.push(hanging_indent("elements     ", &elements(facts)));
     if facts.faces > facts.degenerate_faces || facts.edges > 0 {
-        lines.push(hanging("surface      ", &surface(facts)));
-        lines.push(hanging("orientation  ", &orientation(facts)));
-        lines.push(hanging("manifold     ", &manifold(facts)));
-        lines.push(hanging("degrees      ", &degrees(facts)));
+        lines.push(hanging_indent("surface      ", &surface(facts)));
+        lines.push(hanging_indent("orientation  ", &orientation(facts)));
+        lines.push(hanging_indent("manifold     ", &manifold(facts)));
+        lines.push(hanging_indent("degrees      ", &degrees(facts)));
     }
-    let also = blemishes(facts);
-    if !also.is_empty() {
-        lines.push(hanging("also         ", &also.join(", ")));
+    let defects = mesh_defects(facts);
+    if !defects.is_empty() {
+        lines.push(hanging_indent("also         ", &defects.join(", ")));
     }
     lines.join("\n")
 }
@@ -74,7 +74,7 @@ fn manifold(facts: &Facts) -> String {
 }
 
 fn degrees(facts: &Facts) -> String {
-    let range = |spread: &Option<Spread>| match spread {
+    let range = |spread: &Option<Distribution>| match spread {
         Some(s) if s.min == s.max => s.min.to_string(),
         Some(s) => format!(
             "{} to {} (mean {:.2})",
@@ -88,8 +88,8 @@ fn degrees(facts: &Facts) -> String {
     format!("valence {valence}; face degree {degree}")
 }
 
-fn blemishes(facts: &Facts) -> Vec<String> {
-    let named = [
+fn mesh_defects(facts: &Facts) -> Vec<String> {
+    let counts = [
         (
             facts.isolated_vertices,
             "isolated vertex",
@@ -102,9 +102,9 @@ fn blemishes(facts: &Facts) -> Vec<String> {
             "degenerate faces",
         ),
     ];
-    let there = named.into_iter().filter(|&(count, ..)| count > 0);
-    there
-        .map(|(count, one, several)| counted(count, one, several))
+    let present = counts.into_iter().filter(|&(count, ..)| count > 0);
+    present
+        .map(|(count, singular, plural)| counted(count, singular, plural))
         .collect()
 }
 
@@ -121,7 +121,7 @@ pub(crate) fn verdicts_text(mesh: &MeshReport, backends: &[BackendReport]) -> St
             Some(reason) => ("refuses: ", reason.as_str()),
         };
         let first = format!("{label:<13}{name:<width$}  {verdict}");
-        lines.push(hanging(&first, reason));
+        lines.push(hanging_indent(&first, reason));
     }
     if backends.iter().any(|backend| !backend.holds) {
         let changed = match mesh.changes.is_empty() {

@@ -21,7 +21,7 @@ impl Failure {
     }
 
     /// Returns a failure for a mesh that the selected backend cannot hold but another may.
-    pub(crate) fn not_held(refusal: impl Display) -> Self {
+    pub(crate) fn cannot_hold(refusal: impl Display) -> Self {
         Self::unsupported(format!(
             "{refusal}; or choose another --backend: `sixfold inspect` shows which can hold the mesh"
         ))

@@ -6,7 +6,7 @@ use sixfold_study::numbers::bytes;
 
 /// Returns an error if `what` needs more than the free memory; `instead` is the hint in the
 /// message.
-pub(crate) fn check_room(what: &str, needed: u64, instead: &str) -> Result<(), Failure> {
+pub(crate) fn check_free_memory(what: &str, needed: u64, instead: &str) -> Result<(), Failure> {
     match free_memory() {
         Some(free) if needed > free => Err(Failure::unsupported(format!(
             "{what} needs about {}, but only {} are free: {instead}",

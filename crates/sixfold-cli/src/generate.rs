@@ -3,37 +3,37 @@
 use std::process::ExitCode;
 
 use sixfold::io::write_obj;
-use sixfold::shapes::{Parameter, RECIPES, Recipe, recipe};
+use sixfold::shapes::{GENERATORS, Generator, Parameter, generator};
 
 use crate::arguments::Generate;
 use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
-use crate::progress::end_on_interrupt;
-use crate::text::{Text, hanging, tame};
+use crate::progress::exit_on_interrupt;
+use crate::text::{TextOutput, hanging_indent, sanitize};
 use sixfold_study::numbers::counted;
 use sixfold_study::unknown;
 
 /// Writes the selected shape.
 pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
-    end_on_interrupt();
+    exit_on_interrupt();
     let shape = &arguments.shape;
-    let recipe = recipe(shape).ok_or_else(|| {
-        let names: Vec<&str> = RECIPES.iter().map(|recipe| recipe.name).collect();
+    let generator = generator(shape).ok_or_else(|| {
+        let names: Vec<&str> = GENERATORS.iter().map(|generator| generator.name).collect();
         Failure::usage(unknown("shape", shape, &names))
     })?;
     let settings = arguments.settings.iter();
     let settings: Vec<(&str, f64)> = settings
         .map(|(name, value)| (name.as_str(), *value))
         .collect();
-    let made = recipe.make(&settings).map_err(Failure::usage)?;
-    let mesh = arguments.order.of(&made, arguments.seed);
+    let made = generator.build(&settings).map_err(Failure::usage)?;
+    let mesh = arguments.order.apply(&made, arguments.seed);
     let output = Output::open(&arguments.output)?;
     output.finish(|writer| write_obj(&mesh, writer))?;
     let vertices = counted(mesh.vertex_count(), "vertex", "vertices");
     let faces = counted(mesh.face_count(), "face", "faces");
-    let place = tame(&arguments.output.display().to_string());
-    let mut text = Text::shown(!is_stdout(&arguments.output));
-    text.say(&format!("{place}: {shape}, {vertices}, {faces}"));
+    let place = sanitize(&arguments.output.display().to_string());
+    let mut text = TextOutput::new(!is_stdout(&arguments.output));
+    text.print_line(&format!("{place}: {shape}, {vertices}, {faces}"));
     text.finish()?;
     Ok(ExitCode::SUCCESS)
 }
@@ -50,28 +50,31 @@ pub(crate) fn help() -> String {
         String::new(),
         "Shapes:".into(),
     ];
-    let width = RECIPES.iter().map(|recipe| recipe.name.len()).max();
-    for recipe in RECIPES {
-        lines.extend(described(recipe, width.unwrap_or(0)));
+    let width = GENERATORS
+        .iter()
+        .map(|generator| generator.name.len())
+        .max();
+    for generator in GENERATORS {
+        lines.extend(described(generator, width.unwrap_or(0)));
     }
     lines.join("\n")
 }
 
 /// Describes a shape in a line, and each of its parameters in another.
-fn described(recipe: &Recipe, width: usize) -> Vec<String> {
-    let Recipe { name, summary, .. } = recipe;
-    let mut lines = vec![hanging(&format!("  {name:<width$}  "), summary)];
-    for parameter in recipe.parameters {
+fn described(generator: &Generator, width: usize) -> Vec<String> {
+    let Generator { name, summary, .. } = generator;
+    let mut lines = vec![hanging_indent(&format!("  {name:<width$}  "), summary)];
+    for parameter in generator.parameters {
         let Parameter {
             name,
             meaning,
             default,
-            least,
-            greatest,
+            min,
+            max,
             ..
         } = parameter;
-        let text = format!("{name}={default}: {meaning}, {least} to {greatest}");
-        lines.push(hanging(&format!("  {:width$}    ", ""), &text));
+        let text = format!("{name}={default}: {meaning}, {min} to {max}");
+        lines.push(hanging_indent(&format!("  {:width$}    ", ""), &text));
     }
     lines
 }

@@ -5,26 +5,26 @@ use std::sync::atomic::AtomicBool;
 
 use comfy_table::{Attribute, Cell, CellAlignment};
 use sixfold_study::{
-    Fit, GROWING, Growing, GrowthError, GrowthReport, GrowthSettings, Operation, ResultRow,
-    Settings, SizeReport, Slope, Standing, StudyError,
+    Fit, GrowthError, GrowthReport, GrowthSettings, Operation, ResultRow, SCALABLE_SHAPES,
+    ScalableShape, Settings, SizeReport, Slope, Standing, StudyError,
 };
 
 use crate::arguments::{GROWTH_EXAMPLES, Growth};
 use crate::failure::Failure;
-use crate::free_memory::check_room;
-use crate::measured::{ended, tell_of_debug_build, typed};
-use crate::orders::{few, short};
-use crate::output::{Output, check_places, is_stdout};
+use crate::free_memory::check_free_memory;
+use crate::orders::{default_operations, short_figure};
+use crate::outcome::{command_line, exit_code, warn_of_debug_build};
+use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
-use crate::study::{names, setting};
+use crate::study::{describe_environment, name_lists};
 use crate::tables::styled;
-use crate::text::{Text, hanging};
+use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::{counted, grouped};
 
 /// Measures all sizes and shows the result. Text is printed first, so that it is not lost if a file
 /// fails.
 pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
-    check_places(None, &[("--json", arguments.json.as_ref())])?;
+    check_outputs(None, &[("--json", arguments.json.as_ref())])?;
     let settings = GrowthSettings {
         study: Settings {
             backends: arguments.backends.clone(),
@@ -43,26 +43,26 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     };
     let stop = interrupt_flag(arguments.memory.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
-    tell_of_debug_build();
-    let report = measured(&settings, &stop)?;
+    warn_of_debug_build();
+    let report = measure(&settings, &stop)?;
 
-    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
+    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
     print(&report, &mut text);
     let mut done = text.finish();
     if let Some(output) = json {
         done = done.and(output.finish(|writer| report.write_json(writer)));
     }
-    ended(done, report.mismatches(), report.interrupted)
+    exit_code(done, report.mismatches(), report.interrupted)
 }
 
 /// Measures all sizes, if enough memory is free for the largest.
-pub(crate) fn measured(
+pub(crate) fn measure(
     settings: &GrowthSettings,
     stop: &AtomicBool,
 ) -> Result<GrowthReport, Failure> {
     let needed = sixfold_study::growth_bytes(settings).map_err(Failure::usage)?;
     let largest = counted(settings.to, "face", "faces");
-    check_room(
+    check_free_memory(
         &format!("a mesh of {largest} on each backend"),
         needed,
         "choose a smaller --to, or fewer --backends",
@@ -74,61 +74,63 @@ pub(crate) fn measured(
         GrowthError::Study(StudyError::NoneHolds { .. }) => Failure::unsupported(error),
         error => Failure::usage(error),
     })?;
-    report.environment.command = Some(typed());
+    report.environment.command = Some(command_line());
     Ok(report)
 }
 
 /// Returns the help text after the options: examples, the method, and the lists of names.
 pub(crate) fn help() -> String {
-    let width = GROWING.iter().map(|shape| shape.name.len()).max();
+    let width = SCALABLE_SHAPES.iter().map(|shape| shape.name.len()).max();
     let width = width.unwrap_or(0);
-    let shape = |Growing { name, summary, .. }: &Growing| format!("  {name:<width$}  {summary}");
-    let shapes: Vec<String> = GROWING.iter().map(shape).collect();
-    let (shapes, names) = (shapes.join("\n"), names());
+    let shape = |ScalableShape { name, summary, .. }: &ScalableShape| {
+        format!("  {name:<width$}  {summary}")
+    };
+    let shapes: Vec<String> = SCALABLE_SHAPES.iter().map(shape).collect();
+    let (shapes, names) = (shapes.join("\n"), name_lists());
     format!(
         "{GROWTH_EXAMPLES}\n\nShapes:\n{shapes}\n\n{names}\n{}",
-        few()
+        default_operations()
     )
 }
 
-fn print(report: &GrowthReport, text: &mut Text) {
+fn print(report: &GrowthReport, text: &mut TextOutput) {
     let (shape, order) = (&report.shape, report.order);
-    text.say(&format!("shape        {shape}, in the order {order}"));
-    for unheld in &report.unheld {
-        let first = format!("{:<13}{} refuses: ", "", unheld.backend);
-        text.say(&hanging(&first, &unheld.reason));
+    text.print_line(&format!("shape        {shape}, in the order {order}"));
+    for refusal in &report.refused_by {
+        let first = format!("{:<13}{} refuses: ", "", refusal.backend);
+        text.print_line(&hanging_indent(&first, &refusal.reason));
     }
     let operations = report.sizes.first().map_or(&[][..], |size| &size.results);
     for rows in operations.chunk_by(|a, b| a.operation == b.operation) {
-        text.say("");
-        text.say(&table(report, rows[0].operation, text.bold()));
+        text.print_line("");
+        text.print_line(&table(report, rows[0].operation, text.bold()));
     }
     if !report.sizes.is_empty() {
-        text.say("");
-        text.say(&hanging("", LEGEND));
+        text.print_line("");
+        text.print_line(&hanging_indent("", LEGEND));
     }
-    if !report.cache_ends.is_empty() {
-        text.say("");
-        text.say(&cache_table(report, text.bold()));
+    if !report.cache_limits.is_empty() {
+        text.print_line("");
+        text.print_line(&cache_table(report, text.bold()));
     }
     let mut refusals: Vec<String> = Vec::new();
     for refusal in report.sizes.iter().flat_map(|size| &size.refusals) {
         let (operation, backend) = (refusal.operation, &refusal.backend);
-        let said = format!("{operation} on {backend}: {}", refusal.reason);
-        if !refusals.contains(&said) {
-            text.say(&hanging("– ", &said));
-            refusals.push(said);
+        let line = format!("{operation} on {backend}: {}", refusal.reason);
+        if !refusals.contains(&line) {
+            text.print_line(&hanging_indent("– ", &line));
+            refusals.push(line);
         }
     }
-    text.say("");
-    for words in &report.words {
-        text.say(&hanging("- ", words));
+    text.print_line("");
+    for sentence in &report.sentences {
+        text.print_line(&hanging_indent("- ", sentence));
     }
-    text.say("");
+    text.print_line("");
     let rows = report.sizes.iter().flat_map(|size| &size.results);
     let most = rows.map(|row| row.samples).max();
-    let how = setting(&report.environment, most.unwrap_or(0));
-    text.say(&hanging("", &how));
+    let settings = describe_environment(&report.environment, most.unwrap_or(0));
+    text.print_line(&hanging_indent("", &settings));
 }
 
 const LEGEND: &str = "ns per element, and the smallest cache that can hold the structure (–: none, \
@@ -140,7 +142,7 @@ const LEGEND: &str = "ns per element, and the smallest cache that can hold the s
 fn table(report: &GrowthReport, operation: Operation, bold: bool) -> String {
     let mut header = vec![Cell::new(format!(
         "{operation}\nns per {}",
-        operation.per()
+        operation.unit()
     ))];
     header.extend(
         report
@@ -160,8 +162,8 @@ fn table(report: &GrowthReport, operation: Operation, bold: bool) -> String {
         table.add_row(line);
     }
     let fit = |name: &String| {
-        let of_it = |fit: &&Fit| fit.backend == *name && fit.operation == operation;
-        report.fits.iter().find(of_it)
+        let is_same = |fit: &&Fit| fit.backend == *name && fit.operation == operation;
+        report.fits.iter().find(is_same)
     };
     for label in ["power", "in cache", "beyond"] {
         let slope = |fit: &Fit| match label {
@@ -201,15 +203,15 @@ fn right(text: String) -> Cell {
 
 /// Formats a cell as `24.9 L2*`: ns per element, the cache that can hold the structure, and a sign.
 fn cell(size: &SizeReport, row: &ResultRow, bold: bool) -> Cell {
-    let price = match (row.ns_per_element, row.estimated_ns, row.elements) {
+    let time = match (row.ns_per_element, row.estimated_ns, row.elements) {
         (Some(each), ..) => Some((if row.sampled { "~" } else { "" }, each)),
         (None, Some(ns), Some(elements)) => Some(("?", ns / elements.max(1) as f64)),
         _ => None,
     };
-    let Some((sign, each)) = price else {
+    let Some((sign, each)) = time else {
         return right("–".into());
     };
-    let weight = size.weights.iter().find(|w| w.backend == row.backend);
+    let weight = size.backend_bytes.iter().find(|w| w.backend == row.backend);
     let cache = weight.and_then(|weight| weight.fits_in);
     let cache = cache.map_or(" –".into(), |level| format!("L{level}"));
     let standing = match row.standing {
@@ -217,7 +219,7 @@ fn cell(size: &SizeReport, row: &ResultRow, bold: bool) -> Cell {
         Some(Standing::Tied) => '=',
         _ => ' ',
     };
-    let cell = right(format!("{sign}{} {cache}{standing}", short(each)));
+    let cell = right(format!("{sign}{} {cache}{standing}", short_figure(each)));
     match bold && standing == '*' {
         true => cell.add_attribute(Attribute::Bold),
         false => cell,
@@ -234,7 +236,7 @@ fn cache_table(report: &GrowthReport, bold: bool) -> String {
             .map(|name| right(name.replace('-', "\n"))),
     );
     let mut table = styled(header, bold);
-    for row in report.cache_ends.chunk_by(|a, b| a.level == b.level) {
+    for row in report.cache_limits.chunk_by(|a, b| a.level == b.level) {
         let kib = grouped(row[0].cache_bytes as usize >> 10);
         let mut line = vec![Cell::new(format!("L{}, {kib} KiB", row[0].level))];
         line.extend(row.iter().map(|end| right(grouped(end.faces))));

@@ -6,24 +6,24 @@ use crate::arguments::Inspect;
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::load;
-use crate::output::{Output, check_places, is_stdout};
-use crate::progress::end_on_interrupt;
-use crate::text::Text;
+use crate::output::{Output, check_outputs, is_stdout};
+use crate::progress::exit_on_interrupt;
+use crate::text::TextOutput;
 
 /// Prints the facts and the verdict of each backend.
 pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
-    end_on_interrupt();
-    check_places(
+    exit_on_interrupt();
+    check_outputs(
         Some(&arguments.mesh),
         &[("--json", arguments.json.as_ref())],
     )?;
-    let specimen = load::specimen(&arguments.mesh)?;
-    let inspection = sixfold_study::inspect(&specimen);
+    let study_mesh = load::study_mesh(&arguments.mesh)?;
+    let inspection = sixfold_study::inspect(&study_mesh);
     let json = Output::open_if(arguments.json.as_ref())?;
-    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
-    text.say(&facts_text(&inspection.mesh));
-    text.say("");
-    text.say(&verdicts_text(&inspection.mesh, &inspection.backends));
+    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
+    text.print_line(&facts_text(&inspection.mesh));
+    text.print_line("");
+    text.print_line(&verdicts_text(&inspection.mesh, &inspection.backends));
     // Text is printed first, so that it is not lost if a file fails.
     let mut done = text.finish();
     if let Some(output) = json {

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use sixfold::io::{LeftOut, ObjMesh, read_obj};
 use sixfold::{Creases, PolygonMesh, shapes};
-use sixfold_study::{ReadError, Specimen};
+use sixfold_study::{ReadError, StudyMesh};
 
 use crate::failure::Failure;
 use crate::output::is_stdout;
-use crate::text::complain;
+use crate::text::print_stderr;
 use crate::triangulate::triangulated;
 use sixfold_study::numbers::counted;
 
@@ -26,22 +26,26 @@ pub(crate) fn read(path: &Path) -> Result<ObjMesh, Failure> {
     }
     let mesh = read_obj(path).map_err(Failure::usage)?;
     for notice in &mesh.notices {
-        complain(&format!("note: {}: {notice}", path.display()));
+        print_stderr(&format!("note: {}: {notice}", path.display()));
     }
     Ok(mesh)
 }
 
 /// Returns the mesh in the file at `path` without its degenerate faces, and lists these.
-pub(crate) fn specimen(path: &Path) -> Result<Specimen, Failure> {
-    let (specimen, left_out) = from_file(path)?;
-    tell(path, &left_out);
-    Ok(specimen)
+pub(crate) fn study_mesh(path: &Path) -> Result<StudyMesh, Failure> {
+    let (study_mesh, left_out) = from_file(path)?;
+    print_left_out(path, &left_out);
+    Ok(study_mesh)
 }
 
 /// Returns the mesh for a study. Refuses degenerate faces if `strict`; cuts polygons if
 /// `triangulate`.
-pub(crate) fn for_study(path: &Path, strict: bool, triangulate: bool) -> Result<Specimen, Failure> {
-    let (mut specimen, left_out) = from_file(path)?;
+pub(crate) fn for_study(
+    path: &Path,
+    strict: bool,
+    triangulate: bool,
+) -> Result<StudyMesh, Failure> {
+    let (mut study_mesh, left_out) = from_file(path)?;
     let file = path.display();
     if !left_out.is_empty() && strict {
         let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
@@ -50,7 +54,7 @@ pub(crate) fn for_study(path: &Path, strict: bool, triangulate: bool) -> Result<
             "{file}: {faces}, the first at {first}: repair the file, or study it without --strict"
         )));
     }
-    if specimen.polygons.face_count() == 0 {
+    if study_mesh.polygons.face_count() == 0 {
         let what = match left_out.len() {
             0 => "points but no faces".to_owned(),
             n => format!(
@@ -62,23 +66,23 @@ pub(crate) fn for_study(path: &Path, strict: bool, triangulate: bool) -> Result<
             "{file}: {what}, so there is nothing to study: use `sixfold inspect` instead"
         )));
     }
-    tell(path, &left_out);
+    print_left_out(path, &left_out);
     if triangulate {
-        specimen = triangulated(specimen)?;
+        study_mesh = triangulated(study_mesh)?;
     }
-    Ok(specimen)
+    Ok(study_mesh)
 }
 
 /// Returns the mesh in the file at `path` without its degenerate faces, and the creases in the
 /// file.
 pub(crate) fn with_creases(path: &Path) -> Result<(PolygonMesh, Creases), Failure> {
     let mesh = read(path)?;
-    let (creases, loose) = mesh.creases();
-    for crease in &loose {
-        complain(&format!("note: {}: {crease}", path.display()));
+    let (creases, unused) = mesh.creases();
+    for crease in &unused {
+        print_stderr(&format!("note: {}: {crease}", path.display()));
     }
     let (polygons, left_out) = mesh.into_polygons();
-    tell(path, &left_out);
+    print_left_out(path, &left_out);
     Ok((polygons, creases))
 }
 
@@ -87,7 +91,7 @@ pub(crate) fn without_creases(path: &Path) -> Result<PolygonMesh, Failure> {
     let (polygons, creases) = with_creases(path)?;
     if !creases.is_empty() {
         let file = path.display();
-        complain(&format!(
+        print_stderr(&format!(
             "note: {file}: sharp edges and vertices are not kept"
         ));
     }
@@ -95,7 +99,7 @@ pub(crate) fn without_creases(path: &Path) -> Result<PolygonMesh, Failure> {
 }
 
 /// Returns the file of results: `results.json` if `place` is the folder of a report, else `place`.
-pub(crate) fn results_in(place: &Path) -> PathBuf {
+pub(crate) fn results_path(place: &Path) -> PathBuf {
     match place.is_dir() {
         true => place.join("results.json"),
         false => place.to_owned(),
@@ -103,7 +107,7 @@ pub(crate) fn results_in(place: &Path) -> PathBuf {
 }
 
 /// Reads the file at `path` and parses its results with `parse`.
-pub(crate) fn results<T>(
+pub(crate) fn read_results<T>(
     path: &Path,
     parse: impl Fn(&str) -> Result<T, ReadError>,
 ) -> Result<T, Failure> {
@@ -114,26 +118,26 @@ pub(crate) fn results<T>(
 }
 
 /// Returns the built-in mesh.
-pub(crate) fn built_in() -> Specimen {
-    Specimen::new("default study (built in)", shapes::default_study())
+pub(crate) fn built_in() -> StudyMesh {
+    StudyMesh::new("default study (built in)", shapes::default_study())
 }
 
 /// Prints which faces of the file were left out, with their lines.
-fn tell(path: &Path, left_out: &[LeftOut]) {
+fn print_left_out(path: &Path, left_out: &[LeftOut]) {
     if left_out.is_empty() {
         return;
     }
     let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
-    complain(&format!("note: {}: left out {faces}:", path.display()));
+    print_stderr(&format!("note: {}: left out {faces}:", path.display()));
     for left_out in left_out.iter().take(SHOWN) {
-        complain(&format!("note:   {left_out}"));
+        print_stderr(&format!("note:   {left_out}"));
     }
     if left_out.len() > SHOWN {
-        complain(&format!("note:   and {} more", left_out.len() - SHOWN));
+        print_stderr(&format!("note:   and {} more", left_out.len() - SHOWN));
     }
 }
 
-fn from_file(path: &Path) -> Result<(Specimen, Vec<LeftOut>), Failure> {
+fn from_file(path: &Path) -> Result<(StudyMesh, Vec<LeftOut>), Failure> {
     let mesh = read(path)?;
     let facts = mesh.facts();
     let (polygons, left_out) = mesh.into_polygons();
@@ -142,11 +146,11 @@ fn from_file(path: &Path) -> Result<(Specimen, Vec<LeftOut>), Failure> {
         let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
         changes.push(format!("left out {faces}"));
     }
-    let specimen = Specimen {
+    let study_mesh = StudyMesh {
         name: path.display().to_string(),
         facts,
         polygons,
         changes,
     };
-    Ok((specimen, left_out))
+    Ok((study_mesh, left_out))
 }

@@ -22,9 +22,9 @@ mod heap;
 mod inspect;
 mod load;
 mod many;
-mod measured;
 mod memory;
 mod orders;
+mod outcome;
 mod output;
 mod pick;
 mod progress;
@@ -63,7 +63,7 @@ fn main() -> ExitCode {
         .try_get_matches()
         .and_then(|matches| Arguments::from_arg_matches(&matches));
     let done = match arguments.map(|arguments| arguments.command) {
-        Err(error) => told(&error),
+        Err(error) => print_clap_message(&error),
         Ok(None) => study::run(&arguments::Study::default()),
         Ok(Some(Command::Study(arguments))) => study::run(&arguments),
         Ok(Some(Command::Pick(arguments))) => pick::run(&arguments),
@@ -90,14 +90,14 @@ fn main() -> ExitCode {
     match done {
         Ok(code) => code,
         Err(Failure { code, message }) => {
-            text::complain(&format!("error: {message}"));
+            text::print_stderr(&format!("error: {message}"));
             ExitCode::from(code)
         }
     }
 }
 
 /// Prints the message of clap: the help, the version, or an error in the arguments.
-fn told(error: &clap::Error) -> Result<ExitCode, Failure> {
+fn print_clap_message(error: &clap::Error) -> Result<ExitCode, Failure> {
     if let (ErrorKind::InvalidSubcommand, Some(ContextValue::String(word))) =
         (error.kind(), error.get(ContextKind::InvalidSubcommand))
         && Path::new(word)
@@ -108,17 +108,17 @@ fn told(error: &clap::Error) -> Result<ExitCode, Failure> {
             "`{word}` is a file, not a command: did you mean `sixfold study {word}`?"
         )));
     }
-    let mut typed = std::env::args_os().map(|typed| typed.to_string_lossy().into_owned());
-    if error.use_stderr() && typed.any(|typed| text::tame(&typed) != typed) {
+    let mut words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
+    if error.use_stderr() && words.any(|word| text::sanitize(&word) != word) {
         // The message repeats the arguments. Print it without colours and with control characters
         // escaped, so that the arguments cannot control the terminal.
         let plain = error.render().to_string();
-        plain.lines().for_each(text::complain);
+        plain.lines().for_each(text::print_stderr);
         return Ok(ExitCode::from(2));
     }
     let printed = error.print().and_then(|()| io::stdout().flush());
     match error.exit_code() {
-        0 => text::all_out(printed).map(|()| ExitCode::SUCCESS),
+        0 => text::ignore_closed_pipe(printed).map(|()| ExitCode::SUCCESS),
         _ => Ok(ExitCode::from(2)),
     }
 }

@@ -1,6 +1,6 @@
 //! Studies of many meshes, one after the other; each is saved as soon as it is finished.
 
-mod drawn;
+mod draw;
 mod folder;
 mod labs;
 mod merge;
@@ -11,24 +11,24 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use sixfold_study::{Asked, Collection, Report, Settings, Specimen, StudyError};
+use sixfold_study::{Collection, Report, Settings, SharedSettings, StudyError, StudyMesh};
 
 use crate::arguments::Study;
 use crate::failure::Failure;
 use crate::load;
-use crate::measured::{studies_ended, tell_of_debug_build, typed};
-use crate::output::{Output, check_places, is_stdout};
+use crate::outcome::{command_line, studies_exit_code, warn_of_debug_build};
+use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
-use crate::text::{Text, complain, hanging, tame};
+use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
 use sixfold_study::numbers::counted;
 
-pub(crate) use drawn::run as draw;
-pub(crate) use labs::Chosen;
+pub(crate) use draw::run as draw;
+pub(crate) use labs::LabSelection;
 pub(crate) use merge::run as merge;
 pub(crate) use meshes::Shard;
 
-use folder::{Folder, Piece};
-use meshes::{Mesh, found};
+use folder::{Folder, StudyRecord};
+use meshes::{Mesh, find_meshes};
 
 /// The reason if a mesh loads but cannot be studied.
 const NONE_HOLDS: &str = "none of the selected backends can hold it";
@@ -36,13 +36,13 @@ const NONE_HOLDS: &str = "none of the selected backends can hold it";
 /// Studies the selected meshes, except those that are finished already. Lists meshes that do not
 /// load, and continues with the rest.
 pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Failure> {
-    let meshes = found(&arguments.meshes)?;
+    let meshes = find_meshes(&arguments.meshes)?;
     let outputs = [
         ("--json", arguments.json.as_ref()),
         ("--csv", arguments.csv.as_ref()),
     ];
     for path in meshes.iter().filter_map(|mesh| mesh.path.as_deref()) {
-        check_places(Some(path), &outputs)?;
+        check_outputs(Some(path), &outputs)?;
     }
     let single = meshes.len() == 1;
     if arguments.csv.is_some() && !single {
@@ -50,9 +50,9 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
             "--csv is for one mesh: --report DIR writes the samples of all meshes to results.csv",
         ));
     }
-    let wanted = labs::wanted(arguments.labs.as_ref(), single)?;
+    let selected_labs = labs::selected_labs(arguments.labs.as_ref(), single)?;
     let names = meshes.iter().map(|mesh| mesh.name.clone()).collect();
-    let mut collection = Collection::new(names, asked(arguments, settings));
+    let mut collection = Collection::new(names, shared_settings(arguments, settings));
     let stop = interrupt_flag(settings.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
     let csv = Output::open_if(arguments.csv.as_ref())?;
@@ -65,44 +65,44 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         )?),
         None => None,
     };
-    let mine: Vec<&Mesh> = { meshes.iter().enumerate() }
-        .filter(|(i, _)| arguments.shard.is_none_or(|shard| shard.has(*i)))
+    let selected: Vec<&Mesh> = { meshes.iter().enumerate() }
+        .filter(|(i, _)| arguments.shard.is_none_or(|shard| shard.contains(*i)))
         .map(|(_, mesh)| mesh)
         .filter(|mesh| collection.missing.contains(&mesh.name))
         .collect();
-    tell_of_debug_build();
+    warn_of_debug_build();
     let data = [&arguments.json, &arguments.csv];
     let on_stdout = data.into_iter().flatten().any(|path| is_stdout(path));
-    let mut text = Text::shown(!on_stdout);
-    let (count, resumed) = (mine.len(), mine.is_empty());
-    for (done, mesh) in mine.into_iter().enumerate() {
+    let mut text = TextOutput::new(!on_stdout);
+    let (count, resumed) = (selected.len(), selected.is_empty());
+    for (done, mesh) in selected.into_iter().enumerate() {
         if stop.load(Ordering::Relaxed) {
             break;
         }
-        let place = format!("{} of {count}", done + 1);
-        let Some(result) = one(mesh, arguments, settings, &place, &stop) else {
+        let position = format!("{} of {count}", done + 1);
+        let Some(result) = measure_mesh(mesh, arguments, settings, &position, &stop) else {
             break; // interrupted during this mesh
         };
         if !single {
-            text.say(&line(&place, mesh, &result));
+            text.print_line(&progress_line(&position, mesh, &result));
         }
-        let piece = Piece::new(mesh, &collection.settings, result);
+        let record = StudyRecord::new(mesh, &collection.settings, result);
         if let Some(folder) = &folder {
             // Between two studies, so that writing does not disturb the measurements.
-            folder.keep(&piece)?;
+            folder.save_study(&record)?;
         }
-        piece.settle(&mut collection);
+        record.add_to(&mut collection);
     }
     if let ([_], [mesh], Some(folder)) = (&collection.studies[..], &meshes[..], &folder) {
-        let specimen = specimen(mesh, arguments)?;
-        let measuring = labs::Measuring {
-            specimen: &specimen,
+        let study_mesh = load_mesh(mesh, arguments)?;
+        let runner = labs::LabRunner {
+            study_mesh: &study_mesh,
             settings,
             folder,
             resumed,
             stop: &stop,
         };
-        collection.labs = measuring.labs(&wanted)?;
+        collection.labs = runner.run(&selected_labs)?;
     }
     let interrupted = stop.load(Ordering::Relaxed);
     let mut written;
@@ -123,7 +123,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         }
     }
     if let Some(folder) = &folder {
-        written = written.and(folder.finish(&collection, &typed()));
+        written = written.and(folder.write_report(&collection, &command_line()));
     }
     if collection.studies.is_empty() && !interrupted && arguments.shard.is_none() {
         written?;
@@ -134,15 +134,15 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         });
     }
     let mismatches = collection.labs.mismatches();
-    studies_ended(written, &collection.studies, mismatches, interrupted)
+    studies_exit_code(written, &collection.studies, mismatches, interrupted)
 }
 
-fn asked(arguments: &Study, settings: &Settings) -> Asked {
+fn shared_settings(arguments: &Study, settings: &Settings) -> SharedSettings {
     let columns = settings
         .externals
         .iter()
         .map(|external| external.name.clone());
-    Asked {
+    SharedSettings {
         backends: settings.backends.clone(),
         externals: columns.collect(),
         operations: settings.operations.clone(),
@@ -156,21 +156,21 @@ fn asked(arguments: &Study, settings: &Settings) -> Asked {
 }
 
 /// Returns the study of one mesh or the reason why it failed; `None` if interrupted.
-fn one(
+fn measure_mesh(
     mesh: &Mesh,
     arguments: &Study,
     settings: &Settings,
-    place: &str,
+    position: &str,
     stop: &AtomicBool,
 ) -> Option<Result<Report, String>> {
-    let specimen = match (specimen(mesh, arguments), &mesh.path) {
-        (Ok(specimen), _) => specimen,
+    let study_mesh = match (load_mesh(mesh, arguments), &mesh.path) {
+        (Ok(study_mesh), _) => study_mesh,
         (Err(failure), None) => return Some(Err(failure.message)),
         (Err(failure), Some(path)) => return Some(Err(without_path(&failure.message, path))),
     };
     let bar = Bar::new();
-    let report = sixfold_study::study(&specimen, settings, stop, &mut |at| {
-        let stage = format!("{place}, {}: {}", mesh.name, at.stage);
+    let report = sixfold_study::study(&study_mesh, settings, stop, &mut |at| {
+        let stage = format!("{position}, {}: {}", mesh.name, at.stage);
         bar.show(sixfold_study::Progress {
             stage: &stage,
             ..at
@@ -180,7 +180,7 @@ fn one(
     match report {
         Ok(report) if report.interrupted => None,
         Ok(mut report) => {
-            report.environment.command = Some(typed());
+            report.environment.command = Some(command_line());
             Some(Ok(report))
         }
         Err(StudyError::NoneHolds { .. }) => Some(Err(NONE_HOLDS.into())),
@@ -189,7 +189,7 @@ fn one(
 }
 
 /// Loads the mesh.
-fn specimen(mesh: &Mesh, arguments: &Study) -> Result<Specimen, Failure> {
+fn load_mesh(mesh: &Mesh, arguments: &Study) -> Result<StudyMesh, Failure> {
     match &mesh.path {
         None => Ok(load::built_in()),
         Some(path) => load::for_study(path, arguments.strict, arguments.triangulate),
@@ -207,43 +207,43 @@ fn without_path(message: &str, path: &Path) -> String {
     }
 }
 
-fn line(place: &str, mesh: &Mesh, result: &Result<Report, String>) -> String {
-    let name = tame(&mesh.name);
+fn progress_line(position: &str, mesh: &Mesh, result: &Result<Report, String>) -> String {
+    let name = sanitize(&mesh.name);
     match result {
         Ok(report) => {
             let faces = counted(report.mesh.facts.faces, "face", "faces");
-            let held = report.backends.iter().filter(|column| column.holds).count();
-            let columns = counted(held, "column", "columns");
+            let columns = report.backends.iter().filter(|column| column.holds).count();
+            let columns = counted(columns, "column", "columns");
             let rows = counted(report.results.len(), "figure", "figures");
-            format!("{place}: {name}, {faces}, {columns}, {rows}")
+            format!("{position}: {name}, {faces}, {columns}, {rows}")
         }
-        Err(reason) => hanging(&format!("{place}: {name}: "), &tame(reason)),
+        Err(reason) => hanging_indent(&format!("{position}: {name}: "), &sanitize(reason)),
     }
 }
 
 /// Prints the results of all meshes together.
-fn print(collection: &Collection, text: &mut Text) {
+fn print(collection: &Collection, text: &mut TextOutput) {
     let studied = counted(collection.studies.len(), "mesh", "meshes");
-    text.say("");
-    text.say(&format!("{studied} of {} studied", collection.meshes.len()));
+    text.print_line("");
+    text.print_line(&format!("{studied} of {} studied", collection.meshes.len()));
     for failed in &collection.failures {
-        let first = format!("! {}: ", tame(&failed.mesh));
-        text.say(&hanging(&first, &tame(&failed.reason)));
+        let first = format!("! {}: ", sanitize(&failed.mesh));
+        text.print_line(&hanging_indent(&first, &sanitize(&failed.reason)));
     }
     if !collection.missing.is_empty() {
         let missing = counted(collection.missing.len(), "mesh is", "meshes are");
-        text.say(&format!("! {missing} not studied yet"));
+        text.print_line(&format!("! {missing} not studied yet"));
     }
     if !collection.pooled.is_empty() {
-        text.say("");
-        text.say(&pooled_table::pooled_table(collection, text.bold()));
-        text.say("");
-        for words in &collection.words {
-            text.say(&hanging("- ", words));
+        text.print_line("");
+        text.print_line(&pooled_table::pooled_table(collection, text.bold()));
+        text.print_line("");
+        for sentence in &collection.sentences {
+            text.print_line(&hanging_indent("- ", sentence));
         }
     }
     for failed in &collection.failures {
         let mesh = &failed.mesh;
-        complain(&format!("note: {mesh}: not studied, {}", failed.reason));
+        print_stderr(&format!("note: {mesh}: not studied, {}", failed.reason));
     }
 }

@@ -4,8 +4,8 @@ use std::process::ExitCode;
 
 use comfy_table::{Cell, CellAlignment, Table};
 use sixfold_study::{
-    Audit, Audited, Backend, BackendReport, MOST_SCANNED_FACES, OperationBytes, Settings, audit,
-    count_allocations,
+    Audit, Backend, BackendAudit, BackendReport, MAX_SCANNED_FACES, OperationBytes, Settings,
+    audit, count_allocations,
 };
 
 use crate::arguments::Memory;
@@ -13,24 +13,24 @@ use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::heap::Counters;
 use crate::load;
-use crate::output::{Output, check_places, is_stdout};
-use crate::progress::{Stage, end_on_interrupt};
+use crate::output::{Output, check_outputs, is_stdout};
+use crate::progress::{StatusLine, exit_on_interrupt};
 use crate::tables::table;
-use crate::text::{Text, complain, hanging};
+use crate::text::{TextOutput, hanging_indent, print_stderr};
 use sixfold_study::numbers::{counted, grouped};
 
 /// The exit code if two of the three counts differ.
-const DIFFERENT: u8 = 1;
+const COUNTS_DIFFER: u8 = 1;
 
 /// Counts the memory of the selected backends and shows it.
 pub(crate) fn run(arguments: &Memory) -> Result<ExitCode, Failure> {
-    end_on_interrupt();
-    check_places(
+    exit_on_interrupt();
+    check_outputs(
         arguments.mesh.as_deref(),
         &[("--json", arguments.json.as_ref())],
     )?;
     let json = Output::open_if(arguments.json.as_ref())?;
-    let specimen = match &arguments.mesh {
+    let study_mesh = match &arguments.mesh {
         Some(path) => load::for_study(path, false, arguments.triangulate)?,
         None => load::built_in(),
     };
@@ -39,65 +39,65 @@ pub(crate) fn run(arguments: &Memory) -> Result<ExitCode, Failure> {
         ..Settings::default()
     };
     let backends = settings.chosen_backends().map_err(Failure::usage)?;
-    let stage = Stage::new();
-    let mut audit = audit(&specimen, &backends, &Counters, &mut |backend| {
-        stage.show(format!("building {} and counting", backend.name()));
+    let status = StatusLine::new();
+    let mut audit = audit(&study_mesh, &backends, &Counters, &mut |backend| {
+        status.show(format!("building {} and counting", backend.name()));
     });
     let mut counting = |backend: &Backend, operation| {
-        stage.show(format!(
+        status.show(format!(
             "running {operation} on {} and counting",
             backend.name()
         ));
     };
-    count_allocations(&mut audit, &specimen, &backends, &Counters, &mut counting);
-    stage.clear();
+    count_allocations(&mut audit, &study_mesh, &backends, &Counters, &mut counting);
+    status.clear();
 
     let write = |json: Option<Output>| match json {
         Some(output) => output.finish(|writer| audit.write_json(writer)),
         None => Ok(()),
     };
     // This is also a result: the selected backends, and why each refuses the mesh.
-    if let Some(none) = audit.none_holds() {
+    if let Some(none) = audit.refusal_error() {
         write(json)?;
         return Err(Failure::unsupported(none));
     }
-    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
+    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
     print(&audit, &mut text);
     // Text is printed first, so that it is not lost if a file fails.
     let done = text.finish().and(write(json));
-    let code = judged(&audit.faults());
+    let code = report_faults(&audit.faults());
     done.map(|()| code)
 }
 
 /// Reports the `faults`, and returns the exit code for them.
-fn judged(faults: &[String]) -> ExitCode {
+fn report_faults(faults: &[String]) -> ExitCode {
     for fault in faults {
-        complain(&format!(
+        print_stderr(&format!(
             "error: {fault}: a fault in Sixfold, please report it"
         ));
     }
     match faults.is_empty() {
         true => ExitCode::SUCCESS,
-        false => ExitCode::from(DIFFERENT),
+        false => ExitCode::from(COUNTS_DIFFER),
     }
 }
 
-fn print(audit: &Audit, text: &mut Text) {
+fn print(audit: &Audit, text: &mut TextOutput) {
     let reports: Vec<BackendReport> = audit.backends.iter().map(|b| b.backend.clone()).collect();
-    text.say(&facts_text(&audit.mesh));
-    text.say("");
-    text.say(&verdicts_text(&audit.mesh, &reports));
-    text.say("");
-    text.say(&bytes_table(audit));
-    text.say("");
-    text.say(&words_table(audit));
-    text.say("");
+    text.print_line(&facts_text(&audit.mesh));
+    text.print_line("");
+    text.print_line(&verdicts_text(&audit.mesh, &reports));
+    text.print_line("");
+    text.print_line(&bytes_table(audit));
+    text.print_line("");
+    text.print_line(&words_table(audit));
+    text.print_line("");
     if let Some(table) = operations_table(audit) {
-        text.say(&table);
-        text.say("");
+        text.print_line(&table);
+        text.print_line("");
     }
-    for words in words(audit) {
-        text.say(&hanging("- ", &words));
+    for sentence in sentences(audit) {
+        text.print_line(&hanging_indent("- ", &sentence));
     }
 }
 
@@ -112,45 +112,45 @@ fn bytes_table(audit: &Audit) -> String {
         "peak",
         "/ counted",
     ];
-    let mut table = headed(&header);
-    for one in &audit.backends {
-        let backend = &one.backend;
+    let mut table = new_table(&header);
+    for entry in &audit.backends {
+        let backend = &entry.backend;
         let bytes = |bytes: Option<usize>| bytes.map_or(String::new(), grouped);
         // A figure that differs from the one before it is marked `!`.
-        let beside = |figure: Option<usize>, before: Option<usize>| {
+        let marked_bytes = |figure: Option<usize>, before: Option<usize>| {
             let sign = if figure == before { " " } else { "!" };
             format!("{}{sign}", bytes(figure))
         };
         if !backend.holds {
             continue;
         }
-        let ratio = one.peak_to_counted;
-        row(
+        let ratio = entry.peak_to_counted;
+        add_row(
             &mut table,
             [
                 backend.name.clone(),
                 String::new(),
                 format!("{} ", bytes(backend.layout_bytes)),
-                beside(backend.bytes, backend.layout_bytes),
-                beside(one.counted_bytes, backend.bytes),
-                bytes(one.peak_bytes),
+                marked_bytes(backend.bytes, backend.layout_bytes),
+                marked_bytes(entry.counted_bytes, backend.bytes),
+                bytes(entry.peak_bytes),
                 ratio.map_or("–".into(), |ratio| format!("{ratio:.2}")),
             ],
         );
         for part in &backend.tables {
             let name = format!("  {}", part.table);
-            let held = format!("{} ", grouped(part.bytes));
+            let table_bytes = format!("{} ", grouped(part.bytes));
             let blank = String::new;
             let cells = [
                 name,
                 grouped(part.rows),
                 blank(),
-                held,
+                table_bytes,
                 blank(),
                 blank(),
                 blank(),
             ];
-            row(&mut table, cells);
+            add_row(&mut table, cells);
         }
     }
     table.trim_fmt()
@@ -164,16 +164,16 @@ fn words_table(audit: &Audit) -> String {
         "words",
         "words in a closed triangle mesh",
     ];
-    let mut table = headed(&header);
-    for one in audit.backends.iter().filter(|one| one.backend.holds) {
+    let mut table = new_table(&header);
+    for entry in audit.backends.iter().filter(|entry| entry.backend.holds) {
         let figure = |figure: Option<f64>| figure.map_or("–".into(), |n| format!("{n:.1}"));
         let cells = [
-            one.backend.name.clone(),
-            figure(one.counted_bytes_per_vertex),
-            figure(one.layout_words_per_vertex),
-            figure(Some(one.closed_triangles_words_per_vertex)),
+            entry.backend.name.clone(),
+            figure(entry.counted_bytes_per_vertex),
+            figure(entry.layout_words_per_vertex),
+            figure(Some(entry.closed_triangles_words_per_vertex)),
         ];
-        row(&mut table, cells);
+        add_row(&mut table, cells);
     }
     table.trim_fmt()
 }
@@ -181,16 +181,17 @@ fn words_table(audit: &Audit) -> String {
 /// Returns the table of bytes that operations allocate per byte of their result: a row for each
 /// operation that some structure can run, a column per structure. `None` if nothing was counted.
 fn operations_table(audit: &Audit) -> Option<String> {
-    let counted = |one: &&Audited| !one.operations.is_empty();
-    let columns: Vec<&Audited> = audit.backends.iter().filter(counted).collect();
+    let counted = |entry: &&BackendAudit| !entry.operations.is_empty();
+    let columns: Vec<&BackendAudit> = audit.backends.iter().filter(counted).collect();
     let names = columns
         .iter()
-        .map(|one| one.backend.name.replace('-', "\n"));
+        .map(|entry| entry.backend.name.replace('-', "\n"));
     let header = std::iter::once("allocated bytes\n/ result bytes".to_owned()).chain(names);
-    let aligned = |(i, text): (usize, String)| Cell::new(text).set_alignment(side(i));
+    let aligned = |(i, text): (usize, String)| Cell::new(text).set_alignment(column_alignment(i));
     let mut table = table(header.enumerate().map(aligned).collect());
     for (i, first) in columns.first()?.operations.iter().enumerate() {
-        let cells: Vec<&OperationBytes> = columns.iter().map(|one| &one.operations[i]).collect();
+        let cells: Vec<&OperationBytes> =
+            columns.iter().map(|entry| &entry.operations[i]).collect();
         if cells.iter().all(|cell| cell.reason.is_some()) {
             continue;
         }
@@ -207,21 +208,21 @@ fn operations_table(audit: &Audit) -> Option<String> {
 }
 
 /// Returns an empty table with `header`, with right-aligned figures.
-fn headed<const COLUMNS: usize>(header: &[&str; COLUMNS]) -> Table {
-    let aligned = |(i, text): (usize, &&str)| Cell::new(text).set_alignment(side(i));
+fn new_table<const COLUMNS: usize>(header: &[&str; COLUMNS]) -> Table {
+    let aligned = |(i, text): (usize, &&str)| Cell::new(text).set_alignment(column_alignment(i));
     table(header.iter().enumerate().map(aligned).collect())
 }
 
-fn row<const COLUMNS: usize>(table: &mut Table, cells: [String; COLUMNS]) {
+fn add_row<const COLUMNS: usize>(table: &mut Table, cells: [String; COLUMNS]) {
     let cells = cells.into_iter().enumerate();
     table.add_row(
         cells
-            .map(|(i, text)| Cell::new(text).set_alignment(side(i)))
+            .map(|(i, text)| Cell::new(text).set_alignment(column_alignment(i)))
             .collect::<Vec<_>>(),
     );
 }
 
-fn side(column: usize) -> CellAlignment {
+fn column_alignment(column: usize) -> CellAlignment {
     match column {
         0 => CellAlignment::Left,
         _ => CellAlignment::Right,
@@ -229,28 +230,28 @@ fn side(column: usize) -> CellAlignment {
 }
 
 /// Describes the tables in sentences.
-fn words(audit: &Audit) -> Vec<String> {
-    let held: Vec<&Audited> = audit.backends.iter().filter(|b| b.backend.holds).collect();
-    let mut words = Vec::new();
+fn sentences(audit: &Audit) -> Vec<String> {
+    let holding: Vec<&BackendAudit> = audit.backends.iter().filter(|b| b.backend.holds).collect();
+    let mut sentences = Vec::new();
     let faults = audit.faults();
     match faults.is_empty() {
-        true => words.push(
+        true => sentences.push(
             "Formula, tables and allocator agree to the byte: no table has spare capacity, and \
              there are no blocks outside the tables."
                 .to_owned(),
         ),
-        false => words.extend(faults.into_iter().map(|fault| format!("! {fault}."))),
+        false => sentences.extend(faults.into_iter().map(|fault| format!("! {fault}."))),
     }
-    words.push(
+    sentences.push(
         "A word is 4 bytes: an index or a coordinate. The last column is the formula for 2 faces \
          and 3 edges per vertex, as in the literature."
             .to_owned(),
     );
-    words.extend(words_of_operations(audit));
-    for one in held {
-        let backend = &one.backend;
+    sentences.extend(operation_sentences(audit));
+    for entry in holding {
+        let backend = &entry.backend;
         if let Some(merged @ 1..) = backend.merged_vertices {
-            words.push(format!(
+            sentences.push(format!(
                 "{} merges {} with others at the same position. Its bytes do not change, because it \
                  stores corners; figures per vertex count the vertices of the file.",
                 backend.name,
@@ -258,50 +259,50 @@ fn words(audit: &Audit) -> Vec<String> {
             ));
         }
     }
-    words
+    sentences
 }
 
 /// Returns the legend of the table of operations; empty without that table.
-fn words_of_operations(audit: &Audit) -> Vec<String> {
-    let operations = || audit.backends.iter().flat_map(|one| &one.operations);
-    let mut words = Vec::new();
+fn operation_sentences(audit: &Audit) -> Vec<String> {
+    let operations = || audit.backends.iter().flat_map(|entry| &entry.operations);
+    let mut sentences = Vec::new();
     if operations().next().is_none() {
-        return words;
+        return sentences;
     }
-    words.push(
+    sentences.push(
         "Allocated bytes are all bytes that one run of the operation requests from the allocator, \
          including scratch that it frees. A block that grows counts by its growth. Native steps \
          start with new tables."
             .to_owned(),
     );
-    words.push(
+    sentences.push(
         "The result of build is the structure, of ff_bfs the depth of each face, of catmull_clark_* \
          and loop_* the structure of the refined mesh, and of the other operations the mesh after \
          the edits."
             .to_owned(),
     );
     if operations().any(|operation| operation.scans) {
-        words.push(format!(
+        sentences.push(format!(
             "scans: not run, because the structure scans all faces for each element and the mesh has \
              more than {} faces.",
-            grouped(MOST_SCANNED_FACES)
+            grouped(MAX_SCANNED_FACES)
         ));
     }
-    words
+    sentences
 }
 
 #[cfg(test)]
 mod tests {
     use sixfold::{HalfEdgeMesh, shapes};
-    use sixfold_study::{Backend, Heap, Specimen};
+    use sixfold_study::{Backend, Heap, StudyMesh};
 
     use super::*;
     use crate::text::WIDTH;
 
     /// An allocator that never counts anything.
-    struct Idle;
+    struct ZeroHeap;
 
-    impl Heap for Idle {
+    impl Heap for ZeroHeap {
         fn live(&self) -> usize {
             0
         }
@@ -315,24 +316,34 @@ mod tests {
 
     #[test]
     fn counts_that_differ_are_marked_and_reported_with_an_exit_code() {
-        let cube = Specimen::new("cube", shapes::cube());
-        let audit = audit(&cube, &[Backend::of::<HalfEdgeMesh>()], &Idle, &mut |_| ());
+        let cube = StudyMesh::new("cube", shapes::cube());
+        let audit = audit(
+            &cube,
+            &[Backend::new::<HalfEdgeMesh>()],
+            &ZeroHeap,
+            &mut |_| (),
+        );
         // 24 halves of 12 bytes, 8 vertices of 16, and 6 faces.
         let table = bytes_table(&audit);
         let line = table.lines().find(|line| line.contains("half-edge"));
         let cells: Vec<&str> = line.expect("a row").split_whitespace().collect();
         assert_eq!(cells, ["half-edge", "440", "440", "0!", "0", "–"]);
         assert!(table.lines().all(|line| line.chars().count() <= WIDTH));
-        let words = words(&audit);
+        let sentences = sentences(&audit);
         assert!(
-            words[0].starts_with("! half-edge: the allocator counted 0 bytes"),
-            "{words:?}"
+            sentences[0].starts_with("! half-edge: the allocator counted 0 bytes"),
+            "{sentences:?}"
         );
         assert!(
-            words.iter().all(|words| !words.contains("agree")),
-            "{words:?}"
+            sentences
+                .iter()
+                .all(|sentences| !sentences.contains("agree")),
+            "{sentences:?}"
         );
-        assert_eq!(judged(&audit.faults()), ExitCode::from(DIFFERENT));
-        assert_eq!(judged(&[]), ExitCode::SUCCESS);
+        assert_eq!(
+            report_faults(&audit.faults()),
+            ExitCode::from(COUNTS_DIFFER)
+        );
+        assert_eq!(report_faults(&[]), ExitCode::SUCCESS);
     }
 }

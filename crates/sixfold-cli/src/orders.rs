@@ -6,33 +6,33 @@ use std::sync::atomic::AtomicBool;
 use comfy_table::{Attribute, Cell, CellAlignment, Table};
 use sixfold::shapes::Order;
 use sixfold_study::{
-    Agreement, Comparison, FEW_OPERATIONS, OrderRow, OrdersError, OrdersReport, Settings, Specimen,
-    Standing, StudyError,
+    Agreement, Comparison, DEFAULT_OPERATIONS, OrderRow, OrdersError, OrdersReport, Settings,
+    Standing, StudyError, StudyMesh,
 };
 
 use crate::arguments::{ORDERS_EXAMPLES, Orders};
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
-use crate::free_memory::check_room;
+use crate::free_memory::check_free_memory;
 use crate::load;
-use crate::measured::{ended, tell_of_debug_build, typed};
-use crate::output::{Output, check_places, is_stdout};
+use crate::outcome::{command_line, exit_code, warn_of_debug_build};
+use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
-use crate::study::{names, setting};
+use crate::study::{describe_environment, name_lists};
 use crate::tables::styled;
-use crate::text::{Text, hanging};
+use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::figure;
 
 /// Measures the mesh in all orders and shows the result. Text is printed first, so that it is not
 /// lost if a file fails.
 pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
-    check_places(
+    check_outputs(
         arguments.mesh.as_deref(),
         &[("--json", arguments.json.as_ref())],
     )?;
     let stop = interrupt_flag(arguments.memory.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
-    let specimen = match &arguments.mesh {
+    let study_mesh = match &arguments.mesh {
         Some(path) => load::for_study(path, false, arguments.triangulate)?,
         None => load::built_in(),
     };
@@ -45,79 +45,83 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
         caches: arguments.memory.caches,
         ..Settings::default()
     };
-    tell_of_debug_build();
-    let report = measured(&specimen, &settings, &stop)?;
+    warn_of_debug_build();
+    let report = measure(&study_mesh, &settings, &stop)?;
 
-    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
+    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
     print(&report, &mut text);
     let mut done = text.finish();
     if let Some(output) = json {
         done = done.and(output.finish(|writer| report.write_json(writer)));
     }
-    ended(done, report.mismatches(), report.interrupted)
+    exit_code(done, report.mismatches(), report.interrupted)
 }
 
 /// Measures the mesh in all orders, if enough memory is free.
-pub(crate) fn measured(
-    specimen: &Specimen,
+pub(crate) fn measure(
+    study_mesh: &StudyMesh,
     settings: &Settings,
     stop: &AtomicBool,
 ) -> Result<OrdersReport, Failure> {
-    let needed = sixfold_study::orders_bytes(specimen, settings).map_err(Failure::usage)?;
-    check_room(
+    let needed = sixfold_study::orders_bytes(study_mesh, settings).map_err(Failure::usage)?;
+    check_free_memory(
         "the mesh in four orders on each backend",
         needed,
         "choose fewer --backends, or a smaller mesh",
     )?;
     let bar = Bar::new();
-    let report = sixfold_study::orders(specimen, settings, stop, &mut |at| bar.show(at));
+    let report = sixfold_study::orders(study_mesh, settings, stop, &mut |at| bar.show(at));
     bar.clear();
     let mut report = report.map_err(|error| match error {
         OrdersError::Study(StudyError::NoneHolds { .. }) => Failure::unsupported(error),
         error => Failure::usage(error),
     })?;
-    report.environment.command = Some(typed());
+    report.environment.command = Some(command_line());
     Ok(report)
 }
 
 /// Returns the help text after the options: examples, the method, and the lists of names.
 pub(crate) fn help() -> String {
-    format!("{ORDERS_EXAMPLES}\n\n{}\n{}", names(), few())
+    format!(
+        "{ORDERS_EXAMPLES}\n\n{}\n{}",
+        name_lists(),
+        default_operations()
+    )
 }
 
 /// Lists the operations that are measured by default.
-pub(crate) fn few() -> String {
-    hanging("By default:  ", &FEW_OPERATIONS.join(", "))
+pub(crate) fn default_operations() -> String {
+    hanging_indent("By default:  ", &DEFAULT_OPERATIONS.join(", "))
 }
 
-fn print(report: &OrdersReport, text: &mut Text) {
-    text.say(&facts_text(&report.mesh));
-    text.say("");
-    text.say(&verdicts_text(&report.mesh, &report.backends));
+fn print(report: &OrdersReport, text: &mut TextOutput) {
+    text.print_line(&facts_text(&report.mesh));
+    text.print_line("");
+    text.print_line(&verdicts_text(&report.mesh, &report.backends));
     for comparison in &report.comparisons {
         let rows: Vec<&OrderRow> = report.rows(comparison.operation).collect();
         if !rows.is_empty() {
-            text.say("");
-            text.say(&table(comparison, &rows, text.bold()));
+            text.print_line("");
+            text.print_line(&table(comparison, &rows, text.bold()));
         }
     }
-    text.say("");
-    text.say(&hanging("", LEGEND));
+    text.print_line("");
+    text.print_line(&hanging_indent("", LEGEND));
     for refusal in &report.refusals {
-        let said = format!(
+        let line = format!(
             "{} on {}: {}",
             refusal.operation, refusal.backend, refusal.reason
         );
-        text.say(&hanging("– ", &said));
+        text.print_line(&hanging_indent("– ", &line));
     }
-    text.say("");
-    for words in &report.words {
-        text.say(&hanging("- ", words));
+    text.print_line("");
+    for sentence in &report.sentences {
+        text.print_line(&hanging_indent("- ", sentence));
     }
-    text.say("");
+    text.print_line("");
     let most = report.results.iter().map(|row| row.row.samples).max();
-    let how = setting(&report.environment, most.unwrap_or(0));
-    text.say(&hanging("", &how));
+    let settings = describe_environment(&report.environment, most.unwrap_or(0));
+    text.print_line(&hanging_indent("", &settings));
 }
 
 const LEGEND: &str = "ns per element, and the ratio to the best order of that backend; * its best \
@@ -127,17 +131,17 @@ const LEGEND: &str = "ns per element, and the ratio to the best order of that ba
 /// Returns the table with a row per backend and a column per order.
 fn table(comparison: &Comparison, rows: &[&OrderRow], bold: bool) -> String {
     let operation = comparison.operation;
-    let first = format!("{operation}\nns per {}", operation.per());
+    let first = format!("{operation}\nns per {}", operation.unit());
     let orders = Order::ALL.map(|order| right(order.name().to_owned()));
     let mut header = vec![Cell::new(first)];
     header.extend(orders);
     header.push(right("worst/best".into()));
     let mut table: Table = styled(header, bold);
-    for of_one in rows.chunk_by(|a, b| a.row.backend == b.row.backend) {
-        let backend = &of_one[0].row.backend;
+    for backend_rows in rows.chunk_by(|a, b| a.row.backend == b.row.backend) {
+        let backend = &backend_rows[0].row.backend;
         let mut line = vec![Cell::new(backend)];
         for order in Order::ALL {
-            let row = of_one.iter().find(|row| row.order == order);
+            let row = backend_rows.iter().find(|row| row.order == order);
             line.push(row.map_or_else(|| right("–".into()), |row| cell(row, bold)));
         }
         let effect = comparison.orders.iter().find(|e| e.backend == *backend);
@@ -156,12 +160,12 @@ fn right(text: String) -> Cell {
 
 /// Formats a cell as `24.9 1.52× `: ns per element, the ratio to the best order, and a sign.
 fn cell(OrderRow { row, .. }: &OrderRow, bold: bool) -> Cell {
-    let price = match (row.ns_per_element, row.estimated_ns, row.elements) {
+    let time = match (row.ns_per_element, row.estimated_ns, row.elements) {
         (Some(each), ..) => Some((if row.sampled { "~" } else { "" }, each)),
         (None, Some(ns), Some(elements)) => Some(("?", ns / elements.max(1) as f64)),
         _ => None,
     };
-    let Some((sign, each)) = price else {
+    let Some((sign, each)) = time else {
         return right("–".into());
     };
     let ratio = row.ratio_to_best.map(|ratio| format!("{ratio:.2}×"));
@@ -175,7 +179,7 @@ fn cell(OrderRow { row, .. }: &OrderRow, bold: bool) -> Cell {
         Agreement::Merged => "m",
         _ => "",
     };
-    let (each, ratio) = (short(each), ratio.unwrap_or_default());
+    let (each, ratio) = (short_figure(each), ratio.unwrap_or_default());
     let cell = right(format!("{sign}{each} {ratio:>5}{standing}{note}"));
     match bold && standing == '*' {
         true => cell.add_attribute(Attribute::Bold),
@@ -184,7 +188,7 @@ fn cell(OrderRow { row, .. }: &OrderRow, bold: bool) -> Cell {
 }
 
 /// Formats a figure in at most six characters.
-pub(crate) fn short(number: f64) -> String {
+pub(crate) fn short_figure(number: f64) -> String {
     match number {
         n if n >= 99_999.5 => format!("{n:.1e}"),
         n => figure(n),
@@ -198,7 +202,7 @@ mod tests {
     #[test]
     fn large_figures_stay_short() {
         assert_eq!(
-            [4.126, 41_234.5, 123_456.0].map(short),
+            [4.126, 41_234.5, 123_456.0].map(short_figure),
             ["4.13", "41,235", "1.2e5"]
         );
     }

@@ -39,15 +39,15 @@ pub(crate) fn is_stdout(path: &Path) -> bool {
 }
 
 /// Returns an error if an output would overwrite `input`; `what` describes the input.
-pub(crate) fn check_kept(
+pub(crate) fn check_not_overwritten(
     what: &str,
     input: &Path,
     outputs: &[(&str, Option<&PathBuf>)],
 ) -> Result<(), Failure> {
-    let kept = place(input);
+    let input_path = canonical_path(input);
     for &(option, path) in outputs {
         let Some(path) = path else { continue };
-        if place(path) == kept && !is_stdout(path) {
+        if canonical_path(path) == input_path && !is_stdout(path) {
             return Err(Failure::usage(format!(
                 "{option} would overwrite {what} {}: choose another file",
                 path.display()
@@ -58,20 +58,20 @@ pub(crate) fn check_kept(
 }
 
 /// Returns an error if two outputs have the same place, or if one would overwrite the mesh.
-pub(crate) fn check_places(
+pub(crate) fn check_outputs(
     mesh: Option<&Path>,
     outputs: &[(&str, Option<&PathBuf>)],
 ) -> Result<(), Failure> {
     if let Some(mesh) = mesh {
-        check_kept("the mesh", mesh, outputs)?;
+        check_not_overwritten("the mesh", mesh, outputs)?;
     }
-    let asked = outputs
+    let given = outputs
         .iter()
         .filter_map(|&(option, path)| Some((option, path?)));
     let mut taken: Vec<(&str, PathBuf)> = Vec::new();
-    for (option, path) in asked {
-        let (place, shown) = (place(path), path.display());
-        if let Some((other, _)) = taken.iter().find(|(_, there)| *there == place) {
+    for (option, path) in given {
+        let (place, shown) = (canonical_path(path), path.display());
+        if let Some((other, _)) = taken.iter().find(|(_, taken)| *taken == place) {
             return Err(Failure::usage(format!(
                 "{other} and {option} both write to {shown}: choose two different files"
             )));
@@ -82,19 +82,19 @@ pub(crate) fn check_places(
 }
 
 /// Returns the same path for all spellings of a file, whether or not the file exists.
-fn place(path: &Path) -> PathBuf {
-    let known = || {
+fn canonical_path(path: &Path) -> PathBuf {
+    let canonical = || {
         if is_stdout(path) {
             return None;
         }
-        if let Ok(there) = fs::canonicalize(path) {
-            return Some(there);
+        if let Ok(existing) = fs::canonicalize(path) {
+            return Some(existing);
         }
         let folder = path.parent().filter(|folder| *folder != Path::new(""));
         let folder = fs::canonicalize(folder.unwrap_or(Path::new("."))).ok()?;
         Some(folder.join(path.file_name()?))
     };
-    known().unwrap_or_else(|| path.to_owned())
+    canonical().unwrap_or_else(|| path.to_owned())
 }
 
 /// Deletes all drafts and ends the program. A signal handler may call this while other threads
@@ -126,11 +126,11 @@ impl Output {
         // A link stays a link: the file that it points to is replaced.
         let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let target = match fs::metadata(&path) {
-            Ok(there) if there.is_dir() => {
+            Ok(metadata) if metadata.is_dir() => {
                 let message = format!("{shown}: is a directory: name a file inside it");
                 return Err(Failure::usage(message));
             }
-            Ok(there) if !there.is_file() => {
+            Ok(metadata) if !metadata.is_file() => {
                 Target::Stream(File::options().write(true).open(&path).map_err(failed)?)
             }
             old => {
@@ -138,7 +138,7 @@ impl Output {
                     // A file without write permission must not be replaced either.
                     File::options().write(true).open(&path).map_err(failed)?;
                 }
-                let draft = draft_of(&path);
+                let draft = draft_path(&path);
                 let mut drafts = drafts();
                 let file = File::create(&draft).map_err(failed)?;
                 drafts.push(draft.clone());
@@ -148,8 +148,8 @@ impl Output {
                 if let (Ok(old), Target::File { file, .. }) = (old, &output.target) {
                     // Set before writing, so that users without access to the old file never get
                     // access to the new one.
-                    let kept = file.set_permissions(old.permissions());
-                    kept.map_err(|cause| output.failure(&cause))?;
+                    let set = file.set_permissions(old.permissions());
+                    set.map_err(|cause| output.failure(&cause))?;
                 }
                 return Ok(output);
             }
@@ -171,7 +171,7 @@ impl Output {
             Target::Stdout => written(io::stdout().lock(), write),
             Target::Stream(file) => written(file, write),
             Target::File { file, draft, path } => written(file, write).and_then(|()| {
-                let _held = drafts();
+                let _lock = drafts();
                 fs::rename(draft, path)
             }),
         };
@@ -223,7 +223,7 @@ fn written(to: impl Write, write: impl FnOnce(&mut dyn Write) -> io::Result<()>)
 }
 
 /// Returns a name beside `path` that no other run uses.
-fn draft_of(path: &Path) -> PathBuf {
+fn draft_path(path: &Path) -> PathBuf {
     let mut name = OsString::from(".");
     name.push(path.file_name().unwrap_or_default());
     name.push(format!(".{}.draft", std::process::id()));

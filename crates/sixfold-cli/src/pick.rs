@@ -4,33 +4,33 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use comfy_table::{Cell, CellAlignment};
-use sixfold_study::{Answer, BreakEven, Question, Ranked, Specimen};
+use sixfold_study::{BreakEven, PickReport, PickSettings, Ranked, StudyMesh};
 
 use crate::arguments::Pick;
 use crate::failure::Failure;
 use crate::load;
-use crate::measured::{ended, tell_of_debug_build, typed};
-use crate::output::{Output, check_places, is_stdout};
+use crate::outcome::{command_line, exit_code, warn_of_debug_build};
+use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
 use crate::tables::table;
-use crate::text::{Text, complain, hanging, tame};
+use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
 use crate::workloads::workload;
 use sixfold_study::numbers::{counted, duration, figure, grouped};
 
 /// The exit code if no backend qualifies.
-const NONE: u8 = 1;
+const NONE_QUALIFIES: u8 = 1;
 
 /// Measures and shows the answer. Text is printed first, so that it is not lost if a file fails.
 pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     for mesh in &arguments.meshes {
-        check_places(Some(mesh), &[("--json", arguments.json.as_ref())])?;
+        check_outputs(Some(mesh), &[("--json", arguments.json.as_ref())])?;
     }
     let workload = workload(&arguments.workload)?;
     // Before the draft of the output is opened, so that Ctrl-C cannot leave a draft behind.
     let stop = interrupt_flag(arguments.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
-    let specimens = specimens(arguments)?;
-    let question = Question {
+    let study_meshes = study_meshes(arguments)?;
+    let settings = PickSettings {
         workload,
         backends: arguments.backends.clone(),
         needs: arguments.needs.clone(),
@@ -39,91 +39,91 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         seed: arguments.seed,
         heap: arguments.heap,
     };
-    tell_of_debug_build();
+    warn_of_debug_build();
     let bar = Bar::new();
-    let answer = sixfold_study::pick(&specimens, &question, &stop, &mut |done, what| {
-        bar.at(done, what)
+    let report = sixfold_study::pick(&study_meshes, &settings, &stop, &mut |done, what| {
+        bar.set(done, what)
     });
     bar.clear();
-    let mut answer = answer.map_err(Failure::usage)?;
-    answer.environment.command = Some(typed());
+    let mut report = report.map_err(Failure::usage)?;
+    report.environment.command = Some(command_line());
 
-    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
-    print(&answer, &specimens, &mut text);
+    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
+    print(&report, &study_meshes, &mut text);
     let mut done = text.finish();
     if let Some(output) = json {
-        done = done.and(output.finish(|writer| answer.write_json(writer)));
+        done = done.and(output.finish(|writer| report.write_json(writer)));
     }
-    let code = ended(done, answer.mismatches.len(), answer.interrupted)?;
-    if answer.ranking.is_empty() && !answer.interrupted {
-        complain(
+    let code = exit_code(done, report.mismatches.len(), report.interrupted)?;
+    if report.ranking.is_empty() && !report.interrupted {
+        print_stderr(
             "error: no backend qualifies: relax --needs, --max-memory or --backends, or repair the mesh (see `sixfold inspect`)",
         );
-        return Ok(ExitCode::from(NONE));
+        return Ok(ExitCode::from(NONE_QUALIFIES));
     }
     Ok(code)
 }
 
-fn specimens(arguments: &Pick) -> Result<Vec<Specimen>, Failure> {
+fn study_meshes(arguments: &Pick) -> Result<Vec<StudyMesh>, Failure> {
     if arguments.meshes.is_empty() {
         return Ok(vec![load::built_in()]);
     }
-    let read = |path: &std::path::PathBuf| -> Result<Specimen, Failure> {
+    let read = |path: &std::path::PathBuf| -> Result<StudyMesh, Failure> {
         load::for_study(Path::new(path), false, arguments.triangulate)
     };
     arguments.meshes.iter().map(read).collect()
 }
 
-fn print(answer: &Answer, specimens: &[Specimen], text: &mut Text) {
-    for specimen in specimens {
-        let vertices = counted(specimen.polygons.vertex_count(), "vertex", "vertices");
-        let faces = counted(specimen.polygons.face_count(), "face", "faces");
-        text.say(&hanging(
+fn print(report: &PickReport, study_meshes: &[StudyMesh], text: &mut TextOutput) {
+    for study_mesh in study_meshes {
+        let vertices = counted(study_mesh.polygons.vertex_count(), "vertex", "vertices");
+        let faces = counted(study_mesh.polygons.face_count(), "face", "faces");
+        text.print_line(&hanging_indent(
             "Mesh:     ",
-            &format!("{}: {vertices}, {faces}", specimen.name),
+            &format!("{}: {vertices}, {faces}", study_mesh.name),
         ));
     }
-    let summary = format!("{}. {}", answer.workload.name, answer.workload.summary);
-    text.say(&hanging("Workload: ", &tame(summary.trim())));
+    let summary = format!("{}. {}", report.workload.name, report.workload.summary);
+    text.print_line(&hanging_indent("Workload: ", &sanitize(summary.trim())));
     let operations = counted(
-        answer.operations.round() as usize,
+        report.operations.round() as usize,
         "operation",
         "operations",
     );
-    let mix: Vec<String> = { answer.workload.mix.iter() }
+    let mix: Vec<String> = { report.workload.mix.iter() }
         .map(|part| format!("{} {}", part.weight, part.action))
         .collect();
-    let rebuilt = match answer.workload.rebuilds {
+    let rebuilt = match report.workload.rebuilds {
         0 => String::new(),
         times => format!(", rebuilt {}", counted(times as usize, "time", "times")),
     };
     let mix = mix.join(", ");
-    text.say(&hanging(
+    text.print_line(&hanging_indent(
         "Mix:      ",
-        &format!("{mix}; {}; {operations}{rebuilt}", answer.workload.access),
+        &format!("{mix}; {}; {operations}{rebuilt}", report.workload.access),
     ));
-    text.say("");
-    if !answer.ranking.is_empty() {
-        text.say(&ranking(answer));
-        text.say("");
+    text.print_line("");
+    if !report.ranking.is_empty() {
+        text.print_line(&ranking(report));
+        text.print_line("");
     }
-    for words in &answer.words {
-        text.say(&hanging("- ", words));
+    for sentence in &report.sentences {
+        text.print_line(&hanging_indent("- ", sentence));
     }
-    for out in &answer.excluded {
-        text.say(&hanging(
+    for excluded in &report.excluded {
+        text.print_line(&hanging_indent(
             "- ",
-            &format!("{} is excluded: {}.", out.backend, out.reason),
+            &format!("{} is excluded: {}.", excluded.backend, excluded.reason),
         ));
     }
-    for warning in &answer.warnings {
-        text.say(&hanging("! ", warning));
+    for warning in &report.warnings {
+        text.print_line(&hanging_indent("! ", warning));
     }
 }
 
 /// Returns the table of backends, best first: times, memory, and after how many operations each
 /// pays off.
-fn ranking(answer: &Answer) -> String {
+fn ranking(report: &PickReport) -> String {
     let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
     let header = [
         "",
@@ -137,7 +137,7 @@ fn ranking(answer: &Answer) -> String {
     ];
     let mut rows = table(header.iter().map(|name| right((*name).into())).collect());
     let mut notes = [false; 3];
-    for ranked in &answer.ranking {
+    for ranked in &report.ranking {
         let mark = match (ranked.estimated, ranked.sampled) {
             (true, _) => "?",
             (_, true) => "~",
@@ -145,7 +145,7 @@ fn ranking(answer: &Answer) -> String {
         };
         notes[0] |= ranked.sampled && !ranked.estimated;
         notes[1] |= ranked.estimated;
-        notes[2] |= ranked.tied_with_best && answer.ranking.len() > 1;
+        notes[2] |= ranked.tied_with_best && report.ranking.len() > 1;
         let tied = if ranked.tied_with_best { " =" } else { "" };
         let interval = ranked.ci_low.zip(ranked.ci_high);
         let interval = interval.map_or("–".into(), |(low, high)| {
@@ -159,7 +159,7 @@ fn ranking(answer: &Answer) -> String {
             right(ranked.first_build_ns.map_or("–".into(), duration)),
             right(duration(ranked.build_ns)),
             right(format!("{:.1}", ranked.bytes_per_vertex)),
-            right(pays(answer, ranked)),
+            right(pays_after(report, ranked)),
         ]);
     }
     let mut text = rows.trim_fmt();
@@ -172,10 +172,10 @@ fn ranking(answer: &Answer) -> String {
         text += "\n";
         text += line;
     }
-    let tables = answer
+    let tables = report
         .ranking
         .iter()
-        .find_map(|ranked| ranked.over.as_deref());
+        .find_map(|ranked| ranked.made_from.as_deref());
     if let Some(over) = tables {
         text += &format!(
             "\nrelation-tables: flat tables of only the relations in the mix, made from {over}"
@@ -194,9 +194,9 @@ fn ratio(ratio: f64) -> String {
     }
 }
 
-fn pays(answer: &Answer, ranked: &Ranked) -> String {
+fn pays_after(report: &PickReport, ranked: &Ranked) -> String {
     let row = |row: &&BreakEven| row.backend == ranked.backend;
-    match answer.break_even.iter().find(row) {
+    match report.break_even.iter().find(row) {
         None => "–".into(),
         Some(BreakEven {
             operations: None, ..

@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use sixfold_study::{Policy, Progress, pages};
 
 use crate::output::exit_without_drafts;
-use crate::text::complain;
+use crate::text::print_stderr;
 
 /// Number of steps of a full bar.
 const STEPS: u64 = 1000;
@@ -29,7 +29,7 @@ impl Bar {
     }
 
     /// Shows which fraction is done, and what is running.
-    pub(crate) fn at(&self, done: f64, what: &str) {
+    pub(crate) fn set(&self, done: f64, what: &str) {
         let Self(Some(bar)) = self else { return };
         bar.set_position((done * STEPS as f64) as u64);
         bar.set_message(what.to_owned());
@@ -43,7 +43,7 @@ impl Bar {
             operation,
             backend,
         } = progress;
-        self.at(done, &format!("{stage} {operation} on {backend}"));
+        self.set(done, &format!("{stage} {operation} on {backend}"));
     }
 
     /// Removes the bar.
@@ -55,11 +55,11 @@ impl Bar {
 }
 
 /// A progress bar of new faces, on standard error if that is a terminal.
-pub(crate) struct Faces(Option<ProgressBar>);
+pub(crate) struct FaceBar(Option<ProgressBar>);
 
-impl Faces {
+impl FaceBar {
     /// Returns a bar for work that makes `faces` faces in total.
-    pub(crate) fn of(faces: usize) -> Self {
+    pub(crate) fn new(faces: usize) -> Self {
         if !io::stderr().is_terminal() {
             return Self(None);
         }
@@ -71,7 +71,7 @@ impl Faces {
     }
 
     /// Adds the `faces` faces of level `level`.
-    pub(crate) fn made(&self, level: u32, faces: usize) {
+    pub(crate) fn add_level(&self, level: u32, faces: usize) {
         let Self(Some(bar)) = self else { return };
         bar.inc(faces as u64);
         bar.set_message(format!("level {level} done"));
@@ -86,11 +86,11 @@ impl Faces {
 }
 
 /// A progress bar of steps of any kind, on standard error if that is a terminal.
-pub(crate) struct Steps(Option<ProgressBar>);
+pub(crate) struct StepBar(Option<ProgressBar>);
 
-impl Steps {
+impl StepBar {
     /// Returns a bar for `steps` steps; `what` describes them.
-    pub(crate) fn of(steps: usize, what: &str) -> Self {
+    pub(crate) fn new(steps: usize, what: &str) -> Self {
         if !io::stderr().is_terminal() {
             return Self(None);
         }
@@ -103,7 +103,7 @@ impl Steps {
     }
 
     /// Shows that `steps` steps are done.
-    pub(crate) fn reached(&self, steps: usize) {
+    pub(crate) fn set_done(&self, steps: usize) {
         if let Self(Some(bar)) = self {
             bar.set_position(steps as u64);
         }
@@ -117,12 +117,12 @@ impl Steps {
     }
 }
 
-/// A line with a spinner during long work, on standard error if that is a terminal.
-pub(crate) struct Waiting(Option<ProgressBar>);
+/// A line with an animated symbol during long work, on standard error if that is a terminal.
+pub(crate) struct Spinner(Option<ProgressBar>);
 
-impl Waiting {
-    /// Shows what is being done.
-    pub(crate) fn shown(what: String) -> Self {
+impl Spinner {
+    /// Shows a line that says `what` is being done.
+    pub(crate) fn start(what: String) -> Self {
         if !io::stderr().is_terminal() {
             return Self(None);
         }
@@ -141,9 +141,9 @@ impl Waiting {
 
 /// A line that shows the present step, on standard error if that is a terminal. It has no thread of
 /// its own, because allocations of that thread would be counted.
-pub(crate) struct Stage(Option<ProgressBar>);
+pub(crate) struct StatusLine(Option<ProgressBar>);
 
-impl Stage {
+impl StatusLine {
     /// Returns an empty line.
     pub(crate) fn new() -> Self {
         let shown = io::stderr().is_terminal();
@@ -170,10 +170,10 @@ impl Stage {
 pub(crate) const INTERRUPTED: u8 = 4;
 
 /// Ends the program at the first Ctrl-C. For commands that have no partial results to keep.
-pub(crate) fn end_on_interrupt() {
+pub(crate) fn exit_on_interrupt() {
     // If no handler can be set, Ctrl-C keeps its default effect.
     let _ = ctrlc::set_handler(|| {
-        complain("interrupted");
+        print_stderr("interrupted");
         exit_without_drafts(INTERRUPTED.into());
     });
 }
@@ -183,15 +183,15 @@ pub(crate) fn end_on_interrupt() {
 /// Applies `heap` first: the handler starts a thread, and the number of heaps is fixed when the
 /// first thread starts.
 pub(crate) fn interrupt_flag(heap: Policy) -> Arc<AtomicBool> {
-    pages::put_in_force(heap);
+    pages::set_policy(heap);
     /// The exit code that shells use for an interrupted program.
-    const AT_ONCE: i32 = 130;
+    const SIGINT_CODE: i32 = 130;
     let flag = Arc::new(AtomicBool::new(false));
-    let set = Arc::clone(&flag);
+    let handler_flag = Arc::clone(&flag);
     // If no handler can be set, Ctrl-C keeps its default effect.
     let _ = ctrlc::set_handler(move || {
-        if set.swap(true, Ordering::Relaxed) {
-            exit_without_drafts(AT_ONCE);
+        if handler_flag.swap(true, Ordering::Relaxed) {
+            exit_without_drafts(SIGINT_CODE);
         }
     });
     flag

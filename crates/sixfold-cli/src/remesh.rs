@@ -15,13 +15,13 @@ use sixfold::{
 use crate::arguments::{Decimate, Remesh};
 use crate::failure::Failure;
 use crate::load;
-use crate::output::{Output, check_places, is_stdout};
-use crate::progress::{Steps, end_on_interrupt};
-use crate::text::{Text, complain, tame};
+use crate::output::{Output, check_outputs, is_stdout};
+use crate::progress::{StepBar, exit_on_interrupt};
+use crate::text::{TextOutput, print_stderr, sanitize};
 use sixfold_study::numbers::{counted, grouped};
 
 /// Number of faces from which a note explains why a structure that scans is slow.
-const LONG_SCAN: usize = 1000;
+const MIN_WARNED_FACES: usize = 1000;
 
 /// Decimates the mesh and writes it.
 pub(crate) fn decimate(arguments: &Decimate) -> Result<ExitCode, Failure> {
@@ -30,7 +30,7 @@ pub(crate) fn decimate(arguments: &Decimate) -> Result<ExitCode, Failure> {
         boundary: arguments.boundary,
     };
     let place = [arguments.mesh.as_path(), &arguments.output];
-    edited(place, &arguments.backend, &decimation)
+    edit_file(place, &arguments.backend, &decimation)
 }
 
 /// Remeshes the mesh and writes it.
@@ -38,38 +38,38 @@ pub(crate) fn remesh(arguments: &Remesh) -> Result<ExitCode, Failure> {
     let remeshing = Remeshing {
         edge_length: arguments.edge_length,
         iterations: arguments.iterations,
-        most_faces: arguments.max_faces,
+        max_faces: arguments.max_faces,
     };
     let place = [arguments.mesh.as_path(), &arguments.output];
-    edited(place, &arguments.backend, &remeshing)
+    edit_file(place, &arguments.backend, &remeshing)
 }
 
 /// Reads a mesh, edits it on `backend`, and writes the result.
-fn edited([from, to]: [&Path; 2], backend: &str, work: &impl Work) -> Result<ExitCode, Failure> {
-    check_places(Some(from), &[("--output", Some(&to.to_owned()))])?;
-    end_on_interrupt();
+fn edit_file([from, to]: [&Path; 2], backend: &str, work: &impl Work) -> Result<ExitCode, Failure> {
+    check_outputs(Some(from), &[("--output", Some(&to.to_owned()))])?;
+    exit_on_interrupt();
     let polygons = load::without_creases(from)?;
     // Checked here, because the error of a structure for triangles would not name the command that
     // helps.
     check_triangles(&polygons)?;
     // Opened before the work, so that a wrong place fails at once.
     let output = Output::open(to)?;
-    let mut on = On {
+    let mut job = EditJob {
         polygons: &polygons,
         work,
     };
-    let done = visit_editable(backend, &mut on);
-    let (polygons, Told { edits, short }) =
+    let done = visit_editable(backend, &mut job);
+    let (polygons, EditSummary { edits, shortfall }) =
         done.ok_or_else(|| Failure::usage(format!("no backend is called `{backend}`")))??;
     output.finish(|writer| write_obj(&polygons, writer))?;
-    if let Some(short) = short {
-        complain(&format!("note: {}: {short}", to.display()));
+    if let Some(shortfall) = shortfall {
+        print_stderr(&format!("note: {}: {shortfall}", to.display()));
     }
-    let mut text = Text::shown(!is_stdout(to));
-    let place = tame(&to.display().to_string());
+    let mut text = TextOutput::new(!is_stdout(to));
+    let place = sanitize(&to.display().to_string());
     let vertices = counted(polygons.vertex_count(), "vertex", "vertices");
     let faces = counted(polygons.face_count(), "face", "faces");
-    text.say(&format!(
+    text.print_line(&format!(
         "{place}: {vertices}, {faces}; {edits} on {backend}"
     ));
     text.finish()?;
@@ -79,13 +79,13 @@ fn edited([from, to]: [&Path; 2], backend: &str, work: &impl Work) -> Result<Exi
 /// Returns an error for the first face that is not a triangle.
 fn check_triangles(polygons: &PolygonMesh) -> Result<(), Failure> {
     match polygons.first_polygon() {
-        Some((face, degree)) => Err(refused(RemeshError::NotATriangle { face, degree })),
+        Some((face, degree)) => Err(remesh_failure(RemeshError::NotATriangle { face, degree })),
         None => Ok(()),
     }
 }
 
 /// Converts an error, and adds the command or the option that helps.
-fn refused(error: RemeshError) -> Failure {
+fn remesh_failure(error: RemeshError) -> Failure {
     match error {
         RemeshError::NotATriangle { .. } => {
             Failure::unsupported(format!("{error}, with `sixfold triangulate`"))
@@ -110,19 +110,19 @@ fn refused(error: RemeshError) -> Failure {
 }
 
 /// Prints a note if edits on the structure scan all faces, because that is slow on a large mesh.
-fn tell_of_scans<M: MeshEdit + Representation>(faces: usize) {
+fn warn_of_scans<M: MeshEdit + Representation>(faces: usize) {
     let scans = |edits: &[Option<QueryCost>]| {
         [Edit::CollapseEdge, Edit::BisectEdge, Edit::FlipEdge]
             .iter()
             .any(|&edit| edits[edit as usize] == Some(QueryCost::Scan))
     };
-    if faces < LONG_SCAN || !scans(&M::EDITS) {
+    if faces < MIN_WARNED_FACES || !scans(&M::EDITS) {
         return;
     }
     let backends = roster();
     let others = backends.iter().filter(|backend| !scans(&backend.edits));
     let others: Vec<&str> = others.map(|backend| backend.name).collect();
-    complain(&format!(
+    print_stderr(&format!(
         "note: {} scans all {} faces for each edit, which is slow: {} visit only the faces around the edge",
         M::NAME,
         grouped(faces),
@@ -133,28 +133,28 @@ fn tell_of_scans<M: MeshEdit + Representation>(faces: usize) {
 /// Edits on a structure.
 trait Work {
     /// Does the edits, and describes them.
-    fn done<M: MeshEdit + Representation>(&self, mesh: &mut M) -> Result<Told, RemeshError>;
+    fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) -> Result<EditSummary, RemeshError>;
 }
 
 /// A description of the edits.
-struct Told {
+struct EditSummary {
     edits: String,
     /// The reason if the target was not reached.
-    short: Option<String>,
+    shortfall: Option<String>,
 }
 
 impl Work for Decimation {
-    fn done<M: MeshEdit + Representation>(&self, mesh: &mut M) -> Result<Told, RemeshError> {
+    fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) -> Result<EditSummary, RemeshError> {
         let before = mesh.face_count();
-        let target = self.target.of(before)?;
-        let bar = Steps::of(before.saturating_sub(target), "faces removed");
+        let target = self.target.face_count(before)?;
+        let bar = StepBar::new(before.saturating_sub(target), "faces removed");
         let report = decimate_watched(mesh, self, &mut |faces| {
-            bar.reached(before.saturating_sub(faces));
+            bar.set_done(before.saturating_sub(faces));
             ControlFlow::Continue(())
         });
         bar.clear();
         let report = report?;
-        let short = (report.stop != Stop::Done).then(|| {
+        let shortfall = (report.stop != Stop::Done).then(|| {
             let fixed = match self.boundary {
                 Boundary::Fixed => "move the boundary, ",
                 Boundary::Follow => "",
@@ -165,55 +165,55 @@ impl Work for Decimation {
             )
         });
         let edits = counted(report.collapses, "edge", "edges");
-        Ok(Told {
+        Ok(EditSummary {
             edits: format!("{edits} collapsed"),
-            short,
+            shortfall,
         })
     }
 }
 
 impl Work for Remeshing {
-    fn done<M: MeshEdit + Representation>(&self, mesh: &mut M) -> Result<Told, RemeshError> {
-        let bar = Steps::of(self.iterations, "iterations");
+    fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) -> Result<EditSummary, RemeshError> {
+        let bar = StepBar::new(self.iterations, "iterations");
         let report = remesh_watched(mesh, self, &mut |done| {
-            bar.reached(done);
+            bar.set_done(done);
             ControlFlow::Continue(())
         });
         bar.clear();
         let report = report?;
         let iterations = counted(report.iterations, "iteration", "iterations");
-        let short = (report.stop != Stop::Done).then(|| {
+        let shortfall = (report.stop != Stop::Done).then(|| {
             format!(
                 "stopped after {iterations}: --max-faces {} prevents more splits, so edges are longer than --edge-length",
-                self.most_faces
+                self.max_faces
             )
         });
         let splits = counted(report.splits, "split", "splits");
         let collapses = counted(report.collapses, "collapse", "collapses");
         let flips = counted(report.flips, "flip", "flips");
-        Ok(Told {
+        Ok(EditSummary {
             edits: format!("{splits}, {collapses} and {flips} in {iterations}"),
-            short,
+            shortfall,
         })
     }
 }
 
 /// Work on a structure that is selected at run time.
-struct On<'a, W> {
+struct EditJob<'a, W> {
     polygons: &'a PolygonMesh,
     work: &'a W,
 }
 
-impl<W: Work> EditVisitor for On<'_, W> {
-    type Output = Result<(PolygonMesh, Told), Failure>;
+impl<W: Work> EditVisitor for EditJob<'_, W> {
+    type Output = Result<(PolygonMesh, EditSummary), Failure>;
 
     fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output {
         let mesh = M::from_polygons(self.polygons);
         let mut mesh = mesh.map_err(|refusal| {
-            Failure::not_held(format!("{} cannot hold the mesh: {refusal}", M::NAME))
+            Failure::cannot_hold(format!("{} cannot hold the mesh: {refusal}", M::NAME))
         })?;
-        tell_of_scans::<M>(self.polygons.face_count());
-        let told = self.work.done(&mut mesh).map_err(refused)?;
-        Ok((mesh.to_polygons(), told))
+        warn_of_scans::<M>(self.polygons.face_count());
+        let summary = self.work.run(&mut mesh).map_err(remesh_failure)?;
+        Ok((mesh.to_polygons(), summary))
     }
 }

@@ -6,52 +6,53 @@ use std::process::ExitCode;
 use sixfold::io::read_creases;
 use sixfold::{Creases, PolygonMesh};
 use sixfold_render::{
-    MeshFault, Picture, RenderError, Settings, Size, Subject, View, draw, draw_svg,
+    MeshFault, Picture, RenderError, RenderMesh, Settings, Size, View, draw, draw_svg,
 };
 
 use crate::arguments::Render;
 use crate::failure::Failure;
 use crate::load;
-use crate::output::{Output, check_kept};
-use crate::progress::{Waiting, end_on_interrupt};
-use crate::text::{Text, tame};
+use crate::output::{Output, check_not_overwritten};
+use crate::progress::{Spinner, exit_on_interrupt};
+use crate::text::{TextOutput, sanitize};
 use sixfold_study::numbers::counted;
 
 /// Draws the meshes into one picture.
 pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
-    end_on_interrupt();
-    let format = Format::of(&arguments.output)?;
+    exit_on_interrupt();
+    let format = Format::from_path(&arguments.output)?;
     let outputs = [("--output", Some(&arguments.output))];
     for mesh in &arguments.meshes {
-        check_kept("the mesh", mesh, &outputs)?;
+        check_not_overwritten("the mesh", mesh, &outputs)?;
     }
     for creases in &arguments.creases {
-        check_kept("the crease file", creases, &outputs)?;
+        check_not_overwritten("the crease file", creases, &outputs)?;
     }
     let settings = settings(arguments)?;
-    let loaded = loaded(arguments)?;
-    let subject = |(mesh, creases)| Subject { mesh, creases };
-    let subjects: Vec<Subject<'_>> = loaded.iter().map(|(m, c)| subject((m, c))).collect();
+    let loaded = load_meshes(arguments)?;
+    let render_mesh = |(mesh, creases)| RenderMesh { mesh, creases };
+    let render_meshes: Vec<RenderMesh<'_>> =
+        loaded.iter().map(|(m, c)| render_mesh((m, c))).collect();
     // Opened before the work, so that a wrong place fails at once.
     let output = Output::open(&arguments.output)?;
     let faces: usize = loaded.iter().map(|(mesh, _)| mesh.face_count()).sum();
-    let waiting = Waiting::shown(format!("drawing {}", counted(faces, "face", "faces")));
+    let spinner = Spinner::start(format!("drawing {}", counted(faces, "face", "faces")));
     let drawn = match format {
-        Format::Png => draw(&subjects, &settings).map(Drawn::Pixels),
-        Format::Svg => draw_svg(&subjects, &settings).map(Drawn::Lines),
+        Format::Png => draw(&render_meshes, &settings).map(Drawn::Pixels),
+        Format::Svg => draw_svg(&render_meshes, &settings).map(Drawn::Lines),
     };
-    waiting.clear();
+    spinner.clear();
     let drawn = drawn.map_err(|error| failure(arguments, &error))?;
     output.finish(|writer| match &drawn {
         Drawn::Pixels(picture) => picture.write_png(writer),
         Drawn::Lines(svg) => writer.write_all(svg.as_bytes()),
     })?;
-    let mut text = Text::shown(true);
-    let place = tame(&arguments.output.display().to_string());
+    let mut text = TextOutput::new(true);
+    let place = sanitize(&arguments.output.display().to_string());
     let meshes = counted(loaded.len(), "mesh", "meshes");
     let faces = counted(faces, "face", "faces");
     let Size { width, height } = settings.size;
-    text.say(&format!(
+    text.print_line(&format!(
         "{place}: {meshes}, {faces}, {width} × {height} pixels"
     ));
     text.finish()?;
@@ -70,7 +71,7 @@ enum Drawn {
 
 impl Format {
     /// Returns the format for the extension of `path`.
-    fn of(path: &Path) -> Result<Self, Failure> {
+    fn from_path(path: &Path) -> Result<Self, Failure> {
         let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
         match ending.as_ref().and_then(|ending| ending.to_str()) {
             Some("png") => Ok(Self::Png),
@@ -88,7 +89,7 @@ fn settings(arguments: &Render) -> Result<Settings, Failure> {
     let view = View::new(azimuth, elevation, arguments.up).map_err(Failure::usage)?;
     let panels = arguments.meshes.len();
     Ok(Settings {
-        size: arguments.size.unwrap_or_else(|| Size::of_row(panels)),
+        size: arguments.size.unwrap_or_else(|| Size::for_panels(panels)),
         view,
         shading: arguments.shade,
         edges: arguments.edges,
@@ -97,7 +98,7 @@ fn settings(arguments: &Render) -> Result<Settings, Failure> {
 }
 
 /// Loads the meshes, each with the creases in its file and in its crease file.
-fn loaded(arguments: &Render) -> Result<Vec<(PolygonMesh, Creases)>, Failure> {
+fn load_meshes(arguments: &Render) -> Result<Vec<(PolygonMesh, Creases)>, Failure> {
     let (meshes, files) = (&arguments.meshes, &arguments.creases);
     if files.len() > meshes.len() {
         let files = counted(files.len(), "crease file", "crease files");
@@ -110,8 +111,8 @@ fn loaded(arguments: &Render) -> Result<Vec<(PolygonMesh, Creases)>, Failure> {
     for (i, path) in meshes.iter().enumerate() {
         let (polygons, mut creases) = load::with_creases(path)?;
         if let Some(file) = files.get(i) {
-            let told = read_creases(file, &polygons).map_err(Failure::usage)?;
-            creases = creases.with(&told);
+            let listed = read_creases(file, &polygons).map_err(Failure::usage)?;
+            creases = creases.updated_with(&listed);
         }
         loaded.push((polygons, creases));
     }

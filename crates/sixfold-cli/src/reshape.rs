@@ -10,14 +10,14 @@ use sixfold::{PolygonMesh, Representation, Visitor, visit};
 use crate::arguments::{Dual, Smooth, Triangulate};
 use crate::failure::Failure;
 use crate::load;
-use crate::output::{Output, check_places, is_stdout};
-use crate::progress::{Waiting, end_on_interrupt};
-use crate::text::{Text, tame};
+use crate::output::{Output, check_outputs, is_stdout};
+use crate::progress::{Spinner, exit_on_interrupt};
+use crate::text::{TextOutput, sanitize};
 use sixfold_study::numbers::counted;
 
 /// Smooths the mesh and writes it.
 pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
-    let work = Smoothed(Smoothing {
+    let work = SmoothWork(Smoothing {
         weights: arguments.weights,
         boundary: arguments.boundary,
         step: arguments.step,
@@ -25,7 +25,7 @@ pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
         iterations: arguments.iterations,
     });
     let place = [arguments.mesh.as_path(), &arguments.output];
-    reshaped(place, "smoothed", |polygons| {
+    reshape_file(place, "smoothed", |polygons| {
         on_backend(&arguments.backend, polygons, &work)
     })
 }
@@ -33,16 +33,16 @@ pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
 /// Builds the dual and writes it.
 pub(crate) fn make_dual(arguments: &Dual) -> Result<ExitCode, Failure> {
     let place = [arguments.mesh.as_path(), &arguments.output];
-    reshaped(place, "the dual", |polygons| {
-        on_backend(&arguments.backend, polygons, &Dualised)
+    reshape_file(place, "the dual", |polygons| {
+        on_backend(&arguments.backend, polygons, &DualWork)
     })
 }
 
 /// Cuts all polygons and writes the triangles.
 pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> {
     let place = [arguments.mesh.as_path(), &arguments.output];
-    reshaped(place, "triangles", |polygons| {
-        let turned = match arguments.orient {
+    reshape_file(place, "triangles", |polygons| {
+        let polygons = match arguments.orient {
             Some(facing) => {
                 oriented(polygons, facing)
                     .map_err(Failure::unsupported)?
@@ -50,45 +50,45 @@ pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> 
             }
             None => polygons.clone(),
         };
-        triangulated(&turned, arguments.method).map_err(Failure::unsupported)
+        triangulated(&polygons, arguments.method).map_err(Failure::unsupported)
     })
 }
 
 /// Reads a mesh, applies `change`, and writes the result.
-fn reshaped(
+fn reshape_file(
     [from, to]: [&Path; 2],
     what: &str,
     change: impl FnOnce(&PolygonMesh) -> Result<PolygonMesh, Failure>,
 ) -> Result<ExitCode, Failure> {
-    check_places(Some(from), &[("--output", Some(&to.to_owned()))])?;
-    end_on_interrupt();
+    check_outputs(Some(from), &[("--output", Some(&to.to_owned()))])?;
+    exit_on_interrupt();
     let polygons = load::without_creases(from)?;
     // Opened before the work, so that a wrong place fails at once.
     let output = Output::open(to)?;
     let faces = counted(polygons.face_count(), "face", "faces");
-    let waiting = Waiting::shown(format!("working on {faces}"));
+    let spinner = Spinner::start(format!("working on {faces}"));
     let changed = change(&polygons);
-    waiting.clear();
+    spinner.clear();
     let changed = changed?;
     output.finish(|writer| write_obj(&changed, writer))?;
-    let mut text = Text::shown(!is_stdout(to));
-    let place = tame(&to.display().to_string());
+    let mut text = TextOutput::new(!is_stdout(to));
+    let place = sanitize(&to.display().to_string());
     let vertices = counted(changed.vertex_count(), "vertex", "vertices");
     let faces = counted(changed.face_count(), "face", "faces");
-    text.say(&format!("{place}: {what}, {vertices}, {faces}"));
+    text.print_line(&format!("{place}: {what}, {vertices}, {faces}"));
     text.finish()?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// Work on a structure.
 trait Work {
-    fn done<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, Failure>;
+    fn run<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, Failure>;
 }
 
-struct Smoothed(Smoothing);
+struct SmoothWork(Smoothing);
 
-impl Work for Smoothed {
-    fn done<M: Representation>(&self, mut mesh: M) -> Result<PolygonMesh, Failure> {
+impl Work for SmoothWork {
+    fn run<M: Representation>(&self, mut mesh: M) -> Result<PolygonMesh, Failure> {
         let positions = smoothed(&mesh, &self.0).map_err(|error| match error {
             SmoothingError::Step { .. } | SmoothingError::StepBack { .. } => Failure::usage(error),
             _ => Failure::unsupported(error),
@@ -99,10 +99,10 @@ impl Work for Smoothed {
     }
 }
 
-struct Dualised;
+struct DualWork;
 
-impl Work for Dualised {
-    fn done<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, Failure> {
+impl Work for DualWork {
+    fn run<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, Failure> {
         dual(&mesh).map_err(Failure::unsupported)
     }
 }
@@ -113,21 +113,21 @@ fn on_backend(
     polygons: &PolygonMesh,
     work: &impl Work,
 ) -> Result<PolygonMesh, Failure> {
-    struct On<'a, W>(&'a PolygonMesh, &'a W);
+    struct Job<'a, W>(&'a PolygonMesh, &'a W);
 
-    impl<W: Work> Visitor for On<'_, W> {
+    impl<W: Work> Visitor for Job<'_, W> {
         type Output = Result<PolygonMesh, Failure>;
 
         fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
             let mesh = M::from_polygons(self.0);
             let mesh = mesh.map_err(|refusal| {
-                Failure::not_held(format!("{} cannot hold the mesh: {refusal}", M::NAME))
+                Failure::cannot_hold(format!("{} cannot hold the mesh: {refusal}", M::NAME))
             })?;
-            self.1.done(mesh)
+            self.1.run(mesh)
         }
     }
 
-    match visit(backend, &mut On(polygons, work)) {
+    match visit(backend, &mut Job(polygons, work)) {
         Some(done) => done,
         None => Err(Failure::usage(format!("no backend is called `{backend}`"))),
     }

@@ -8,7 +8,7 @@ use sixfold_study::{
     Standing,
 };
 
-use crate::text::{WIDTH, hanging, wrapped};
+use crate::text::{WIDTH, hanging_indent, wrap};
 use sixfold_study::numbers::{duration, figure};
 
 /// Two spaces between columns, and a line under the header.
@@ -31,7 +31,7 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     }
     let mut signs = Signs::default();
     // Warnings to be printed below a row of the table.
-    let mut doubts: Vec<(usize, String)> = Vec::new();
+    let mut warnings: Vec<(usize, String)> = Vec::new();
     let mut header = vec![Cell::new("nanoseconds"), Cell::new("per")];
     header.extend(columns.iter().map(|backend| {
         let mut name = match intervals {
@@ -43,7 +43,7 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
             .as_ref()
             .is_some_and(|program| program.own_heap)
         {
-            name += &format!(" ({})", signs.note('h'));
+            name += &format!(" ({})", signs.record('h'));
         }
         Cell::new(name).set_alignment(CellAlignment::Right)
     }));
@@ -55,7 +55,7 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
         if rows.is_empty() && !report.refusals.iter().any(refused) {
             continue;
         }
-        let mut line = vec![Cell::new(operation.name()), Cell::new(operation.per())];
+        let mut line = vec![Cell::new(operation.name()), Cell::new(operation.unit())];
         for backend in &columns {
             let row = rows.iter().find(|row| row.backend == backend.name);
             line.push(match row {
@@ -69,7 +69,7 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
             table.add_row(line);
         }
         let row = table.row_count() - 1;
-        doubts.extend(doubt(report, operation).map(|doubt| (row, doubt)));
+        warnings.extend(noise_warning(report, operation).map(|warning| (row, warning)));
     }
     add_bytes(&mut table, &columns, intervals, bold, &mut signs);
     // With this padding all six backends fit into 100 columns.
@@ -82,8 +82,8 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     let mut lines: Vec<String> = Vec::new();
     for (number, line) in table_text.lines().enumerate() {
         lines.push(line.to_owned());
-        let below = doubts.iter().filter(|(row, _)| header + row == number);
-        lines.extend(below.map(|(_, doubt)| hanging("  ↑ ", doubt)));
+        let below = warnings.iter().filter(|(row, _)| header + row == number);
+        lines.extend(below.map(|(_, warning)| hanging_indent("  ↑ ", warning)));
     }
     let mut text = lines.join("\n");
     for line in signs.legend(report) {
@@ -110,16 +110,16 @@ fn first_times(
         let row = rows.iter().find(|row| row.backend == backend.name);
         let first = row.and_then(|row| Some(row.first_ns? / row.elements?.max(1) as f64));
         let text = first.map_or(String::new(), figure);
-        marked(aligned(text, "", intervals), ' ', ' ', false)
+        marked_cell(with_interval(text, "", intervals), ' ', ' ', false)
     }));
     Some(line)
 }
 
 /// Returns the warning below an operation if the two columns of the control differ.
-fn doubt(report: &Report, operation: Operation) -> Option<String> {
+fn noise_warning(report: &Report, operation: Operation) -> Option<String> {
     let control = report.control.as_ref()?;
-    let of_it = |row: &&ControlRow| row.operation == operation;
-    let row = control.operations.iter().find(of_it)?;
+    let is_same = |row: &&ControlRow| row.operation == operation;
+    let row = control.operations.iter().find(is_same)?;
     row.is_unsteady().then(|| {
         format!(
             "the two columns of {} differ by {:.0} % here: smaller differences are not significant. Measure again with a longer --budget, or with --operations {} only.",
@@ -139,46 +139,51 @@ fn add_bytes(
     bold: bool,
     signs: &mut Signs,
 ) {
-    let least = columns
+    let min_bytes = columns
         .iter()
         .filter_map(|backend| backend.bytes)
         .min()
         .filter(|_| columns.len() > 1);
-    let winners = columns.iter().filter(|b| b.bytes == least).count();
+    let best_count = columns.iter().filter(|b| b.bytes == min_bytes).count();
     let figure = |bytes: Option<f64>| {
         let figure = bytes.map_or("–".into(), |bytes| format!("{bytes:.1}"));
-        aligned(figure, "", intervals)
+        with_interval(figure, "", intervals)
     };
-    let mut held = vec![Cell::new("bytes held"), Cell::new("vertex")];
-    let mut theory = vec![Cell::new("bytes in theory"), Cell::new("vertex")];
+    let mut table_bytes = vec![Cell::new("bytes held"), Cell::new("vertex")];
+    let mut layout_bytes = vec![Cell::new("bytes in theory"), Cell::new("vertex")];
     for backend in columns {
-        let wins = least.is_some() && backend.bytes == least;
-        let mark = match (wins, winners) {
+        let is_best = min_bytes.is_some() && backend.bytes == min_bytes;
+        let mark = match (is_best, best_count) {
             (false, _) => ' ',
-            (true, 1) => signs.note('*'),
-            (true, _) => signs.note('='),
+            (true, 1) => signs.record('*'),
+            (true, _) => signs.record('='),
         };
-        held.push(marked(figure(backend.bytes_per_vertex), mark, ' ', bold));
-        theory.push(marked(
+        table_bytes.push(marked_cell(
+            figure(backend.bytes_per_vertex),
+            mark,
+            ' ',
+            bold,
+        ));
+        layout_bytes.push(marked_cell(
             figure(backend.layout_bytes_per_vertex),
             ' ',
             ' ',
             bold,
         ));
     }
-    table.add_row(held).add_row(theory);
+    table.add_row(table_bytes).add_row(layout_bytes);
 }
 
 /// Formats a figure, followed by its interval if `intervals`.
-fn aligned(figure: String, spread: &str, intervals: bool) -> String {
+fn with_interval(figure: String, half_width: &str, intervals: bool) -> String {
     match intervals {
-        true => format!("{figure} {spread:>5}"),
+        true => format!("{figure} {half_width:>5}"),
         false => figure,
     }
 }
 
 /// Returns the cell of a figure with its signs, bold if it is the best.
-fn marked(figure: String, standing: char, note: char, bold: bool) -> Cell {
+fn marked_cell(figure: String, standing: char, note: char, bold: bool) -> Cell {
     let cell = Cell::new(format!("{figure} {standing}{note}")).set_alignment(CellAlignment::Right);
     if bold && standing == '*' {
         cell.add_attribute(Attribute::Bold)
@@ -189,40 +194,40 @@ fn marked(figure: String, standing: char, note: char, bold: bool) -> Cell {
 
 fn cell(row: &ResultRow, intervals: bool, bold: bool, signs: &mut Signs) -> Cell {
     let standing = match row.standing {
-        Some(Standing::Best) => signs.note('*'),
-        Some(Standing::Tied) => signs.note('='),
+        Some(Standing::Best) => signs.record('*'),
+        Some(Standing::Tied) => signs.record('='),
         _ => ' ',
     };
     let note = match row.agreement {
-        Agreement::Mismatch => signs.note('!'),
-        Agreement::Merged => signs.note('m'),
+        Agreement::Mismatch => signs.record('!'),
+        Agreement::Merged => signs.record('m'),
         _ => ' ',
     };
     let Some(each) = row.ns_per_element else {
         let estimate = row.estimated_ns.zip(row.elements);
         let each = estimate.map(|(ns, elements)| ns / elements.max(1) as f64);
         let figure = each.map_or("–".into(), |each| {
-            format!("{}{}", signs.note('?'), figure(each))
+            format!("{}{}", signs.record('?'), figure(each))
         });
-        return marked(aligned(figure, "", intervals), standing, note, bold);
+        return marked_cell(with_interval(figure, "", intervals), standing, note, bold);
     };
     let mut text = figure(each);
     if row.sampled {
-        text.insert(0, signs.note('~'));
+        text.insert(0, signs.record('~'));
     }
     if intervals {
-        text = aligned(text, &spread(row, signs), intervals);
+        text = with_interval(text, &half_width(row, signs), intervals);
     }
-    marked(text, standing, note, bold)
+    marked_cell(text, standing, note, bold)
 }
 
 /// Formats the half-width of the interval in percent of the median: `±3%`.
-fn spread(row: &ResultRow, signs: &mut Signs) -> String {
+fn half_width(row: &ResultRow, signs: &mut Signs) -> String {
     let known = (row.median_ns, row.ci_low_ns, row.ci_high_ns);
     let (Some(median), Some(low), Some(high)) = known else {
         return String::new();
     };
-    signs.note('±');
+    signs.record('±');
     let percent = 100.0 * (high - median).max(median - low) / median;
     match percent {
         p if p < 0.95 => format!("±.{:.0}%", (10.0 * p).max(1.0)),
@@ -234,15 +239,15 @@ fn spread(row: &ResultRow, signs: &mut Signs) -> String {
 /// The signs that occur in the table; the legend explains only these.
 #[derive(Default)]
 struct Signs {
-    noted: Vec<char>,
+    used: Vec<char>,
     /// Whether the table has rows of first times.
     first_times: bool,
 }
 
 impl Signs {
-    fn note(&mut self, sign: char) -> char {
-        if !self.noted.contains(&sign) {
-            self.noted.push(sign);
+    fn record(&mut self, sign: char) -> char {
+        if !self.used.contains(&sign) {
+            self.used.push(sign);
         }
         sign
     }
@@ -264,12 +269,10 @@ impl Signs {
             ('m', "on a mesh with merged vertices"),
             ('!', "WRONG: differs from the other backends"),
         ];
-        let there = meanings
-            .iter()
-            .filter(|(sign, _)| self.noted.contains(sign));
+        let used = meanings.iter().filter(|(sign, _)| self.used.contains(sign));
         let first_times = "first time: one run on fresh pages, with tables of exact size";
         let first_times = self.first_times.then(|| first_times.to_owned());
-        let parts = there.map(|(sign, meaning)| format!("{sign} {meaning}"));
+        let parts = used.map(|(sign, meaning)| format!("{sign} {meaning}"));
         // Lines are broken only between meanings.
         let mut lines: Vec<String> = Vec::new();
         for part in parts.chain(first_times) {
@@ -281,15 +284,15 @@ impl Signs {
                 _ => lines.push(part),
             }
         }
-        let mut notes = refused(report);
-        notes.extend(report.results.iter().filter_map(unrun));
-        lines.extend(notes.iter().flat_map(|note| wrapped(note, WIDTH)));
+        let mut notes = refusal_notes(report);
+        notes.extend(report.results.iter().filter_map(not_run_note));
+        lines.extend(notes.iter().flat_map(|note| wrap(note, WIDTH)));
         lines
     }
 }
 
 /// Explains why a row is only estimated, and what to do about it.
-fn unrun(row: &ResultRow) -> Option<String> {
+fn not_run_note(row: &ResultRow) -> Option<String> {
     let time = duration(row.estimated_ns?);
     let ResultRow {
         backend, operation, ..
@@ -305,23 +308,25 @@ fn unrun(row: &ResultRow) -> Option<String> {
 }
 
 /// Lists the reasons for missing figures: one line per reason, with its operations and backends.
-fn refused(report: &Report) -> Vec<String> {
+fn refusal_notes(report: &Report) -> Vec<String> {
     let mut lines: Vec<(&str, Vec<&str>, Vec<&str>)> = Vec::new();
     for backend in &report.backends {
-        let of_it = || {
+        let backend_refusals = || {
             let refusals = report.refusals.iter();
             refusals.filter(|refusal| refusal.backend == backend.name)
         };
         let mut seen: Vec<&str> = Vec::new();
-        for Refusal { reason, .. } in of_it() {
+        for Refusal { reason, .. } in backend_refusals() {
             if seen.contains(&reason.as_str()) {
                 continue;
             }
             seen.push(reason);
-            let here = of_it().filter(|refusal| refusal.reason == *reason);
-            let operations: Vec<&str> = here.map(|refusal| refusal.operation.name()).collect();
-            let mut alike = lines.iter_mut();
-            match alike.find(|(r, o, _)| *r == reason && *o == operations) {
+            let same_reason = backend_refusals().filter(|refusal| refusal.reason == *reason);
+            let operations: Vec<&str> = same_reason
+                .map(|refusal| refusal.operation.name())
+                .collect();
+            let mut lines_so_far = lines.iter_mut();
+            match lines_so_far.find(|(r, o, _)| *r == reason && *o == operations) {
                 Some((.., backends)) => backends.push(&backend.name),
                 None => lines.push((reason, operations, vec![&backend.name])),
             }
@@ -415,7 +420,7 @@ mod tests {
             schema: SCHEMA,
             mesh: MeshReport {
                 name: "fixed".into(),
-                facts: Facts::of(&mesh),
+                facts: Facts::from_polygons(&mesh),
                 changes: Vec::new(),
             },
             backends: vec![backend("polygon-soup", 7200), backend("half-edge", 9600)],
@@ -444,12 +449,12 @@ mod tests {
                 typical: 1.12,
                 worst: 1.2,
             }),
-            words: Vec::new(),
+            sentences: Vec::new(),
             warnings: Vec::new(),
             raw: Vec::new(),
             timer: None,
             interrupted: false,
-            environment: Environment::here(1, 1.0),
+            environment: Environment::detect(1, 1.0),
         }
     }
 

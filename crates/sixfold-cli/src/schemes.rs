@@ -11,15 +11,15 @@ use crate::arguments::Schemes;
 use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
 use crate::tables::{table, table_of_backends};
-use crate::text::Text;
+use crate::text::TextOutput;
 
 /// Prints the classification and the table of schemes and backends.
 pub(crate) fn run(arguments: &Schemes) -> Result<ExitCode, Failure> {
     let json = Output::open_if(arguments.json.as_ref())?;
-    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
-    text.say(&classification());
-    text.say("");
-    text.say(&matrix());
+    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
+    text.print_line(&classification());
+    text.print_line("");
+    text.print_line(&matrix());
     let mut done = text.finish();
     if let Some(output) = json {
         let rows = Scheme::ALL.map(|scheme| {

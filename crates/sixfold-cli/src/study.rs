@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use sixfold_study::{
-    Environment, Operation, Report, SCHEMA, Settings, Specimen, StudyError, Timer,
+    Environment, Operation, Report, SCHEMA, Settings, StudyError, StudyMesh, Timer,
 };
 
 use crate::arguments::{STUDY_EXAMPLES, Study};
@@ -12,11 +12,11 @@ use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::load;
 use crate::many;
-use crate::measured::{studies_ended, tell_of_debug_build, typed};
-use crate::output::{Output, check_places, is_stdout};
+use crate::outcome::{command_line, studies_exit_code, warn_of_debug_build};
+use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
 use crate::results_table::results_table;
-use crate::text::{Text, hanging};
+use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::counted;
 
 /// Measures and shows the result. Text is printed first, so that it is not lost if a file fails.
@@ -24,7 +24,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     let settings = Settings {
         backends: arguments.backends.clone(),
         externals: arguments.externals.clone(),
-        patience: arguments.patience,
+        external_timeout: arguments.patience,
         operations: arguments.operations.clone(),
         budget: arguments.budget,
         seed: arguments.seed,
@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         return many::run(arguments, &settings);
     }
     let mesh = arguments.meshes.first();
-    check_places(
+    check_outputs(
         mesh.map(PathBuf::as_path),
         &[
             ("--json", arguments.json.as_ref()),
@@ -48,22 +48,22 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     let stop = interrupt_flag(settings.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
     let csv = Output::open_if(arguments.csv.as_ref())?;
-    let specimen = match mesh {
+    let study_mesh = match mesh {
         Some(path) => load::for_study(path, arguments.strict, arguments.triangulate)?,
         None => load::built_in(),
     };
-    tell_of_debug_build();
+    warn_of_debug_build();
     let bar = Bar::new();
-    let report = sixfold_study::study(&specimen, &settings, &stop, &mut |at| bar.show(at));
+    let report = sixfold_study::study(&study_mesh, &settings, &stop, &mut |at| bar.show(at));
     bar.clear();
     let report = match report {
         Ok(mut report) => {
-            report.environment.command = Some(typed());
+            report.environment.command = Some(command_line());
             report
         }
         // This is also a result: the selected backends, and why each refuses the mesh.
         Err(error @ StudyError::NoneHolds { .. }) => {
-            let refusals = refusals(&specimen, &settings)?;
+            let refusals = refusals(&study_mesh, &settings)?;
             write_files(&refusals, json, csv)?;
             return Err(Failure::unsupported(error));
         }
@@ -72,25 +72,25 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
 
     let data = [&arguments.json, &arguments.csv];
     let data_on_stdout = data.into_iter().flatten().any(|path| is_stdout(path));
-    let mut text = Text::shown(!data_on_stdout);
+    let mut text = TextOutput::new(!data_on_stdout);
     print(&report, &mut text);
     let done = text.finish().and(write_files(&report, json, csv));
 
-    studies_ended(done, [&report], 0, report.interrupted)
+    studies_exit_code(done, [&report], 0, report.interrupted)
 }
 
 /// Returns the help text after the options: examples, the method, and the lists of names.
 pub(crate) fn help() -> String {
-    format!("{STUDY_EXAMPLES}\n\n{}", names())
+    format!("{STUDY_EXAMPLES}\n\n{}", name_lists())
 }
 
 /// Lists the names of all backends and operations.
-pub(crate) fn names() -> String {
+pub(crate) fn name_lists() -> String {
     let backends = sixfold::roster();
     let backends: Vec<&str> = backends.iter().map(|backend| backend.name).collect();
     let operations = Operation::ALL.map(Operation::name).join(", ");
-    let backends = hanging("Backends:    ", &backends.join(", "));
-    let operations = hanging("Operations:  ", &operations);
+    let backends = hanging_indent("Backends:    ", &backends.join(", "));
+    let operations = hanging_indent("Operations:  ", &operations);
     format!("{backends}\n{operations}")
 }
 
@@ -112,11 +112,11 @@ pub(crate) fn write_files(
 
 /// Returns the report on a mesh that none of the selected backends can hold: reasons but no
 /// results.
-fn refusals(specimen: &Specimen, settings: &Settings) -> Result<Report, Failure> {
-    let asked = settings.chosen_backends().map_err(Failure::usage)?;
-    let inspection = sixfold_study::inspect(specimen);
+fn refusals(study_mesh: &StudyMesh, settings: &Settings) -> Result<Report, Failure> {
+    let selected = settings.chosen_backends().map_err(Failure::usage)?;
+    let inspection = sixfold_study::inspect(study_mesh);
     let mut backends = inspection.backends;
-    backends.retain(|backend| asked.iter().any(|one| one.name() == backend.name));
+    backends.retain(|backend| selected.iter().any(|other| other.name() == backend.name));
     Ok(Report {
         schema: SCHEMA,
         mesh: inspection.mesh,
@@ -124,40 +124,40 @@ fn refusals(specimen: &Specimen, settings: &Settings) -> Result<Report, Failure>
         results: Vec::new(),
         refusals: Vec::new(),
         control: None,
-        words: Vec::new(),
+        sentences: Vec::new(),
         warnings: Vec::new(),
         raw: Vec::new(),
         timer: None,
         interrupted: false,
-        environment: Environment::here(settings.seed, settings.budget.as_secs_f64()),
+        environment: Environment::detect(settings.seed, settings.budget.as_secs_f64()),
     })
 }
 
 /// Prints the facts, the verdicts, the table, and the findings in words.
-pub(crate) fn print(report: &Report, text: &mut Text) {
-    text.say(&facts_text(&report.mesh));
-    text.say("");
-    text.say(&verdicts_text(&report.mesh, &report.backends));
-    text.say("");
-    text.say(&results_table(report, text.bold()));
-    text.say("");
-    for words in &report.words {
-        text.say(&hanging("- ", words));
+pub(crate) fn print(report: &Report, text: &mut TextOutput) {
+    text.print_line(&facts_text(&report.mesh));
+    text.print_line("");
+    text.print_line(&verdicts_text(&report.mesh, &report.backends));
+    text.print_line("");
+    text.print_line(&results_table(report, text.bold()));
+    text.print_line("");
+    for sentence in &report.sentences {
+        text.print_line(&hanging_indent("- ", sentence));
     }
     for warning in &report.warnings {
-        text.say(&hanging("! ", warning));
+        text.print_line(&hanging_indent("! ", warning));
     }
-    text.say("");
+    text.print_line("");
     let most = report.results.iter().map(|row| row.samples).max();
-    let how = setting(&report.environment, most.unwrap_or(0));
-    text.say(&hanging("", &how));
+    let settings = describe_environment(&report.environment, most.unwrap_or(0));
+    text.print_line(&hanging_indent("", &settings));
     if let Some(timer) = report.timer {
-        text.say(&hanging("", &overhead(timer)));
+        text.print_line(&hanging_indent("", &clock_text(timer)));
     }
 }
 
 /// Describes the overhead of the clock.
-fn overhead(timer: Timer) -> String {
+fn clock_text(timer: Timer) -> String {
     let share = timer.largest_share.map_or("unknown".into(), |share| {
         format!("{:.2} % of the shortest sample", 100.0 * share)
     });
@@ -168,7 +168,7 @@ fn overhead(timer: Timer) -> String {
 }
 
 /// Describes the machine and the settings in a line.
-pub(crate) fn setting(environment: &Environment, most_rounds: usize) -> String {
+pub(crate) fn describe_environment(environment: &Environment, most_rounds: usize) -> String {
     let Environment {
         rustc,
         profile,

@@ -20,27 +20,27 @@ use sixfold::{
 use crate::arguments::Subdivide;
 use crate::failure::Failure;
 use crate::load;
-use crate::output::{Output, check_kept, check_places, is_stdout};
-use crate::progress::{Faces, end_on_interrupt};
-use crate::text::{Text, tame};
+use crate::output::{Output, check_not_overwritten, check_outputs, is_stdout};
+use crate::progress::{FaceBar, exit_on_interrupt};
+use crate::text::{TextOutput, sanitize};
 use forecast::Forecast;
 use limit::Limits;
 use sixfold_study::numbers::{counted, duration, figure, grouped};
 
 /// Refines the mesh and writes it.
 pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
-    end_on_interrupt();
+    exit_on_interrupt();
     let places = [
         ("--output", Some(&arguments.output)),
         ("--limit", arguments.limit.as_ref()),
         ("--creases-left", arguments.creases_left.as_ref()),
     ];
-    check_places(Some(&arguments.mesh), &places)?;
+    check_outputs(Some(&arguments.mesh), &places)?;
     if let Some(creases) = &arguments.creases {
-        check_kept("the crease file", creases, &places)?;
+        check_not_overwritten("the crease file", creases, &places)?;
     }
     let data = places.iter().filter_map(|&(_, path)| path);
-    let mut text = Text::shown(!data.into_iter().any(|path| is_stdout(path)));
+    let mut text = TextOutput::new(!data.into_iter().any(|path| is_stdout(path)));
     let subdivision = options(arguments)?;
     if let Some(select) = &arguments.select {
         return local::run(arguments, select);
@@ -49,10 +49,10 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     let (polygons, mut creases) = load::with_creases(&arguments.mesh)?;
     check_tags(arguments, &creases)?;
     if let Some(path) = &arguments.creases {
-        let told = read_creases(path, &polygons).map_err(Failure::usage)?;
-        creases = creases.with(&told);
+        let listed = read_creases(path, &polygons).map_err(Failure::usage)?;
+        creases = creases.updated_with(&listed);
     }
-    let forecast = Forecast::of(
+    let forecast = Forecast::new(
         &subdivision,
         method,
         &arguments.backend,
@@ -65,23 +65,23 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     let output = Output::open(&arguments.output)?;
     let limit = Output::open_if(arguments.limit.as_ref())?;
     let left = Output::open_if(arguments.creases_left.as_ref())?;
-    text.say(&forecast.told());
+    text.print_line(&forecast.describe());
     let mut job = Job {
         subdivision,
         method,
         polygons: &polygons,
         creases: &creases,
         levels: arguments.levels,
-        bar: Faces::of(forecast.faces_in_all()),
-        done: Vec::new(),
+        bar: FaceBar::new(forecast.new_faces()),
+        finished: Vec::new(),
     };
     let step = job.run(&arguments.backend, arguments.threads.unwrap_or(0))?;
-    for line in &job.done {
-        text.say(&line.told());
+    for level in &job.finished {
+        text.print_line(&level.describe());
     }
     // Computed before the first file is written: all files are written, or none.
     let limits = match limit {
-        Some(output) => Some((output, Limits::of(&subdivision, &step, arguments.levels)?)),
+        Some(output) => Some((output, Limits::new(&subdivision, &step, arguments.levels)?)),
         None => None,
     };
     output.finish(|writer| write_obj(&step.polygons, writer))?;
@@ -90,13 +90,16 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     }
     if let (Some((output, limits)), Some(path)) = (limits, &arguments.limit) {
         output.finish(|writer| limits.write(writer))?;
-        limits.told(path).iter().for_each(|line| text.say(line));
+        limits
+            .describe(path)
+            .iter()
+            .for_each(|line| text.print_line(line));
     }
-    let place = tame(&arguments.output.display().to_string());
+    let place = sanitize(&arguments.output.display().to_string());
     let vertices = counted(step.polygons.vertex_count(), "vertex", "vertices");
     let faces = counted(step.polygons.face_count(), "face", "faces");
     let (scheme, backend) = (subdivision.scheme, &arguments.backend);
-    text.say(&format!(
+    text.print_line(&format!(
         "{place}: {vertices}, {faces}; {scheme} by {method} on {backend}"
     ));
     text.finish()?;
@@ -107,38 +110,38 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
 fn options(arguments: &Subdivide) -> Result<Subdivision, Failure> {
     let scheme = arguments.scheme;
     let kind = scheme.kind();
-    let foreign = |option: &str, schemes: &str| {
+    let unsupported_option = |option: &str, schemes: &str| {
         Failure::unsupported(format!(
             "{scheme} has no option {option}: leave it out, or choose {schemes}"
         ))
     };
     let creases = "catmull-clark or loop";
     if arguments.boundary.is_some() && !kind.creases {
-        return Err(foreign("--boundary", creases));
+        return Err(unsupported_option("--boundary", creases));
     }
     if arguments.creasing.is_some() && !kind.creases {
-        return Err(foreign("--creasing", creases));
+        return Err(unsupported_option("--creasing", creases));
     }
     if arguments.creases.is_some() && !kind.creases {
-        return Err(foreign("--creases", creases));
+        return Err(unsupported_option("--creases", creases));
     }
     if arguments.loop_weights.is_some() && scheme != Scheme::Loop {
-        return Err(foreign("--loop-weights", "loop"));
+        return Err(unsupported_option("--loop-weights", "loop"));
     }
     if arguments.limit.is_some() && !kind.creases {
-        return Err(foreign("--limit", creases));
+        return Err(unsupported_option("--limit", creases));
     }
     if arguments.limit.is_some() && arguments.boundary == Some(Boundary::None) {
         return Err(Failure::unsupported(
             "--limit needs the faces that --boundary none leaves out: leave one of the two options out",
         ));
     }
-    let usual = Subdivision::new(scheme);
+    let defaults = Subdivision::new(scheme);
     Ok(Subdivision {
-        boundary: arguments.boundary.unwrap_or(usual.boundary),
-        creasing: arguments.creasing.unwrap_or(usual.creasing),
-        loop_weights: arguments.loop_weights.unwrap_or(usual.loop_weights),
-        ..usual
+        boundary: arguments.boundary.unwrap_or(defaults.boundary),
+        creasing: arguments.creasing.unwrap_or(defaults.creasing),
+        loop_weights: arguments.loop_weights.unwrap_or(defaults.loop_weights),
+        ..defaults
     })
 }
 
@@ -171,7 +174,7 @@ fn method(arguments: &Subdivide) -> Result<Method, Failure> {
             "{scheme} makes {makes}, but {backend} holds only triangles: choose another backend for level 2"
         )));
     }
-    let best = row.best();
+    let best = row.default_method();
     let best =
         best.ok_or_else(|| Failure::unsupported(format!("{scheme} does not run on {backend}")))?;
     match arguments.method.unwrap_or(best) {
@@ -194,19 +197,19 @@ struct Job<'a> {
     polygons: &'a PolygonMesh,
     creases: &'a Creases,
     levels: u32,
-    bar: Faces,
-    done: Vec<Done>,
+    bar: FaceBar,
+    finished: Vec<FinishedLevel>,
 }
 
 /// One finished level.
-struct Done {
+struct FinishedLevel {
     level: u32,
     faces: usize,
     time: Duration,
 }
 
-impl Done {
-    fn told(&self) -> String {
+impl FinishedLevel {
+    fn describe(&self) -> String {
         let Self { level, faces, time } = self;
         let ns = time.as_nanos() as f64;
         let each = figure(ns / *faces as f64);
@@ -232,20 +235,25 @@ impl Job<'_> {
         self.bar.clear();
         match done {
             Some(Ok(step)) => Ok(step),
-            Some(Err(refusal @ SubdivisionError::Build { .. })) => Err(Failure::not_held(refusal)),
+            Some(Err(refusal @ SubdivisionError::Build { .. })) => {
+                Err(Failure::cannot_hold(refusal))
+            }
             Some(Err(refusal)) => Err(Failure::unsupported(refusal)),
             None => Err(Failure::usage(format!("no backend is called `{backend}`"))),
         }
     }
 
     /// Returns a callback that records each finished level.
-    fn watch<'b>(bar: &'b Faces, done: &'b mut Vec<Done>) -> impl FnMut(u32, usize) + 'b {
-        let mut began = Instant::now();
+    fn record_levels<'b>(
+        bar: &'b FaceBar,
+        finished: &'b mut Vec<FinishedLevel>,
+    ) -> impl FnMut(u32, usize) + 'b {
+        let mut start = Instant::now();
         move |level, faces| {
-            let time = began.elapsed();
-            bar.made(level, faces);
-            done.push(Done { level, faces, time });
-            began = Instant::now();
+            let time = start.elapsed();
+            bar.add_level(level, faces);
+            finished.push(FinishedLevel { level, faces, time });
+            start = Instant::now();
         }
     }
 }
@@ -254,7 +262,7 @@ impl Visitor for Job<'_> {
     type Output = Result<Step, SubdivisionError>;
 
     fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
-        let watch = Self::watch(&self.bar, &mut self.done);
+        let watch = Self::record_levels(&self.bar, &mut self.finished);
         let Self {
             method,
             polygons,
@@ -270,7 +278,7 @@ impl RefineVisitor for Job<'_> {
     type Output = Result<Step, SubdivisionError>;
 
     fn visit<M: Refine + 'static>(&mut self) -> Self::Output {
-        let watch = Self::watch(&self.bar, &mut self.done);
+        let watch = Self::record_levels(&self.bar, &mut self.finished);
         let Self {
             polygons,
             creases,

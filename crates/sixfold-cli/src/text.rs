@@ -5,25 +5,25 @@ use std::io::{self, IsTerminal, Write};
 use crate::failure::Failure;
 use crate::output::cannot_write;
 
-pub(crate) use sixfold_study::tame;
+pub(crate) use sixfold_study::sanitize;
 
 /// Maximum width of text in columns.
 pub(crate) const WIDTH: usize = 100;
 
 /// The text output of a command.
-pub(crate) struct Text {
-    shown: bool,
+pub(crate) struct TextOutput {
+    enabled: bool,
     bold: bool,
     failed: Option<io::Error>,
 }
 
-impl Text {
-    /// Returns the text output, which prints only if `shown`.
-    pub(crate) fn shown(shown: bool) -> Self {
+impl TextOutput {
+    /// Returns the text output, which prints only if `enabled`.
+    pub(crate) fn new(enabled: bool) -> Self {
         let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
         let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
         Self {
-            shown,
+            enabled,
             bold: io::stdout().is_terminal() && !no_colour && !dumb,
             failed: None,
         }
@@ -35,12 +35,12 @@ impl Text {
     }
 
     /// Prints `text` as a line. After a failure it prints nothing more, so that files can still be
-    /// written; [`Text::finish`] returns the failure.
-    pub(crate) fn say(&mut self, text: &str) {
-        if self.shown
+    /// written; [`TextOutput::finish`] returns the failure.
+    pub(crate) fn print_line(&mut self, text: &str) {
+        if self.enabled
             && let Err(cause) = writeln!(io::stdout().lock(), "{text}")
         {
-            self.shown = false;
+            self.enabled = false;
             self.failed = Some(cause);
         }
     }
@@ -48,12 +48,12 @@ impl Text {
     /// Returns an error if some text could not be printed.
     pub(crate) fn finish(self) -> Result<(), Failure> {
         let done = self.failed.map_or_else(|| io::stdout().flush(), Err);
-        all_out(done)
+        ignore_closed_pipe(done)
     }
 }
 
 /// Converts an error of printing. A reader that closed the pipe early is not an error.
-pub(crate) fn all_out(done: io::Result<()>) -> Result<(), Failure> {
+pub(crate) fn ignore_closed_pipe(done: io::Result<()>) -> Result<(), Failure> {
     match done {
         Err(cause) if cause.kind() != io::ErrorKind::BrokenPipe => {
             Err(cannot_write("standard output", &cause))
@@ -64,12 +64,12 @@ pub(crate) fn all_out(done: io::Result<()>) -> Result<(), Failure> {
 
 /// Prints a line on standard error; ignores errors. Control characters and line breaks in it, such
 /// as from file names, are escaped.
-pub(crate) fn complain(line: &str) {
-    let _ = writeln!(io::stderr().lock(), "{}", tame(line));
+pub(crate) fn print_stderr(line: &str) {
+    let _ = writeln!(io::stderr().lock(), "{}", sanitize(line));
 }
 
 /// Breaks `text` at spaces into lines of at most `width` columns; a longer word gets its own line.
-pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
+pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
         match lines.last_mut() {
@@ -85,9 +85,9 @@ pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
 
 /// Returns `first` and the lines of `text`, where all but the first are indented by the width of
 /// `first`.
-pub(crate) fn hanging(first: &str, text: &str) -> String {
+pub(crate) fn hanging_indent(first: &str, text: &str) -> String {
     let indent = first.chars().count();
-    let lines = wrapped(text, WIDTH - indent);
+    let lines = wrap(text, WIDTH - indent);
     let gap = format!("\n{}", " ".repeat(indent));
     format!("{first}{}", lines.join(&gap))
 }
@@ -98,8 +98,8 @@ mod tests {
 
     #[test]
     fn lines_break_at_spaces() {
-        assert_eq!(wrapped("one two three", 7), ["one two", "three"]);
-        assert_eq!(wrapped("longerthanthat a", 4), ["longerthanthat", "a"]);
-        assert_eq!(hanging("name  ", "reason"), "name  reason");
+        assert_eq!(wrap("one two three", 7), ["one two", "three"]);
+        assert_eq!(wrap("longerthanthat a", 4), ["longerthanthat", "a"]);
+        assert_eq!(hanging_indent("name  ", "reason"), "name  reason");
     }
 }

@@ -1,46 +1,46 @@
 //! `--triangulate`: cuts polygons into fans, and reports how that changes the mesh.
 
 use sixfold::{Facts, PolygonMesh, VertexId};
-use sixfold_study::Specimen;
+use sixfold_study::StudyMesh;
 
 use crate::failure::Failure;
-use crate::text::complain;
+use crate::text::print_stderr;
 use sixfold_study::numbers::{counted, grouped};
 
 /// Returns the mesh with every polygon cut into a fan. Records and prints what else changes.
-pub(crate) fn triangulated(specimen: Specimen) -> Result<Specimen, Failure> {
-    let old = &specimen.polygons;
+pub(crate) fn triangulated(study_mesh: StudyMesh) -> Result<StudyMesh, Failure> {
+    let old = &study_mesh.polygons;
     let polygons = old
         .fan_triangulated()
-        .map_err(|error| Failure::usage(format!("{}: {error}", specimen.name)))?;
+        .map_err(|error| Failure::usage(format!("{}: {error}", study_mesh.name)))?;
     if polygons.face_count() == old.face_count() {
-        return Ok(specimen);
+        return Ok(study_mesh);
     }
     let faces = counted(old.face_count(), "face", "faces");
     let triangles = counted(polygons.face_count(), "triangle", "triangles");
-    let facts = Facts::of(&polygons);
-    let mut news = differences(&Facts::of(old), &facts);
+    let facts = Facts::from_polygons(&polygons);
+    let mut side_effects = differences(&Facts::from_polygons(old), &facts);
     let folded = folded_fans(old);
     if folded > 0 {
         let fans = counted(folded, "fan folds over", "fans fold over");
-        news.push(format!(
+        side_effects.push(format!(
             "{fans}, because the faces are not star-shaped around their first corners"
         ));
     }
-    for new in &news {
-        complain(&format!(
-            "note: {}: --triangulate changes more than the faces: {new}",
-            specimen.name
+    for effect in &side_effects {
+        print_stderr(&format!(
+            "note: {}: --triangulate changes more than the faces: {effect}",
+            study_mesh.name
         ));
     }
-    let mut changes = specimen.changes;
+    let mut changes = study_mesh.changes;
     changes.push(format!("cut {faces} into {triangles}"));
-    changes.extend(news);
-    Ok(Specimen {
-        name: specimen.name,
+    changes.extend(side_effects);
+    Ok(StudyMesh {
+        name: study_mesh.name,
         // The facts are those of the studied mesh; the count of omitted faces is kept.
         facts: Facts {
-            degenerate_faces: specimen.facts.degenerate_faces,
+            degenerate_faces: study_mesh.facts.degenerate_faces,
             ..facts
         },
         polygons,
@@ -95,9 +95,9 @@ fn folds(mesh: &PolygonMesh, face: &[VertexId]) -> bool {
             .map(|pair| cross(minus(at(pair[0]), first), minus(at(pair[1]), first)))
     };
     let normal = triangles().fold([0.0; 3], |sum, n| [0, 1, 2].map(|i| sum[i] + n[i]));
-    let whole = dot(normal, normal);
+    let squared_length = dot(normal, normal);
     // Collinear corners give triangles with area 0; the tolerance allows for rounding errors.
-    triangles().any(|triangle| dot(triangle, normal) < -1e-6 * whole)
+    triangles().any(|triangle| dot(triangle, normal) < -1e-6 * squared_length)
 }
 
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {

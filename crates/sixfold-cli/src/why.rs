@@ -4,36 +4,38 @@ use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use sixfold_study::{MachineClock, MemorySpeed, Policy, Specimen, StudyError, Timing, WhySettings};
+use sixfold_study::{
+    MachineClock, MemorySpeed, Policy, StudyError, StudyMesh, Timing, WhySettings,
+};
 
 use crate::arguments::Why;
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::load;
-use crate::measured::{ended, tell_of_debug_build, typed};
-use crate::output::{Output, check_places, is_stdout};
-use crate::progress::{Bar, Waiting, interrupt_flag};
-use crate::text::{Text, hanging};
+use crate::outcome::{command_line, exit_code, warn_of_debug_build};
+use crate::output::{Output, check_outputs, is_stdout};
+use crate::progress::{Bar, Spinner, interrupt_flag};
+use crate::text::{TextOutput, hanging_indent};
 use crate::why_text::{legend, memory_text, relation_text, sentence};
 
 /// Counts, measures unless `--counts-only`, and shows the result. Text is printed first, so that it
 /// is not lost if a file fails.
 pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
-    check_places(
+    check_outputs(
         arguments.mesh.as_deref(),
         &[("--json", arguments.json.as_ref())],
     )?;
     // Before the draft of the output is opened, so that Ctrl-C cannot leave a draft behind.
     let stop = interrupt_flag(Policy::Kept);
     let json = Output::open_if(arguments.json.as_ref())?;
-    let specimen = match &arguments.mesh {
+    let study_mesh = match &arguments.mesh {
         Some(path) => load::for_study(path, false, arguments.triangulate)?,
         None => load::built_in(),
     };
     let budget = match arguments.counts_only {
         true => None,
         false => {
-            tell_of_debug_build();
+            warn_of_debug_build();
             Some(arguments.budget)
         }
     };
@@ -42,70 +44,70 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
         relations: arguments.relations.clone(),
         ..WhySettings::default()
     };
-    let why = measured(&specimen, settings, budget, &stop)?;
+    let why = measure(&study_mesh, settings, budget, &stop)?;
 
-    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
+    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
     print(&why, !arguments.relations.is_empty(), &mut text);
     let mut done = text.finish();
     if let Some(output) = json {
         done = done.and(output.finish(|writer| why.write_json(writer)));
     }
-    ended(done, why.mismatches(), why.interrupted)
+    exit_code(done, why.mismatches(), why.interrupted)
 }
 
 /// Counts reads, and measures times if there is a `budget`.
-pub(crate) fn measured(
-    specimen: &Specimen,
+pub(crate) fn measure(
+    study_mesh: &StudyMesh,
     mut settings: WhySettings,
     budget: Option<Duration>,
     stop: &AtomicBool,
 ) -> Result<sixfold_study::Why, Failure> {
     settings.timing = budget.and_then(|budget| timing(budget, stop));
     let bar = Bar::new();
-    let why = sixfold_study::why(specimen, &settings, stop, &mut |at| bar.show(at));
+    let why = sixfold_study::why(study_mesh, &settings, stop, &mut |at| bar.show(at));
     bar.clear();
     let mut why = why.map_err(|error| match error {
         StudyError::NoneHolds { .. } => Failure::unsupported(error),
         error => Failure::usage(error),
     })?;
     if let Some(environment) = &mut why.environment {
-        environment.command = Some(typed());
+        environment.command = Some(command_line());
     }
     Ok(why)
 }
 
 /// Measures the speed of memory; returns `None` if interrupted.
 fn timing(budget: Duration, stop: &AtomicBool) -> Option<Timing> {
-    let waiting = Waiting::shown("measuring the speed of memory".into());
+    let spinner = Spinner::start("measuring the speed of memory".into());
     let memory = MemorySpeed::measure(&MachineClock::start(), stop);
-    waiting.clear();
+    spinner.clear();
     Some(Timing {
         budget,
         memory: memory?,
     })
 }
 
-fn print(why: &sixfold_study::Why, sentences: bool, text: &mut Text) {
-    text.say(&facts_text(&why.mesh));
-    text.say("");
-    text.say(&verdicts_text(&why.mesh, &why.backends));
-    if let Some(rungs) = &why.memory {
-        text.say("");
-        text.say(&memory_text(rungs));
+fn print(why: &sixfold_study::Why, with_sentences: bool, text: &mut TextOutput) {
+    text.print_line(&facts_text(&why.mesh));
+    text.print_line("");
+    text.print_line(&verdicts_text(&why.mesh, &why.backends));
+    if let Some(buffers) = &why.memory {
+        text.print_line("");
+        text.print_line(&memory_text(buffers));
     }
     for rows in why
         .rows
         .chunk_by(|a, b| a.reads.relation == b.reads.relation)
     {
-        text.say("");
-        text.say(&relation_text(rows, why.memory.is_some()));
-        if sentences {
-            text.say("");
+        text.print_line("");
+        text.print_line(&relation_text(rows, why.memory.is_some()));
+        if with_sentences {
+            text.print_line("");
             for row in rows {
-                text.say(&hanging("- ", &sentence(row)));
+                text.print_line(&hanging_indent("- ", &sentence(row)));
             }
         }
     }
-    text.say("");
-    text.say(&legend(why));
+    text.print_line("");
+    text.print_line(&legend(why));
 }

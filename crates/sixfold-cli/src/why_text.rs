@@ -2,14 +2,14 @@
 
 use comfy_table::{Cell, CellAlignment};
 use sixfold::Relation;
-use sixfold_study::{Bound, Model, Rung, TableReads, Timed, Why, WhyRow};
+use sixfold_study::{Bound, BufferSpeed, Model, TableReads, Timed, Why, WhyRow};
 
 use crate::tables::table;
-use crate::text::{hanging, wrapped};
+use crate::text::{hanging_indent, wrap};
 use sixfold_study::numbers::{bytes, figure, grouped};
 
 /// Width of the column `reads by table` in characters: the space beside the figures.
-const TABLES: usize = 36;
+const TABLES_WIDTH: usize = 36;
 /// A space at which lines are not broken.
 const NO_BREAK: char = '\u{a0}';
 
@@ -29,22 +29,22 @@ fn meaning(relation: Relation) -> &'static str {
 }
 
 /// Returns the speed of memory for each size of the buffer.
-pub(crate) fn memory_text(rungs: &[Rung]) -> String {
-    let line = |name: &str, what: &str, of: &dyn Fn(&Rung) -> String| {
-        let figures: String = rungs
+pub(crate) fn memory_text(buffers: &[BufferSpeed]) -> String {
+    let line = |name: &str, what: &str, of: &dyn Fn(&BufferSpeed) -> String| {
+        let figures: String = buffers
             .iter()
-            .map(|rung| format!("{:>9}", of(rung)))
+            .map(|buffer| format!("{:>9}", of(buffer)))
             .collect();
         format!("{name:<13}{what:<10}{figures}")
     };
-    let size = |rung: &Rung| match rung.bytes >> 10 {
+    let size = |buffer: &BufferSpeed| match buffer.bytes >> 10 {
         kib if kib < 1024 => format!("{kib} KiB"),
         kib => format!("{} MiB", kib >> 10),
     };
     [
         line("memory", "buffer of", &size),
-        line("", "GB/s", &|rung| figure(rung.gb_per_s)),
-        line("", "latency ns", &|rung| figure(rung.latency_ns)),
+        line("", "GB/s", &|buffer| figure(buffer.gb_per_s)),
+        line("", "latency ns", &|buffer| figure(buffer.latency_ns)),
     ]
     .join("\n")
 }
@@ -92,17 +92,17 @@ fn cells(row: &WhyRow, timed: bool) -> Vec<Cell> {
         reads.jumps,
         reads.moved_bytes,
     ];
-    cells.extend(counts.map(short));
+    cells.extend(counts.map(short_figure));
     match (timed, &row.timed) {
         (false, _) => cells.push(by_table(&reads.tables)),
         (true, None) => cells.extend(["–"; 4].map(str::to_owned)),
         (true, Some(timed)) => cells.extend([
-            short(timed.floor_ns),
-            short(timed.waits_ns),
+            short_figure(timed.floor_ns),
+            short_figure(timed.waits_ns),
             format!(
                 "{}{}",
                 if timed.sampled { "~" } else { "" },
-                short(timed.ns_per_element)
+                short_figure(timed.ns_per_element)
             ),
             timed.bound.name().to_owned(),
         ]),
@@ -119,14 +119,14 @@ fn by_table(tables: &[TableReads]) -> String {
     tables.sort_by(|a, b| b.reads.total_cmp(&a.reads));
     let tables = tables
         .iter()
-        .map(|table| format!("{}{NO_BREAK}{}", table.table, short(table.reads)));
+        .map(|table| format!("{}{NO_BREAK}{}", table.table, short_figure(table.reads)));
     let tables = tables.collect::<Vec<_>>().join(", ");
-    let lines = wrapped(&tables, TABLES).join("\n");
+    let lines = wrap(&tables, TABLES_WIDTH).join("\n");
     lines.replace(NO_BREAK, " ")
 }
 
 /// Formats a number in at most five characters: `0`, `<.001`, `0.052`, `7.00`, `60.5k`, `3.63M`.
-fn short(number: f64) -> String {
+fn short_figure(number: f64) -> String {
     match number {
         0.0 => "0".into(),
         n if n < 0.000_5 => "<.001".into(),
@@ -150,30 +150,30 @@ pub(crate) fn sentence(row: &WhyRow) -> String {
         0.0 => "a query reads nothing".into(),
         number => format!(
             "{} reads in {} lines, {} bytes per query",
-            short(number),
-            short(reads.lines),
-            short(reads.bytes)
+            short_figure(number),
+            short_figure(reads.lines),
+            short_figure(reads.bytes)
         ),
     };
     if reads.sampled {
-        text += &format!(" (the mean of {})", reads.asked);
+        text += &format!(" (the mean of {})", reads.queried);
     }
     let swept = bytes(reads.sweep_bytes());
     text += &match reads.moved_bytes {
         0.0 => "; a sweep reads nothing either".into(),
         moved => format!(
             "; a sweep touches {swept} and moves {} bytes per {per}",
-            short(moved)
+            short_figure(moved)
         ),
     };
     match timed {
         None => text + ".",
-        Some(timed) => text + &in_time(timed),
+        Some(timed) => text + &describe_times(timed),
     }
 }
 
 /// Describes the times for the bytes and for the jumps, the measured time, and what bounds it.
-fn in_time(timed: &Timed) -> String {
+fn describe_times(timed: &Timed) -> String {
     let Timed {
         ns_per_element,
         speed,
@@ -182,8 +182,12 @@ fn in_time(timed: &Timed) -> String {
         bound,
         ..
     } = timed;
-    let (measured, floor, waits) = (short(*ns_per_element), short(*floor_ns), short(*waits_ns));
-    let speed = short(speed.gb_per_s);
+    let (measured, floor, waits) = (
+        short_figure(*ns_per_element),
+        short_figure(*floor_ns),
+        short_figure(*waits_ns),
+    );
+    let speed = short_figure(speed.gb_per_s);
     let verdict = match bound {
         Bound::Bandwidth => "bound by memory bandwidth",
         Bound::Latency => "bound by the latency of lines that cannot be prefetched",
@@ -274,7 +278,7 @@ pub(crate) fn legend(why: &Why) -> String {
         &counted
     };
     let lines = first.iter().chain(second).chain(&last);
-    let lines = lines.map(|(name, meaning)| hanging(&format!("{name:<10}"), meaning));
+    let lines = lines.map(|(name, meaning)| hanging_indent(&format!("{name:<10}"), meaning));
     lines.collect::<Vec<_>>().join("\n")
 }
 
@@ -290,8 +294,8 @@ mod tests {
         let expected = [
             "0", "<.001", "0.052", "7.00", "999", "1.00k", "60.5k", "1.00M", "3.63M", "2.00G",
         ];
-        assert_eq!(numbers.map(short), expected);
-        assert!(numbers.map(short).iter().all(|text| text.len() <= 5));
+        assert_eq!(numbers.map(short_figure), expected);
+        assert!(numbers.map(short_figure).iter().all(|text| text.len() <= 5));
     }
 
     #[test]

@@ -9,24 +9,24 @@ use sixfold_study::{Action, Workload, built_in, built_ins};
 use crate::arguments::Workloads;
 use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
-use crate::text::{Text, hanging};
+use crate::text::{TextOutput, hanging_indent};
 
 /// Maximum size of a workload file in bytes; larger files are refused without reading them.
-const LONGEST_FILE: u64 = 1 << 20;
+const MAX_FILE_BYTES: u64 = 1 << 20;
 
 /// Lists the workloads, shows the file of one, or lists operations.
 pub(crate) fn run(arguments: &Workloads) -> Result<ExitCode, Failure> {
     if let Some(name) = &arguments.show {
         let file = built_ins().find(|(known, _)| known == name);
         let (_, file) = file.ok_or_else(|| unknown(name))?;
-        let mut text = Text::shown(true);
-        text.say(file.trim_end());
+        let mut text = TextOutput::new(true);
+        text.print_line(file.trim_end());
         text.finish()?;
         return Ok(ExitCode::SUCCESS);
     }
     let json = Output::open_if(arguments.json.as_ref())?;
-    let mut text = Text::shown(!arguments.json.as_deref().is_some_and(is_stdout));
-    text.say(&match arguments.operations {
+    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
+    text.print_line(&match arguments.operations {
         true => operations(),
         false => list(),
     });
@@ -49,14 +49,14 @@ pub(crate) fn workload(word: &str) -> Result<Workload, Failure> {
     if !is_file {
         return built_in(word).ok_or_else(|| unknown(word));
     }
-    let told = |error: std::io::Error| Failure::usage(format!("{word}: {error}"));
-    let length = std::fs::metadata(path).map_err(told)?.len();
-    if length > LONGEST_FILE {
+    let cannot_read = |error: std::io::Error| Failure::usage(format!("{word}: {error}"));
+    let length = std::fs::metadata(path).map_err(cannot_read)?.len();
+    if length > MAX_FILE_BYTES {
         return Err(Failure::usage(format!(
             "{word}: {length} bytes are too many for a workload, which has a few lines: see `sixfold workloads --show smoothing`"
         )));
     }
-    let text = std::fs::read_to_string(path).map_err(told)?;
+    let text = std::fs::read_to_string(path).map_err(cannot_read)?;
     let name = path.file_stem().map(|stem| stem.to_string_lossy());
     Workload::parse(&name.unwrap_or_default(), word, &text).map_err(Failure::usage)
 }
@@ -74,7 +74,7 @@ fn list() -> String {
             continue;
         };
         lines.push(name.to_owned());
-        lines.push(hanging("  ", &workload.summary));
+        lines.push(hanging_indent("  ", &workload.summary));
         let mix = workload
             .mix
             .iter()
@@ -87,7 +87,7 @@ fn list() -> String {
         };
         let access = workload.access;
         let operations = workload.operations;
-        lines.push(hanging(
+        lines.push(hanging_indent(
             "  ",
             &format!("{access}; {operations} operations{rebuilt}: {mix}"),
         ));
@@ -102,13 +102,13 @@ fn operations() -> String {
     };
     let on_elements = names(|action| action.kind().is_some());
     let edits = names(|action| matches!(action, Action::Edit(_)));
-    let passes = names(|action| action.is_a_pass());
+    let passes = names(|action| action.is_pass());
     [
-        hanging("One element:  ", &on_elements),
-        hanging("One edit:     ", &edits),
-        hanging("Whole passes: ", &passes),
+        hanging_indent("One element:  ", &on_elements),
+        hanging_indent("One edit:     ", &edits),
+        hanging_indent("Whole passes: ", &passes),
         String::new(),
-        hanging(
+        hanging_indent(
             "",
             "A weight is a number, or a text such as \"2 per face\". `access` is sequential, random or patches.",
         ),

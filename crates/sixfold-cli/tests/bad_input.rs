@@ -2,8 +2,13 @@
 
 use crate::run::{Run, Sixfold, TETRAHEDRON};
 
-/// Asserts one `error:` line that contains `says`, an empty standard output, and no new file.
-pub(crate) fn refused(sixfold: &Sixfold, arguments: &[&str], code: i32, says: &str) -> Run {
+/// Asserts one `error:` line that contains `message`, an empty standard output, and no new file.
+pub(crate) fn assert_refused(
+    sixfold: &Sixfold,
+    arguments: &[&str],
+    code: i32,
+    message: &str,
+) -> Run {
     let before = sixfold.names();
     let run = sixfold.run(arguments);
     assert_eq!(run.code, Some(code), "{arguments:?}: {run:?}");
@@ -13,8 +18,8 @@ pub(crate) fn refused(sixfold: &Sixfold, arguments: &[&str], code: i32, says: &s
         .filter(|line| line.starts_with("error: "));
     assert_eq!(errors.count(), 1, "{arguments:?}: {run:?}");
     assert!(
-        run.stderr.contains(says),
-        "{arguments:?}: no {says:?} in {run:?}"
+        run.stderr.contains(message),
+        "{arguments:?}: no {message:?} in {run:?}"
     );
     assert!(!run.stderr.contains("panicked"), "{run:?}");
     assert_eq!(run.stdout, "", "{arguments:?}");
@@ -31,7 +36,7 @@ fn unusable_files_are_refused_by_both_commands() {
     sixfold.file("nan.obj", "v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n");
     sixfold.file("infinite.obj", "v 0 0 0\nv 1 1e99 0\nv 0 1 0\nf 1 2 3\n");
     std::fs::create_dir(sixfold.folder().join("folder.obj")).expect("a folder");
-    for (file, says) in [
+    for (file, message) in [
         ("empty.obj", "empty.obj"),
         ("comment.obj", "comment.obj"),
         ("range.obj", "range.obj:4"),
@@ -41,7 +46,7 @@ fn unusable_files_are_refused_by_both_commands() {
         ("missing.obj", "missing.obj"),
     ] {
         for command in ["inspect", "study"] {
-            refused(&sixfold, &[command, file, "--json", "out.json"], 2, says);
+            assert_refused(&sixfold, &[command, file, "--json", "out.json"], 2, message);
         }
     }
 }
@@ -53,7 +58,7 @@ fn a_file_of_points_has_facts_but_no_study() {
     let run = sixfold.run(&["inspect", "points.obj"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     assert!(run.stdout.contains("2 vertices"), "{run:?}");
-    refused(&sixfold, &["study", "points.obj"], 2, "no faces");
+    assert_refused(&sixfold, &["study", "points.obj"], 2, "no faces");
 }
 
 #[test]
@@ -76,14 +81,14 @@ fn degenerate_faces_are_left_out_with_a_note_or_refused() {
         assert!(run.stderr.contains(place), "{run:?}");
     }
     assert!(run.stdout.contains("2 degenerate faces"), "{run:?}");
-    refused(
+    assert_refused(
         &sixfold,
         &["study", "degenerate.obj", "--strict"],
         2,
         "line 9",
     );
     sixfold.file("nothing_else.obj", "v 0 0 0\nv 1 0 0\nf 1 2\n");
-    refused(
+    assert_refused(
         &sixfold,
         &["study", "nothing_else.obj"],
         2,
@@ -95,7 +100,7 @@ fn degenerate_faces_are_left_out_with_a_note_or_refused() {
 fn wrong_usage_says_what_is_allowed() {
     let sixfold = Sixfold::new();
     sixfold.file("mesh.obj", TETRAHEDRON);
-    for (arguments, says) in [
+    for (arguments, message) in [
         (
             &["study", "mesh.obj", "--backends", "abacus"][..],
             "half-edge",
@@ -123,7 +128,7 @@ fn wrong_usage_says_what_is_allowed() {
         (&["generate", "torus"], "--output"),
         (&["fly"], "fly"),
     ] {
-        refused(&sixfold, arguments, 2, says);
+        assert_refused(&sixfold, arguments, 2, message);
     }
 }
 
@@ -133,7 +138,7 @@ fn a_mesh_that_no_selected_backend_can_hold_has_its_own_exit_code() {
     let book = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
     sixfold.file("book.obj", book);
     let arguments = ["study", "book.obj", "--backends", "half-edge"];
-    refused(&sixfold, &arguments, 3, "f0, f1, f2");
+    assert_refused(&sixfold, &arguments, 3, "f0, f1, f2");
     // Other backends can hold it, and that is not an error.
     let run = sixfold.run(&["study", "book.obj", "--budget", "50ms"]);
     assert_eq!(run.code, Some(0), "{run:?}");

@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use crate::bad_input::refused;
-use crate::run::{Sixfold, TETRAHEDRON, done, text};
+use crate::bad_input::assert_refused;
+use crate::run::{Sixfold, TETRAHEDRON, run_ok, text};
 
 /// Writes a study of a tetrahedron to `a.json`, and the same study with all half-edge times doubled
 /// to `b.json`.
@@ -20,7 +20,7 @@ fn two_studies() -> Sixfold {
         "--json",
         "a.json",
     ];
-    done(&sixfold, &arguments);
+    run_ok(&sixfold, &arguments);
     let mut study: Value = serde_json::from_str(&text(&sixfold, "a.json")).expect("JSON");
     let doubled = |number: &mut Value| {
         if let Some(ns) = number.as_f64() {
@@ -52,7 +52,7 @@ fn two_studies() -> Sixfold {
 #[test]
 fn a_change_is_shown_and_can_set_the_exit_code() {
     let sixfold = two_studies();
-    let run = done(
+    let run = run_ok(
         &sixfold,
         &["compare", "a.json", "b.json", "--json", "c.json"],
     );
@@ -74,18 +74,18 @@ fn a_change_is_shown_and_can_set_the_exit_code() {
     assert!(slower.clone().all(|row| row["backend"] == "half-edge"));
     assert_eq!(slower.count(), 2);
 
-    let all = done(&sixfold, &["compare", "a.json", "b.json", "--all"]);
+    let all = run_ok(&sixfold, &["compare", "a.json", "b.json", "--all"]);
     assert!(all.stdout.contains("corner-table"), "{}", all.stdout);
     let failing = ["compare", "a.json", "b.json", "--fail-if-slower"];
     assert_eq!(sixfold.run(&failing).code, Some(1));
     // Nothing is slower in a comparison with itself, or if the second study is the faster one.
     let same = ["compare", "a.json", "a.json", "--fail-if-slower"];
-    assert!(!done(&sixfold, &same).stdout.contains("Only in the"));
-    done(
+    assert!(!run_ok(&sixfold, &same).stdout.contains("Only in the"));
+    run_ok(
         &sixfold,
         &["compare", "b.json", "a.json", "--fail-if-slower"],
     );
-    let piped = done(&sixfold, &["compare", "a.json", "b.json", "--json", "-"]);
+    let piped = run_ok(&sixfold, &["compare", "a.json", "b.json", "--json", "-"]);
     serde_json::from_str::<Value>(&piped.stdout).expect("JSON alone");
 }
 
@@ -107,7 +107,7 @@ fn files_that_are_not_studies_are_refused_in_one_message() {
         "--workload",
         "smoothing",
     ];
-    done(&sixfold, &pick);
+    run_ok(&sixfold, &pick);
     let fewer = [
         "study",
         "t.obj",
@@ -118,8 +118,8 @@ fn files_that_are_not_studies_are_refused_in_one_message() {
         "--json",
         "build.json",
     ];
-    done(&sixfold, &fewer);
-    for (file, says) in [
+    run_ok(&sixfold, &fewer);
+    for (file, message) in [
         ("half.json", "ends too early"),
         ("old.json", "schema 7"),
         ("foreign.json", "no `schema`"),
@@ -129,9 +129,9 @@ fn files_that_are_not_studies_are_refused_in_one_message() {
         (".", "cannot be read"),
         ("build.json", "nothing to compare"),
     ] {
-        refused(&sixfold, &["compare", "a.json", file], 2, says);
-        refused(&sixfold, &["compare", file, "a.json"], 2, says);
+        assert_refused(&sixfold, &["compare", "a.json", file], 2, message);
+        assert_refused(&sixfold, &["compare", file, "a.json"], 2, message);
     }
     let over = ["compare", "a.json", "b.json", "--json", "b.json"];
-    refused(&sixfold, &over, 2, "would overwrite");
+    assert_refused(&sixfold, &over, 2, "would overwrite");
 }

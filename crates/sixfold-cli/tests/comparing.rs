@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use crate::bad_input::refused;
-use crate::run::{Sixfold, TETRAHEDRON, done};
+use crate::bad_input::assert_refused;
+use crate::run::{Sixfold, TETRAHEDRON, run_ok};
 
 fn parsed(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
@@ -38,7 +38,7 @@ fn orders_writes_json() {
         "--json",
         "-",
     ];
-    let report = parsed(&done(&sixfold, &arguments).stdout);
+    let report = parsed(&run_ok(&sixfold, &arguments).stdout);
     let fields = [
         "backends",
         "comparisons",
@@ -126,7 +126,7 @@ fn growth_writes_json() {
         "--json",
         "growth.json",
     ];
-    let run = done(&sixfold, &arguments);
+    let run = run_ok(&sixfold, &arguments);
     // The faces are quads: one structure refuses them, the others have a column.
     assert!(run.stdout.contains("corner-table refuses"), "{run:?}");
     assert!(run.stdout.contains("power"), "{run:?}");
@@ -199,7 +199,7 @@ fn invalid_arguments_are_refused() {
     let sixfold = Sixfold::new();
     sixfold.file("mesh.obj", TETRAHEDRON);
     sixfold.file("points.obj", "v 0 0 0\n");
-    for (arguments, code, says) in [
+    for (arguments, code, message) in [
         (
             &["orders", "mesh.obj", "--budget", "50ms"][..],
             2,
@@ -246,7 +246,7 @@ fn invalid_arguments_are_refused() {
         // Hundreds of gigabytes: refused before anything is built.
         (&["growth", "--to", "500000000"], 3, "smaller --to"),
     ] {
-        refused(&sixfold, arguments, code, says);
+        assert_refused(&sixfold, arguments, code, message);
     }
 }
 
@@ -256,7 +256,7 @@ fn an_interrupted_sweep_keeps_the_sizes_that_are_finished() {
     let sixfold = Sixfold::new();
     let arguments = ["growth", "--budget", "40s", "--json", "kept.json"];
     // The first size takes half a second of the budget.
-    sixfold.interrupted(&arguments, "INT", std::time::Duration::from_secs(4));
+    sixfold.run_interrupted(&arguments, "INT", std::time::Duration::from_secs(4));
     let report = parsed(&crate::run::text(&sixfold, "kept.json"));
     assert_eq!(report["interrupted"], true);
     let sizes = list(&report, "sizes").len();

@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::run::{Run, Sixfold, TETRAHEDRON};
 
 /// Returns whether Python is installed, which the programs need.
-fn python() -> bool {
+fn has_python() -> bool {
     let found = Command::new("python3").arg("--version").output();
     let there = found.is_ok_and(|output| output.status.success());
     assert!(
@@ -25,7 +25,7 @@ fn repository() -> &'static Path {
 }
 
 /// Studies a tetrahedron with an external program that fails in the way that `mode` names.
-fn beside(mode: &str, more: &[&str]) -> (Sixfold, Run) {
+fn study_with_program(mode: &str, more: &[&str]) -> (Sixfold, Run) {
     let sixfold = Sixfold::new();
     sixfold.file("t.obj", TETRAHEDRON);
     let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/external/misbehaving.py");
@@ -68,7 +68,7 @@ fn refusal(report: &Value, operation: &str) -> String {
 
 #[test]
 fn the_documented_example_does_the_same_work() {
-    if !python() {
+    if !has_python() {
         return;
     }
     let sixfold = Sixfold::new();
@@ -113,10 +113,10 @@ fn the_documented_example_does_the_same_work() {
 
 #[test]
 fn a_refusal_of_a_program_is_shown() {
-    if !python() {
+    if !has_python() {
         return;
     }
-    let (sixfold, run) = beside("well", &[]);
+    let (sixfold, run) = study_with_program("well", &[]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let report = report(&sixfold);
     assert_eq!(
@@ -135,10 +135,10 @@ fn a_refusal_of_a_program_is_shown() {
 
 #[test]
 fn a_failing_program_is_reported_and_the_study_continues() {
-    if !python() {
+    if !has_python() {
         return;
     }
-    for (mode, more, says) in [
+    for (mode, more, message) in [
         ("refuses", &[][..], "it is Tuesday"),
         ("other version", &[], "version 7 of the protocol"),
         ("rubbish", &[], "Segmentation fault (not really)"),
@@ -151,12 +151,12 @@ fn a_failing_program_is_reported_and_the_study_continues() {
         ("answers twice", &[], "without a request"),
     ] {
         let start = Instant::now();
-        let (sixfold, run) = beside(mode, more);
+        let (sixfold, run) = study_with_program(mode, more);
         assert!(start.elapsed() < Duration::from_secs(60), "{mode}");
         assert_eq!(run.code, Some(0), "{mode}: {run:?}");
         assert!(!run.stderr.contains("panicked"), "{mode}: {run:?}");
         let unbroken = run.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(unbroken.contains(says), "{mode}: {run:?}");
+        assert!(unbroken.contains(message), "{mode}: {run:?}");
         let report = report(&sixfold);
         let ours = row(&report, "half-edge", "boundary").expect("ours");
         assert_eq!(ours["agreement"], "same", "{mode}");
@@ -172,10 +172,10 @@ fn a_failing_program_is_reported_and_the_study_continues() {
 
 #[test]
 fn a_program_with_another_number_of_elements_is_a_mismatch() {
-    if !python() {
+    if !has_python() {
         return;
     }
-    let (sixfold, run) = beside("other elements", &[]);
+    let (sixfold, run) = study_with_program("other elements", &[]);
     assert_eq!(run.code, Some(1), "{run:?}");
     let report = report(&sixfold);
     let theirs = row(&report, "other", "boundary").expect("theirs");
@@ -184,10 +184,10 @@ fn a_program_with_another_number_of_elements_is_a_mismatch() {
 
 #[test]
 fn a_program_with_another_checksum_is_not_ranked() {
-    if !python() {
+    if !has_python() {
         return;
     }
-    let (sixfold, run) = beside("other checksum", &[]);
+    let (sixfold, run) = study_with_program("other checksum", &[]);
     assert_eq!(run.code, Some(1), "{run:?}");
     assert!(
         run.stderr
@@ -207,10 +207,10 @@ fn a_program_with_another_checksum_is_not_ranked() {
 #[cfg(target_os = "linux")]
 #[test]
 fn child_processes_of_a_program_end_with_the_study() {
-    if !python() {
+    if !has_python() {
         return;
     }
-    let (sixfold, run) = beside("child that hangs", &["--patience", "2s"]);
+    let (sixfold, run) = study_with_program("child that hangs", &["--patience", "2s"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let child = crate::run::text(&sixfold, "pid.txt");
     let stat = std::fs::read_to_string(format!("/proc/{child}/stat"));
@@ -224,7 +224,7 @@ fn child_processes_of_a_program_end_with_the_study() {
 #[test]
 fn invalid_commands_are_refused_before_anything_is_measured() {
     let sixfold = Sixfold::new();
-    for (given, says) in [
+    for (given, message) in [
         ("run {mesh}", "has no name"),
         ("a b=run {mesh}", "not a column name"),
         ("a=run", "no {mesh}"),
@@ -232,7 +232,7 @@ fn invalid_commands_are_refused_before_anything_is_measured() {
     ] {
         let run = sixfold.run(&["study", "--external", given]);
         assert_eq!(run.code, Some(2), "{given}: {run:?}");
-        assert!(run.stderr.contains(says), "{given}: {run:?}");
+        assert!(run.stderr.contains(message), "{given}: {run:?}");
         assert_eq!(run.stdout, "", "{given}");
     }
     sixfold.file("t.obj", TETRAHEDRON);

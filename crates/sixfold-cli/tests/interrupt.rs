@@ -21,7 +21,7 @@ fn an_interrupted_study_keeps_what_is_finished() {
         "kept.json",
     ];
     let start = Instant::now();
-    sixfold.interrupted(&arguments, "INT", Duration::from_secs(2));
+    sixfold.run_interrupted(&arguments, "INT", Duration::from_secs(2));
     assert!(
         start.elapsed() < Duration::from_secs(120),
         "it did not wait for the budget"
@@ -42,7 +42,7 @@ fn an_interrupted_explanation_keeps_what_is_finished() {
     sixfold.grid("grid.obj", 40);
     let arguments = ["why", "grid.obj", "--budget", "10m", "--json", "kept.json"];
     let start = Instant::now();
-    sixfold.interrupted(&arguments, "INT", Duration::from_secs(4));
+    sixfold.run_interrupted(&arguments, "INT", Duration::from_secs(4));
     assert!(
         start.elapsed() < Duration::from_secs(120),
         "it did not wait for the budget"
@@ -53,11 +53,11 @@ fn an_interrupted_explanation_keeps_what_is_finished() {
 }
 
 #[test]
-fn no_draft_outlives_an_interrupt() {
+fn no_draft_is_left_after_an_interrupt() {
     let sixfold = Sixfold::new();
     for signal in ["INT", "TERM"] {
         let arguments = ["generate", "grid", "m=1500", "n=1500", "-o", "big.obj"];
-        sixfold.interrupted(&arguments, signal, Duration::ZERO);
+        sixfold.run_interrupted(&arguments, signal, Duration::ZERO);
         assert!(sixfold.names().is_empty(), "{:?}", sixfold.names());
     }
 }
@@ -78,21 +78,21 @@ fn an_interrupted_decimation_writes_nothing() {
         "-o",
         "out.obj",
     ];
-    let run = sixfold.interrupted(&arguments, "INT", Duration::from_millis(200));
+    let run = sixfold.run_interrupted(&arguments, "INT", Duration::from_millis(200));
     assert_eq!(run.stdout, "");
     assert_eq!(sixfold.names(), ["grid.obj", "out.obj"]);
     assert_eq!(text(&sixfold, "out.obj"), "precious");
 }
 
 #[test]
-fn no_draft_outlives_two_interrupts_of_a_study() {
+fn no_draft_is_left_after_two_interrupts_of_a_study() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 40);
     let arguments = [
         "study", "grid.obj", "--budget", "10m", "--json", "x.json", "--csv", "x.csv",
     ];
     let start = Instant::now();
-    let mut child = sixfold.begun(&arguments, 2);
+    let mut child = sixfold.start(&arguments, 2);
     // Two signals may be delivered as one, so signals are sent until the program ends.
     let status = loop {
         if let Some(status) = child.try_wait().expect("our child") {

@@ -6,10 +6,10 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use crate::bad_input::refused;
-use crate::run::{Run, Sixfold, TETRAHEDRON, done, text};
+use crate::bad_input::assert_refused;
+use crate::run::{Run, Sixfold, TETRAHEDRON, run_ok, text};
 
-const QUICKLY: [&str; 4] = ["--budget", "60ms", "--operations", "boundary,edge_length"];
+const QUICK_ARGUMENTS: [&str; 4] = ["--budget", "60ms", "--operations", "boundary,edge_length"];
 
 /// Writes three meshes, one of them in a subfolder, and a broken one.
 fn scans() -> Sixfold {
@@ -26,7 +26,7 @@ fn scans() -> Sixfold {
 
 fn study(sixfold: &Sixfold, more: &[&str]) -> Run {
     let mut arguments = vec!["study", "scans"];
-    arguments.extend(QUICKLY);
+    arguments.extend(QUICK_ARGUMENTS);
     arguments.extend(more);
     sixfold.run(&arguments)
 }
@@ -45,12 +45,12 @@ fn names(list: &Value) -> Vec<String> {
     list.as_array().expect("a list").iter().map(name).collect()
 }
 
-fn pieces(sixfold: &Sixfold, folder: &str) -> Vec<PathBuf> {
+fn study_files(sixfold: &Sixfold, folder: &str) -> Vec<PathBuf> {
     let folder = sixfold.folder().join(folder).join("studies");
     let entries = fs::read_dir(folder).expect("the folder");
-    let mut pieces: Vec<PathBuf> = entries.map(|e| e.expect("an entry").path()).collect();
-    pieces.sort();
-    pieces
+    let mut study_files: Vec<PathBuf> = entries.map(|e| e.expect("an entry").path()).collect();
+    study_files.sort();
+    study_files
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn all_meshes_of_a_folder_are_studied_and_failures_are_listed() {
         csv.contains("scans/b grid.obj,half-edge,boundary,false,"),
         "{csv:.400}"
     );
-    assert_eq!(pieces(&sixfold, "out").len(), 4);
+    assert_eq!(study_files(&sixfold, "out").len(), 4);
 
     let shown = study(&sixfold, &[]);
     assert_eq!(shown.code, Some(0), "{shown:?}");
@@ -121,7 +121,7 @@ fn finished_studies_are_not_repeated() {
     let sixfold = scans();
     assert_eq!(study(&sixfold, &["--report", "out"]).code, Some(0));
     let before = text(&sixfold, "out/results.json");
-    refused(
+    assert_refused(
         &sixfold,
         &["study", "scans", "--report", "out"],
         2,
@@ -132,7 +132,7 @@ fn finished_studies_are_not_repeated() {
     assert_eq!(text(&sixfold, "out/results.json"), before);
 
     // One file is deleted, one is truncated, and one is of a mesh that has changed since.
-    let paths = pieces(&sixfold, "out");
+    let paths = study_files(&sixfold, "out");
     let name = |path: &Path| {
         path.file_name()
             .map(|name| name.to_string_lossy().into_owned())
@@ -167,7 +167,7 @@ fn finished_studies_are_not_repeated() {
     let other = [
         "study", "scans", "--report", "out", "--resume", "--seed", "7",
     ];
-    refused(&sixfold, &other, 2, "other settings");
+    assert_refused(&sixfold, &other, 2, "other settings");
 }
 
 #[test]
@@ -184,13 +184,13 @@ fn merged_shards_equal_a_single_run() {
             "{shard}"
         );
     }
-    let alone = done(&sixfold, &["merge", "shard-1", "--json", "half.json"]);
+    let alone = run_ok(&sixfold, &["merge", "shard-1", "--json", "half.json"]);
     assert!(
         alone.stdout.contains("2 meshes are not studied yet"),
         "{}",
         alone.stdout
     );
-    done(
+    run_ok(
         &sixfold,
         &[
             "merge",
@@ -237,7 +237,7 @@ fn shards_that_do_not_belong_together_are_not_merged() {
     sixfold.file("half.json", &whole[..whole.len() / 2]);
     sixfold.file("foreign.json", "{}");
     sixfold.file("later.json", "{\"schema\": 9}");
-    for (shard, says) in [
+    for (shard, message) in [
         ("slow.json", "--budget is 60 s"),
         ("elsewhere.json", "meshes differ: elsewhere.obj"),
         ("half.json", "ends too early"),
@@ -246,18 +246,23 @@ fn shards_that_do_not_belong_together_are_not_merged() {
         ("none", "cannot be read"),
         ("scans", "cannot be read"),
     ] {
-        refused(&sixfold, &["merge", "one", shard, "--json", "-"], 2, says);
+        assert_refused(
+            &sixfold,
+            &["merge", "one", shard, "--json", "-"],
+            2,
+            message,
+        );
     }
-    refused(&sixfold, &["merge", "one"], 2, "--report DIR");
+    assert_refused(&sixfold, &["merge", "one"], 2, "--report DIR");
     let over = ["merge", "one", "slow.json", "--json", "slow.json"];
-    refused(&sixfold, &over, 2, "would overwrite");
+    assert_refused(&sixfold, &over, 2, "would overwrite");
 }
 
 #[test]
 fn invalid_places_are_refused_before_anything_is_measured() {
     let sixfold = scans();
     fs::create_dir(sixfold.folder().join("empty")).expect("a folder");
-    for (arguments, says) in [
+    for (arguments, message) in [
         (&["study", "empty"][..], "no .obj file"),
         (
             &["study", "scans", "--csv", "x.csv"],
@@ -274,7 +279,7 @@ fn invalid_places_are_refused_before_anything_is_measured() {
         (&["study", "scans", "--shard", "1/2"], "--report"),
         (&["study", "scans", "--resume"], "--report"),
     ] {
-        refused(&sixfold, arguments, 2, says);
+        assert_refused(&sixfold, arguments, 2, message);
     }
     sixfold.file("only.obj", "v 0 0 0\n");
     let run = sixfold.run(&["study", "only.obj", "none.obj", "--budget", "50ms"]);
@@ -314,7 +319,7 @@ fn an_interrupted_study_can_be_resumed() {
         "--report",
         "out",
     ];
-    let child = sixfold.begun(&arguments, 1);
+    let child = sixfold.start(&arguments, 1);
     // Once the first study is saved, the second is within its two seconds.
     let start = Instant::now();
     let kept = || {
@@ -335,10 +340,10 @@ fn an_interrupted_study_can_be_resumed() {
     let finished = names(&kept["studies"]).len();
     assert!((1..3).contains(&finished), "{finished}");
     let failed = names(&kept["failures"]).len();
-    assert_eq!(pieces(&sixfold, "out").len(), finished + failed);
+    assert_eq!(study_files(&sixfold, "out").len(), finished + failed);
     let mut go_on = arguments.to_vec();
     go_on.push("--resume");
-    done(&sixfold, &go_on);
+    run_ok(&sixfold, &go_on);
     let whole = results(&sixfold, "out");
     assert_eq!(names(&whole["studies"]).len(), 3);
     assert_eq!(whole["studies"][0], kept["studies"][0]);
@@ -372,7 +377,7 @@ fn the_script_for_a_cluster_studies_all_meshes() {
     let mut merge = vec!["merge"];
     merge.extend(shards);
     merge.extend(["--report", "results/all"]);
-    done(&sixfold, &merge);
+    run_ok(&sixfold, &merge);
     let report = results(&sixfold, "results/all");
     assert_eq!(names(&report["studies"]).len(), 3);
     assert_eq!(report["missing"].as_array().map(Vec::len), Some(0));

@@ -2,9 +2,9 @@
 
 use serde_json::Value;
 
-use crate::bad_input::refused;
-use crate::machine::{FACTS, has, parsed};
-use crate::run::{Sixfold, TETRAHEDRON, done};
+use crate::bad_input::assert_refused;
+use crate::json_csv::{FACTS, assert_fields, parsed};
+use crate::run::{Sixfold, TETRAHEDRON, run_ok};
 
 const BACKEND: [(&str, &str); 16] = [
     ("holds", "boolean"),
@@ -41,14 +41,14 @@ fn json_has_the_three_counts_and_the_tables() {
         "quad.obj",
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
     );
-    let run = done(&sixfold, &["memory", "quad.obj", "--json", "-"]);
+    let run = run_ok(&sixfold, &["memory", "quad.obj", "--json", "-"]);
     let audit = parsed(&run.stdout);
     assert_eq!(audit["schema"], 1);
-    has(&audit["mesh"], &FACTS);
+    assert_fields(&audit["mesh"], &FACTS);
     let backends = audit["backends"].as_object().expect("a map");
     assert_eq!(backends.len(), 6);
     for (name, backend) in backends {
-        has(backend, &BACKEND);
+        assert_fields(backend, &BACKEND);
         if name == "corner-table" {
             assert_eq!(backend["holds"], false);
             assert_eq!(backend["agrees"], Value::Null);
@@ -88,13 +88,13 @@ const SUBDIVISION_LIMITS: [(&str, f64); 3] =
 /// Asserts that the figures do not exceed the level of their last reduction.
 #[test]
 fn operations_on_the_built_in_mesh_allocate_little_besides_their_result() {
-    let run = done(&Sixfold::new(), &["memory", "--json", "-"]);
+    let run = run_ok(&Sixfold::new(), &["memory", "--json", "-"]);
     let audit = parsed(&run.stdout);
     let mut counted = 0;
     for (backend, build_limit) in BUILD_LIMITS {
         let operations = audit["backends"][backend]["operations"].as_array();
         for operation in operations.expect("a list") {
-            has(operation, &OPERATION);
+            assert_fields(operation, &OPERATION);
             let name = operation["operation"].as_str().expect("a name");
             let Some(ratio) = operation["allocated_to_result"].as_f64() else {
                 assert!(operation["reason"].is_string(), "{name} on {backend}");
@@ -121,10 +121,10 @@ fn operations_on_the_built_in_mesh_allocate_little_besides_their_result() {
 fn operations_that_scan_are_run_on_small_meshes_only() {
     let sixfold = Sixfold::new();
     sixfold.file("ok.obj", TETRAHEDRON);
-    let run = done(&sixfold, &["memory", "ok.obj"]);
+    let run = run_ok(&sixfold, &["memory", "ok.obj"]);
     assert!(run.stdout.contains("loop_gather"), "{run:?}");
     assert!(!run.stdout.contains("scans"), "{run:?}");
-    let run = done(&sixfold, &["memory"]);
+    let run = run_ok(&sixfold, &["memory"]);
     assert!(run.stdout.contains("- scans: not run"), "{run:?}");
 }
 
@@ -136,9 +136,9 @@ fn a_corner_table_holds_a_triangulated_quad() {
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
     );
     let asked = ["memory", "quad.obj", "--backends", "corner-table"];
-    let run = refused(&sixfold, &asked, 3, "none of the backends asked for");
+    let run = assert_refused(&sixfold, &asked, 3, "none of the backends asked for");
     assert!(run.stderr.contains("4 corners"), "{run:?}");
-    let run = done(&sixfold, &[&asked[..], &["--triangulate"]].concat());
+    let run = run_ok(&sixfold, &[&asked[..], &["--triangulate"]].concat());
     assert!(
         run.stdout.contains("cut 1 face into 2 triangles"),
         "{run:?}"
@@ -172,7 +172,7 @@ fn invalid_input_is_refused() {
     let sixfold = Sixfold::new();
     sixfold.file("points.obj", "v 0 0 0\nv 1 0 0\n");
     sixfold.file("ok.obj", TETRAHEDRON);
-    for (arguments, says) in [
+    for (arguments, message) in [
         (&["memory", "points.obj"][..], "no faces"),
         (&["memory", "missing.obj"], "missing.obj"),
         (&["memory", "-"], "standard input is not read"),
@@ -184,7 +184,7 @@ fn invalid_input_is_refused() {
     ] {
         let run = sixfold.run(arguments);
         assert_eq!(run.code, Some(2), "{arguments:?}: {run:?}");
-        assert!(run.stderr.contains(says), "{arguments:?}: {run:?}");
+        assert!(run.stderr.contains(message), "{arguments:?}: {run:?}");
         assert_eq!(run.stdout, "", "{arguments:?}");
     }
 }

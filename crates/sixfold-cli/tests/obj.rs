@@ -9,7 +9,7 @@ pub(crate) struct Obj {
 }
 
 impl Obj {
-    pub(crate) fn of(text: &str) -> Self {
+    pub(crate) fn parse(text: &str) -> Self {
         let rows = |kind: &str| {
             let of_kind = move |line: &str| Some(line.strip_prefix(kind)?.trim().to_owned());
             text.lines().filter_map(of_kind).collect::<Vec<_>>()
@@ -51,22 +51,22 @@ impl Obj {
     /// Returns the lengths of all edges.
     pub(crate) fn lengths(&self) -> Vec<f32> {
         let at = |v: usize| self.positions[v - 1];
-        let apart = |(a, b): (usize, usize)| {
+        let length = |(a, b): (usize, usize)| {
             let squares = [0, 1, 2].map(|i| (at(a)[i] - at(b)[i]).powi(2));
             squares.iter().sum::<f32>().sqrt()
         };
-        self.edges().into_keys().map(apart).collect()
+        self.edges().into_keys().map(length).collect()
     }
 
     /// Returns the faces as the positions of their corners, each starting at its smallest corner,
     /// sorted. The result does not depend on the numbering of the vertices.
-    pub(crate) fn places(&self) -> Vec<Vec<[u32; 3]>> {
+    pub(crate) fn canonical_faces(&self) -> Vec<Vec<[u32; 3]>> {
         let faces = self.faces.iter().map(|face| {
             let bits = |&v: &usize| self.positions[v - 1].map(f32::to_bits);
-            let mut places: Vec<[u32; 3]> = face.iter().map(bits).collect();
-            let least = (0..places.len()).min_by_key(|&i| places[i]);
-            places.rotate_left(least.unwrap_or(0));
-            places
+            let mut corners: Vec<[u32; 3]> = face.iter().map(bits).collect();
+            let least = (0..corners.len()).min_by_key(|&i| corners[i]);
+            corners.rotate_left(least.unwrap_or(0));
+            corners
         });
         let mut faces: Vec<_> = faces.collect();
         faces.sort_unstable();

@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use crate::bad_input::refused;
-use crate::run::{Sixfold, done, text};
+use crate::bad_input::assert_refused;
+use crate::run::{Sixfold, run_ok, text};
 
 const MINE: &str = "summary = 'Mine.'\naccess = 'random'\noperations = '20 per face'\n\
     [mix]\nvertex_faces = 2\ncorner_positions = 1\n";
@@ -23,7 +23,7 @@ fn the_answer_has_a_ranking_with_reasons() {
         "--json",
         "answer.json",
     ];
-    let run = done(&sixfold, &arguments);
+    let run = run_ok(&sixfold, &arguments);
     for part in [
         "Workload: mine. Mine.",
         "2 vertex_faces, 1 corner_positions; random; 33,640 operations",
@@ -62,7 +62,7 @@ fn json_on_standard_output_has_no_text_beside_it() {
     let sixfold = Sixfold::new();
     sixfold.grid("a.obj", 12);
     sixfold.grid("b.obj", 14);
-    let run = done(
+    let run = run_ok(
         &sixfold,
         &[
             "pick",
@@ -131,7 +131,7 @@ fn invalid_arguments_are_refused() {
     sixfold.file("empty.toml", "");
     std::fs::write(sixfold.folder().join("bytes.toml"), b"\xff\xfe").expect("a scratch file");
     let pick = |workload| ["pick", "grid.obj", "--workload", workload];
-    for (workload, says) in [
+    for (workload, message) in [
         ("abacus", "choose from rendering-upload, "),
         ("missing.toml", "missing.toml: No such file"),
         (
@@ -143,9 +143,9 @@ fn invalid_arguments_are_refused() {
         ("empty.toml", "empty.toml:1: missing field"),
         ("bytes.toml", "bytes.toml: "),
     ] {
-        refused(&sixfold, &pick(workload), 2, says);
+        assert_refused(&sixfold, &pick(workload), 2, message);
     }
-    for (arguments, says) in [
+    for (arguments, message) in [
         (
             &["pick", "quads.obj", "--workload", "remeshing"][..],
             "needs triangles",
@@ -172,7 +172,7 @@ fn invalid_arguments_are_refused() {
             "choose from rendering-upload, ",
         ),
     ] {
-        refused(&sixfold, arguments, 2, says);
+        assert_refused(&sixfold, arguments, 2, message);
     }
 }
 
@@ -180,9 +180,9 @@ fn invalid_arguments_are_refused() {
 fn a_workload_that_is_shown_can_be_run() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 20);
-    let shown = done(&sixfold, &["workloads", "--show", "region-growing"]);
+    let shown = run_ok(&sixfold, &["workloads", "--show", "region-growing"]);
     sixfold.file("mine.toml", &shown.stdout);
-    let run = done(
+    let run = run_ok(
         &sixfold,
         &[
             "pick",
@@ -194,7 +194,7 @@ fn a_workload_that_is_shown_can_be_run() {
         ],
     );
     assert!(run.stdout.contains("For mine, "), "{}", run.stdout);
-    let run = done(&sixfold, &["workloads", "--json", "-"]);
+    let run = run_ok(&sixfold, &["workloads", "--json", "-"]);
     let all: Value = serde_json::from_str(&run.stdout).expect("JSON");
     assert_eq!(all.as_array().map(Vec::len), Some(12));
 }

@@ -2,9 +2,9 @@
 
 use serde_json::Value;
 
-use crate::bad_input::refused;
+use crate::bad_input::assert_refused;
 use crate::obj::Obj;
-use crate::run::{Sixfold, TETRAHEDRON, done, text};
+use crate::run::{Sixfold, TETRAHEDRON, run_ok, text};
 
 const BACKENDS: [&str; 6] = [
     "polygon-soup",
@@ -19,14 +19,14 @@ const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
 const BOOK: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
 
 /// Runs the command with these arguments and returns the mesh that it writes.
-fn made(sixfold: &Sixfold, arguments: &[&str]) -> Obj {
-    done(sixfold, &[arguments, &["-o", "out.obj"]].concat());
-    Obj::of(&text(sixfold, "out.obj"))
+fn written_mesh(sixfold: &Sixfold, arguments: &[&str]) -> Obj {
+    run_ok(sixfold, &[arguments, &["-o", "out.obj"]].concat());
+    Obj::parse(&text(sixfold, "out.obj"))
 }
 
 /// Writes a shape of `sixfold generate` to the file `name`.
 fn generate(sixfold: &Sixfold, name: &str, shape: &[&str]) {
-    done(sixfold, &[&["generate"], shape, &["-o", name]].concat());
+    run_ok(sixfold, &[&["generate"], shape, &["-o", name]].concat());
 }
 
 /// Returns the signed area of a triangle mesh in the plane z = 0: flipped faces count as negative.
@@ -51,15 +51,15 @@ fn a_closed_surface_gets_the_target_number_of_faces_and_stays_closed() {
         ("ring.obj", ["--faces", "120"], 120, 0),
         ("ring.obj", ["--ratio", "0.25"], 100, 0),
     ] {
-        let obj = made(&sixfold, &[&["decimate", file], &goal[..]].concat());
+        let obj = written_mesh(&sixfold, &[&["decimate", file], &goal[..]].concat());
         assert_eq!(obj.faces.len(), faces, "{file} {goal:?}");
         assert_eq!(obj.euler_characteristic(), chi, "{file} {goal:?}");
         assert_eq!(obj.boundary_edges(), 0, "{file} {goal:?}");
     }
-    let run = done(&sixfold, &["inspect", "out.obj"]);
+    let run = run_ok(&sixfold, &["inspect", "out.obj"]);
     assert!(run.stdout.contains("closed, genus 1"), "{run:?}");
     let all = ["decimate", "ball.obj", "--faces", "500", "-o", "out.obj"];
-    let run = done(&sixfold, &all);
+    let run = run_ok(&sixfold, &all);
     assert_eq!(run.stderr, "", "progress is for terminals");
     assert_eq!(
         run.stdout,
@@ -78,7 +78,7 @@ fn a_boundary_keeps_its_shape_or_all_its_vertices() {
         &[&decimate[..], &["fixed"]].concat(),
         &remesh,
     ] {
-        let obj = made(&sixfold, arguments);
+        let obj = written_mesh(&sixfold, arguments);
         assert_eq!(obj.euler_characteristic(), 1, "{arguments:?}");
         assert!((flat_area(&obj) - 100.0).abs() < 1e-3, "{arguments:?}");
         for corner in [[0.0, 0.0], [10.0_f32, 0.0], [10.0, 10.0], [0.0, 10.0]] {
@@ -96,14 +96,14 @@ fn edges_get_the_target_length() {
     generate(&sixfold, "ball.obj", &["geodesic", "frequency=4"]);
     for (length, edge_length) in [(0.15, "0.15"), (0.6, "0.6")] {
         let arguments = ["remesh", "ball.obj", "--edge-length", edge_length];
-        let obj = made(&sixfold, &arguments);
+        let obj = written_mesh(&sixfold, &arguments);
         assert_eq!(obj.euler_characteristic(), 2);
         assert_eq!(obj.boundary_edges(), 0);
         let lengths = obj.lengths();
         let mean = lengths.iter().sum::<f32>() / lengths.len() as f32;
         assert!((mean / length - 1.0).abs() < 0.15, "{mean} for {length}");
     }
-    let run = done(
+    let run = run_ok(
         &sixfold,
         &[
             "remesh",
@@ -130,8 +130,11 @@ fn edges_get_the_target_length() {
         "--iterations",
         "0",
     ];
-    let obj = made(&sixfold, &none);
-    assert_eq!(obj.places(), Obj::of(&text(&sixfold, "ball.obj")).places());
+    let obj = written_mesh(&sixfold, &none);
+    assert_eq!(
+        obj.canonical_faces(),
+        Obj::parse(&text(&sixfold, "ball.obj")).canonical_faces()
+    );
 }
 
 #[test]
@@ -151,7 +154,7 @@ fn every_backend_makes_the_same_mesh() {
     ] {
         let of = |backend| {
             let arguments = [command, &["--backend", backend]].concat();
-            made(&sixfold, &arguments).places()
+            written_mesh(&sixfold, &arguments).canonical_faces()
         };
         let first = of(BACKENDS[0]);
         for backend in &BACKENDS[1..] {
@@ -170,7 +173,7 @@ fn a_target_that_is_not_reached_gets_a_note() {
         "tagged.obj",
         &format!("{TETRAHEDRON}t crease 2/1/0 0 1 2\n"),
     );
-    for (arguments, faces, says) in [
+    for (arguments, faces, message) in [
         (
             &["decimate", "t.obj", "--faces", "0"][..],
             4,
@@ -202,14 +205,14 @@ fn a_target_that_is_not_reached_gets_a_note() {
         ),
         (&["decimate", "tagged.obj", "--faces", "4"], 4, "not kept"),
     ] {
-        let run = done(&sixfold, &[arguments, &["-o", "out.obj"]].concat());
+        let run = run_ok(&sixfold, &[arguments, &["-o", "out.obj"]].concat());
         let notes = run.stderr.lines();
         assert!(
             notes.clone().count() == 1 && notes.clone().all(|line| line.starts_with("note: ")),
             "{run:?}"
         );
-        assert!(run.stderr.contains(says), "{run:?}");
-        let obj = Obj::of(&text(&sixfold, "out.obj"));
+        assert!(run.stderr.contains(message), "{run:?}");
+        let obj = Obj::parse(&text(&sixfold, "out.obj"));
         assert_eq!(obj.faces.len(), faces, "{arguments:?}");
     }
 }
@@ -228,7 +231,7 @@ fn a_note_explains_why_scans_are_slow() {
             "out.obj",
             "--backend",
         ];
-        done(&sixfold, &[&arguments[..], &[backend]].concat())
+        run_ok(&sixfold, &[&arguments[..], &[backend]].concat())
     };
     let scanning = run("polygon-soup");
     assert!(scanning.stderr.contains("which is slow"), "{scanning:?}");
@@ -247,7 +250,7 @@ fn invalid_input_is_refused_before_anything_is_written() {
     let decimate = ["decimate", "--faces", "2"];
     let remesh = ["remesh", "--edge-length", "0.5"];
     for command in [&decimate, &remesh] {
-        for (arguments, code, says) in [
+        for (arguments, code, message) in [
             (&["quad.obj"][..], 3, "face f0 has 4 corners"),
             (&["quad.obj"], 3, "`sixfold triangulate`"),
             (
@@ -273,22 +276,22 @@ fn invalid_input_is_refused_before_anything_is_written() {
             (&["t.obj", "--sideways"], 2, "--sideways"),
         ] {
             let arguments = [command, arguments, &["-o", "x.obj"]].concat();
-            refused(&sixfold, &arguments, code, says);
+            assert_refused(&sixfold, &arguments, code, message);
         }
-        for (output, says) in [
+        for (output, message) in [
             ("./t.obj", "would overwrite the mesh"),
             ("folder.obj", "is a directory"),
             ("no/such/folder.obj", "cannot be written"),
         ] {
-            refused(
+            assert_refused(
                 &sixfold,
                 &[command, &["t.obj", "-o", output][..]].concat(),
                 2,
-                says,
+                message,
             );
         }
     }
-    for (arguments, code, says) in [
+    for (arguments, code, message) in [
         (&["decimate"][..], 2, "--faces <N>|--ratio <PART>"),
         (
             &["decimate", "--faces", "2", "--ratio", "0.5"],
@@ -324,7 +327,7 @@ fn invalid_input_is_refused_before_anything_is_written() {
         ),
     ] {
         let arguments = [arguments, &["t.obj", "-o", "x.obj"]].concat();
-        refused(&sixfold, &arguments, code, says);
+        assert_refused(&sixfold, &arguments, code, message);
     }
 }
 
@@ -338,7 +341,7 @@ fn a_full_disk_is_an_error() {
         &["remesh", "--edge-length", "0.5"],
     ] {
         let arguments = [command, &["t.obj", "-o", "/dev/full"]].concat();
-        refused(&sixfold, &arguments, 2, "/dev/full: cannot be written");
+        assert_refused(&sixfold, &arguments, 2, "/dev/full: cannot be written");
     }
 }
 
@@ -348,7 +351,7 @@ fn some_backends_edit_non_manifold_meshes() {
     sixfold.file("book.obj", BOOK);
     let arguments = ["remesh", "book.obj", "--edge-length", "0.3", "--backend"];
     for backend in ["face-vertex", "indexed-face-set"] {
-        let obj = made(&sixfold, &[&arguments[..], &[backend]].concat());
+        let obj = written_mesh(&sixfold, &[&arguments[..], &[backend]].concat());
         assert!(obj.faces.len() > 3 && obj.euler_characteristic() == 1);
     }
 }
@@ -356,7 +359,7 @@ fn some_backends_edit_non_manifold_meshes() {
 #[test]
 fn edits_writes_json() {
     let sixfold = Sixfold::new();
-    let run = done(&sixfold, &["edits", "--json", "-"]);
+    let run = run_ok(&sixfold, &["edits", "--json", "-"]);
     let rows: Value = serde_json::from_str(&run.stdout).expect("JSON");
     let rows = rows.as_array().expect("a list");
     assert_eq!(rows.len(), 15);

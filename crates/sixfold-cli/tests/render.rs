@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::bad_input::refused;
+use crate::bad_input::assert_refused;
 use crate::run::{Sixfold, TETRAHEDRON};
 
 /// Returns the width and height in the header of a PNG.
@@ -86,7 +86,7 @@ fn invalid_input_gives_one_error_and_no_picture() {
         "tagged.obj",
         &format!("{TETRAHEDRON}t crease 2/1/0 1 9 3\n"),
     );
-    for (arguments, says) in [
+    for (arguments, message) in [
         (&["mesh.obj", "-o", "out.gif"][..], "OUT.png or OUT.svg"),
         (&["mesh.obj", "-o", "-"], "OUT.png or OUT.svg"),
         (&["mesh.obj"], "--output"),
@@ -140,11 +140,11 @@ fn invalid_input_gives_one_error_and_no_picture() {
             "2 crease files for 1 mesh",
         ),
     ] {
-        refused(&sixfold, &[&["render"], arguments].concat(), 2, says);
+        assert_refused(&sixfold, &[&["render"], arguments].concat(), 2, message);
     }
     // A picture does not overwrite its input.
     sixfold.file("mesh.png", TETRAHEDRON);
-    refused(
+    assert_refused(
         &sixfold,
         &["render", "mesh.png", "-o", "./mesh.png"],
         2,
@@ -158,5 +158,5 @@ fn too_many_faces_for_an_svg_are_not_supported() {
     sixfold.grid("grid.obj", 180);
     let arguments = ["render", "grid.obj", "--view", "0,0", "-o", "out.svg"];
     let big = [&arguments[..], &["--size", "1200x1200"]].concat();
-    refused(&sixfold, &big, 3, "write a PNG");
+    assert_refused(&sixfold, &big, 3, "write a PNG");
 }

@@ -4,8 +4,8 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::bad_input::refused;
-use crate::run::{Run, Sixfold, TETRAHEDRON, done, text};
+use crate::bad_input::assert_refused;
+use crate::run::{Run, Sixfold, TETRAHEDRON, run_ok, text};
 
 /// Studies half-edge and corner table on one mesh, with the additional arguments `more`.
 fn study(sixfold: &Sixfold, more: &[&str]) -> Run {
@@ -136,7 +136,7 @@ fn results_of_several_commands_are_drawn_on_one_page() {
     let sixfold = grid();
     let quickly = ["--budget", "300ms", "--backends", "half-edge,corner-table"];
     let run = |command: &[&str], file: &str| {
-        done(&sixfold, &[command, &quickly, &["--json", file]].concat());
+        run_ok(&sixfold, &[command, &quickly, &["--json", file]].concat());
     };
     run(
         &["study", "grid.obj", "--operations", "boundary"],
@@ -175,7 +175,7 @@ fn results_of_several_commands_are_drawn_on_one_page() {
         "growth.json",
         "pick.json",
     ];
-    done(
+    run_ok(
         &sixfold,
         &[&["report"], &all[..], &["growth.json", "--to", "out"]].concat(),
     );
@@ -199,13 +199,13 @@ fn results_of_several_commands_are_drawn_on_one_page() {
     // `compare` accepts the report of one mesh as a study.
     let quick = ["--budget", "60ms", "--operations", "boundary"];
     let report = ["--report", "again", "--labs", "none"];
-    done(
+    run_ok(
         &sixfold,
         &[&["study", "grid.obj"], &quick[..], &report].concat(),
     );
-    done(&sixfold, &["compare", "study.json", "again"]);
+    run_ok(&sixfold, &["compare", "study.json", "again"]);
 
-    done(&sixfold, &["report", "growth.json", "--to", "alone"]);
+    run_ok(&sixfold, &["report", "growth.json", "--to", "alone"]);
     let page = text(&sixfold, "alone/report.html");
     assert!(page.contains("<h1>How costs grow: "), "{page:.2000}");
     assert_eq!(figures(&page), ["growth-boundary"]);
@@ -220,15 +220,15 @@ fn invalid_results_are_refused() {
     fs::create_dir(sixfold.folder().join("foreign")).expect("a folder");
     sixfold.file("foreign/results.json", "{\"mine\": true}");
     let quick = ["--budget", "60ms", "--operations", "boundary", "--json"];
-    done(
+    run_ok(
         &sixfold,
         &[&["study", "grid.obj"], &quick[..], &["a.json"]].concat(),
     );
-    done(
+    run_ok(
         &sixfold,
         &["compare", "a.json", "a.json", "--json", "changes.json"],
     );
-    for (arguments, says) in [
+    for (arguments, message) in [
         (
             &["report", "other.json", "--to", "out"][..],
             "result of another command",
@@ -265,7 +265,7 @@ fn invalid_results_are_refused() {
             "no lab is called `none`",
         ),
     ] {
-        refused(&sixfold, arguments, 2, says);
+        assert_refused(&sixfold, arguments, 2, message);
     }
     assert!(
         !sixfold.folder().join("out").exists(),

@@ -21,7 +21,7 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    fn of(output: Output) -> Self {
+    fn from_output(output: Output) -> Self {
         let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
         Self {
             code: output.status.code(),
@@ -79,11 +79,11 @@ impl Sixfold {
 
     /// Runs the binary to its end.
     pub(crate) fn run(&self, arguments: &[&str]) -> Run {
-        Run::of(self.command(arguments).output().expect("the binary runs"))
+        Run::from_output(self.command(arguments).output().expect("the binary runs"))
     }
 
     /// Starts the binary, and waits until it has opened `drafts` files for writing.
-    pub(crate) fn begun(&self, arguments: &[&str], drafts: usize) -> Child {
+    pub(crate) fn start(&self, arguments: &[&str], drafts: usize) -> Child {
         let before = self.names().len();
         let mut command = self.command(arguments);
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -96,11 +96,11 @@ impl Sixfold {
     }
 
     /// Runs the binary, and sends it a signal at the time `after` after it has opened its file.
-    pub(crate) fn interrupted(&self, arguments: &[&str], signal: &str, after: Duration) -> Run {
-        let child = self.begun(arguments, 1);
+    pub(crate) fn run_interrupted(&self, arguments: &[&str], signal: &str, after: Duration) -> Run {
+        let child = self.start(arguments, 1);
         sleep(after);
         send(signal, &child);
-        let run = Run::of(child.wait_with_output().expect("it ends"));
+        let run = Run::from_output(child.wait_with_output().expect("it ends"));
         assert_eq!(run.code, Some(4), "{run:?}");
         assert!(run.stderr.contains("interrupted"), "{run:?}");
         run
@@ -130,7 +130,7 @@ pub(crate) fn text(sixfold: &Sixfold, name: &str) -> String {
 }
 
 /// Runs the binary and asserts success.
-pub(crate) fn done(sixfold: &Sixfold, arguments: &[&str]) -> Run {
+pub(crate) fn run_ok(sixfold: &Sixfold, arguments: &[&str]) -> Run {
     let run = sixfold.run(arguments);
     assert_eq!(run.code, Some(0), "{arguments:?}: {run:?}");
     run

@@ -1,9 +1,9 @@
 //! Tests of `sixfold subdivide`, `smooth`, `dual` and `triangulate`: counts of the results,
 //! refusals.
 
-use crate::bad_input::refused;
+use crate::bad_input::assert_refused;
 use crate::obj::Obj;
-use crate::run::{Sixfold, TETRAHEDRON, done, text};
+use crate::run::{Sixfold, TETRAHEDRON, run_ok, text};
 
 /// Four vertices at the corners of a square, and one face.
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
@@ -14,11 +14,11 @@ const BOOK: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 
 
 /// Runs `sixfold subdivide` with these arguments and returns the mesh that it writes.
 fn subdivided(sixfold: &Sixfold, arguments: &[&str]) -> Obj {
-    done(
+    run_ok(
         sixfold,
         &[&["subdivide", "-o", "out.obj"], arguments].concat(),
     );
-    Obj::of(&text(sixfold, "out.obj"))
+    Obj::parse(&text(sixfold, "out.obj"))
 }
 
 #[test]
@@ -43,7 +43,7 @@ fn results_have_the_size_of_the_closed_forms() {
         assert_eq!(obj.counts(), counts, "{scheme}, level {levels}");
         assert_eq!(obj.boundary_edges(), 0, "{scheme}, level {levels}");
     }
-    let run = done(
+    let run = run_ok(
         &sixfold,
         &["subdivide", "--levels", "2", "t.obj", "-o", "out.obj"],
     );
@@ -53,8 +53,8 @@ fn results_have_the_size_of_the_closed_forms() {
     );
     assert_eq!(run.stderr, "", "progress is for terminals");
     let obj = subdivided(&sixfold, &["--levels", "0", "t.obj"]);
-    assert_eq!(obj.positions, Obj::of(TETRAHEDRON).positions);
-    assert_eq!(obj.faces, Obj::of(TETRAHEDRON).faces);
+    assert_eq!(obj.positions, Obj::parse(TETRAHEDRON).positions);
+    assert_eq!(obj.faces, Obj::parse(TETRAHEDRON).faces);
 }
 
 #[test]
@@ -73,7 +73,7 @@ fn creases_of_files_and_tags_stay_sharp() {
         "plain.obj",
     ];
     let sharp = subdivided(&sixfold, &with_file);
-    let old = Obj::of(TETRAHEDRON).positions;
+    let old = Obj::parse(TETRAHEDRON).positions;
     assert_ne!(plain.positions[0], old[0], "a smooth vertex moves");
     assert_eq!(sharp.positions[0], old[0], "a corner stays");
     let middle = [0, 1, 2].map(|i| (old[0][i] + old[1][i]) / 2.0);
@@ -104,7 +104,7 @@ fn limits_lie_on_the_surface() {
     ];
     let level = subdivided(&sixfold, &arguments);
     let limit_text = text(&sixfold, "limit.obj");
-    let limit = Obj::of(&limit_text);
+    let limit = Obj::parse(&limit_text);
     assert_eq!(limit.faces, level.faces);
     assert!(
         limit_text.lines().any(|line| line == "vn 0 0 1"),
@@ -116,11 +116,11 @@ fn limits_lie_on_the_surface() {
     );
     for (v, limit) in limit.positions.iter().enumerate() {
         // Old vertices come first at every level.
-        let apart = |p: [f32; 3]| (0..3).map(|i| (p[i] - limit[i]).abs()).fold(0.0, f32::max);
-        assert!(apart(far.positions[v]) < 1e-3, "v{v}");
+        let distance = |p: [f32; 3]| (0..3).map(|i| (p[i] - limit[i]).abs()).fold(0.0, f32::max);
+        assert!(distance(far.positions[v]) < 1e-3, "v{v}");
     }
     assert_ne!(limit.positions, level.positions);
-    let run = done(
+    let run = run_ok(
         &sixfold,
         &["subdivide", "square.obj", "-o", "a.obj", "--limit", "-"],
     );
@@ -165,7 +165,7 @@ fn a_part_of_a_mesh_is_refined_without_gaps() {
             what,
         ]
     };
-    for (what, says) in [
+    for (what, message) in [
         ("faces:wrong.txt", "wrong.txt: face f4 does not exist"),
         ("faces:words.txt", "words.txt:2"),
         ("faces:missing.txt", "missing.txt"),
@@ -174,14 +174,14 @@ fn a_part_of_a_mesh_is_refined_without_gaps() {
         ("angle:181", "0 to 180"),
         ("all", "box:X0"),
     ] {
-        refused(&sixfold, &select(what), 2, says);
+        assert_refused(&sixfold, &select(what), 2, message);
     }
     let mut arguments = select("faces:first.txt");
     arguments[4] = "first.txt";
-    refused(&sixfold, &arguments, 2, "would overwrite the list of faces");
+    assert_refused(&sixfold, &arguments, 2, "would overwrite the list of faces");
     arguments = select("angle:1");
     arguments[5] = "tagged.obj";
-    refused(
+    assert_refused(
         &sixfold,
         &arguments,
         3,
@@ -189,7 +189,7 @@ fn a_part_of_a_mesh_is_refined_without_gaps() {
     );
     arguments = select("angle:1");
     arguments[2] = "loop";
-    refused(&sixfold, &arguments, 3, "--scheme midpoint");
+    assert_refused(&sixfold, &arguments, 3, "--scheme midpoint");
 }
 
 #[test]
@@ -197,7 +197,7 @@ fn threads_and_standard_output_change_nothing() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 12);
     let arguments = ["subdivide", "--scheme", "loop", "--levels", "2", "grid.obj"];
-    let run = |more: &[&str]| done(&sixfold, &[&arguments[..], more].concat());
+    let run = |more: &[&str]| run_ok(&sixfold, &[&arguments[..], more].concat());
     run(&["--threads", "1", "-o", "one.obj"]);
     run(&["--threads", "2", "-o", "two.obj"]);
     let one = text(&sixfold, "one.obj");
@@ -216,7 +216,7 @@ fn invalid_input_is_refused_before_anything_is_written() {
         "tagged.obj",
         &format!("{TETRAHEDRON}t crease 2/1/0 0 1 2\n"),
     );
-    for (file, line, says) in [
+    for (file, line, message) in [
         ("missing", "edge 0 9 1", "vertex 9 does not exist"),
         ("negative", "edge 0 1 -1", "from 0 to inf"),
         ("nan", "corner 0 nan", "from 0 to inf"),
@@ -224,16 +224,16 @@ fn invalid_input_is_refused_before_anything_is_written() {
         ("word", "crease 0 1 2", "is not an entry"),
     ] {
         sixfold.file(file, &format!("# creases\n{line}\n"));
-        let run = refused(
+        let run = assert_refused(
             &sixfold,
             &["subdivide", "t.obj", "-o", "x.obj", "--creases", file],
             2,
             &format!("{file}:2: "),
         );
-        assert!(run.stderr.contains(says), "{run:?}");
+        assert!(run.stderr.contains(message), "{run:?}");
     }
     sixfold.file("diagonal", "edge 0 2 1\n");
-    for (arguments, code, says) in [
+    for (arguments, code, message) in [
         (
             &["square.obj", "--creases", "diagonal"][..],
             2,
@@ -290,14 +290,14 @@ fn invalid_input_is_refused_before_anything_is_written() {
         ),
         (&["missing.obj"], 2, "missing.obj"),
     ] {
-        refused(
+        assert_refused(
             &sixfold,
             &[&["subdivide", "-o", "x.obj"], arguments].concat(),
             code,
-            says,
+            message,
         );
     }
-    refused(
+    assert_refused(
         &sixfold,
         &["subdivide", "t.obj", "-o", "./t.obj"],
         2,
@@ -314,7 +314,7 @@ fn a_mesh_that_the_structure_or_the_scheme_does_not_support_is_refused() {
         "huge.obj",
         "v 3e38 0 0\nv 3e38 3e38 0\nv 3e38 3e38 3e38\nf 1 2 3\n",
     );
-    for (arguments, code, says) in [
+    for (arguments, code, message) in [
         (
             &["book.obj"][..],
             3,
@@ -356,7 +356,7 @@ fn a_mesh_that_the_structure_or_the_scheme_does_not_support_is_refused() {
         let run = sixfold.run(&[&["subdivide", "-o", "x.obj"], arguments].concat());
         assert_eq!(run.code, Some(code), "{arguments:?}: {run:?}");
         assert_eq!(run.stderr.lines().count(), 1, "{run:?}");
-        assert!(run.stderr.contains(says), "{arguments:?}: {run:?}");
+        assert!(run.stderr.contains(message), "{arguments:?}: {run:?}");
         assert_eq!(sixfold.names(), ["book.obj", "huge.obj", "square.obj"]);
     }
     // Other structures hold it; an edge with three faces is treated as a crease.
@@ -395,18 +395,18 @@ fn smooth_dual_and_triangulate_write_meshes_or_refuse() {
             [4, 2],
         ),
     ] {
-        let run = done(&sixfold, &[arguments, &["-o", "out.obj"]].concat());
+        let run = run_ok(&sixfold, &[arguments, &["-o", "out.obj"]].concat());
         assert_eq!(run.stderr, "", "{run:?}");
         assert_eq!(
-            Obj::of(&text(&sixfold, "out.obj")).counts(),
+            Obj::parse(&text(&sixfold, "out.obj")).counts(),
             counts,
             "{arguments:?}"
         );
     }
-    let run = done(&sixfold, &["triangulate", "tagged.obj", "-o", "-"]);
-    assert_eq!(Obj::of(&run.stdout).counts(), [4, 2]);
+    let run = run_ok(&sixfold, &["triangulate", "tagged.obj", "-o", "-"]);
+    assert_eq!(Obj::parse(&run.stdout).counts(), [4, 2]);
     assert!(run.stderr.contains("not kept"), "{run:?}");
-    for (arguments, code, says) in [
+    for (arguments, code, message) in [
         (&["smooth", "book.obj"][..], 3, "another --backend"),
         (
             &["smooth", "square.obj", "--weights", "cotangent"],
@@ -420,14 +420,14 @@ fn smooth_dual_and_triangulate_write_meshes_or_refuse() {
         (&["dual", "missing.obj"], 2, "missing.obj"),
         (&["triangulate", "t.obj", "--method", "saw"], 2, "ears, fan"),
     ] {
-        refused(
+        assert_refused(
             &sixfold,
             &[arguments, &["-o", "x.obj"]].concat(),
             code,
-            says,
+            message,
         );
     }
-    refused(
+    assert_refused(
         &sixfold,
         &["dual", "t.obj", "-o", "t.obj"],
         2,

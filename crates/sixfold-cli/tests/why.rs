@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::run::{Sixfold, TETRAHEDRON, done, text};
+use crate::run::{Sixfold, TETRAHEDRON, run_ok, text};
 
 /// Two triangles that share an edge, so that there is a boundary.
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
@@ -18,7 +18,7 @@ fn counts_equal_those_computed_by_hand() {
     let sixfold = Sixfold::new();
     sixfold.file("square.obj", SQUARE);
     let arguments = ["why", "square.obj", "--counts-only", "--json", "-"];
-    let why: Value = serde_json::from_str(&done(&sixfold, &arguments).stdout).expect("JSON");
+    let why: Value = serde_json::from_str(&run_ok(&sixfold, &arguments).stdout).expect("JSON");
     assert_eq!(why["schema"], 1);
     assert_eq!(why["rows"].as_array().map(Vec::len), Some(6 * 9));
     assert_eq!(why["memory"], Value::Null);
@@ -65,13 +65,13 @@ fn times_come_with_what_bounds_them() {
         "--json",
         "why.json",
     ];
-    let run = done(&sixfold, &arguments);
+    let run = run_ok(&sixfold, &arguments);
     for line in run.stdout.lines() {
         assert!(line.chars().count() <= 100, "too wide: {line}");
     }
     let why: Value = serde_json::from_str(&text(&sixfold, "why.json")).expect("JSON");
-    let rungs = why["memory"].as_array().expect("a list");
-    assert!(rungs.len() > 1);
+    let speeds = why["memory"].as_array().expect("a list");
+    assert!(speeds.len() > 1);
     for row in why["rows"].as_array().expect("a list") {
         let timed = &row["timed"];
         let number = |field: &str| timed[field].as_f64().expect("a number");
@@ -100,7 +100,7 @@ fn invalid_input_is_refused_with_a_hint() {
     let book = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
     sixfold.file("book.obj", book);
     sixfold.file("points.obj", "v 0 0 0\n");
-    for (arguments, code, says) in [
+    for (arguments, code, message) in [
         (
             &["why", "ok.obj", "--relations", "neighbours"][..],
             2,
@@ -133,11 +133,11 @@ fn invalid_input_is_refused_with_a_hint() {
     ] {
         let run = sixfold.run(arguments);
         assert_eq!(run.code, Some(code), "{run:?}");
-        assert!(run.stderr.contains(says), "{says}: {run:?}");
+        assert!(run.stderr.contains(message), "{message}: {run:?}");
         assert_eq!(run.stdout, "");
     }
     // Structures that cannot hold the mesh are named; the others are counted.
-    let run = done(&sixfold, &["why", "book.obj", "--counts-only"]);
+    let run = run_ok(&sixfold, &["why", "book.obj", "--counts-only"]);
     assert!(run.stdout.contains("half-edge         refuses"), "{run:?}");
     let rows = |name: &str| {
         run.stdout

@@ -104,7 +104,7 @@ pub struct BackendInfo {
 
 impl BackendInfo {
     /// Returns the properties of `M`, without edits.
-    pub const fn of<M: Representation>() -> Self {
+    pub const fn new<M: Representation>() -> Self {
         Self {
             name: M::NAME,
             capabilities: M::CAPABILITIES,
@@ -114,10 +114,10 @@ impl BackendInfo {
     }
 
     /// Returns the properties of `M`, including its edits.
-    pub const fn of_editable<M: Representation + MeshEdit>() -> Self {
+    pub const fn with_edits<M: Representation + MeshEdit>() -> Self {
         Self {
             edits: M::EDITS,
-            ..Self::of::<M>()
+            ..Self::new::<M>()
         }
     }
 
@@ -126,7 +126,7 @@ impl BackendInfo {
     /// # Errors
     ///
     /// Returns the error that building the structure would return.
-    pub fn verdict(&self, polygons: &PolygonMesh) -> Result<(), BuildError> {
+    pub fn check(&self, polygons: &PolygonMesh) -> Result<(), BuildError> {
         self.capabilities.check(polygons)
     }
 }
@@ -134,7 +134,7 @@ impl BackendInfo {
 /// Returns the properties of all structures, in the order in which tables show them.
 pub fn roster() -> Vec<BackendInfo> {
     let mut rows = Vec::new();
-    for_each_editable!(M => { rows.push(BackendInfo::of_editable::<M>()); });
+    for_each_editable!(M => { rows.push(BackendInfo::with_edits::<M>()); });
     rows
 }
 

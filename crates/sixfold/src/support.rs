@@ -23,7 +23,7 @@ pub struct Support {
 
 impl Support {
     /// Returns the default method: the last available one.
-    pub fn best(&self) -> Option<Method> {
+    pub fn default_method(&self) -> Option<Method> {
         self.methods.last().copied()
     }
 }
@@ -76,7 +76,7 @@ mod tests {
         };
         assert!(!row(Scheme::CatmullClark).methods.contains(&Method::Native));
         assert!(!row(Scheme::CatmullClark).holds_result);
-        assert_eq!(row(Scheme::Loop).best(), Some(Method::Native));
+        assert_eq!(row(Scheme::Loop).default_method(), Some(Method::Native));
         assert!(row(Scheme::Loop).holds_result);
     }
 }

@@ -18,7 +18,9 @@ use serde_json::json;
 use sixfold::io::read_obj;
 use sixfold::subdivision::{Boundary, Scheme};
 use sixfold::{Creases, PolygonMesh};
-use sixfold_study::{MachineClock, Operation, Policy, Refining, Solo, Time, Way, pages, timed};
+use sixfold_study::{
+    BackendRunner, MachineClock, Operation, Policy, SubdivisionJob, Time, Way, pages, timed,
+};
 
 /// A sample is repeated until this much time has passed.
 const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
@@ -87,13 +89,14 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let (polygons, _) = read_obj(path).map_err(|e| e.to_string())?.into_polygons();
     let mesh = path.file_stem().unwrap_or_default().to_string_lossy();
     let peer = format!("sixfold {}", arguments.backend);
-    pages::put_in_force(Policy::Kept);
-    let mut solo = Solo::new(&arguments.backend, &polygons).map_err(|e| e.to_string())?;
+    pages::set_policy(Policy::Kept);
+    let mut runner =
+        BackendRunner::new(&arguments.backend, &polygons).map_err(|e| e.to_string())?;
     let wanted = |name: &str| {
         arguments.operations.is_empty() || arguments.operations.iter().any(|o| o == name)
     };
     if wanted("memory") {
-        let bytes = solo.bytes();
+        let bytes = runner.bytes();
         let per_vertex = bytes as f64 / polygons.vertex_count() as f64;
         println!(
             "{}",
@@ -104,13 +107,13 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     for operation in Operation::ALL {
         // Operations that make or edit a mesh are run only if they are named; subdivisions by
         // levels are run below.
-        let unasked = operation.makes_a_mesh() && arguments.operations.is_empty();
-        if unasked || !wanted(operation.name()) {
+        let unnamed = operation.creates_mesh() && arguments.operations.is_empty();
+        if unnamed || !wanted(operation.name()) {
             continue;
         }
         let clock = MachineClock::start();
-        let row = Row::of(arguments, operation.name(), || {
-            let run = solo.run(operation, &clock);
+        let row = Row::measure(arguments, operation.name(), || {
+            let run = runner.run(operation, &clock);
             (run.time, run.checksum, run.elements)
         });
         row.print(&peer, &mesh);
@@ -127,7 +130,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
 /// Returns the scheme and the number of steps of `catmull_clark_2`.
 fn subdivision(name: &str) -> Option<(Scheme, u32)> {
     let (scheme, levels) = name.rsplit_once('_')?;
-    let scheme = Scheme::named(&scheme.replace('_', "-"))?;
+    let scheme = Scheme::from_name(&scheme.replace('_', "-"))?;
     let levels = levels.parse().ok()?;
     (1..=16).contains(&levels).then_some((scheme, levels))
 }
@@ -140,10 +143,10 @@ fn refined(
     scheme: Scheme,
     levels: u32,
 ) -> Result<Row, String> {
-    let mut job = Refining::new(scheme, arguments.way, levels);
+    let mut job = SubdivisionJob::new(scheme, arguments.way, levels);
     // The boundary rule of the other libraries.
     job.subdivision.boundary = Boundary::EdgeOnly;
-    let refiner = job.on(&arguments.backend, polygons, &Creases::default());
+    let refiner = job.prepare(&arguments.backend, polygons, &Creases::default());
     let refiner = refiner.ok_or(format!("{name} cannot run this way on this backend"))?;
     let mut refiner = refiner.map_err(|e| e.to_string())?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads);
@@ -153,7 +156,7 @@ fn refined(
         // With one thread, the clock of the pool's thread measures all the work.
         let clock = MachineClock::start();
         let mut runs = 1;
-        Ok(Row::of(arguments, name, || {
+        Ok(Row::measure(arguments, name, || {
             let time = timed(&clock, || {
                 (0..runs).for_each(|_| refiner.run().expect("it has run before"));
             });
@@ -180,7 +183,7 @@ struct Row {
 impl Row {
     /// Runs the operation once to warm up, then as often as the arguments say and the budget
     /// allows.
-    fn of(
+    fn measure(
         arguments: &Arguments,
         operation: &str,
         mut run: impl FnMut() -> (Time, f64, u64),

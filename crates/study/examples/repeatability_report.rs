@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 
 use sixfold::{Relation, shapes};
 use sixfold_study::{
-    Environment, Operation, Report, ResultRow, Settings, Specimen, Standing, study,
+    Environment, Operation, Report, ResultRow, Settings, Standing, StudyMesh, study,
 };
 
 /// Ratio of two backends above which their order should be the same in all studies.
@@ -31,11 +31,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let seconds: u64 = arguments.next().map_or(Ok(45), |text| text.parse())?;
 
     let torus = shapes::triangle_torus(224, 224)?;
-    let specimen = Specimen::new(
+    let study_mesh = StudyMesh::new(
         "torus of 100,352 triangles, shuffled",
         shapes::shuffled(&torus, 1),
     );
-    let environment = Environment::here(1, seconds as f64);
+    let environment = Environment::detect(1, seconds as f64);
     let mut reports = Vec::new();
     let start = Instant::now();
     for run in 0..runs {
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             seed: run as u64 + 1,
             ..Settings::default()
         };
-        let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ())?;
+        let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ())?;
         eprintln!(
             "{} of {runs}, {:.0} s",
             run + 1,
@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         reports.push(report);
     }
     let each = start.elapsed().as_secs_f64() / runs as f64;
-    let text = told(&reports, &environment, seconds, each);
+    let text = report_text(&reports, &environment, seconds, each);
     fs::create_dir_all(&folder)?;
     fs::write(format!("{folder}/README.md"), &text)?;
     print!("{text}");
@@ -62,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Returns the report: best backends, orders of pairs, coverage, noise.
-fn told(reports: &[Report], environment: &Environment, seconds: u64, each: f64) -> String {
+fn report_text(reports: &[Report], environment: &Environment, seconds: u64, each: f64) -> String {
     let runs = reports.len();
     let Environment {
         cpu_model,
@@ -107,7 +107,7 @@ fn winners(reports: &[Report]) -> String {
         }
         let mut named: Vec<_> = named.into_iter().collect();
         named.sort_by_key(|(_, [best, tied])| std::cmp::Reverse((*best, *tied)));
-        let words: Vec<String> = named
+        let cells: Vec<String> = named
             .into_iter()
             .map(|(backend, [best, tied])| match (best, tied) {
                 (best, 0) => format!("{backend} best {best}"),
@@ -115,7 +115,7 @@ fn winners(reports: &[Report]) -> String {
                 (best, tied) => format!("{backend} best {best}, tied {tied}"),
             })
             .collect();
-        let _ = writeln!(text, "| {operation} | {} |", words.join("; "));
+        let _ = writeln!(text, "| {operation} | {} |", cells.join("; "));
     }
     text + "\n"
 }
@@ -200,7 +200,7 @@ fn coverage(reports: &[Report]) -> String {
     let kinds: [(&str, &Of); 2] = [("the time", &of_time), ("the ratio to the best", &of_ratio)];
     for (name, of) in kinds {
         for scanning in [false, true] {
-            let (mut held, mut all, mut widths) = (0, 0, Vec::new());
+            let (mut covered, mut all, mut widths) = (0, 0, Vec::new());
             for operation in Relation::ALL.map(Operation::Relation) {
                 let mut rows: BTreeMap<&str, Vec<[f64; 3]>> = BTreeMap::new();
                 // Ratios are comparable only between studies with the same best backend.
@@ -227,7 +227,7 @@ fn coverage(reports: &[Report]) -> String {
                         intervals.iter().map(|[_, middle, _]| *middle).collect();
                     let truth = median(&middles);
                     for [low, middle, high] in intervals {
-                        held += usize::from(low <= truth && truth <= high);
+                        covered += usize::from(low <= truth && truth <= high);
                         all += 1;
                         widths.push((high - low) / middle);
                     }
@@ -237,7 +237,7 @@ fn coverage(reports: &[Report]) -> String {
                 continue;
             }
             let what = if scanning { ", scans" } else { "" };
-            let share = 100.0 * held as f64 / all as f64;
+            let share = 100.0 * covered as f64 / all as f64;
             let width = 100.0 * median(&widths);
             let _ = writeln!(
                 text,
@@ -252,7 +252,7 @@ fn coverage(reports: &[Report]) -> String {
         let worst = noises.iter().copied().fold(1.0, f64::max);
         let _ = writeln!(
             text,
-            "\nThe two columns of the backend that is entered twice differ by {:.1} % (the median over the studies of the\n\
+            "\nThe two columns of the backend that is measured twice differ by {:.1} % (the median over the studies of the\n\
              median over the relations), at most by {:.1} %.",
             100.0 * (median(&noises) - 1.0),
             100.0 * (worst - 1.0)

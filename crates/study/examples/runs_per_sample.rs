@@ -13,7 +13,7 @@ use std::process::ExitCode;
 
 use sixfold::{Facts, PolygonMesh, shapes};
 use sixfold_study::{Backend, Clock, MachineClock, Operation, Policy, Series, pages};
-use sixfold_workload::{Access, Draw, Job, Route, Script, built_in, set_up};
+use sixfold_workload::{Access, Draw, Job, Route, Schedule, built_in, prepare_mix};
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
 const OPERATIONS: [&str; 8] = [
@@ -29,7 +29,7 @@ const OPERATIONS: [&str; 8] = [
 const MANY: u32 = 50;
 
 fn main() -> ExitCode {
-    pages::put_in_force(Policy::Kept);
+    pages::set_policy(Policy::Kept);
     let rounds = std::env::args().nth(1).and_then(|text| text.parse().ok());
     let rounds: usize = rounds.unwrap_or(21);
     let clock = MachineClock::start();
@@ -63,9 +63,7 @@ fn operations(
 ) -> Vec<(String, f64)> {
     let roster = Backend::roster();
     let backend = roster.iter().find(|backend| backend.name() == structure);
-    let built = backend
-        .expect("a structure")
-        .put_on_the_bench(polygons, None);
+    let built = backend.expect("a structure").prepare(polygons, None);
     let (mut subject, _) = built.expect("it holds a sphere");
     let mut lines = Vec::new();
     for name in OPERATIONS {
@@ -75,7 +73,7 @@ fn operations(
             sample: None,
         };
         let mut time = |runs| {
-            let run = subject.run(&job, &Series::of_runs(runs, clock).after(1));
+            let run = subject.run(&job, &Series::with_runs(runs, clock).with_untimed(1));
             run.refusal.is_none().then(|| run.time.ns())
         };
         let ratios = (0..rounds).map(|_| Some(time(1)? / time(MANY)?));
@@ -90,11 +88,14 @@ fn operations(
 fn mix(structure: &str, polygons: &PolygonMesh, rounds: usize, clock: &dyn Clock) -> (String, f64) {
     let name = "remeshing";
     let workload = built_in(name).expect("a built-in workload");
-    let script = Script::of(&workload, &polygons.counts(Facts::of(polygons).edges));
-    let route = Route::of(Access::Patches, polygons, 1);
-    let draw = Draw::of(polygons, 1);
-    let set_up = set_up(structure, polygons, &draw, &script, &route);
-    let Some(Ok(mut mixer)) = set_up else {
+    let schedule = Schedule::new(
+        &workload,
+        &polygons.counts(Facts::from_polygons(polygons).edges),
+    );
+    let route = Route::new(Access::Patches, polygons, 1);
+    let draw = Draw::new(polygons, 1);
+    let prepared = prepare_mix(structure, polygons, &draw, &schedule, &route);
+    let Some(Ok(mut mixer)) = prepared else {
         panic!("{structure} cannot be edited");
     };
     let mut time = |runs| {

@@ -9,7 +9,7 @@ use crate::report::Agreement;
 use sixfold_workload::Clock;
 use sixfold_workload::Operation;
 use sixfold_workload::field_sum;
-use sixfold_workload::{Job, Outcome, Series, Subject};
+use sixfold_workload::{Job, Outcome, Series, TimedBackend};
 
 /// Largest relative difference of two `f32` sums that add the same terms in different orders.
 const TOLERANCE: f64 = 1e-4;
@@ -20,19 +20,19 @@ const TOLERANCE: f64 = 1e-4;
 /// If the jobs of the two differ, the smaller one also runs on the other backend, untimed. A full
 /// run counts as larger than any sample, so a sampled operation is never run in full. Nothing more
 /// is run after `stop` is set.
-pub(crate) fn judge(
+pub(crate) fn compare_checksums(
     entries: &[Entry],
-    subjects: &mut [Box<dyn Subject + '_>],
+    subjects: &mut [Box<dyn TimedBackend + '_>],
     polygons: &PolygonMesh,
     clock: &dyn Clock,
     stop: &AtomicBool,
 ) -> Vec<Agreement> {
-    let faithful =
-        |subjects: &[Box<dyn Subject + '_>], s: usize| subjects[s].merged_vertices() == 0;
-    let judges = |subjects: &[Box<dyn Subject + '_>], s: usize| {
-        faithful(subjects, s) && !subjects[s].is_external()
+    let keeps_vertices =
+        |subjects: &[Box<dyn TimedBackend + '_>], s: usize| subjects[s].merged_vertices() == 0;
+    let is_reference = |subjects: &[Box<dyn TimedBackend + '_>], s: usize| {
+        keeps_vertices(subjects, s) && !subjects[s].is_external()
     };
-    let verdict = |entry: &Entry| {
+    let agreement = |entry: &Entry| {
         let Some(outcome) = entry.outcome else {
             return Agreement::Unchecked;
         };
@@ -40,7 +40,7 @@ pub(crate) fn judge(
             other.job.operation == entry.job.operation
                 && other.subject != entry.subject
                 && other.outcome.is_some()
-                && judges(subjects, other.subject)
+                && is_reference(subjects, other.subject)
         });
         // Full runs come first: a sample costs these backends little.
         let mut others: Vec<&Entry> = others.collect();
@@ -67,10 +67,10 @@ pub(crate) fn judge(
             match outcome.elements == reference.elements {
                 true => Agreement::Same,
                 false if subjects[entry.subject].is_external() => Agreement::Mismatch,
-                false if faithful(subjects, entry.subject) => Agreement::Same,
+                false if keeps_vertices(subjects, entry.subject) => Agreement::Same,
                 false => Agreement::Merged,
             }
-        } else if !faithful(subjects, entry.subject) {
+        } else if !keeps_vertices(subjects, entry.subject) {
             Agreement::Merged
         } else if !(outcome.checksum.is_finite() && reference.checksum.is_finite()) {
             Agreement::Unchecked
@@ -78,7 +78,7 @@ pub(crate) fn judge(
             Agreement::Mismatch
         }
     };
-    entries.iter().map(verdict).collect()
+    entries.iter().map(agreement).collect()
 }
 
 /// Returns the sample size of `job`; `usize::MAX` for a full run.
@@ -86,22 +86,26 @@ fn size(job: &Job) -> usize {
     job.sample.map_or(usize::MAX, |sample| sample.size)
 }
 
-fn rerun(subject: &mut Box<dyn Subject + '_>, job: &Job, clock: &dyn Clock) -> Option<Outcome> {
-    subject.run(job, &Series::once(clock).checked()).outcome
+fn rerun(
+    subject: &mut Box<dyn TimedBackend + '_>,
+    job: &Job,
+    clock: &dyn Clock,
+) -> Option<Outcome> {
+    subject.run(job, &Series::once(clock).with_result()).outcome
 }
 
 /// Returns whether two checksums are of the same work.
 pub(crate) fn agree(operation: Operation, a: f64, b: f64, polygons: &PolygonMesh) -> bool {
-    if operation.counts() {
+    if operation.has_exact_checksum() {
         return a == b;
     }
-    let far = (a - b).abs();
+    let difference = (a - b).abs();
     let size = a.abs().max(b.abs());
-    if far <= TOLERANCE * size {
+    if difference <= TOLERANCE * size {
         return true;
     }
     // If the terms of a sum cancel, their rounding errors remain.
-    far <= noise(operation, polygons) + TOLERANCE * size
+    difference <= noise(operation, polygons) + TOLERANCE * size
 }
 
 /// Returns the largest error of the checksum if terms cancel; O(corners).
@@ -146,7 +150,7 @@ mod tests {
 
     use super::*;
     use sixfold_workload::MachineClock;
-    use sixfold_workload::{Run, Sample};
+    use sixfold_workload::{ElementSample, Run};
 
     fn pillow() -> PolygonMesh {
         let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y];
@@ -166,10 +170,10 @@ mod tests {
         checksum: f64,
         merged: usize,
         /// A full run would not end.
-        no_whole: bool,
+        samples_only: bool,
     }
 
-    impl Subject for Fixed {
+    impl TimedBackend for Fixed {
         fn name(&self) -> &str {
             "fixed"
         }
@@ -184,7 +188,7 @@ mod tests {
         }
         fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
             // A sample has half the checksum of a full run.
-            assert!(!self.no_whole || job.sample.is_some(), "run in full");
+            assert!(!self.samples_only || job.sample.is_some(), "run in full");
             let part = if job.sample.is_some() { 0.5 } else { 1.0 };
             let outcome = Outcome {
                 checksum: self.checksum * part,
@@ -194,48 +198,57 @@ mod tests {
         }
     }
 
-    fn judged(subjects: &[(f64, usize, bool)]) -> Vec<Agreement> {
+    fn agreements(subjects: &[(f64, usize, bool)]) -> Vec<Agreement> {
         let clock = MachineClock::start();
-        let (mut boxed, mut entries): (Vec<Box<dyn Subject>>, Vec<Entry>) = Default::default();
+        let (mut boxed, mut entries): (Vec<Box<dyn TimedBackend>>, Vec<Entry>) = Default::default();
         for (i, &(checksum, merged, sampled)) in subjects.iter().enumerate() {
             let mut entry = Entry::new(i, Operation::Boundary);
-            entry.job.sample = sampled.then_some(Sample {
+            entry.job.sample = sampled.then_some(ElementSample {
                 scanned: [true; 3],
                 size: 4,
             });
-            let no_whole = sampled;
+            let samples_only = sampled;
             let mut subject = Fixed {
                 checksum,
                 merged,
-                no_whole,
+                samples_only,
             };
             entry.outcome = subject
-                .run(&entry.job, &Series::once(&clock).checked())
+                .run(&entry.job, &Series::once(&clock).with_result())
                 .outcome;
             boxed.push(Box::new(subject));
             entries.push(entry);
         }
         let stop = AtomicBool::new(false);
-        judge(&entries, &mut boxed, &pillow(), &clock, &stop)
+        compare_checksums(&entries, &mut boxed, &pillow(), &clock, &stop)
     }
 
     #[test]
     fn each_kind_of_difference_has_its_agreement() {
         use Agreement::{Merged, Mismatch, Same, Unchecked};
-        assert_eq!(judged(&[(8.0, 0, false), (8.0, 0, false)]), [Same, Same]);
-        assert_eq!(judged(&[(8.0, 0, false), (9.0, 0, false)]), [Mismatch; 2]);
+        assert_eq!(
+            agreements(&[(8.0, 0, false), (8.0, 0, false)]),
+            [Same, Same]
+        );
+        assert_eq!(
+            agreements(&[(8.0, 0, false), (9.0, 0, false)]),
+            [Mismatch; 2]
+        );
         // A sample is compared with the same sample, not with a full run.
-        assert_eq!(judged(&[(8.0, 0, true), (8.0, 0, false)]), [Same, Same]);
-        assert_eq!(judged(&[(9.0, 0, true), (8.0, 0, false)]), [Mismatch; 2]);
+        assert_eq!(agreements(&[(8.0, 0, true), (8.0, 0, false)]), [Same, Same]);
+        assert_eq!(
+            agreements(&[(9.0, 0, true), (8.0, 0, false)]),
+            [Mismatch; 2]
+        );
         // Merging explains a difference, and a merged mesh is never the reference.
         assert_eq!(
-            judged(&[(7.0, 2, false), (8.0, 0, false)]),
+            agreements(&[(7.0, 2, false), (8.0, 0, false)]),
             [Merged, Unchecked]
         );
-        assert_eq!(judged(&[(8.0, 0, false)]), [Unchecked]);
+        assert_eq!(agreements(&[(8.0, 0, false)]), [Unchecked]);
         // The same checksum from fewer elements.
         assert_eq!(
-            judged(&[(8.0, 2, false), (8.0, 0, false), (8.0, 0, false)]),
+            agreements(&[(8.0, 2, false), (8.0, 0, false), (8.0, 0, false)]),
             [Merged, Same, Same]
         );
     }

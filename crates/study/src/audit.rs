@@ -11,18 +11,19 @@ use serde::Serialize;
 use serde_with::{KeyValueMap, serde_as};
 use sixfold::{BuildError, Counts, PolygonMesh};
 use sixfold_workload::{
-    AllocationCounter, Backend, Heap, MOST_SCANNED_FACES, NotCounted, Operation, Weighed,
+    AllocationCounter, Backend, Heap, MAX_SCANNED_FACES, MeasuredMemory, NotCounted, Operation,
 };
 
-use crate::inspect::{Specimen, per_vertex, unbuilt};
+use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::report::{BackendReport, MeshReport, SCHEMA, write_json};
 use crate::study::StudyError;
 
 /// Bytes of a word (an index or a coordinate), the unit of the lectures.
 const WORD: f64 = 4.0;
 
-/// Largest number of weighings of a backend; two equal ones in a row end it earlier.
-const MOST_WEIGHINGS: usize = 8;
+/// Largest number of times the bytes of a backend are counted; two equal counts in a row end it
+/// earlier.
+const MAX_COUNTS: usize = 8;
 
 /// The memory of each backend, counted in three ways.
 #[serde_as]
@@ -34,12 +35,12 @@ pub struct Audit {
     pub mesh: MeshReport,
     /// The backends by name, in the order requested.
     #[serde_as(as = "KeyValueMap<_>")]
-    pub backends: Vec<Audited>,
+    pub backends: Vec<BackendAudit>,
 }
 
 /// The memory of one backend.
 #[derive(Clone, Debug, Serialize)]
-pub struct Audited {
+pub struct BackendAudit {
     /// Whether the backend holds the mesh; its layout bytes and table bytes.
     #[serde(flatten)]
     pub backend: BackendReport,
@@ -81,41 +82,41 @@ pub struct OperationBytes {
 
 /// Builds each of `backends` from the mesh, one at a time, and counts its bytes with `heap`.
 ///
-/// Each backend is weighed until two weighings in a row are equal, because other threads may
-/// allocate at the same time. `weighing` is called with each backend before it is weighed.
+/// The bytes of each backend are counted until two counts in a row are equal, because other threads
+/// may allocate at the same time. `counting` is called with each backend before.
 pub fn audit(
-    specimen: &Specimen,
+    study_mesh: &StudyMesh,
     backends: &[Backend],
     heap: &dyn Heap,
-    weighing: &mut dyn FnMut(&Backend),
+    counting: &mut dyn FnMut(&Backend),
 ) -> Audit {
-    let polygons = &specimen.polygons;
-    let counts = polygons.counts(specimen.facts.edges);
+    let polygons = &study_mesh.polygons;
+    let counts = polygons.counts(study_mesh.facts.edges);
     let backends = backends.iter().map(|backend| {
-        weighing(backend);
-        Audited::of(backend, weigh(backend, polygons, heap), &counts)
+        counting(backend);
+        BackendAudit::new(backend, count_bytes(backend, polygons, heap), &counts)
     });
     Audit {
         schema: SCHEMA,
-        mesh: specimen.report(),
+        mesh: study_mesh.report(),
         backends: backends.collect(),
     }
 }
 
 /// Runs each operation that allocates on each backend of `audit` that holds the mesh, and adds the
 /// bytes that `counter` counts to the audit. `audit` must be the result for `backends` and
-/// `specimen`.
+/// `study_mesh`.
 ///
 /// A run is repeated until two runs agree on the smallest number of bytes, because other threads
 /// may allocate at the same time.
 pub fn count_allocations(
     audit: &mut Audit,
-    specimen: &Specimen,
+    study_mesh: &StudyMesh,
     backends: &[Backend],
     counter: &dyn AllocationCounter,
     counting: &mut dyn FnMut(&Backend, Operation),
 ) {
-    let (polygons, edges) = (&specimen.polygons, specimen.facts.edges);
+    let (polygons, edges) = (&study_mesh.polygons, study_mesh.facts.edges);
     for (audited, backend) in audit.backends.iter_mut().zip(backends) {
         if !audited.backend.holds {
             continue;
@@ -125,7 +126,7 @@ pub fn count_allocations(
             counting(backend, operation);
             let count = || backend.allocated(operation, polygons, edges, counter);
             let mut least = count();
-            for _ in 1..MOST_WEIGHINGS {
+            for _ in 1..MAX_COUNTS {
                 let again = match &least {
                     Ok(_) => count(),
                     Err(_) => break,
@@ -149,7 +150,7 @@ impl OperationBytes {
             NotCounted::Refused(reason) => reason,
             NotCounted::Scans => format!(
                 "it scans all faces for each element, and the mesh has more than \
-                 {MOST_SCANNED_FACES} faces"
+                 {MAX_SCANNED_FACES} faces"
             ),
         });
         let figures = counted.as_ref().ok();
@@ -166,14 +167,15 @@ impl OperationBytes {
     }
 }
 
-fn weigh(
+/// Counts the bytes of `backend` until two counts in a row are equal.
+fn count_bytes(
     backend: &Backend,
     polygons: &PolygonMesh,
     heap: &dyn Heap,
-) -> Result<Weighed, BuildError> {
-    let mut last = backend.weigh(polygons, heap)?;
-    for _ in 1..MOST_WEIGHINGS {
-        let again = backend.weigh(polygons, heap)?;
+) -> Result<MeasuredMemory, BuildError> {
+    let mut last = backend.measure_memory(polygons, heap)?;
+    for _ in 1..MAX_COUNTS {
+        let again = backend.measure_memory(polygons, heap)?;
         if again == last {
             break;
         }
@@ -185,12 +187,15 @@ fn weigh(
 impl Audit {
     /// Describes each difference between the three numbers: the backend and the bytes.
     pub fn faults(&self) -> Vec<String> {
-        self.backends.iter().flat_map(Audited::faults).collect()
+        self.backends
+            .iter()
+            .flat_map(BackendAudit::faults)
+            .collect()
     }
 
     /// Returns an error if no backend holds the mesh.
-    pub fn none_holds(&self) -> Option<StudyError> {
-        let refusal = |Audited { backend, .. }: &Audited| {
+    pub fn refusal_error(&self) -> Option<StudyError> {
+        let refusal = |BackendAudit { backend, .. }: &BackendAudit| {
             let reason = backend.reason.clone()?;
             Some((backend.name.clone(), reason))
         };
@@ -208,25 +213,29 @@ impl Audit {
     }
 }
 
-impl Audited {
-    fn of(backend: &Backend, weighed: Result<Weighed, BuildError>, counts: &Counts) -> Self {
+impl BackendAudit {
+    fn new(
+        backend: &Backend,
+        measured: Result<MeasuredMemory, BuildError>,
+        counts: &Counts,
+    ) -> Self {
         let closed_triangles = closed_triangles_words(backend);
-        let (report, weighed) = match weighed {
+        let (report, measured) = match measured {
             Err(refusal) => (unbuilt(backend, counts, Err(refusal)), None),
-            Ok(weighed) => {
-                let bytes = weighed.memory.total();
+            Ok(measured) => {
+                let bytes = measured.memory.total();
                 let report = BackendReport {
                     bytes: Some(bytes),
                     bytes_per_vertex: per_vertex(bytes, counts),
-                    tables: weighed.memory.tables,
-                    merged_vertices: Some(weighed.merged_vertices),
+                    tables: measured.memory.tables,
+                    merged_vertices: Some(measured.merged_vertices),
                     ..unbuilt(backend, counts, Ok(()))
                 };
-                (report, Some((weighed.counted, weighed.peak)))
+                (report, Some((measured.counted, measured.peak)))
             }
         };
         let [layout, tables] = [report.layout_bytes, report.bytes];
-        let (counted, peak) = weighed.unzip();
+        let (counted, peak) = measured.unzip();
         Self {
             layout_words_per_vertex: report.layout_bytes_per_vertex.map(|bytes| bytes / WORD),
             closed_triangles_words_per_vertex: closed_triangles,
@@ -255,16 +264,16 @@ impl Audited {
         else {
             return Vec::new();
         };
-        let beside = |what: &str, is: usize, other: &str, than: usize| {
+        let difference = |what: &str, is: usize, other: &str, than: usize| {
             let more = if is > than { "more" } else { "fewer" };
             let by = is.abs_diff(than);
             (by > 0).then(|| format!("{name}: {what}, {by} bytes {more} than {other} ({than})"))
         };
-        let of_tables = format!("its tables hold {tables} bytes");
-        let of_heap = format!("the allocator counted {counted} bytes");
+        let tables_text = format!("its tables hold {tables} bytes");
+        let heap_text = format!("the allocator counted {counted} bytes");
         let faults = [
-            beside(&of_tables, tables, "its layout formula", layout),
-            beside(&of_heap, counted, "its tables", tables),
+            difference(&tables_text, tables, "its layout formula", layout),
+            difference(&heap_text, counted, "its tables", tables),
         ];
         faults.into_iter().flatten().collect()
     }
@@ -291,28 +300,28 @@ mod tests {
 
     use super::*;
 
-    /// A scripted allocator: `[live, peak]` of each weighing.
+    /// A scripted allocator: `[live, peak]` of each count.
     struct Scripted {
-        weighings: Vec<[usize; 2]>,
+        counts: Vec<[usize; 2]>,
         calls: Cell<usize>,
     }
 
     impl Scripted {
-        fn new(weighings: impl IntoIterator<Item = [usize; 2]>) -> Self {
+        fn new(counts: impl IntoIterator<Item = [usize; 2]>) -> Self {
             Self {
-                weighings: weighings.into_iter().collect(),
+                counts: counts.into_iter().collect(),
                 calls: Cell::new(0),
             }
         }
 
         fn now(&self) -> [usize; 2] {
-            let last = self.weighings.len() - 1;
-            self.weighings[(self.calls.get() / 2).min(last)]
+            let last = self.counts.len() - 1;
+            self.counts[(self.calls.get() / 2).min(last)]
         }
     }
 
     impl Heap for Scripted {
-        /// A weighing calls this twice: before and after building.
+        /// A count calls this twice: before and after building.
         fn live(&self) -> usize {
             let [live, _] = self.now();
             let calls = self.calls.replace(self.calls.get() + 1);
@@ -322,7 +331,7 @@ mod tests {
         fn restart_peak(&self) {}
 
         fn peak(&self) -> usize {
-            self.weighings[((self.calls.get() - 1) / 2).min(self.weighings.len() - 1)][1]
+            self.counts[((self.calls.get() - 1) / 2).min(self.counts.len() - 1)][1]
         }
     }
 
@@ -330,7 +339,7 @@ mod tests {
     fn audited(backend: Backend, heap: &Scripted) -> Audit {
         let torus = shapes::triangle_torus(4, 3).expect("a small torus");
         audit(
-            &Specimen::new("torus", torus),
+            &StudyMesh::new("torus", torus),
             &[backend],
             heap,
             &mut |_| (),
@@ -343,7 +352,7 @@ mod tests {
     #[test]
     fn equal_numbers_give_no_fault() {
         let audit = audited(
-            Backend::of::<HalfEdgeMesh>(),
+            Backend::new::<HalfEdgeMesh>(),
             &Scripted::new([[BYTES, 2 * BYTES]]),
         );
         assert_eq!(audit.faults(), Vec::<String>::new());
@@ -352,19 +361,19 @@ mod tests {
         assert_eq!(one.peak_to_counted, Some(2.0));
         assert_eq!(one.layout_words_per_vertex, Some(24.0));
         assert_eq!(one.counted_bytes_per_vertex, Some(96.0));
-        assert_eq!(audit.none_holds(), None);
+        assert_eq!(audit.refusal_error(), None);
     }
 
     #[test]
     fn a_difference_is_reported_with_its_bytes() {
-        let honest = Backend::of::<HalfEdgeMesh>();
-        let spare = audited(honest, &Scripted::new([[BYTES + 40, BYTES]]));
+        let right = Backend::new::<HalfEdgeMesh>();
+        let spare = audited(right, &Scripted::new([[BYTES + 40, BYTES]]));
         let expected =
             "half-edge: the allocator counted 1192 bytes, 40 bytes more than its tables (1152)";
         assert_eq!(spare.faults(), [expected]);
         assert_eq!(spare.backends[0].agrees, Some(false));
 
-        let mut wrong = honest;
+        let mut wrong = right;
         wrong.layout_bytes = |counts| HalfEdgeMesh::layout_bytes(counts) + 8;
         let formula = audited(wrong, &Scripted::new([[BYTES, BYTES]]));
         let expected =
@@ -380,36 +389,36 @@ mod tests {
     fn allocations_of_another_thread_give_no_fault() {
         let right = [BYTES, 2 * BYTES];
         let disturbed = [[BYTES + 7, 2 * BYTES], [BYTES, 3 * BYTES], right, right];
-        let audit = audited(Backend::of::<HalfEdgeMesh>(), &Scripted::new(disturbed));
+        let audit = audited(Backend::new::<HalfEdgeMesh>(), &Scripted::new(disturbed));
         assert_eq!(audit.faults(), Vec::<String>::new());
         assert_eq!(audit.backends[0].peak_bytes, Some(2 * BYTES));
-        // If no two weighings agree, the audit ends with the last one.
-        let restless = (0..100).map(|i| [BYTES + i, BYTES]);
-        let audit = audited(Backend::of::<HalfEdgeMesh>(), &Scripted::new(restless));
+        // If no two counts agree, the audit ends with the last one.
+        let changing = (0..100).map(|i| [BYTES + i, BYTES]);
+        let audit = audited(Backend::new::<HalfEdgeMesh>(), &Scripted::new(changing));
         assert_eq!(audit.faults().len(), 1);
     }
 
     #[test]
     fn a_refusal_has_a_reason_and_no_bytes() {
-        let quads = Specimen::new("cube", shapes::cube());
+        let quads = StudyMesh::new("cube", shapes::cube());
         let [face_set, table] = [
-            Backend::of::<IndexedFaceSet>(),
-            Backend::of::<sixfold::CornerTable>(),
+            Backend::new::<IndexedFaceSet>(),
+            Backend::new::<sixfold::CornerTable>(),
         ];
         let bytes = 8 * 12 + 24 * 4;
         let heap = Scripted::new([[bytes, bytes]]);
-        let mut weighed = Vec::new();
+        let mut counted = Vec::new();
         let audit = audit(&quads, &[face_set, table], &heap, &mut |backend| {
-            weighed.push(backend.name());
+            counted.push(backend.name());
         });
-        assert_eq!(weighed, ["indexed-face-set", "corner-table"]);
-        assert_eq!((audit.none_holds(), audit.faults().len()), (None, 0));
+        assert_eq!(counted, ["indexed-face-set", "corner-table"]);
+        assert_eq!((audit.refusal_error(), audit.faults().len()), (None, 0));
         let refused = &audit.backends[1];
         assert!(refused.backend.reason.is_some() && !refused.backend.holds);
         assert_eq!((refused.agrees, refused.counted_bytes), (None, None));
         assert_eq!(refused.closed_triangles_words_per_vertex, 16.0);
 
-        let none = self::audit(&quads, &[table], &heap, &mut |_| ()).none_holds();
+        let none = self::audit(&quads, &[table], &heap, &mut |_| ()).refusal_error();
         let none = none.expect("the only one refuses").to_string();
         assert!(none.contains("corner-table: "), "{none}");
     }

@@ -12,8 +12,8 @@ use sixfold_workload::pages::Policy;
 
 use crate::heap::CacheState;
 use crate::labs::Labs;
-use crate::read::{ReadError, Results, check_schema, parsed};
-use crate::report::{Agreement, Report, SCHEMA, Standing, unwrapped, write_json};
+use crate::read::{ReadError, Results, check_schema, parse_json};
+use crate::report::{Agreement, Report, SCHEMA, Standing, into_io_error, write_json};
 use crate::statistics::geometric_mean;
 
 /// Studies of several meshes, with the same settings.
@@ -24,7 +24,7 @@ pub struct Collection {
     /// Names of all meshes; their order is that of `studies`, `failures` and `missing`.
     pub meshes: Vec<String>,
     /// The settings that all studies share.
-    pub settings: Asked,
+    pub settings: SharedSettings,
     /// The finished studies.
     pub studies: Vec<Report>,
     /// The meshes that could not be studied, with the reasons.
@@ -34,7 +34,8 @@ pub struct Collection {
     /// Figures over all meshes, sorted by operation, then by backend.
     pub pooled: Vec<Pooled>,
     /// Sentences on the pooled figures.
-    pub words: Vec<String>,
+    #[serde(rename = "words")]
+    pub sentences: Vec<String>,
     /// Results of the other labs.
     #[serde(default)]
     pub labs: Labs,
@@ -42,7 +43,7 @@ pub struct Collection {
 
 /// Settings that must be equal for studies to be merged.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
-pub struct Asked {
+pub struct SharedSettings {
     /// The backends; empty for all.
     pub backends: Vec<String>,
     /// External programs, by the names of their columns.
@@ -127,7 +128,7 @@ pub enum MergeError {
 
 impl Collection {
     /// Creates a collection of `meshes`; all of them are still to be studied.
-    pub fn new(meshes: Vec<String>, settings: Asked) -> Self {
+    pub fn new(meshes: Vec<String>, settings: SharedSettings) -> Self {
         Self {
             schema: SCHEMA,
             missing: meshes.clone(),
@@ -136,14 +137,14 @@ impl Collection {
             studies: Vec::new(),
             failures: Vec::new(),
             pooled: Vec::new(),
-            words: Vec::new(),
+            sentences: Vec::new(),
             labs: Labs::default(),
         }
     }
 
     /// Creates a collection without meshes.
     pub fn empty() -> Self {
-        Self::new(Vec::new(), Asked::default())
+        Self::new(Vec::new(), SharedSettings::default())
     }
 
     /// Adds results of one file: a study, a collection or a lab. To combine the studies of several
@@ -153,16 +154,16 @@ impl Collection {
     ///
     /// [`SecondStudy`] if this collection already has meshes and `results` is a study or a
     /// collection.
-    pub fn take(&mut self, results: Results) -> Result<(), SecondStudy> {
+    pub fn add(&mut self, results: Results) -> Result<(), SecondStudy> {
         let study = match results {
             Results::Study(study) => {
-                let mut one = Self::new(vec![study.mesh.name.clone()], Asked::default());
-                one.finish(*study);
+                let mut one = Self::new(vec![study.mesh.name.clone()], SharedSettings::default());
+                one.add_study(*study);
                 one
             }
             Results::Collection(collection) => *collection,
             lab => {
-                self.labs.take(lab);
+                self.labs.add(lab);
                 return Ok(());
             }
         };
@@ -175,24 +176,25 @@ impl Collection {
     }
 
     /// Adds the study of one of the meshes; replaces an older one.
-    pub fn finish(&mut self, study: Report) {
+    pub fn add_study(&mut self, study: Report) {
         let mesh = study.mesh.name.clone();
-        self.forget(&mesh);
+        self.remove(&mesh);
         self.studies.push(study);
-        self.settle();
+        self.sort_and_pool();
     }
 
     /// Records that `mesh` could not be studied.
-    pub fn fail(&mut self, mesh: &str, reason: String) {
-        self.forget(mesh);
+    pub fn add_failure(&mut self, mesh: &str, reason: String) {
+        self.remove(mesh);
         self.failures.push(Failed {
             mesh: mesh.into(),
             reason,
         });
-        self.settle();
+        self.sort_and_pool();
     }
 
-    fn forget(&mut self, mesh: &str) {
+    /// Removes the study or the failure of `mesh`.
+    fn remove(&mut self, mesh: &str) {
         self.studies.retain(|study| study.mesh.name != mesh);
         self.failures.retain(|failed| failed.mesh != mesh);
     }
@@ -204,8 +206,8 @@ impl Collection {
     /// The meshes or the settings differ, so the figures cannot be compared.
     pub fn merge(&mut self, other: Self) -> Result<(), MergeError> {
         if other.meshes != self.meshes {
-            let strange = |mesh: &&String| !self.meshes.contains(mesh);
-            let which = match other.meshes.iter().find(strange) {
+            let unknown = |mesh: &&String| !self.meshes.contains(mesh);
+            let which = match other.meshes.iter().find(unknown) {
                 Some(mesh) => mesh.clone(),
                 None => format!(
                     "{} meshes instead of {}, or another order",
@@ -222,29 +224,29 @@ impl Collection {
             let mesh = study.mesh.name.clone();
             let known = self.studies.iter().any(|study| study.mesh.name == mesh);
             if self.meshes.contains(&mesh) && !known {
-                self.forget(&mesh);
+                self.remove(&mesh);
                 self.studies.push(study);
             }
         }
-        self.settle();
+        self.sort_and_pool();
         for failed in other.failures {
             if self.missing.contains(&failed.mesh) {
                 self.failures.push(failed);
             }
         }
-        self.settle();
+        self.sort_and_pool();
         Ok(())
     }
 
     /// Returns an error if the studies of `other` ran with another heap policy or cache state.
     /// These can differ from the settings: if memory was short, the system's heap was used instead.
     fn check_memory(&self, other: &Self) -> Result<(), MergeError> {
-        let in_force = |study: &Report| study.environment.memory_words();
-        let Some(ours) = self.studies.first().map(in_force) else {
+        let memory = |study: &Report| study.environment.memory_settings();
+        let Some(ours) = self.studies.first().map(memory) else {
             return Ok(());
         };
         let differs = |theirs: &[&str; 2]| *theirs != ours;
-        match other.studies.iter().map(in_force).find(differs) {
+        match other.studies.iter().map(memory).find(differs) {
             None => Ok(()),
             Some(theirs) => {
                 let i = usize::from(ours[0] == theirs[0]);
@@ -258,10 +260,10 @@ impl Collection {
     }
 
     /// Sorts everything by the order of the meshes, and pools the studies.
-    fn settle(&mut self) {
-        let place = |mesh: &str| self.meshes.iter().position(|other| other == mesh);
-        self.studies.sort_by_key(|study| place(&study.mesh.name));
-        self.failures.sort_by_key(|failed| place(&failed.mesh));
+    fn sort_and_pool(&mut self) {
+        let index = |mesh: &str| self.meshes.iter().position(|other| other == mesh);
+        self.studies.sort_by_key(|study| index(&study.mesh.name));
+        self.failures.sort_by_key(|failed| index(&failed.mesh));
         let done = |mesh: &&String| {
             self.studies.iter().any(|study| study.mesh.name == **mesh)
                 || self.failures.iter().any(|failed| failed.mesh == **mesh)
@@ -269,7 +271,7 @@ impl Collection {
         let missing = self.meshes.iter().filter(|mesh| !done(mesh));
         self.missing = missing.cloned().collect();
         self.pooled = pooled(&self.studies);
-        self.words = words(&self.pooled);
+        self.sentences = sentences(&self.pooled);
     }
 
     /// Writes the collection as JSON.
@@ -298,14 +300,14 @@ impl Collection {
             "cpu_ns",
             "wall_ns",
         ];
-        lines.write_record(names).map_err(unwrapped)?;
+        lines.write_record(names).map_err(into_io_error)?;
         for study in &self.studies {
             for raw in &study.raw {
                 for (i, (round, wall_ns)) in raw.rounds.iter().zip(&raw.wall_ns).enumerate() {
                     let cpu_ns = raw.cpu_ns.as_ref().and_then(|column| column.get(i));
                     let start = (&study.mesh.name, &raw.backend, raw.operation, raw.control);
                     let line = (start, round, cpu_ns, wall_ns);
-                    lines.serialize(line).map_err(unwrapped)?;
+                    lines.serialize(line).map_err(into_io_error)?;
                 }
             }
         }
@@ -319,7 +321,7 @@ impl Collection {
     /// The text is truncated or not JSON, or holds results of another program, schema or command.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
-        let collection: Self = parsed(text)?;
+        let collection: Self = parse_json(text)?;
         for study in &collection.studies {
             study.check()?;
         }
@@ -327,26 +329,26 @@ impl Collection {
     }
 }
 
-impl Asked {
+impl SharedSettings {
     fn check(&self, other: &Self) -> Result<(), MergeError> {
         let names = |operations: &[Operation]| {
             let names: Vec<&str> = operations.iter().map(|o| o.name()).collect();
             names.join(",")
         };
-        let of = |asked: &Self| -> [(&'static str, String); 9] {
+        let options = |settings: &Self| -> [(&'static str, String); 9] {
             [
-                ("--backends", asked.backends.join(",")),
-                ("--external", asked.externals.join(",")),
-                ("--operations", names(&asked.operations)),
-                ("--budget", format!("{} s", asked.budget_s)),
-                ("--seed", asked.seed.to_string()),
-                ("--heap", asked.heap.to_string()),
-                ("--caches", asked.caches.name().into()),
-                ("--triangulate", asked.triangulate.to_string()),
-                ("--strict", asked.strict.to_string()),
+                ("--backends", settings.backends.join(",")),
+                ("--external", settings.externals.join(",")),
+                ("--operations", names(&settings.operations)),
+                ("--budget", format!("{} s", settings.budget_s)),
+                ("--seed", settings.seed.to_string()),
+                ("--heap", settings.heap.to_string()),
+                ("--caches", settings.caches.name().into()),
+                ("--triangulate", settings.triangulate.to_string()),
+                ("--strict", settings.strict.to_string()),
             ]
         };
-        for ((what, ours), (_, theirs)) in of(self).into_iter().zip(of(other)) {
+        for ((what, ours), (_, theirs)) in options(self).into_iter().zip(options(other)) {
             if ours != theirs {
                 let [ours, theirs] = [ours, theirs].map(|text| match text.is_empty() {
                     true => "all".into(),
@@ -408,8 +410,8 @@ fn pooled(studies: &[Report]) -> Vec<Pooled> {
 }
 
 /// Describes the leading backend of each operation.
-fn words(pooled: &[Pooled]) -> Vec<String> {
-    let mut words = Vec::new();
+fn sentences(pooled: &[Pooled]) -> Vec<String> {
+    let mut sentences = Vec::new();
     for rows in pooled.chunk_by(|a, b| a.operation == b.operation) {
         let most = rows.iter().map(|row| row.meshes).max().unwrap_or(0);
         let leader = rows
@@ -444,11 +446,11 @@ fn words(pooled: &[Pooled]) -> Vec<String> {
             0 => String::new(),
             _ => format!(", tied on {tied}"),
         };
-        words.push(format!(
+        sentences.push(format!(
             "{operation}: {backend} leads the backends measured on all {meshes} meshes: fastest on {best}{ties}, on average {ratio_to_best:.2} × the time of the fastest{elsewhere}."
         ));
     }
-    words
+    sentences
 }
 
 #[cfg(test)]
@@ -459,10 +461,10 @@ mod tests {
     use sixfold::shapes;
 
     use super::*;
-    use crate::{Settings, Specimen, study};
+    use crate::{Settings, StudyMesh, study};
 
-    fn asked() -> Asked {
-        Asked {
+    fn shared_settings() -> SharedSettings {
+        SharedSettings {
             backends: Vec::new(),
             externals: Vec::new(),
             operations: vec![Operation::Boundary],
@@ -477,13 +479,13 @@ mod tests {
 
     /// A study in which half-edge takes `ratio` times as long as the fastest, corner-table.
     fn report(mesh: &str, ratio: f64) -> Report {
-        let specimen = Specimen::new(mesh, shapes::icosahedron());
+        let study_mesh = StudyMesh::new(mesh, shapes::icosahedron());
         let settings = Settings {
             operations: vec![Operation::Boundary],
             budget: Duration::from_millis(20),
             ..Settings::default()
         };
-        let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ());
+        let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ());
         let mut report = report.expect("a study");
         // Other tests of this program may have changed the policy.
         report.environment.heap.as_mut().expect("measured").policy = Policy::Kept;
@@ -508,12 +510,12 @@ mod tests {
 
     #[test]
     fn ratios_are_pooled_by_geometric_means_over_meshes() {
-        let mut all = Collection::new(names(&["a", "b", "c", "d"]), asked());
-        all.finish(report("c", 8.0));
-        all.finish(report("a", 2.0));
-        all.fail("d", "no faces".into());
+        let mut all = Collection::new(names(&["a", "b", "c", "d"]), shared_settings());
+        all.add_study(report("c", 8.0));
+        all.add_study(report("a", 2.0));
+        all.add_failure("d", "no faces".into());
         assert_eq!(all.missing, ["b"]);
-        all.finish(report("b", 4.0));
+        all.add_study(report("b", 4.0));
         let order: Vec<&str> = all.studies.iter().map(|s| s.mesh.name.as_str()).collect();
         assert_eq!((order, all.missing.len()), (vec!["a", "b", "c"], 0));
         let half_edge = all.pooled.iter().find(|row| row.backend == "half-edge");
@@ -529,43 +531,43 @@ mod tests {
         );
         let corner_table = all.pooled.iter().find(|row| row.backend == "corner-table");
         assert_eq!(corner_table.map(|row| (row.best, row.meshes)), Some((3, 3)));
-        assert_eq!(all.words.len(), 1);
+        assert_eq!(all.sentences.len(), 1);
         assert!(
-            all.words[0].contains("corner-table leads"),
+            all.sentences[0].contains("corner-table leads"),
             "{:?}",
-            all.words
+            all.sentences
         );
         // A backend that misses one mesh does not lead, but is named.
         let mut other = report("b", 1.0);
         other.results.retain(|row| row.backend == "half-edge");
         other.results[0].ratio_to_best = Some(5.0);
-        all.finish(other);
-        let said = &all.words[0];
+        all.add_study(other);
+        let sentence = &all.sentences[0];
         assert!(
-            said.contains("half-edge leads the backends measured on all 3 meshes"),
-            "{said}"
+            sentence.contains("half-edge leads the backends measured on all 3 meshes"),
+            "{sentence}"
         );
         assert!(
-            said.contains("; on fewer meshes, corner-table: 1.00 × on 2"),
-            "{said}"
+            sentence.contains("; on fewer meshes, corner-table: 1.00 × on 2"),
+            "{sentence}"
         );
         // A second study of one mesh replaces the first.
-        all.finish(report("b", 1.0));
+        all.add_study(report("b", 1.0));
         assert_eq!(all.studies.len(), 3);
     }
 
     #[test]
     fn merged_shards_equal_one_whole_run() {
         let meshes = names(&["a", "b", "c"]);
-        let mut whole = Collection::new(meshes.clone(), asked());
+        let mut whole = Collection::new(meshes.clone(), shared_settings());
         let studies = [report("a", 2.0), report("b", 3.0)];
-        let [mut one, mut two] = [0, 1].map(|_| Collection::new(meshes.clone(), asked()));
+        let [mut one, mut two] = [0, 1].map(|_| Collection::new(meshes.clone(), shared_settings()));
         for (study, shard) in studies.into_iter().zip([&mut one, &mut two]) {
-            whole.finish(study.clone());
-            shard.finish(study);
+            whole.add_study(study.clone());
+            shard.add_study(study);
         }
-        whole.fail("c", "broken".into());
-        one.fail("c", "broken".into());
+        whole.add_failure("c", "broken".into());
+        one.add_failure("c", "broken".into());
         let written = |collection: &Collection| {
             let mut text = Vec::new();
             collection.write_json(&mut text).expect("memory");
@@ -578,13 +580,13 @@ mod tests {
 
     #[test]
     fn different_meshes_or_settings_are_not_merged() {
-        let mut one = Collection::new(names(&["a", "b"]), asked());
-        let other = Collection::new(names(&["a", "z"]), asked());
+        let mut one = Collection::new(names(&["a", "b"]), shared_settings());
+        let other = Collection::new(names(&["a", "z"]), shared_settings());
         let error = one.merge(other).expect_err("another mesh").to_string();
         assert!(error.contains("meshes differ: z"), "{error}");
-        let slower = Asked {
+        let slower = SharedSettings {
             budget_s: 60.0,
-            ..asked()
+            ..shared_settings()
         };
         let other = Collection::new(names(&["a", "b"]), slower);
         let error = one.merge(other).expect_err("another budget").to_string();

@@ -11,8 +11,8 @@ use sixfold_workload::Operation;
 
 use crate::control::noise;
 use crate::environment::Environment;
+use crate::ranking::CLEAR_DIFFERENCE;
 use crate::report::{RawSamples, Report, ResultRow, SCHEMA, Standing, write_json};
-use crate::standing::BEYOND_DOUBT;
 use crate::statistics::{Median, quotient};
 
 /// Largest ratio of two studies on an unchanged machine: about twice the typical drift of a virtual
@@ -21,7 +21,7 @@ pub const DRIFT: f64 = 1.2;
 
 /// Options of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Comparing {
+pub struct CompareSettings {
     /// Whether ratios are divided by the median ratio of all rows before rows are judged: for two
     /// machines of different speed.
     pub relative: bool,
@@ -29,7 +29,7 @@ pub struct Comparing {
     pub drift: f64,
 }
 
-impl Default for Comparing {
+impl Default for CompareSettings {
     fn default() -> Self {
         Self {
             relative: false,
@@ -46,7 +46,7 @@ pub struct Changes {
     /// Names of the two meshes if their facts differ; the rows then compare different work.
     pub meshes: Option<[String; 2]>,
     /// Differences of machines, programs and settings.
-    pub environment: Vec<Setting>,
+    pub environment: Vec<SettingChange>,
     /// Median over all rows of the second time divided by the first.
     pub overall: Option<f64>,
     /// Whether rows are judged after division by `overall`.
@@ -64,12 +64,13 @@ pub struct Changes {
     /// Rows of the second study only.
     pub only_after: Vec<String>,
     /// The differences as sentences.
-    pub words: Vec<String>,
+    #[serde(rename = "words")]
+    pub sentences: Vec<String>,
 }
 
 /// A difference between two environments.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Setting {
+pub struct SettingChange {
     /// Name of the setting.
     pub what: &'static str,
     /// Its value in the first study.
@@ -147,10 +148,14 @@ pub enum CompareError {
 /// # Errors
 ///
 /// The heap policies or the cache states of the studies differ.
-pub fn compare(before: &Report, after: &Report, how: Comparing) -> Result<Changes, CompareError> {
-    let words = [before, after].map(|report| report.environment.memory_words());
+pub fn compare(
+    before: &Report,
+    after: &Report,
+    settings: CompareSettings,
+) -> Result<Changes, CompareError> {
+    let memory = [before, after].map(|report| report.environment.memory_settings());
     for (i, option) in ["--heap", "--caches"].into_iter().enumerate() {
-        let [before, after] = [words[0][i], words[1][i]];
+        let [before, after] = [memory[0][i], memory[1][i]];
         if before != after {
             return Err(CompareError::OtherMemory {
                 option,
@@ -159,22 +164,22 @@ pub fn compare(before: &Report, after: &Report, how: Comparing) -> Result<Change
             });
         }
     }
-    let Comparing { relative, drift } = how;
+    let CompareSettings { relative, drift } = settings;
     let mut rows = Vec::new();
     let (mut only_before, mut only_after) = (Vec::new(), Vec::new());
     for row in &before.results {
-        match (twin(row, after), row.median_ns) {
+        match (matching_row(row, after), row.median_ns) {
             (_, None) => {} // an estimate, not a measurement
             (Some(other), Some(_)) => rows.extend(change(before, row, after, other, drift)),
-            (None, Some(_)) => only_before.push(named(row)),
+            (None, Some(_)) => only_before.push(row_name(row)),
         }
     }
-    let alone = |row: &&ResultRow| row.median_ns.is_some() && twin(row, before).is_none();
-    only_after.extend(after.results.iter().filter(alone).map(named));
-    let overall = Median::of(rows.iter().map(|row| row.ratio)).map(|median| median.value);
-    let taken_out = overall.filter(|_| relative).unwrap_or(1.0);
+    let alone = |row: &&ResultRow| row.median_ns.is_some() && matching_row(row, before).is_none();
+    only_after.extend(after.results.iter().filter(alone).map(row_name));
+    let overall = Median::from_samples(rows.iter().map(|row| row.ratio)).map(|median| median.value);
+    let divisor = overall.filter(|_| relative).unwrap_or(1.0);
     for row in &mut rows {
-        row.verdict = verdict(row, taken_out);
+        row.verdict = verdict(row, divisor);
     }
     let same_mesh = before.mesh.facts == after.mesh.facts;
     let mut changes = Changes {
@@ -189,18 +194,18 @@ pub fn compare(before: &Report, after: &Report, how: Comparing) -> Result<Change
         winners: winners(before, after),
         only_before,
         only_after,
-        words: Vec::new(),
+        sentences: Vec::new(),
     };
-    changes.words = changes.words();
+    changes.sentences = changes.describe();
     Ok(changes)
 }
 
-fn named(row: &ResultRow) -> String {
+fn row_name(row: &ResultRow) -> String {
     format!("{} on {}", row.operation, row.backend)
 }
 
 /// Returns the row of `report` with the same operation and backend, if it was measured.
-fn twin<'r>(row: &ResultRow, report: &'r Report) -> Option<&'r ResultRow> {
+fn matching_row<'r>(row: &ResultRow, report: &'r Report) -> Option<&'r ResultRow> {
     let mut rows = report.rows(row.operation);
     rows.find(|other| other.backend == row.backend && other.median_ns.is_some())
 }
@@ -232,30 +237,30 @@ fn change(
         ci_high: interval.map(|[_, high]| high),
         noise,
         verdict: Verdict::Same,
-        other_checksum: comparable && both.is_some_and(|(a, b)| !near(a, b)),
+        other_checksum: comparable && both.is_some_and(|(a, b)| !nearly_equal(a, b)),
     })
 }
 
 /// Returns whether two checksums may be of the same work: `f32` sums in different orders differ by
 /// at most 10⁻⁴ of their size.
-fn near(a: f64, b: f64) -> bool {
+fn nearly_equal(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-4 * a.abs().max(b.abs())
 }
 
 /// Returns the samples of a row, without those of the control.
 fn samples(report: &Report, row: &ResultRow) -> Vec<f64> {
     let mut raw = report.raw.iter();
-    let of_it = raw
+    let found = raw
         .find(|raw| !raw.control && raw.operation == row.operation && raw.backend == row.backend);
-    of_it.map_or_else(Vec::new, RawSamples::counted_ns)
+    found.map_or_else(Vec::new, RawSamples::counted_ns)
 }
 
-fn verdict(row: &Change, taken_out: f64) -> Verdict {
-    let ratio = row.ratio / taken_out;
-    let [low, high] = [row.ci_low, row.ci_high].map(|end| end.map(|end| end / taken_out));
+fn verdict(row: &Change, divisor: f64) -> Verdict {
+    let ratio = row.ratio / divisor;
+    let [low, high] = [row.ci_low, row.ci_high].map(|end| end.map(|end| end / divisor));
     let (slower, faster) = match low.zip(high) {
         Some((low, high)) => (low > 1.0, high < 1.0),
-        None => (ratio > BEYOND_DOUBT, ratio < BEYOND_DOUBT.recip()),
+        None => (ratio > CLEAR_DIFFERENCE, ratio < CLEAR_DIFFERENCE.recip()),
     };
     if slower && ratio > row.noise {
         Verdict::Slower
@@ -267,7 +272,7 @@ fn verdict(row: &Change, taken_out: f64) -> Verdict {
 }
 
 /// Returns the differences between two environments that can affect times.
-fn differences(before: &Environment, after: &Environment) -> Vec<Setting> {
+fn differences(before: &Environment, after: &Environment) -> Vec<SettingChange> {
     fn shown<T: ToString>(value: Option<&T>) -> String {
         value.map_or_else(|| "not known".into(), ToString::to_string)
     }
@@ -279,7 +284,7 @@ fn differences(before: &Environment, after: &Environment) -> Vec<Setting> {
             .unwrap_or("not known");
         Some(format!("{}, huge pages: {pages}", heap.allocator))
     };
-    let of = |e: &Environment| -> [(&'static str, String); 13] {
+    let facts = |e: &Environment| -> [(&'static str, String); 13] {
         [
             ("processor", shown(e.cpu_model.as_ref())),
             ("cores", shown(e.cores.as_ref())),
@@ -296,9 +301,9 @@ fn differences(before: &Environment, after: &Environment) -> Vec<Setting> {
             ("allocator", shown(heap(e).as_ref())),
         ]
     };
-    let pairs = of(before).into_iter().zip(of(after));
+    let pairs = facts(before).into_iter().zip(facts(after));
     let differs = pairs.filter(|((_, before), (_, after))| before != after);
-    let setting = |((what, before), (_, after))| Setting {
+    let setting = |((what, before), (_, after))| SettingChange {
         what,
         before,
         after,
@@ -359,16 +364,17 @@ impl Changes {
         write_json(self, writer)
     }
 
-    fn words(&self) -> Vec<String> {
-        let mut words = Vec::new();
+    /// Returns the differences as sentences.
+    fn describe(&self) -> Vec<String> {
+        let mut sentences = Vec::new();
         if let Some([before, after]) = &self.meshes {
-            words.push(format!(
+            sentences.push(format!(
                 "The meshes differ ({before}, {after}): the times are of different work, so compare only the ratios between backends."
             ));
         }
         let (slower, faster) = (self.count(Verdict::Slower), self.count(Verdict::Faster));
         let same = self.count(Verdict::Same);
-        words.push(format!(
+        sentences.push(format!(
             "Of {} figures, {faster} are faster, {slower} slower, and {same} the same within the noise.",
             self.rows.len()
         ));
@@ -384,13 +390,13 @@ impl Changes {
                         "; if the machine was busy or hot, --relative divides each row by it"
                     }
                 };
-                words.push(format!(
+                sentences.push(format!(
                     "Overall, the second study is {factor:.2} × {way} (median of all rows){hint}."
                 ));
             }
         }
         for winner in &self.winners {
-            words.push(format!(
+            sentences.push(format!(
                 "{}: the fastest is now {}; it was {}.",
                 winner.operation, winner.after, winner.before
             ));
@@ -399,12 +405,12 @@ impl Changes {
             .map(|row| format!("{} on {}", row.operation, row.backend))
             .collect();
         if !others.is_empty() {
-            words.push(format!(
+            sentences.push(format!(
                 "The checksum changed, so the work is different: {}.",
                 others.join(", ")
             ));
         }
-        words
+        sentences
     }
 }
 

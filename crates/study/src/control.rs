@@ -3,16 +3,16 @@
 use sixfold::QueryCost;
 
 use crate::measure::Entry;
+use crate::ranking::{NO_DIFFERENCE, ratio};
 use crate::report::{Control, ControlRow};
-use crate::standing::{NO_DIFFERENCE, ratio};
 use crate::statistics::Median;
 use sixfold_workload::Operation;
-use sixfold_workload::Subject;
+use sixfold_workload::TimedBackend;
 
 /// Returns the subject to measure twice: the first that never scans all faces, because scans are
 /// slow and steady.
-pub(crate) fn entered_twice(subjects: &[Box<dyn Subject + '_>]) -> usize {
-    let scans = |subject: &dyn Subject| subject.costs().contains(&QueryCost::Scan);
+pub(crate) fn measured_twice(subjects: &[Box<dyn TimedBackend + '_>]) -> usize {
+    let scans = |subject: &dyn TimedBackend| subject.costs().contains(&QueryCost::Scan);
     let found = subjects.iter().position(|subject| !scans(subject.as_ref()));
     found.unwrap_or(0)
 }
@@ -24,14 +24,14 @@ pub(crate) fn control(
     second: usize,
     backend: &str,
 ) -> Option<Control> {
-    let of = |subject: usize, operation: Operation| {
+    let find = |subject: usize, operation: Operation| {
         let same = |e: &&Entry| e.subject == subject && e.job.operation == operation;
         entries.iter().find(same)
     };
     let mut operations = Vec::new();
     for again in entries.iter().filter(|e| e.subject == second) {
         let operation = again.job.operation;
-        let Some(once) = of(first, operation) else {
+        let Some(once) = find(first, operation) else {
             continue;
         };
         // A time of zero, on a coarse clock, has no ratio.
@@ -47,7 +47,7 @@ pub(crate) fn control(
         }
     }
     let differences = || operations.iter().map(ControlRow::difference);
-    let typical = Median::of(differences())?.value;
+    let typical = Median::from_samples(differences())?.value;
     let worst = differences().fold(1.0, f64::max);
     Some(Control {
         backend: backend.to_owned(),

@@ -72,7 +72,7 @@ pub struct Environment {
 
 impl Environment {
     /// Describes this machine and program now.
-    pub fn here(seed: u64, budget_s: f64) -> Self {
+    pub fn detect(seed: u64, budget_s: f64) -> Self {
         let what = RefreshKind::nothing()
             .with_cpu(CpuRefreshKind::nothing())
             .with_memory(MemoryRefreshKind::nothing().with_ram());
@@ -144,7 +144,7 @@ impl Environment {
 
     /// Returns the names of heap policy and cache state. Figures with different ones must not be
     /// mixed.
-    pub fn memory_words(&self) -> [&'static str; 2] {
+    pub fn memory_settings(&self) -> [&'static str; 2] {
         let heap = self
             .heap
             .as_ref()

@@ -30,9 +30,9 @@ use sixfold::{Counts, PolygonMesh};
 use tempfile::TempDir;
 
 use crate::report::BackendReport;
-use crate::tame::tame;
-use program::{Greeting, Program};
-use sixfold_workload::Subject;
+use crate::sanitize::sanitize;
+use program::{Handshake, Program};
+use sixfold_workload::TimedBackend;
 use sixfold_workload::pages::{HeapReport, Policy};
 use subject::ExternalSubject;
 
@@ -40,7 +40,7 @@ use subject::ExternalSubject;
 const MESH: &str = "{mesh}";
 
 /// Default time limit for an answer.
-pub const PATIENCE: Duration = Duration::from_secs(60);
+pub const EXTERNAL_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// A program that takes part in a study as one more column.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -95,8 +95,8 @@ impl FromStr for External {
         };
         let (name, command) = given.split_once('=').ok_or_else(no_name)?;
         let (name, command) = (name.trim().to_owned(), command.trim().to_owned());
-        let fine = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
-        if name.is_empty() || name.len() > 32 || !name.chars().all(fine) {
+        let is_allowed = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
+        if name.is_empty() || name.len() > 32 || !name.chars().all(is_allowed) {
             return Err(ExternalError::BadName { name });
         }
         let Some(words) = shlex::split(&command) else {
@@ -114,7 +114,7 @@ impl FromStr for External {
 
 impl External {
     /// Returns the program and its arguments for a mesh at `path`.
-    fn words(&self, path: &Path) -> Vec<String> {
+    fn arguments(&self, path: &Path) -> Vec<String> {
         let path = path.to_string_lossy();
         let word = |word: &String| word.replace(MESH, &path);
         self.command.iter().map(word).collect()
@@ -128,7 +128,7 @@ pub(crate) struct MeshFile {
 
 impl MeshFile {
     /// Writes `polygons` with exact coordinates.
-    pub(crate) fn of(polygons: &PolygonMesh) -> io::Result<Self> {
+    pub(crate) fn write(polygons: &PolygonMesh) -> io::Result<Self> {
         let folder = tempfile::tempdir()?;
         let file = Self { folder };
         write_obj(polygons, io::BufWriter::new(File::create(file.path())?))?;
@@ -141,32 +141,37 @@ impl MeshFile {
 }
 
 /// Starts `external` on the mesh and reads whether it holds the mesh.
-pub(crate) fn put_on_the_bench<'a>(
+pub(crate) fn prepare<'a>(
     external: &External,
     mesh: &MeshFile,
     counts: &Counts,
     heap: &HeapReport,
-    patience: Duration,
+    timeout: Duration,
     stop: &'a AtomicBool,
-) -> (BackendReport, Option<Box<dyn Subject + 'a>>) {
-    let started = Program::start(&external.words(&mesh.path()), heap.policy, patience, stop);
-    let greeted = started.and_then(|mut program| Ok((program.greeting()?, program)));
-    let (greeting, program) = match greeted {
-        Ok((greeting, program)) => (greeting, Some(program)),
-        Err(reason) => (Greeting::refusing(reason), None),
+) -> (BackendReport, Option<Box<dyn TimedBackend + 'a>>) {
+    let started = Program::start(
+        &external.arguments(&mesh.path()),
+        heap.policy,
+        timeout,
+        stop,
+    );
+    let result = started.and_then(|mut program| Ok((program.handshake()?, program)));
+    let (handshake, program) = match result {
+        Ok((handshake, program)) => (handshake, Some(program)),
+        Err(reason) => (Handshake::from_refusal(reason), None),
     };
-    let told = Program::is_told(heap.policy);
-    let own_heap = heap.policy == Policy::Kept && !(told && greeting.keeps_pages_if_told());
-    let refusal = match greeting.holds {
+    let tuned = Program::sets_tunables(heap.policy);
+    let own_heap = heap.policy == Policy::Kept && !(tuned && handshake.keeps_pages_if_tuned());
+    let refusal = match handshake.holds {
         true => None,
         false => Some(
-            greeting
+            handshake
                 .reason
-                .map(|reason| tame(&reason))
+                .map(|reason| sanitize(&reason))
                 .unwrap_or_else(|| "it gives no reason".into()),
         ),
     };
-    let bytes = greeting.bytes.filter(|_| refusal.is_none());
+    let bytes = handshake.bytes.filter(|_| refusal.is_none());
     let per_vertex = |bytes: usize| bytes as f64 / counts.vertices as f64;
     let report = BackendReport {
         name: external.name.clone(),
@@ -181,14 +186,17 @@ pub(crate) fn put_on_the_bench<'a>(
         capabilities: None,
         external: Some(ExternalReport {
             command: external.command.clone(),
-            library: greeting.library.map(|library| tame(&library)),
+            library: handshake.library.map(|library| sanitize(&library)),
             own_heap,
         }),
     };
     let program = program.filter(|_| report.holds);
     let name = external.name.clone();
     let subject = program.map(|program| ExternalSubject::new(name, bytes.unwrap_or(0), program));
-    (report, subject.map(|s| Box::new(s) as Box<dyn Subject>))
+    (
+        report,
+        subject.map(|s| Box::new(s) as Box<dyn TimedBackend>),
+    )
 }
 
 #[cfg(test)]
@@ -199,9 +207,9 @@ mod tests {
     fn a_command_is_split_into_words_and_contains_the_mesh() {
         let external: External = "lox=run 'a b' --mesh={mesh}".parse().expect("a command");
         assert_eq!(external.name, "lox");
-        let words = external.words(Path::new("/tmp/a c.obj"));
-        assert_eq!(words, ["run", "a b", "--mesh=/tmp/a c.obj"]);
-        for (given, says) in [
+        let arguments = external.arguments(Path::new("/tmp/a c.obj"));
+        assert_eq!(arguments, ["run", "a b", "--mesh=/tmp/a c.obj"]);
+        for (given, expected) in [
             ("run {mesh}", "has no name"),
             ("a b=run {mesh}", "not a column name"),
             ("=run {mesh}", "not a column name"),
@@ -211,7 +219,7 @@ mod tests {
             ("a=", "has no {mesh}"),
         ] {
             let error = given.parse::<External>().expect_err(given).to_string();
-            assert!(error.contains(says), "{given}: {error}");
+            assert!(error.contains(expected), "{given}: {error}");
         }
     }
 }

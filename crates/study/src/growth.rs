@@ -7,11 +7,11 @@
 //! the caches, so separate lines are fitted to the sizes that fit into the last cache and to those
 //! that do not.
 
+mod budgets;
 mod fits;
+mod sentences;
 mod settings;
 mod shapes;
-mod shares;
-mod words;
 
 use std::cell::Cell;
 use std::io;
@@ -24,22 +24,22 @@ use serde::{Deserialize, Serialize};
 use sixfold::shapes::Order;
 use sixfold::{Counts, Facts, PolygonMesh};
 
-pub use fits::{CacheEnd, Fit};
+pub use fits::{CacheLimit, Fit};
 pub use settings::{GrowthError, GrowthSettings, growth_bytes};
-pub use shapes::{GROWING, Growing};
+pub use shapes::{SCALABLE_SHAPES, ScalableShape};
 
-use crate::agreement::judge;
-use crate::control::{control, entered_twice};
+use crate::agreement::compare_checksums;
+use crate::control::{control, measured_twice};
 use crate::environment::Environment;
 use crate::heap::Memory;
-use crate::measure::{Bench, Progress};
+use crate::measure::{Measurement, Progress};
 use crate::report::{Agreement, Control, Refusal, ResultRow, SCHEMA, write_json};
-use crate::study::{StudyError, is_skewed, put_on_the_bench, refusals, results, scans};
-use fits::{cache_ends, fits};
+use crate::study::{StudyError, is_skewed, prepare, refusals, results, scans};
+use budgets::SizeBudgets;
+use fits::{cache_limits, fits};
 use settings::Plan;
-use shares::Shares;
-use sixfold_workload::{Backend, Draw, MachineClock, Subject};
-use sixfold_workload::{Cache, caches, last_level};
+use sixfold_workload::{Backend, Draw, MachineClock, TimedBackend};
+use sixfold_workload::{Cache, caches, last_level_bytes};
 
 /// The results of a sweep over sizes.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -53,7 +53,8 @@ pub struct GrowthReport {
     /// The measured backends, in the order of tables.
     pub backends: Vec<String>,
     /// The backends that cannot hold the shape.
-    pub unheld: Vec<Unheld>,
+    #[serde(rename = "unheld")]
+    pub refused_by: Vec<BackendRefusal>,
     /// The finished sizes, smallest first.
     pub sizes: Vec<SizeReport>,
     /// Approximate face counts of the sizes left out for lack of time.
@@ -63,9 +64,11 @@ pub struct GrowthReport {
     /// The caches of this machine; empty if unknown.
     pub caches: Vec<Cache>,
     /// The sizes at which layouts outgrow caches, sorted by cache, then by backend.
-    pub cache_ends: Vec<CacheEnd>,
+    #[serde(rename = "cache_ends")]
+    pub cache_limits: Vec<CacheLimit>,
     /// Sentences on the tables.
-    pub words: Vec<String>,
+    #[serde(rename = "words")]
+    pub sentences: Vec<String>,
     /// Whether the sweep was interrupted before the last size.
     pub interrupted: bool,
     /// The machine and the program.
@@ -74,7 +77,7 @@ pub struct GrowthReport {
 
 /// A backend that cannot hold the shape.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub struct Unheld {
+pub struct BackendRefusal {
     /// Name of the backend.
     pub backend: String,
     /// Why it cannot hold the shape.
@@ -91,18 +94,19 @@ pub struct SizeReport {
     /// Number of faces.
     pub faces: usize,
     /// Bytes of each backend.
-    pub weights: Vec<Weight>,
+    #[serde(rename = "weights")]
+    pub backend_bytes: Vec<BackendBytes>,
     /// The rows of a study.
     pub results: Vec<ResultRow>,
     /// Operations that a backend cannot do at this size.
     pub refusals: Vec<Refusal>,
-    /// The backend that was entered twice.
+    /// The backend that was measured twice.
     pub control: Option<Control>,
 }
 
 /// The bytes of a backend at one size.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub struct Weight {
+pub struct BackendBytes {
     /// The backend.
     pub backend: String,
     /// Bytes held, including spare capacity.
@@ -146,18 +150,18 @@ pub fn growth(
     let plan = settings.plan()?;
     let caches = caches();
     let budget = settings.study.budget;
-    let environment = Environment::here(settings.study.seed, budget.as_secs_f64());
+    let environment = Environment::detect(settings.study.seed, budget.as_secs_f64());
     let mut sweep = Sweep {
         settings,
         plan: &plan,
         caches: &caches,
         stop,
-        unheld: Vec::new(),
+        refused_by: Vec::new(),
         counts: None,
     };
     let study = &settings.study;
     let mut memory = Memory::start(study.heap, study.caches, growth_bytes(settings)?);
-    let time = Shares::of(&plan.sizes, budget);
+    let time = SizeBudgets::new(&plan.sizes, budget);
     let mut sizes: Vec<SizeReport> = Vec::new();
     let mut left_out = Vec::new();
     // Seconds per face to build everything at the previous size.
@@ -167,17 +171,17 @@ pub fn growth(
             left_out = plan.sizes[step..].to_vec();
             break;
         }
-        let begun = Instant::now();
+        let start = Instant::now();
         let built = Cell::new(Duration::ZERO);
         let made = plan.shape.make(faces)?;
-        let mesh = settings.order.of(&made, settings.study.seed);
+        let mesh = settings.order.apply(&made, settings.study.seed);
         drop(made);
         let range = time.range(step);
-        let share = || {
-            built.set(begun.elapsed());
-            time.share(step)
+        let budget_left = || {
+            built.set(start.elapsed());
+            time.budget(step)
         };
-        let mut here = |at: Progress<'_>| {
+        let mut report_progress = |at: Progress<'_>| {
             let stage = format!("{} faces: {}", mesh.face_count(), at.stage);
             progress(Progress {
                 done: range[0] + (range[1] - range[0]) * at.done,
@@ -185,7 +189,7 @@ pub fn growth(
                 ..at
             });
         };
-        match sweep.size(&mesh, step, &share, &mut memory, &mut here)? {
+        match sweep.size(&mesh, step, &budget_left, &mut memory, &mut report_progress)? {
             Some(size) => sizes.push(size),
             None => break,
         }
@@ -195,26 +199,36 @@ pub fn growth(
     let backends: Vec<&Backend> = plan
         .backends
         .iter()
-        .filter(|b| sweep.unheld.iter().all(|other| other.backend != b.name()))
+        .filter(|b| {
+            sweep
+                .refused_by
+                .iter()
+                .all(|other| other.backend != b.name())
+        })
         .collect();
-    let fits = fits(&sizes, &backends, &plan.operations, last_level(&caches));
-    let cache_ends = sweep
+    let fits = fits(
+        &sizes,
+        &backends,
+        &plan.operations,
+        last_level_bytes(&caches),
+    );
+    let cache_limits = sweep
         .counts
-        .map_or_else(Vec::new, |counts| cache_ends(&backends, &counts, &caches));
-    let mut words = words::words(&sizes, &fits, &caches, &cache_ends);
-    words.extend(words::left_out(&left_out));
+        .map_or_else(Vec::new, |counts| cache_limits(&backends, &counts, &caches));
+    let mut sentences = sentences::sentences(&sizes, &fits, &caches, &cache_limits);
+    sentences.extend(sentences::left_out(&left_out));
     Ok(GrowthReport {
         schema: SCHEMA,
         shape: settings.shape.clone(),
         order: settings.order,
         backends: backends.iter().map(|b| b.name().to_owned()).collect(),
-        unheld: sweep.unheld,
+        refused_by: sweep.refused_by,
         sizes,
         left_out,
         fits,
-        cache_ends,
+        cache_limits,
         caches,
-        words,
+        sentences,
         interrupted,
         environment: environment.with_memory(&memory),
     })
@@ -226,7 +240,7 @@ struct Sweep<'s> {
     plan: &'s Plan,
     caches: &'s [Cache],
     stop: &'s AtomicBool,
-    unheld: Vec<Unheld>,
+    refused_by: Vec<BackendRefusal>,
     /// Counts of the largest finished size.
     counts: Option<Counts>,
 }
@@ -237,7 +251,7 @@ impl Sweep<'_> {
         &mut self,
         mesh: &PolygonMesh,
         step: usize,
-        share: &dyn Fn() -> Duration,
+        budget: &dyn Fn() -> Duration,
         memory: &mut Memory,
         progress: &mut dyn FnMut(Progress<'_>),
     ) -> Result<Option<SizeReport>, GrowthError> {
@@ -247,59 +261,63 @@ impl Sweep<'_> {
             ..
         } = self.plan;
         let stopped = || self.stop.load(Ordering::Relaxed);
-        let facts = Facts::of(mesh);
+        let facts = Facts::from_polygons(mesh);
         let counts = mesh.counts(facts.edges);
         let skewed = is_skewed(&facts);
         let seed = self.settings.study.seed;
-        let drawn = backends.iter().any(|b| skewed || scans(b, operations));
-        let draw = drawn.then(|| Draw::of(mesh, seed));
-        let mut subjects: Vec<Box<dyn Subject + '_>> = Vec::new();
-        let (mut weights, mut unheld) = (Vec::new(), Vec::new());
+        let needs_draw = backends.iter().any(|b| skewed || scans(b, operations));
+        let draw = needs_draw.then(|| Draw::new(mesh, seed));
+        let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
+        let (mut backend_bytes, mut refused_by) = (Vec::new(), Vec::new());
         for backend in backends {
             if stopped() {
                 return Ok(None);
             }
-            let (report, subject) = put_on_the_bench(backend, mesh, draw.as_ref(), &counts);
+            let (report, subject) = prepare(backend, mesh, draw.as_ref(), &counts);
             match subject {
                 Some(subject) => {
-                    weights.push(self.weight(report.name, report.bytes.unwrap_or(0)));
+                    backend_bytes
+                        .push(self.bytes_with_cache(report.name, report.bytes.unwrap_or(0)));
                     subjects.push(subject);
                 }
-                None => unheld.push(Unheld {
+                None => refused_by.push(BackendRefusal {
                     backend: report.name,
                     reason: report.reason.unwrap_or_default(),
                 }),
             }
         }
         if subjects.is_empty() {
-            let refusals = unheld.into_iter().map(|u| (u.backend, u.reason)).collect();
+            let refusals = refused_by
+                .into_iter()
+                .map(|u| (u.backend, u.reason))
+                .collect();
             return Err(StudyError::NoneHolds { refusals }.into());
         }
-        self.unheld = unheld;
-        let first = entered_twice(&subjects);
+        self.refused_by = refused_by;
+        let first = measured_twice(&subjects);
         let second = subjects.len();
-        let twice = |backend: &&Backend| backend.name() == subjects[first].name();
-        let again = backends.iter().find(twice);
-        let again = again.and_then(|b| b.put_on_the_bench(mesh, draw.as_ref()).ok());
+        let is_first = |backend: &&Backend| backend.name() == subjects[first].name();
+        let again = backends.iter().find(is_first);
+        let again = again.and_then(|b| b.prepare(mesh, draw.as_ref()).ok());
         subjects.extend(again.map(|(subject, _)| subject));
         let clock = MachineClock::start();
-        let mut bench = Bench {
+        let mut measurement = Measurement {
             control: (subjects.len() > second).then_some(second),
             subjects: &mut subjects,
             population: [counts.vertices, counts.edges, counts.faces],
             skewed,
             clock: &clock,
             memory,
-            budget: share(),
+            budget: budget(),
             named: !self.settings.study.operations.is_empty(),
             random: ChaCha8Rng::seed_from_u64(seed.wrapping_add(step as u64)),
             stop: self.stop,
             progress,
         };
-        let mut entries = bench.measure(operations);
+        let mut entries = measurement.measure(operations);
         let control = control(&entries, first, second, subjects[first].name());
         entries.retain(|entry| entry.subject != second);
-        let agreements = judge(&entries, &mut subjects, mesh, &clock, self.stop);
+        let agreements = compare_checksums(&entries, &mut subjects, mesh, &clock, self.stop);
         if self.stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
@@ -308,17 +326,18 @@ impl Sweep<'_> {
             vertices: counts.vertices,
             edges: counts.edges,
             faces: counts.faces,
-            weights,
+            backend_bytes,
             results: results(&entries, agreements, &subjects, mesh, control.as_ref()),
             refusals: refusals(&entries, &subjects),
             control,
         }))
     }
 
-    fn weight(&self, backend: String, bytes: usize) -> Weight {
+    /// Returns the bytes of a backend with the lowest cache level that has room for them.
+    fn bytes_with_cache(&self, backend: String, bytes: usize) -> BackendBytes {
         let data = self.caches.iter().filter(|cache| cache.holds_data());
         let room = data.filter(|cache| cache.bytes >= bytes as u64);
-        Weight {
+        BackendBytes {
             backend,
             bytes,
             fits_in: room.map(|cache| cache.level).min(),

@@ -2,19 +2,19 @@
 
 use serde::{Deserialize, Serialize};
 use sixfold_workload::pages::{self, HeapReport, Policy};
-use sixfold_workload::{Scrubber, Start};
+use sixfold_workload::{CacheFlusher, Start};
 use sysinfo::{MemoryRefreshKind, System};
 
 use crate::numbers::bytes;
 
 /// Part of all memory that must stay free.
-const LEAST_FREE: f64 = 0.05;
+const MIN_FREE: f64 = 0.05;
 /// Largest factor by which keeping pages increases the memory of a study: freed blocks of one size
 /// do not always fit another.
-const KEPT: u64 = 2;
+const KEPT_FACTOR: u64 = 2;
 /// One part in this many of the resident memory is touched in advance: later blocks may lie
 /// elsewhere.
-const RESERVE: u64 = 4;
+const RESERVE_PART: u64 = 4;
 
 /// Whether the caches hold the mesh when a sample begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
@@ -55,37 +55,37 @@ pub struct CachesReport {
 pub(crate) struct Memory {
     /// The policy in force.
     pub(crate) heap: HeapReport,
-    scrubber: Option<Scrubber>,
+    flusher: Option<CacheFlusher>,
 }
 
 impl Memory {
     /// Sets the heap policy. Uses the system's policy instead if keeping pages could use up the
     /// free memory; `needed` is the approximate number of bytes that the measurements hold at once.
     pub(crate) fn start(policy: Policy, state: CacheState, needed: u64) -> Self {
-        let heap = match too_little(needed, free_memory()).filter(|_| policy == Policy::Kept) {
-            None => pages::put_in_force(policy),
+        let heap = match shortage_reason(needed, free_memory()).filter(|_| policy == Policy::Kept) {
+            None => pages::set_policy(policy),
             reason => HeapReport {
                 reason,
-                ..pages::put_in_force(Policy::System)
+                ..pages::set_policy(Policy::System)
             },
         };
         Self {
             heap,
-            scrubber: (state == CacheState::Cold).then(Scrubber::new),
+            flusher: (state == CacheState::Cold).then(CacheFlusher::new),
         }
     }
 
     /// Returns the state of the caches in which timed runs start.
     pub(crate) fn start_of_runs(&self) -> Start<'_> {
-        match &self.scrubber {
-            Some(scrubber) => Start::Cold(scrubber),
+        match &self.flusher {
+            Some(flusher) => Start::Cold(flusher),
             None => Start::Warm,
         }
     }
 
     /// Returns whether samples start with cold caches.
     pub(crate) fn is_cold(&self) -> bool {
-        self.scrubber.is_some()
+        self.flusher.is_some()
     }
 
     /// Returns whether freed pages are kept, so that samples should have no page faults.
@@ -96,37 +96,37 @@ impl Memory {
     /// Touches the pages of freed blocks, plus a quarter of the resident memory, if pages are kept
     /// and there is room. Later allocations then cause no page faults.
     pub(crate) fn reserve(&self) {
-        self.reserve_for(pages::resident_bytes().unwrap_or(0) / RESERVE);
+        self.reserve_for(pages::resident_bytes().unwrap_or(0) / RESERVE_PART);
     }
 
     /// Touches the pages of freed blocks, plus a block of `bytes`, or less if there is little room.
     pub(crate) fn reserve_for(&self, bytes: u64) {
         if let Some(free) = free_memory().filter(|_| self.keeps_pages()) {
-            let most = free.saturating_sub(least_free()) / RESERVE;
+            let most = free.saturating_sub(min_free_bytes()) / RESERVE_PART;
             pages::reserve(usize::try_from(bytes.min(most)).unwrap_or(0));
         }
     }
 
     /// Returns whether enough memory stays free after allocating `bytes`; true if unknown.
     pub(crate) fn has_room_for(&self, bytes: u64) -> bool {
-        free_memory().is_none_or(|free| free > least_free().saturating_add(bytes))
+        free_memory().is_none_or(|free| free > min_free_bytes().saturating_add(bytes))
     }
 
     /// Returns kept pages of freed blocks to the kernel. Until [`Memory::reserve`], allocations get
     /// fresh pages.
-    pub(crate) fn give_back(&self) {
+    pub(crate) fn release_pages(&self) {
         if self.keeps_pages() {
-            pages::give_back();
+            pages::release_pages();
         }
     }
 
     /// Stops keeping pages if memory runs out; later measurements use the system's heap.
-    pub(crate) fn watch(&mut self) {
+    pub(crate) fn check_free_memory(&mut self) {
         if !self.keeps_pages() {
             return;
         }
-        if let Some(free) = free_memory().filter(|&free| free < least_free()) {
-            self.heap = pages::put_in_force(Policy::System);
+        if let Some(free) = free_memory().filter(|&free| free < min_free_bytes()) {
+            self.heap = pages::set_policy(Policy::System);
             self.heap.reason = Some(format!(
                 "only {} of memory were free while pages were kept, so later samples use the system's heap",
                 shown(free)
@@ -136,21 +136,21 @@ impl Memory {
 
     /// Describes the preparation of the caches.
     pub(crate) fn caches(&self) -> CachesReport {
-        let scrubber = self.scrubber.as_ref();
+        let flusher = self.flusher.as_ref();
         CachesReport {
-            state: match scrubber {
+            state: match flusher {
                 Some(_) => CacheState::Cold,
                 None => CacheState::Warm,
             },
-            written_bytes: scrubber.map_or(0, Scrubber::bytes),
-            defeats_level: scrubber.and_then(Scrubber::level),
+            written_bytes: flusher.map_or(0, CacheFlusher::bytes),
+            defeats_level: flusher.and_then(CacheFlusher::level),
         }
     }
 }
 
 /// Returns a reason if pages cannot be kept because the needed memory may exceed the free memory.
-fn too_little(needed: u64, free: Option<u64>) -> Option<String> {
-    let kept = needed.saturating_mul(KEPT);
+fn shortage_reason(needed: u64, free: Option<u64>) -> Option<String> {
+    let kept = needed.saturating_mul(KEPT_FACTOR);
     let free = free.filter(|&free| kept > free)?;
     let [kept, free] = [kept, free].map(shown);
     Some(format!(
@@ -163,14 +163,14 @@ fn shown(amount: u64) -> String {
 }
 
 /// Returns the number of bytes that must stay free.
-fn least_free() -> u64 {
+fn min_free_bytes() -> u64 {
     let mut system = System::new();
     system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
     let limits = system.cgroup_limits().map(|limits| limits.total_memory);
     let all = limits.map_or(system.total_memory(), |limit| {
         limit.min(system.total_memory())
     });
-    (all as f64 * LEAST_FREE) as u64
+    (all as f64 * MIN_FREE) as u64
 }
 
 /// Returns the bytes of memory that this program can still allocate; `None` if unknown. This is the
@@ -183,8 +183,8 @@ pub fn free_memory() -> Option<u64> {
     // Use `rss`: cached files count as used memory of the group, but are dropped when needed.
     let group = system.cgroup_limits();
     let group = group.map(|limits| limits.total_memory.saturating_sub(limits.rss));
-    let rooms = [free, group, pages::address_space_left()];
-    rooms.into_iter().flatten().min()
+    let limits = [free, group, pages::address_space_left()];
+    limits.into_iter().flatten().min()
 }
 
 #[cfg(test)]
@@ -193,14 +193,14 @@ mod tests {
 
     #[test]
     fn pages_are_not_kept_if_memory_could_run_out() {
-        let reason = too_little(3 << 30, Some(5 << 30)).expect("6 GiB do not fit into 5");
+        let reason = shortage_reason(3 << 30, Some(5 << 30)).expect("6 GiB do not fit into 5");
         assert!(
             reason.contains("could take 6.44 GB") && reason.contains("5.37 GB are free"),
             "{reason}"
         );
-        assert_eq!(too_little(2 << 30, Some(5 << 30)), None);
-        assert_eq!(too_little(u64::MAX, None), None, "nothing is known");
-        assert!(too_little(u64::MAX, Some(1 << 40)).is_some());
+        assert_eq!(shortage_reason(2 << 30, Some(5 << 30)), None);
+        assert_eq!(shortage_reason(u64::MAX, None), None, "nothing is known");
+        assert!(shortage_reason(u64::MAX, Some(1 << 40)).is_some());
     }
 
     #[test]

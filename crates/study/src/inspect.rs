@@ -7,7 +7,7 @@ use sixfold_workload::Backend;
 
 /// A mesh to inspect or to measure, with its facts.
 #[derive(Clone, Debug)]
-pub struct Specimen {
+pub struct StudyMesh {
     /// Origin of the mesh, such as its file name.
     pub name: String,
     /// Facts of the file, including degenerate faces, which have no edges.
@@ -18,12 +18,12 @@ pub struct Specimen {
     pub changes: Vec<String>,
 }
 
-impl Specimen {
-    /// Creates a specimen of an unchanged mesh, with its facts; O(corners) expected.
+impl StudyMesh {
+    /// Makes an unchanged mesh ready for studies, with its facts; O(corners) expected.
     pub fn new(name: impl Into<String>, polygons: PolygonMesh) -> Self {
         Self {
             name: name.into(),
-            facts: Facts::of(&polygons),
+            facts: Facts::from_polygons(&polygons),
             polygons,
             changes: Vec::new(),
         }
@@ -40,15 +40,15 @@ impl Specimen {
 
 /// Checks for each backend whether it can hold the mesh, without building it; O(corners) expected
 /// per backend.
-pub fn inspect(specimen: &Specimen) -> Inspection {
-    let counts = specimen.polygons.counts(specimen.facts.edges);
+pub fn inspect(study_mesh: &StudyMesh) -> Inspection {
+    let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
     let backends = Backend::roster().into_iter().map(|backend| {
-        let verdict = backend.info.verdict(&specimen.polygons);
+        let verdict = backend.info.check(&study_mesh.polygons);
         unbuilt(&backend, &counts, verdict)
     });
     Inspection {
         schema: SCHEMA,
-        mesh: specimen.report(),
+        mesh: study_mesh.report(),
         backends: backends.collect(),
     }
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::environment::Environment;
 use crate::growth::GrowthReport;
 use crate::orders::OrdersReport;
-use crate::pick::Answer;
+use crate::pick::PickReport;
 use crate::read::Results;
 use crate::why::Why;
 
@@ -20,7 +20,7 @@ pub struct Labs {
     /// Bytes that queries read, and their times relative to the speed of memory.
     pub why: Vec<Why>,
     /// Rankings for workloads.
-    pub picks: Vec<Answer>,
+    pub picks: Vec<PickReport>,
 }
 
 impl Labs {
@@ -29,7 +29,7 @@ impl Labs {
         let orders = self.orders.iter().map(OrdersReport::mismatches);
         let growth = self.growth.iter().map(GrowthReport::mismatches);
         let why = self.why.iter().map(Why::mismatches);
-        let picks = self.picks.iter().map(|answer| answer.mismatches.len());
+        let picks = self.picks.iter().map(|pick| pick.mismatches.len());
         orders.chain(growth).chain(why).chain(picks).sum()
     }
 
@@ -38,7 +38,7 @@ impl Labs {
         let orders = self.orders.iter().map(|orders| orders.interrupted);
         let growth = self.growth.iter().map(|growth| growth.interrupted);
         let why = self.why.iter().map(|why| why.interrupted);
-        let picks = self.picks.iter().map(|answer| answer.interrupted);
+        let picks = self.picks.iter().map(|pick| pick.interrupted);
         orders.chain(growth).chain(why).chain(picks).any(|cut| cut)
     }
 
@@ -47,7 +47,7 @@ impl Labs {
         let orders = self.orders.iter().map(|orders| &orders.environment);
         let growth = self.growth.iter().map(|growth| &growth.environment);
         let why = self.why.iter().filter_map(|why| why.environment.as_ref());
-        let picks = self.picks.iter().map(|answer| &answer.environment);
+        let picks = self.picks.iter().map(|pick| &pick.environment);
         orders.chain(growth).chain(why).chain(picks)
     }
 
@@ -60,12 +60,12 @@ impl Labs {
     }
 
     /// Adds `results`; ignores studies and collections.
-    pub fn take(&mut self, results: Results) {
+    pub fn add(&mut self, results: Results) {
         match results {
             Results::Orders(orders) => self.orders.push(*orders),
             Results::Growth(growth) => self.growth.push(*growth),
             Results::Why(why) => self.why.push(*why),
-            Results::Pick(answer) => self.picks.push(*answer),
+            Results::Pick(pick) => self.picks.push(*pick),
             Results::Study(_) | Results::Collection(_) => {}
         }
     }

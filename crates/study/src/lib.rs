@@ -17,11 +17,9 @@ mod audit;
 mod collection;
 mod compare;
 mod control;
-#[cfg(test)]
-mod disturbed;
+mod disturbance;
 mod environment;
 mod external;
-mod gauge;
 mod growth;
 mod heap;
 mod inspect;
@@ -32,60 +30,63 @@ pub mod numbers;
 mod orders;
 mod pick;
 mod plan;
+mod ranking;
 mod read;
 mod report;
+mod runner;
+mod sanitize;
+mod sentences;
+#[cfg(test)]
+mod simulated_machine;
 mod slope;
-mod solo;
-mod standing;
 mod statistics;
 mod study;
-mod tame;
 mod timer;
 mod warnings;
 mod why;
-mod words;
 
-pub use audit::{Audit, Audited, OperationBytes, audit, count_allocations};
-pub use collection::{Asked, Collection, Failed, MergeError, Pooled, SecondStudy};
+pub use audit::{Audit, BackendAudit, OperationBytes, audit, count_allocations};
+pub use collection::{Collection, Failed, MergeError, Pooled, SecondStudy, SharedSettings};
 pub use compare::{
-    Change, Changes, CompareError, Comparing, DRIFT, NewWinner, Setting, Verdict, compare,
+    Change, Changes, CompareError, CompareSettings, DRIFT, NewWinner, SettingChange, Verdict,
+    compare,
 };
 pub use environment::Environment;
-pub use external::{External, ExternalError, ExternalReport, PATIENCE};
+pub use external::{EXTERNAL_TIMEOUT, External, ExternalError, ExternalReport};
 pub use growth::{
-    CacheEnd, Fit, GROWING, Growing, GrowthError, GrowthReport, GrowthSettings, SizeReport, Unheld,
-    Weight, growth, growth_bytes,
+    BackendBytes, BackendRefusal, CacheLimit, Fit, GrowthError, GrowthReport, GrowthSettings,
+    SCALABLE_SHAPES, ScalableShape, SizeReport, growth, growth_bytes,
 };
 pub use heap::{CacheState, CachesReport, free_memory};
-pub use inspect::{Specimen, inspect};
+pub use inspect::{StudyMesh, inspect};
 pub use labs::Labs;
 pub use measure::Progress;
 pub use orders::{
-    Comparison, FEW_OPERATIONS, Factor, Larger, OrderEffect, OrderRow, OrdersError, OrdersReport,
-    StructureEffect, orders, orders_bytes,
+    Comparison, DEFAULT_OPERATIONS, Factor, Larger, OrderEffect, OrderRow, OrdersError,
+    OrdersReport, StructureEffect, orders, orders_bytes,
 };
 pub use pick::{
-    Answer, BreakEven, Excluded, Need, OnMesh, PartCost, PickError, Question, Ranked, UnknownNeed,
-    pick,
+    BreakEven, Excluded, MeshRanking, Need, PartCost, PickError, PickReport, PickSettings, Ranked,
+    UnknownNeed, pick,
 };
 pub use read::{ReadError, Results};
 pub use report::{
     Agreement, BackendReport, Control, ControlRow, FIRST_TIME_SHOWN, Inspection, MeshReport,
     RawSamples, Refusal, Report, ResultRow, SCHEMA, Standing,
 };
+pub use runner::{BackendRun, BackendRunner};
+pub use sanitize::sanitize;
 pub use sixfold_workload::pages::{self, HeapReport, Policy, UnknownPolicy};
 pub use sixfold_workload::{
-    Access, Action, Amount, NoPlace, Workload, WorkloadError, built_in, built_ins,
+    Access, Action, Amount, EditPlaceError, Workload, WorkloadError, built_in, built_ins,
 };
 pub use sixfold_workload::{
-    Allocated, AllocationCounter, Backend, Cache, Clock, Editing, Editor, Edits, Heap, Kind,
-    MOST_SCANNED_FACES, MachineClock, MemorySpeed, NotCounted, Operation, Reads, Refiner, Refining,
-    Rung, Scrubber, Series, SingleEdit, Start, TableReads, Time, UnknownOperation, Way, Weighed,
-    caches, timed, unknown,
+    Allocated, AllocationCounter, Backend, BufferSpeed, Cache, CacheFlusher, Clock, EditPass,
+    Editor, Edits, ElementKind, Heap, MAX_SCANNED_FACES, MachineClock, MeasuredMemory, MemorySpeed,
+    NotCounted, Operation, Reads, Refiner, Series, SingleEdit, Start, SubdivisionJob, TableReads,
+    Time, UnknownOperation, Way, caches, timed, unknown,
 };
 pub use slope::Slope;
-pub use solo::{Solo, SoloRun};
 pub use study::{Settings, StudyError, study};
-pub use tame::tame;
 pub use timer::Timer;
 pub use why::{Bound, Model, Timed, Timing, Why, WhyRow, WhySettings, why};

@@ -16,26 +16,26 @@ use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
-use crate::gauge::{Gauge, Verdict, undisturbed};
+use crate::disturbance::{DisturbanceDetector, Verdict, undisturbed};
 use crate::heap::Memory;
 use crate::statistics::Median;
 use sixfold_workload::Operation;
 use sixfold_workload::pages;
 use sixfold_workload::{Clock, Time};
-use sixfold_workload::{Job, LONG_ENOUGH_NS, Outcome, Run, Series, Start, Subject};
+use sixfold_workload::{Job, MIN_TIMED_NS, Outcome, Run, Series, Start, TimedBackend};
 
 /// Largest number of rounds; more would hardly narrow the intervals.
-const MOST_ROUNDS: u32 = 200;
+const MAX_ROUNDS: u32 = 200;
 /// Part of the budget for samples on fresh pages.
-const FIRST_TIMES: f64 = 0.1;
+const FIRST_TIMES_SHARE: f64 = 0.1;
 /// Largest number of samples on fresh pages; more would hardly improve the figures.
-const MOST_FIRST_TIMES: u32 = 9;
+const MAX_FIRST_TIMES: u32 = 9;
 /// Part of the elapsed time for building the structures again.
-const REBUILDING: f64 = 0.04;
+const REBUILDING_SHARE: f64 = 0.04;
 /// Largest gap in bytes that is allocated before a structure is built again.
 const LARGEST_GAP: usize = 64 << 10;
 /// Largest number of runs in one sample.
-pub(crate) const MOST_RUNS: f64 = 1e7;
+pub(crate) const MAX_RUNS: f64 = 1e7;
 /// Runs longer than this fill the caches by themselves.
 pub(crate) const LONG_RUN_NS: f64 = 10_000_000.0;
 
@@ -67,10 +67,10 @@ pub(crate) struct Entry {
     pub(crate) refusal: Option<String>,
     /// Round and time of one run, for each sample.
     pub(crate) samples: Vec<(u32, Time)>,
-    /// For each sample the larger slowdown of the [`Gauge`] before and after it.
+    /// For each sample the larger slowdown of the [`DisturbanceDetector`] before and after it.
     pub(crate) slowdowns: Vec<f64>,
     /// Whether its last sample was disturbed; it then takes part in the next round, too.
-    pub(crate) owed: bool,
+    pub(crate) repeat_next: bool,
     /// Number of samples taken again because of page faults or disturbance.
     pub(crate) retaken: u32,
     /// Pairs of times: of one run on fresh pages and tables, and of a normal run right after it.
@@ -97,7 +97,7 @@ impl Entry {
             refusal: None,
             samples: Vec::new(),
             slowdowns: Vec::new(),
-            owed: false,
+            repeat_next: false,
             retaken: 0,
             first_times: Vec::new(),
         }
@@ -106,9 +106,9 @@ impl Entry {
     /// Returns the time of a first run: the median time multiplied by the median ratio of first
     /// runs to the runs right after them.
     pub(crate) fn first_ns(&self) -> Option<f64> {
-        let median = Median::of(self.times().iter().map(|(_, time)| time.ns()))?;
+        let median = Median::from_samples(self.times().iter().map(|(_, time)| time.ns()))?;
         let ratio = |[first, later]: &[Time; 2]| first.ns() / later.ns().max(1.0);
-        Some(median.value * Median::of(self.first_times.iter().map(ratio))?.value)
+        Some(median.value * Median::from_samples(self.first_times.iter().map(ratio))?.value)
     }
 
     /// Returns the expected time to measure one first run, in nanoseconds: that of three runs.
@@ -117,7 +117,7 @@ impl Entry {
     }
 
     /// Returns whether first runs can be measured: it allocates, and was measured without sampling.
-    fn has_a_first_time(&self) -> bool {
+    fn has_first_time(&self) -> bool {
         let measured = !self.samples.is_empty() && self.job.sample.is_none();
         measured && self.job.operation.allocates()
     }
@@ -137,8 +137,8 @@ impl Entry {
         let whole = self.samples.iter().filter(|_| self.job.sample.is_none());
         let shortest = whole.map(|(_, time)| time.ns()).min_by(f64::total_cmp)?;
         let sample = shortest * f64::from(self.runs);
-        Some(match self.job.operation.stops_the_clock() {
-            true => shortest.max(sample.min(LONG_ENOUGH_NS)),
+        Some(match self.job.operation.pauses_clock() {
+            true => shortest.max(sample.min(MIN_TIMED_NS)),
             false => sample,
         })
     }
@@ -151,7 +151,7 @@ impl Entry {
 pub(crate) fn untimed_runs(operation: Operation, ns: f64, most_ns: f64) -> u32 {
     match ns > LONG_RUN_NS {
         true => u32::from(operation.grows_tables()),
-        false => (most_ns / ns.max(0.1)).clamp(1.0, MOST_RUNS) as u32,
+        false => (most_ns / ns.max(0.1)).clamp(1.0, MAX_RUNS) as u32,
     }
 }
 
@@ -169,8 +169,8 @@ pub struct Progress<'a> {
 }
 
 /// The measurement of several subjects, with its clock and budget.
-pub(crate) struct Bench<'b, 's> {
-    pub(crate) subjects: &'b mut [Box<dyn Subject + 's>],
+pub(crate) struct Measurement<'b, 's> {
+    pub(crate) subjects: &'b mut [Box<dyn TimedBackend + 's>],
     /// Index of the subject that repeats another one, for the control.
     pub(crate) control: Option<usize>,
     /// Numbers of vertices, edges and faces of the mesh.
@@ -189,7 +189,7 @@ pub(crate) struct Bench<'b, 's> {
     pub(crate) progress: &'b mut dyn FnMut(Progress<'_>),
 }
 
-impl Bench<'_, '_> {
+impl Measurement<'_, '_> {
     /// Measures `operations` on all subjects. Returns early, with the finished part, if `stop` is
     /// set.
     pub(crate) fn measure(&mut self, operations: &[Operation]) -> Vec<Entry> {
@@ -205,9 +205,9 @@ impl Bench<'_, '_> {
         self.warm_up(&mut entries, deadline);
         self.memory.reserve();
         let allocates = operations.iter().any(|operation| operation.allocates());
-        let fresh_pages = pages::can_give_back() && !self.memory.is_cold();
+        let fresh_pages = pages::can_release_pages() && !self.memory.is_cold();
         let for_first_times = match allocates && fresh_pages {
-            true => FIRST_TIMES * self.budget.as_nanos() as f64,
+            true => FIRST_TIMES_SHARE * self.budget.as_nanos() as f64,
             false => 0.0,
         };
         self.rounds(&mut entries, start, deadline - for_first_times);
@@ -245,12 +245,12 @@ impl Bench<'_, '_> {
     /// leaves out entries that would not end in time.
     fn rounds(&mut self, entries: &mut [Entry], start: f64, deadline: f64) {
         let mut groups = groups(entries);
-        let mut gauge = Gauge::new(self.budget.as_nanos() as f64);
+        let mut detector = DisturbanceDetector::new(self.budget.as_nanos() as f64);
         // First guess: building and touching a structure takes about 1 ns per byte.
         let mut rebuild_ns: f64 = self.subjects.iter().map(|s| s.bytes() as f64).sum();
         let mut rebuilding_ns = 0.0;
-        for round in 0..MOST_ROUNDS {
-            self.memory.watch();
+        for round in 0..MAX_ROUNDS {
+            self.memory.check_free_memory();
             let costs = entries.iter().filter(|e| takes_part(e, round));
             let cost: f64 = costs.map(|e| e.cost_ns).sum();
             let now = self.clock.now().wall_ns;
@@ -259,7 +259,7 @@ impl Bench<'_, '_> {
                 return;
             }
             let in_time = now + rebuild_ns + cost <= deadline;
-            let affordable = rebuilding_ns + rebuild_ns <= REBUILDING * (now - start);
+            let affordable = rebuilding_ns + rebuild_ns <= REBUILDING_SHARE * (now - start);
             if round > 0 && in_time && affordable && self.has_room_to_rebuild() {
                 self.rebuild();
                 rebuild_ns = self.clock.now().wall_ns - now;
@@ -269,10 +269,10 @@ impl Bench<'_, '_> {
             for group in &mut groups {
                 group.shuffle(&mut self.random);
                 // All entries of an operation together: ratios are formed within rounds.
-                let owed = group.iter().any(|&entry| entries[entry].owed);
+                let repeat_next = group.iter().any(|&entry| entries[entry].repeat_next);
                 for &entry in &*group {
                     let entry = &mut entries[entry];
-                    let wanted = takes_part(entry, round) || (owed && can_take_part(entry));
+                    let wanted = takes_part(entry, round) || (repeat_next && can_take_part(entry));
                     if !wanted {
                         continue;
                     }
@@ -284,9 +284,9 @@ impl Bench<'_, '_> {
                         continue; // a shorter one may still fit
                     }
                     let by_time = (now - start) / (deadline - start);
-                    let by_count = f64::from(round) / f64::from(MOST_ROUNDS);
+                    let by_count = f64::from(round) / f64::from(MAX_ROUNDS);
                     self.report(by_time.max(by_count).clamp(0.1, 1.0), "measuring", entry);
-                    self.sample(&mut gauge, entry, round);
+                    self.sample(&mut detector, entry, round);
                 }
             }
         }
@@ -309,7 +309,7 @@ impl Bench<'_, '_> {
             if self.stopped() {
                 return;
             }
-            self.memory.give_back();
+            self.memory.release_pages();
             let gap: Vec<u8> = Vec::with_capacity(self.random.random_range(0..LARGEST_GAP));
             self.subjects[subject].rebuild();
             drop(black_box(gap));
@@ -318,10 +318,10 @@ impl Bench<'_, '_> {
     }
 
     /// Takes a sample and records it, or the refusal: an external program may refuse at any time.
-    fn sample(&mut self, gauge: &mut Gauge, entry: &mut Entry, round: u32) {
+    fn sample(&mut self, detector: &mut DisturbanceDetector, entry: &mut Entry, round: u32) {
         let (stop, kept) = (self.stop, self.memory.keeps_pages());
         let runs = [entry.untimed, entry.runs];
-        let taken = gauge.take(
+        let taken = detector.take_sample(
             self.clock,
             || self.run(entry.subject, &entry.job, runs, false),
             |run| match run.refusal.is_some() || stop.load(Ordering::Relaxed) {
@@ -334,11 +334,11 @@ impl Bench<'_, '_> {
             None => {
                 entry.samples.push((round, taken.value.time));
                 entry.slowdowns.push(taken.slowdown);
-                entry.owed = taken.disturbed;
+                entry.repeat_next = taken.disturbed;
             }
             refusal => {
                 entry.refusal = refusal;
-                entry.owed = false;
+                entry.repeat_next = false;
             }
         }
     }
@@ -350,10 +350,10 @@ impl Bench<'_, '_> {
         let control = self.control;
         let mut entries: Vec<&mut Entry> = entries
             .iter_mut()
-            .filter(|entry| entry.has_a_first_time() && Some(entry.subject) != control)
+            .filter(|entry| entry.has_first_time() && Some(entry.subject) != control)
             .filter(|entry| !self.subjects[entry.subject].is_external())
             .collect();
-        for _ in 0..MOST_FIRST_TIMES {
+        for _ in 0..MAX_FIRST_TIMES {
             entries.shuffle(&mut self.random);
             for entry in &mut entries {
                 let now = self.clock.now().wall_ns;

@@ -6,32 +6,32 @@ use crate::report::{BackendReport, ResultRow};
 use sixfold_workload::Operation;
 
 /// Smaller ratios of two methods are not reported.
-const ALIKE: f64 = 1.1;
+const MIN_RATIO: f64 = 1.1;
 /// Assumed error factor of a figure without an interval: an estimate, or one with few samples.
-const UNSURE: f64 = 1.5;
+const ASSUMED_ERROR: f64 = 1.5;
 
 /// A time in nanoseconds, with its interval.
 #[derive(Clone, Copy)]
-struct Took {
+struct MeasuredTime {
     low: f64,
     ns: f64,
     high: f64,
 }
 
-impl Took {
-    fn of(row: &ResultRow) -> Option<Self> {
+impl MeasuredTime {
+    fn from_row(row: &ResultRow) -> Option<Self> {
         let ns = row.median_ns.or(row.estimated_ns)?;
         Some(Self {
-            low: row.ci_low_ns.unwrap_or(ns / UNSURE),
+            low: row.ci_low_ns.unwrap_or(ns / ASSUMED_ERROR),
             ns,
-            high: row.ci_high_ns.unwrap_or(ns * UNSURE),
+            high: row.ci_high_ns.unwrap_or(ns * ASSUMED_ERROR),
         })
     }
 
     /// Returns the ratio of this time to `other`, if this is clearly longer.
-    fn beyond(self, other: Self) -> Option<f64> {
+    fn ratio_if_longer(self, other: Self) -> Option<f64> {
         let ratio = self.ns / other.ns;
-        (self.low > other.high && ratio > ALIKE).then_some(ratio)
+        (self.low > other.high && ratio > MIN_RATIO).then_some(ratio)
     }
 }
 
@@ -43,48 +43,49 @@ pub(crate) fn methods(
     results: &[ResultRow],
     times: fn(f64) -> String,
 ) -> Vec<String> {
-    let took = |operation: Operation, backend: &BackendReport| {
+    let time_of = |operation: Operation, backend: &BackendReport| {
         let mut rows = results.iter();
         let row = rows.find(|row| row.operation == operation && row.backend == backend.name);
-        Took::of(row?)
+        MeasuredTime::from_row(row?)
     };
-    let mut words = Vec::new();
+    let mut sentences = Vec::new();
     let catmull_clark: fn(Method) -> Operation = Operation::CatmullClark;
     for (name, by) in [("Catmull–Clark", catmull_clark), ("Loop", Operation::Loop)] {
-        let (mut rescued, mut slowed, mut native) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut scatter_faster, mut scatter_slower, mut native) =
+            (Vec::new(), Vec::new(), Vec::new());
         for backend in backends {
-            let [gather, scatter, own] = Method::ALL.map(|method| took(by(method), backend));
-            let said = |ratio: f64| (ratio, format!("{} {}", backend.name, times(ratio)));
+            let [gather, scatter, own] = Method::ALL.map(|method| time_of(by(method), backend));
+            let phrase = |ratio: f64| (ratio, format!("{} {}", backend.name, times(ratio)));
             if let (Some(gather), Some(scatter)) = (gather, scatter) {
-                rescued.extend(gather.beyond(scatter).map(said));
-                slowed.extend(scatter.beyond(gather).map(said));
+                scatter_faster.extend(gather.ratio_if_longer(scatter).map(phrase));
+                scatter_slower.extend(scatter.ratio_if_longer(gather).map(phrase));
             }
             let rebuilt = [gather, scatter].into_iter().flatten();
             let rebuilt = rebuilt.min_by(|a, b| a.ns.total_cmp(&b.ns));
             if let (Some(rebuilt), Some(own)) = (rebuilt, own) {
-                native.extend(rebuilt.beyond(own).map(said));
+                native.extend(rebuilt.ratio_if_longer(own).map(phrase));
             }
         }
         let parts = [
-            ("scatter is faster than gather on", rescued),
-            ("slower on", slowed),
+            ("scatter is faster than gather on", scatter_faster),
+            ("slower on", scatter_slower),
             ("native is faster than both on", native),
         ];
-        let mut said = Vec::new();
+        let mut phrases = Vec::new();
         for (verb, mut list) in parts {
             list.sort_by(|(a, _), (b, _)| b.total_cmp(a));
-            let list: Vec<String> = list.into_iter().map(|(_, said)| said).collect();
+            let list: Vec<String> = list.into_iter().map(|(_, phrase)| phrase).collect();
             if !list.is_empty() {
                 let verb = match verb {
-                    "slower on" if said.is_empty() => "scatter is slower than gather on",
+                    "slower on" if phrases.is_empty() => "scatter is slower than gather on",
                     verb => verb,
                 };
-                said.push(format!("{verb} {}", list.join(", ")));
+                phrases.push(format!("{verb} {}", list.join(", ")));
             }
         }
-        if !said.is_empty() {
-            words.push(format!("{name}: {}.", said.join("; ")));
+        if !phrases.is_empty() {
+            sentences.push(format!("{name}: {}.", phrases.join("; ")));
         }
     }
-    words
+    sentences
 }

@@ -7,7 +7,7 @@
 
 mod effects;
 mod meshes;
-mod words;
+mod sentences;
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,23 +22,23 @@ use sixfold::{Counts, PolygonMesh};
 
 pub use effects::{Comparison, Factor, Larger, OrderEffect, StructureEffect};
 
-use crate::agreement::judge;
-use crate::control::{control, entered_twice, noise};
+use crate::agreement::compare_checksums;
+use crate::control::{control, measured_twice, noise};
 use crate::environment::Environment;
 use crate::heap::Memory;
-use crate::inspect::Specimen;
-use crate::measure::{Bench, Entry, Progress};
+use crate::inspect::StudyMesh;
+use crate::measure::{Entry, Measurement, Progress};
 use crate::report::{
     Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, SCHEMA, write_json,
 };
-use crate::study::{Settings, StudyError, is_skewed, put_on_the_bench, refusals, results, scans};
-use effects::Timed;
-use meshes::Meshes;
-use sixfold_workload::{Backend, MachineClock, Operation, Subject};
+use crate::study::{Settings, StudyError, is_skewed, prepare, refusals, results, scans};
+use effects::OrderSamples;
+use meshes::OrderedMeshes;
+use sixfold_workload::{Backend, MachineClock, Operation, TimedBackend};
 
 /// Operations that are measured by default: queries around vertices, faces and edges, a sum over
 /// faces, and a traversal of the whole mesh.
-pub const FEW_OPERATIONS: [&str; 6] = [
+pub const DEFAULT_OPERATIONS: [&str; 6] = [
     "vertex_vertices",
     "vertex_faces",
     "edge_faces",
@@ -48,7 +48,7 @@ pub const FEW_OPERATIONS: [&str; 6] = [
 ];
 
 /// Smallest budget.
-const SHORTEST: Duration = Duration::from_millis(100);
+const MIN_BUDGET: Duration = Duration::from_millis(100);
 
 /// The reason why orders cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -82,10 +82,11 @@ pub struct OrdersReport {
     pub refusals: Vec<Refusal>,
     /// The effects of order and structure, for each operation.
     pub comparisons: Vec<Comparison>,
-    /// One structure in the given order, entered twice.
+    /// One structure in the given order, measured twice.
     pub control: Option<Control>,
     /// Sentences on the tables.
-    pub words: Vec<String>,
+    #[serde(rename = "words")]
+    pub sentences: Vec<String>,
     /// Whether the run was interrupted before the end.
     pub interrupted: bool,
     /// The machine and the program.
@@ -125,17 +126,17 @@ impl OrdersReport {
     }
 }
 
-/// Returns the requested operations, or [`FEW_OPERATIONS`] by default, in the order of tables.
+/// Returns the requested operations, or [`DEFAULT_OPERATIONS`] by default, in the order of tables.
 pub(crate) fn chosen_operations(settings: &Settings) -> Vec<Operation> {
-    let asked = |operation: &Operation| match settings.operations.is_empty() {
-        true => FEW_OPERATIONS.contains(&operation.name()),
+    let requested = |operation: &Operation| match settings.operations.is_empty() {
+        true => DEFAULT_OPERATIONS.contains(&operation.name()),
         false => settings.operations.contains(operation),
     };
-    Operation::ALL.into_iter().filter(asked).collect()
+    Operation::ALL.into_iter().filter(requested).collect()
 }
 
 /// Measures the mesh in every order on every requested backend. `settings` are as for a study, but
-/// if the operations are empty, [`FEW_OPERATIONS`] are measured.
+/// if the operations are empty, [`DEFAULT_OPERATIONS`] are measured.
 ///
 /// Setting `stop` ends the run between two samples; the report contains the finished part.
 ///
@@ -144,43 +145,43 @@ pub(crate) fn chosen_operations(settings: &Settings) -> Vec<Operation> {
 /// A backend is unknown, the mesh has no faces, no requested backend can hold it, or the budget is
 /// too short.
 pub fn orders(
-    specimen: &Specimen,
+    study_mesh: &StudyMesh,
     settings: &Settings,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<OrdersReport, OrdersError> {
-    if settings.budget < SHORTEST {
+    if settings.budget < MIN_BUDGET {
         return Err(OrdersError::BudgetTooSmall {
             budget: settings.budget,
-            least: SHORTEST,
+            least: MIN_BUDGET,
         });
     }
     let chosen = settings.chosen_backends()?;
     let operations = chosen_operations(settings);
-    let polygons = &specimen.polygons;
+    let polygons = &study_mesh.polygons;
     if polygons.face_count() == 0 {
         return Err(StudyError::NoFaces.into());
     }
-    let environment = Environment::here(settings.seed, settings.budget.as_secs_f64());
-    let counts = polygons.counts(specimen.facts.edges);
-    let needed = orders_bytes(specimen, settings)?;
+    let environment = Environment::detect(settings.seed, settings.budget.as_secs_f64());
+    let counts = polygons.counts(study_mesh.facts.edges);
+    let needed = orders_bytes(study_mesh, settings)?;
     let mut memory = Memory::start(settings.heap, settings.caches, needed);
-    let skewed = is_skewed(&specimen.facts);
-    let drawn = chosen.iter().any(|b| skewed || scans(b, &operations));
-    let meshes = Meshes::of(polygons, settings.seed, drawn);
+    let skewed = is_skewed(&study_mesh.facts);
+    let needs_draw = chosen.iter().any(|b| skewed || scans(b, &operations));
+    let meshes = OrderedMeshes::new(polygons, settings.seed, needs_draw);
 
     let mut backends = Vec::new();
-    let mut subjects: Vec<Box<dyn Subject + '_>> = Vec::new();
-    let mut held: Vec<Held> = Vec::new();
+    let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
+    let mut columns: Vec<Column> = Vec::new();
     for backend in &chosen {
         for (order, mesh, draw) in meshes.iter() {
-            let (report, subject) = put_on_the_bench(backend, mesh, draw, &counts);
+            let (report, subject) = prepare(backend, mesh, draw, &counts);
             if order == Order::Given {
                 backends.push(report);
             }
             let Some(subject) = subject else { break };
             subjects.push(subject);
-            held.push(Held {
+            columns.push(Column {
                 backend: *backend,
                 order,
             });
@@ -192,16 +193,16 @@ pub fn orders(
         return Err(StudyError::NoneHolds { refusals }.into());
     }
     // The first subject that never scans; its given order comes first.
-    let first = entered_twice(&subjects);
+    let first = measured_twice(&subjects);
     let second = subjects.len();
     let again = meshes.iter().next().and_then(|(_, mesh, draw)| {
-        let built = held[first].backend.put_on_the_bench(mesh, draw);
+        let built = columns[first].backend.prepare(mesh, draw);
         built.ok()
     });
     subjects.extend(again.map(|(subject, _)| subject));
 
     let clock = MachineClock::start();
-    let mut bench = Bench {
+    let mut measurement = Measurement {
         control: (subjects.len() > second).then_some(second),
         subjects: &mut subjects,
         population: [counts.vertices, counts.edges, counts.faces],
@@ -214,84 +215,85 @@ pub fn orders(
         stop,
         progress,
     };
-    let mut entries = bench.measure(&operations);
+    let mut entries = measurement.measure(&operations);
     let control = control(&entries, first, second, subjects[first].name());
     entries.retain(|entry| entry.subject != second);
     let interrupted = stop.load(Ordering::Relaxed);
-    let mut judged = |entries: &[Entry]| judge(entries, &mut subjects, polygons, &clock, stop);
-    let agreements = agreements(&entries, &held, &mut judged);
+    let mut compare =
+        |entries: &[Entry]| compare_checksums(entries, &mut subjects, polygons, &clock, stop);
+    let agreements = agreements(&entries, &columns, &mut compare);
 
-    let refusals = once_each(refusals(&entries, &subjects));
+    let refusals = deduplicated(refusals(&entries, &subjects));
     let rows = rows(
         &entries,
         &agreements,
-        &held,
+        &columns,
         &subjects,
         polygons,
         control.as_ref(),
     );
     let timed = |operation: Operation| {
         let of_it = entries.iter().filter(|e| e.job.operation == operation);
-        let timed = of_it.map(|entry| Timed {
-            backend: held[entry.subject].backend.name(),
-            order: held[entry.subject].order,
-            scans: operation.scans(&held[entry.subject].backend.info.costs) != [false; 3],
+        let timed = of_it.map(|entry| OrderSamples {
+            backend: columns[entry.subject].backend.name(),
+            order: columns[entry.subject].order,
+            scans: operation.scans(&columns[entry.subject].backend.info.costs) != [false; 3],
             samples: entry.times(),
         });
-        let timed: Vec<Timed> = timed.collect();
-        Comparison::of(operation, &timed, noise(control.as_ref(), operation))
+        let timed: Vec<OrderSamples> = timed.collect();
+        Comparison::new(operation, &timed, noise(control.as_ref(), operation))
     };
     let comparisons: Vec<Comparison> = operations.into_iter().map(timed).collect();
-    let words = words::words(&rows, &comparisons, control.as_ref());
+    let sentences = sentences::sentences(&rows, &comparisons, control.as_ref());
     Ok(OrdersReport {
         schema: SCHEMA,
-        mesh: specimen.report(),
+        mesh: study_mesh.report(),
         orders: Order::ALL.into(),
         backends,
         results: rows,
         refusals,
         comparisons,
         control,
-        words,
+        sentences,
         interrupted,
         environment: environment.with_memory(&memory),
     })
 }
 
 /// The backend and the order of a subject.
-struct Held {
+struct Column {
     backend: Backend,
     order: Order,
 }
 
 /// Returns whether the result depends on the order of the input: the operation starts at the first
 /// face, or edits the elements one after another.
-fn follows_the_order(operation: Operation) -> bool {
-    matches!(operation, Operation::FfBfs | Operation::Editing(_))
+fn depends_on_order(operation: Operation) -> bool {
+    matches!(operation, Operation::FfBfs | Operation::EditPass(_))
 }
 
-/// Returns the agreement of every entry according to `judge`. All orders are compared with each
+/// Returns the agreement of every entry according to `compare`. All orders are compared with each
 /// other, except for operations whose results depend on the order: these are compared within each
 /// order.
 fn agreements(
     entries: &[Entry],
-    held: &[Held],
-    judge: &mut dyn FnMut(&[Entry]) -> Vec<Agreement>,
+    columns: &[Column],
+    compare: &mut dyn FnMut(&[Entry]) -> Vec<Agreement>,
 ) -> Vec<Agreement> {
     let mut agreements = vec![Agreement::Unchecked; entries.len()];
-    let mut judge_those = |takes_part: &dyn Fn(&Entry) -> bool| {
-        let those: Vec<usize> = (0..entries.len())
+    let mut compare_group = |takes_part: &dyn Fn(&Entry) -> bool| {
+        let indices: Vec<usize> = (0..entries.len())
             .filter(|&e| takes_part(&entries[e]))
             .collect();
-        let group: Vec<Entry> = those.iter().map(|&e| entries[e].clone()).collect();
-        for (e, agreement) in those.into_iter().zip(judge(&group)) {
+        let group: Vec<Entry> = indices.iter().map(|&e| entries[e].clone()).collect();
+        for (e, agreement) in indices.into_iter().zip(compare(&group)) {
             agreements[e] = agreement;
         }
     };
-    judge_those(&|entry| !follows_the_order(entry.job.operation));
+    compare_group(&|entry| !depends_on_order(entry.job.operation));
     for order in Order::ALL {
-        judge_those(&|entry| {
-            follows_the_order(entry.job.operation) && held[entry.subject].order == order
+        compare_group(&|entry| {
+            depends_on_order(entry.job.operation) && columns[entry.subject].order == order
         });
     }
     agreements
@@ -301,34 +303,39 @@ fn agreements(
 fn rows(
     entries: &[Entry],
     agreements: &[Agreement],
-    held: &[Held],
-    subjects: &[Box<dyn Subject + '_>],
+    columns: &[Column],
+    subjects: &[Box<dyn TimedBackend + '_>],
     polygons: &PolygonMesh,
     control: Option<&Control>,
 ) -> Vec<OrderRow> {
-    let figured: Vec<(&Entry, Agreement)> = entries
+    let with_times: Vec<(&Entry, Agreement)> = entries
         .iter()
         .zip(agreements.iter().copied())
         .filter(|(entry, _)| !entry.times().is_empty() || entry.estimate.is_some())
         .collect();
     let mut rows = Vec::new();
-    for group in figured.chunk_by(|(a, _), (b, _)| {
-        let backend = |entry: &Entry| held[entry.subject].backend.name();
+    for group in with_times.chunk_by(|(a, _), (b, _)| {
+        let backend = |entry: &Entry| columns[entry.subject].backend.name();
         a.job.operation == b.job.operation && backend(a) == backend(b)
     }) {
-        let of_one: Vec<Entry> = group.iter().map(|(entry, _)| (*entry).clone()).collect();
+        let backend_entries: Vec<Entry> = group.iter().map(|(entry, _)| (*entry).clone()).collect();
         let agreements = group.iter().map(|(_, agreement)| *agreement).collect();
-        let of_one_rows = results(&of_one, agreements, subjects, polygons, control);
-        rows.extend(of_one.iter().zip(of_one_rows).map(|(entry, row)| OrderRow {
-            order: held[entry.subject].order,
-            row,
-        }));
+        let backend_rows = results(&backend_entries, agreements, subjects, polygons, control);
+        rows.extend(
+            backend_entries
+                .iter()
+                .zip(backend_rows)
+                .map(|(entry, row)| OrderRow {
+                    order: columns[entry.subject].order,
+                    row,
+                }),
+        );
     }
     rows
 }
 
 /// Removes duplicates: all orders of a structure give the same refusal.
-fn once_each(refusals: Vec<Refusal>) -> Vec<Refusal> {
+fn deduplicated(refusals: Vec<Refusal>) -> Vec<Refusal> {
     let mut kept: Vec<Refusal> = Vec::new();
     for refusal in refusals {
         if !kept.contains(&refusal) {
@@ -343,14 +350,14 @@ fn once_each(refusals: Vec<Refusal>) -> Vec<Refusal> {
 /// # Errors
 ///
 /// A backend is unknown.
-pub fn orders_bytes(specimen: &Specimen, settings: &Settings) -> Result<u64, StudyError> {
-    let counts = specimen.polygons.counts(specimen.facts.edges);
+pub fn orders_bytes(study_mesh: &StudyMesh, settings: &Settings) -> Result<u64, StudyError> {
+    let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
     let chosen = settings.chosen_backends()?;
     let copies = Order::ALL.len() as u64;
-    let weights = chosen
+    let bytes = chosen
         .iter()
-        .map(|backend| on_the_bench_bytes(backend, &counts));
-    let (all, most) = weights.fold((0, 0), |(all, most): (u64, u64), one| {
+        .map(|backend| prepared_bytes(backend, &counts));
+    let (all, most) = bytes.fold((0, 0), |(all, most): (u64, u64), one| {
         (all + one, most.max(one))
     });
     // Plus the control, and temporary memory for building one structure.
@@ -358,7 +365,7 @@ pub fn orders_bytes(specimen: &Specimen, settings: &Settings) -> Result<u64, Stu
 }
 
 /// Estimates the bytes of a structure and of the outputs of operations on it.
-pub(crate) fn on_the_bench_bytes(backend: &Backend, counts: &Counts) -> u64 {
+pub(crate) fn prepared_bytes(backend: &Backend, counts: &Counts) -> u64 {
     /// Bytes of one position, for each vertex and face.
     const OUTPUTS: u64 = 12;
     let outputs = OUTPUTS * (counts.vertices + counts.faces) as u64;

@@ -5,13 +5,13 @@
 //! result. If the mix does not change connectivity, tables of only the relations that it queries
 //! take part as one more backend.
 
-mod answer;
+mod backend;
 mod break_even;
-mod contest;
-mod entrant;
+mod measurement;
 mod needs;
 mod pooled;
 mod reasons;
+mod report;
 #[cfg(test)]
 mod tests;
 
@@ -20,23 +20,23 @@ use std::time::Duration;
 
 use sixfold_workload::pages::Policy;
 use sixfold_workload::{
-    Backend, Draw, MachineClock, MixRefusal, NoPlace, Operation, Route, Script, Workload,
+    Backend, Draw, EditPlaceError, MachineClock, MixRefusal, Operation, Route, Schedule, Workload,
 };
 
-pub use answer::{Answer, BreakEven, Excluded, OnMesh, PartCost, Ranked};
 pub use needs::{Need, UnknownNeed};
+pub use report::{BreakEven, Excluded, MeshRanking, PartCost, PickReport, Ranked};
 
 use crate::environment::Environment;
 use crate::heap::{CacheState, Memory};
-use crate::inspect::Specimen;
+use crate::inspect::StudyMesh;
 use crate::study::{Settings, StudyError, needed_bytes};
 use crate::timer::Timer;
-use contest::Contest;
-use entrant::Entrant;
+use backend::PickBackend;
+use measurement::PickMeasurement;
 
 /// The input of [`pick`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Question {
+pub struct PickSettings {
     /// The workload of the program.
     pub workload: Workload,
     /// Names of the backends to compare; empty for all.
@@ -53,7 +53,7 @@ pub struct Question {
     pub heap: Policy,
 }
 
-impl Question {
+impl PickSettings {
     /// Returns the backends to compare.
     fn chosen_backends(&self) -> Result<Vec<Backend>, StudyError> {
         let settings = Settings {
@@ -74,7 +74,10 @@ pub enum PickError {
     Study(#[from] StudyError),
     /// The workload cannot be run on this mesh.
     #[error("{mesh}: {reason}")]
-    Impossible { mesh: String, reason: NoPlace },
+    Impossible {
+        mesh: String,
+        reason: EditPlaceError,
+    },
     /// The budget is too short for three rounds. `needed_ms` is rounded up and is for all meshes
     /// together.
     #[error(
@@ -90,10 +93,10 @@ pub enum PickError {
     NoMesh,
 }
 
-/// Ranks the backends for `question` on `specimens` by running its workload on each.
+/// Ranks the backends for the workload of `settings` by running it on each of `study_meshes`.
 ///
 /// If no backend qualifies, the ranking is empty and `excluded` has the reasons. Setting `stop`
-/// ends the measurement between two samples; the answer contains what is finished. `progress` is
+/// ends the measurement between two samples; the report contains what is finished. `progress` is
 /// called with the finished part, from 0 to 1, and the current step.
 ///
 /// # Errors
@@ -101,41 +104,44 @@ pub enum PickError {
 /// [`PickError`]: unknown names, a mesh without faces, a workload that cannot be run on a mesh, or
 /// a budget that is too small.
 pub fn pick(
-    specimens: &[Specimen],
-    question: &Question,
+    study_meshes: &[StudyMesh],
+    settings: &PickSettings,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(f64, &str),
-) -> Result<Answer, PickError> {
-    if specimens.is_empty() {
+) -> Result<PickReport, PickError> {
+    if study_meshes.is_empty() {
         return Err(PickError::NoMesh);
     }
-    let environment = Environment::here(question.seed, question.budget.as_secs_f64());
-    let needed = specimens.iter().map(|specimen| needed(specimen, question));
-    let mut memory = Memory::start(question.heap, CacheState::Warm, needed.max().unwrap_or(0));
+    let environment = Environment::detect(settings.seed, settings.budget.as_secs_f64());
+    let needed = study_meshes
+        .iter()
+        .map(|study_mesh| needed(study_mesh, settings));
+    let mut memory = Memory::start(settings.heap, CacheState::Warm, needed.max().unwrap_or(0));
     let clock = MachineClock::start();
-    let timer = Timer::of(&clock);
-    let budget = question.budget / specimens.len() as u32;
-    let mut answers = Vec::new();
-    for (i, specimen) in specimens.iter().enumerate() {
+    let timer = Timer::measure(&clock);
+    let budget = settings.budget / study_meshes.len() as u32;
+    let mut outcomes = Vec::new();
+    for (i, study_mesh) in study_meshes.iter().enumerate() {
         if stop.load(Ordering::Relaxed) && i > 0 {
             break;
         }
-        let part = |done: f64| (i as f64 + done) / specimens.len() as f64;
+        let part = |done: f64| (i as f64 + done) / study_meshes.len() as f64;
         let mut progress = |done: f64, what: &str| progress(part(done), what);
-        let measuring = Measuring {
+        let context = MeasureContext {
             budget,
             clock: &clock,
             memory: &mut memory,
             stop,
             progress: &mut progress,
         };
-        let answer = on_one(specimen, question, measuring);
-        answers.push(answer.map_err(|error| for_all(error, question, specimens.len()))?);
+        let outcome = measure_mesh(study_mesh, settings, context);
+        outcomes
+            .push(outcome.map_err(|error| for_all_meshes(error, settings, study_meshes.len()))?);
     }
     let interrupted = stop.load(Ordering::Relaxed);
     Ok(pooled::pooled(
-        answers,
-        question,
+        outcomes,
+        settings,
         timer,
         environment.with_memory(&memory),
         interrupted,
@@ -143,16 +149,16 @@ pub fn pick(
 }
 
 /// Estimates how many bytes the measurement on one mesh holds at once.
-fn needed(specimen: &Specimen, question: &Question) -> u64 {
-    let counts = specimen.polygons.counts(specimen.facts.edges);
+fn needed(study_mesh: &StudyMesh, settings: &PickSettings) -> u64 {
+    let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
     // Unknown names are refused later.
-    let backends = question.chosen_backends().unwrap_or_default();
+    let backends = settings.chosen_backends().unwrap_or_default();
     // Twice: for the relation tables, and for what edits and subdivision allocate.
     2 * needed_bytes(&backends, &Operation::ALL, &counts)
 }
 
 /// Budget, clock, memory and callbacks of the measurement on one mesh.
-pub(crate) struct Measuring<'m> {
+pub(crate) struct MeasureContext<'m> {
     budget: Duration,
     clock: &'m MachineClock,
     memory: &'m mut Memory,
@@ -161,13 +167,13 @@ pub(crate) struct Measuring<'m> {
 }
 
 /// Converts an error about the budget of one mesh to the budget of all meshes.
-fn for_all(error: PickError, question: &Question, meshes: usize) -> PickError {
+fn for_all_meshes(error: PickError, settings: &PickSettings, meshes: usize) -> PickError {
     match error {
         PickError::BudgetTooSmall {
             mesh, needed_ms, ..
         } => PickError::BudgetTooSmall {
             mesh,
-            budget: question.budget,
+            budget: settings.budget,
             needed_ms: needed_ms.saturating_mul(meshes as u64),
         },
         other => other,
@@ -176,125 +182,126 @@ fn for_all(error: PickError, question: &Question, meshes: usize) -> PickError {
 
 /// Returns the backends that qualify, and the others with their reasons.
 fn qualified(
-    specimen: &Specimen,
-    question: &Question,
+    study_mesh: &StudyMesh,
+    settings: &PickSettings,
 ) -> Result<(Vec<Backend>, Vec<Excluded>), PickError> {
-    let polygons = &specimen.polygons;
+    let polygons = &study_mesh.polygons;
     if polygons.face_count() == 0 {
         return Err(StudyError::NoFaces.into());
     }
-    let counts = polygons.counts(specimen.facts.edges);
+    let counts = polygons.counts(study_mesh.facts.edges);
     let mut excluded = Vec::new();
     let mut qualified = Vec::new();
-    for backend in question.chosen_backends()? {
-        let lacks = question
+    for backend in settings.chosen_backends()? {
+        let lacks = settings
             .needs
             .iter()
-            .find_map(|need| need.lacking(&backend));
+            .find_map(|need| need.unmet_reason(&backend));
         let bytes = (backend.layout_bytes)(&counts) as u64;
-        let reason = match (lacks, question.max_memory) {
+        let reason = match (lacks, settings.max_memory) {
             (Some(lacks), _) => Some(lacks),
-            (None, Some(most)) if bytes > most => Some(answer::too_heavy(bytes, most)),
+            (None, Some(most)) if bytes > most => Some(report::over_memory_limit(bytes, most)),
             _ => backend
                 .info
-                .verdict(polygons)
+                .check(polygons)
                 .err()
                 .map(|refusal| refusal.to_string()),
         };
         match reason {
-            Some(reason) => excluded.push(Excluded::of(backend.name(), reason)),
+            Some(reason) => excluded.push(Excluded::new(backend.name(), reason)),
             None => qualified.push(backend),
         }
     }
     Ok((qualified, excluded))
 }
 
-fn on_one(
-    specimen: &Specimen,
-    question: &Question,
-    measuring: Measuring<'_>,
-) -> Result<contest::Outcome, PickError> {
-    let Measuring {
+fn measure_mesh(
+    study_mesh: &StudyMesh,
+    settings: &PickSettings,
+    context: MeasureContext<'_>,
+) -> Result<measurement::Outcome, PickError> {
+    let MeasureContext {
         budget,
         clock,
         memory,
         stop,
         progress,
-    } = measuring;
-    let (backends, mut excluded) = qualified(specimen, question)?;
-    let polygons = &specimen.polygons;
-    let counts = polygons.counts(specimen.facts.edges);
-    let workload = &question.workload;
-    let mut script = Script::of(workload, &counts);
-    script.editable |= question.needs.contains(&Need::Edit);
-    let route = Route::of(workload.access, polygons, question.seed);
-    let draw = Draw::of(polygons, question.seed);
-    let impossible = |reason: NoPlace| PickError::Impossible {
-        mesh: specimen.name.clone(),
+    } = context;
+    let (qualifying, mut excluded) = qualified(study_mesh, settings)?;
+    let polygons = &study_mesh.polygons;
+    let counts = polygons.counts(study_mesh.facts.edges);
+    let workload = &settings.workload;
+    let mut schedule = Schedule::new(workload, &counts);
+    schedule.editable |= settings.needs.contains(&Need::Edit);
+    let route = Route::new(workload.access, polygons, settings.seed);
+    let draw = Draw::new(polygons, settings.seed);
+    let impossible = |reason: EditPlaceError| PickError::Impossible {
+        mesh: study_mesh.name.clone(),
         reason,
     };
-    let set_up = |name: &str| sixfold_workload::set_up(name, polygons, &draw, &script, &route);
+    let set_up =
+        |name: &str| sixfold_workload::prepare_mix(name, polygons, &draw, &schedule, &route);
 
-    let mut entrants = Vec::new();
-    for (i, backend) in backends.iter().enumerate() {
+    let mut backends = Vec::new();
+    for (i, backend) in qualifying.iter().enumerate() {
         progress(
-            0.05 * i as f64 / backends.len() as f64,
+            0.05 * i as f64 / qualifying.len() as f64,
             &format!("building {}", backend.name()),
         );
         match set_up(backend.name()) {
-            Some(Ok(mixer)) => entrants.push(Entrant::of(mixer)),
-            Some(Err(MixRefusal::NoPlace(reason))) => return Err(impossible(reason)),
-            Some(Err(refusal)) => excluded.push(Excluded::of(backend.name(), refusal.to_string())),
+            Some(Ok(mixer)) => backends.push(PickBackend::new(mixer)),
+            Some(Err(MixRefusal::EditPlaceError(reason))) => return Err(impossible(reason)),
+            Some(Err(refusal)) => excluded.push(Excluded::new(backend.name(), refusal.to_string())),
             None => {}
         }
     }
-    if let Some(most) = question.max_memory {
-        let heavy = |e: &Entrant<'_>| e.mixer.bytes() as u64 > most;
-        for entrant in entrants.iter().filter(|e| heavy(e)) {
-            let reason = answer::too_heavy(entrant.mixer.bytes() as u64, most);
-            excluded.push(Excluded::of(entrant.mixer.name(), reason));
+    if let Some(most) = settings.max_memory {
+        let too_large = |b: &PickBackend<'_>| b.mixer.bytes() as u64 > most;
+        for backend in backends.iter().filter(|b| too_large(b)) {
+            let reason = report::over_memory_limit(backend.mixer.bytes() as u64, most);
+            excluded.push(Excluded::new(backend.mixer.name(), reason));
         }
-        entrants.retain(|entrant| !heavy(entrant));
+        backends.retain(|backend| !too_large(backend));
     }
-    if let Some(again) = entrants.iter().find(|e| !e.scans()).map(|e| e.mixer.name())
+    if let Some(again) = backends.iter().find(|b| !b.scans()).map(|b| b.mixer.name())
         && let Some(Ok(mixer)) = set_up(again)
     {
-        entrants.push(Entrant::control(mixer));
+        backends.push(PickBackend::control(mixer));
     }
-    entrant::agree_on_places(&mut entrants, &script).map_err(impossible)?;
-    if question.needs.contains(&Need::Edit) {
-        excluded.push(Excluded::of(
+    backend::keep_common_places(&mut backends, &schedule).map_err(impossible)?;
+    if settings.needs.contains(&Need::Edit) {
+        excluded.push(Excluded::new(
             "relation-tables",
             "they cannot be edited".into(),
         ));
     } else {
         progress(0.05, "tabulating");
-        let tabulate = |name: &str| sixfold_workload::tabulate(name, polygons, &script, &route);
-        let tables = entrant::tables(&entrants, clock, tabulate);
+        let tabulate = |name: &str| sixfold_workload::tabulate(name, polygons, &schedule, &route);
+        let tables = backend::build_tables(&backends, clock, tabulate);
         match tables {
             Some(tables)
-                if question
+                if settings
                     .max_memory
                     .is_some_and(|m| tables.mixer.bytes() as u64 > m) =>
             {
                 let bytes = tables.mixer.bytes() as u64;
-                let reason = answer::too_heavy(bytes, question.max_memory.unwrap_or(0));
-                excluded.push(Excluded::of("relation-tables", reason));
+                let reason = report::over_memory_limit(bytes, settings.max_memory.unwrap_or(0));
+                excluded.push(Excluded::new("relation-tables", reason));
             }
-            Some(tables) => entrants.push(tables),
+            Some(tables) => backends.push(tables),
             None => {}
         }
     }
-    let contest = Contest {
-        specimen,
-        question,
+    let measurement = PickMeasurement {
+        study_mesh,
+        settings,
         counts,
-        script: &script,
+        schedule: &schedule,
         budget,
         clock,
         memory,
         stop,
         progress,
     };
-    contest.held(entrants, excluded)
+    measurement.run(backends, excluded)
 }

@@ -1,9 +1,9 @@
 //! The warm-up runs everything once, and plans samples that fit the budget.
 
-use crate::measure::{Bench, Entry, MOST_RUNS, untimed_runs};
+use crate::measure::{Entry, MAX_RUNS, Measurement, untimed_runs};
 use sixfold_workload::Time;
-use sixfold_workload::{Job, Run, Sample};
-use sixfold_workload::{Kind, Operation};
+use sixfold_workload::{ElementKind, Operation};
+use sixfold_workload::{ElementSample, Job, Run};
 
 /// The number of rounds that the plan aims at.
 const ROUNDS: u32 = 20;
@@ -11,27 +11,28 @@ const ROUNDS: u32 = 20;
 pub(crate) const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
 /// The longest sample of several runs. Time is better spent on more samples.
 const LONGEST_SAMPLE_NS: f64 = 2_000_000.0;
-/// An entry whose sample costs up to this many shares takes part in every third round.
-const SOMETIMES_SHARES: f64 = 6.0;
-const SOMETIMES: u32 = 3;
+/// An entry whose sample costs up to this many slots takes part in every third round. A slot is the
+/// time of one entry in one round, if all entries get the same.
+const MEDIUM_COST_SLOTS: f64 = 6.0;
+const MEDIUM_COST_EVERY: u32 = 3;
 /// An entry whose sample costs more than that takes part in every sixth round.
-const SELDOM: u32 = 6;
+const HIGH_COST_EVERY: u32 = 6;
 /// The longest run in rounds, as a part of the time left, for an operation that was named.
 const LONGEST_IN_ROUNDS: f64 = 0.1;
 /// The part of the time left that is for backends that scan, if others do not. They are hundreds of
 /// times slower, which wide intervals show as well.
-const SCANS: f64 = 0.25;
+const SCANS_PART: f64 = 0.25;
 /// The smallest number of elements in a sample, whatever the budget is.
-pub(crate) const FEWEST_ELEMENTS: usize = 16;
+pub(crate) const MIN_ELEMENTS: usize = 16;
 /// The longest single run outside the rounds, as a part of the time left, for an operation that
 /// cannot be sampled.
-const ONCE: f64 = 0.5;
+const LONGEST_ONCE: f64 = 0.5;
 /// The same for an operation that makes or edits a mesh and was not named in the settings.
-const SMALL_SHARE: f64 = 0.02;
+const LONGEST_UNNAMED: f64 = 0.02;
 /// Faces in the first patch of the mesh on which subdividing or editing is timed.
 const FIRST_PATCH: usize = 1024;
 
-impl Bench<'_, '_> {
+impl Measurement<'_, '_> {
     /// Runs everything once and plans samples that fit the budget: first what does not scan, then,
     /// in the time left, what scans, or may do so on a skewed mesh. At the end, if there is time,
     /// the operations that were only estimated are run once.
@@ -40,10 +41,10 @@ impl Bench<'_, '_> {
         let count = entries.len() as f64;
         let mut done = 0.0;
         for scanning in [false, true] {
-            let of_this_sort = |scans: &[bool; 3]| scans.contains(&true) == scanning;
-            let others = scans.iter().filter(|s| of_this_sort(s)).count().max(1) as f64;
+            let in_this_pass = |scans: &[bool; 3]| scans.contains(&true) == scanning;
+            let others = scans.iter().filter(|s| in_this_pass(s)).count().max(1) as f64;
             for (entry, scans) in entries.iter_mut().zip(&scans) {
-                if !of_this_sort(scans) {
+                if !in_this_pass(scans) {
                     continue;
                 }
                 if self.stopped() {
@@ -53,52 +54,52 @@ impl Bench<'_, '_> {
                 done += 1.0;
                 let part = match (others < count, scanning) {
                     (false, _) => 1.0,
-                    (true, true) => SCANS,
-                    (true, false) => 1.0 - SCANS,
+                    (true, true) => SCANS_PART,
+                    (true, false) => 1.0 - SCANS_PART,
                 };
                 let left = (deadline - self.clock.now().wall_ns).max(0.0) * part;
-                let share = left / (f64::from(ROUNDS) * others);
+                let slot_ns = left / (f64::from(ROUNDS) * others);
                 let external = self.subjects[entry.subject].is_external();
-                if entry.job.operation.makes_a_mesh() && !external {
-                    self.plan_maker(entry, *scans, share, left);
+                if entry.job.operation.creates_mesh() && !external {
+                    self.plan_mesh_operation(entry, *scans, slot_ns, left);
                 } else if scanning {
-                    self.plan_scan(entry, *scans, share, left);
+                    self.plan_scan(entry, *scans, slot_ns, left);
                 } else {
-                    self.plan_whole(entry, share);
+                    self.plan_whole(entry, slot_ns);
                 }
             }
         }
-        self.catch_up(entries, deadline);
+        self.run_estimated(entries, deadline);
     }
 
     /// Runs once, the shortest first, what was only estimated and fits into the time left. The
     /// limit is lower for an operation that makes a mesh and was not named in the settings.
-    fn catch_up(&mut self, entries: &mut [Entry], deadline: f64) {
+    fn run_estimated(&mut self, entries: &mut [Entry], deadline: f64) {
         let budget = self.budget.as_nanos() as f64;
-        let mut put_off: Vec<(f64, &mut Entry)> = entries
+        let mut estimated: Vec<(f64, &mut Entry)> = entries
             .iter_mut()
             .filter_map(|entry| Some((entry.estimate?.wall_ns, entry)))
             .collect();
-        put_off.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        for (wall_ns, entry) in put_off {
+        estimated.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        for (wall_ns, entry) in estimated {
             let left = deadline - self.clock.now().wall_ns;
             if self.stopped() {
                 return;
             }
-            let part = match (entry.job.operation.makes_a_mesh(), self.named) {
-                (false, _) => ONCE,
-                (true, false) => SMALL_SHARE,
+            let part = match (entry.job.operation.creates_mesh(), self.named) {
+                (false, _) => LONGEST_ONCE,
+                (true, false) => LONGEST_UNNAMED,
                 (true, true) => 1.0, // it was named in the settings
             };
             if wall_ns > part * left {
-                entry.by_name_only = part == SMALL_SHARE && wall_ns <= ONCE * budget;
+                entry.by_name_only = part == LONGEST_UNNAMED && wall_ns <= LONGEST_ONCE * budget;
                 continue;
             }
             self.report(0.1, "warming up", entry);
             let run = self.run(entry.subject, &entry.job, [0, 1], true);
             entry.estimate = None;
             entry.every = 0;
-            keep(entry, run);
+            record_warm_up(entry, run);
         }
     }
 
@@ -109,46 +110,46 @@ impl Bench<'_, '_> {
         }
         let operation = entry.job.operation;
         let scanned = operation.scans(&self.subjects[entry.subject].costs());
-        let walked = operation.walks_around();
-        Kind::ALL.map(|kind| {
+        let walked = operation.grows_with_valence();
+        ElementKind::ALL.map(|kind| {
             let k = kind.index();
             scanned[k] || (self.skewed && walked[k])
         })
     }
 
     /// Plans runs on all elements, with as many runs in a sample as its time allows.
-    fn plan_whole(&mut self, entry: &mut Entry, share: f64) {
-        let (run, mut outside) = self.run_and_look(entry, [0, 1], true);
+    fn plan_whole(&mut self, entry: &mut Entry, slot_ns: f64) {
+        let (run, mut overhead_ns) = self.run_with_overhead(entry, [0, 1], true);
         let mut ns = run.time.ns().max(1.0);
-        keep(entry, run);
+        record_warm_up(entry, run);
         if self.stopped() || entry.refusal.is_some() {
             return;
         }
         if ns < SHORTEST_SAMPLE_NS {
             // The first run includes cold caches and page faults; a second series is more accurate.
-            let runs = (SHORTEST_SAMPLE_NS / 4.0 / ns).clamp(1.0, MOST_RUNS);
-            let (run, besides) = self.run_and_look(entry, [1, runs as u32], false);
-            (ns, outside) = (run.time.ns().max(0.1), besides);
+            let runs = (SHORTEST_SAMPLE_NS / 4.0 / ns).clamp(1.0, MAX_RUNS);
+            let (run, overhead) = self.run_with_overhead(entry, [1, runs as u32], false);
+            (ns, overhead_ns) = (run.time.ns().max(0.1), overhead);
         }
-        // A quarter of the share is for the sample, a quarter for the untimed runs before it, the
+        // A quarter of the slot is for the sample, a quarter for the untimed runs before it, the
         // rest for waiting and for what happens between runs.
-        let target = (share / 4.0).clamp(SHORTEST_SAMPLE_NS, LONGEST_SAMPLE_NS);
+        let target = (slot_ns / 4.0).clamp(SHORTEST_SAMPLE_NS, LONGEST_SAMPLE_NS);
         entry.runs = match self.memory.is_cold() {
             true => 1,
-            false => (target / ns).ceil().clamp(1.0, MOST_RUNS) as u32,
+            false => (target / ns).ceil().clamp(1.0, MAX_RUNS) as u32,
         };
         // An operation that makes or changes a mesh has many branches: it needs a longer warm-up.
-        let before = match entry.job.operation.makes_a_mesh() {
+        let before = match entry.job.operation.creates_mesh() {
             true => LONGEST_SAMPLE_NS,
             false => target,
         };
         entry.untimed = untimed_runs(entry.job.operation, ns, before);
-        let cost = ns * f64::from(entry.runs + entry.untimed) + outside;
-        self.plan_rounds(entry, cost, share);
+        let cost = ns * f64::from(entry.runs + entry.untimed) + overhead_ns;
+        self.plan_rounds(entry, cost, slot_ns);
     }
 
     /// Returns the run, and the wall time that passed outside its timing, in nanoseconds.
-    fn run_and_look(&mut self, entry: &Entry, runs: [u32; 2], check: bool) -> (Run, f64) {
+    fn run_with_overhead(&mut self, entry: &Entry, runs: [u32; 2], check: bool) -> (Run, f64) {
         let start = self.clock.now().wall_ns;
         let run = self.run(entry.subject, &entry.job, runs, check);
         let [untimed, runs] = runs;
@@ -158,32 +159,32 @@ impl Bench<'_, '_> {
     }
 
     /// Plans in which rounds an entry takes part.
-    fn plan_rounds(&self, entry: &mut Entry, cost_ns: f64, share: f64) {
+    fn plan_rounds(&self, entry: &mut Entry, cost_ns: f64, slot_ns: f64) {
         entry.cost_ns = cost_ns;
         // Operations that make a mesh are long. If they were not named, they take part in fewer
         // rounds.
-        let unasked = entry.job.operation.makes_a_mesh() && !self.named;
-        let most = if unasked { 1.0 } else { 4.0 };
-        entry.every = match cost_ns / share {
-            shares if shares <= most => 1,
-            shares if shares <= SOMETIMES_SHARES => SOMETIMES,
-            _ => SELDOM,
+        let unnamed = entry.job.operation.creates_mesh() && !self.named;
+        let most = if unnamed { 1.0 } else { 4.0 };
+        entry.every = match cost_ns / slot_ns {
+            slots if slots <= most => 1,
+            slots if slots <= MEDIUM_COST_SLOTS => MEDIUM_COST_EVERY,
+            _ => HIGH_COST_EVERY,
         };
     }
 
     /// Times few elements, then more, until the cost of the whole is known; then plans whether to
     /// run it in full, on a sample, or not at all.
-    fn plan_scan(&mut self, entry: &mut Entry, scanned: [bool; 3], share: f64, left: f64) {
+    fn plan_scan(&mut self, entry: &mut Entry, scanned: [bool; 3], slot_ns: f64, left: f64) {
         let operation = entry.job.operation;
         // An operation that cannot be sampled is estimated by the relation that it queries.
-        let probed = match operation.relations(Kind::Face) {
+        let probed = match operation.relations(ElementKind::Face) {
             &[relation] if !operation.can_be_sampled() => Operation::Relation(relation),
             _ => operation,
         };
-        let all = self.most_asked(scanned);
-        let Probe { whole, cost, size } = self.probe(entry.subject, probed, scanned, share);
+        let all = self.max_elements(scanned);
+        let Probe { whole, cost, size } = self.probe(entry.subject, probed, scanned, slot_ns);
         let fits = match operation.can_be_sampled() {
-            true => whole.ns() <= share || all <= FEWEST_ELEMENTS,
+            true => whole.ns() <= slot_ns || all <= MIN_ELEMENTS,
             // A run no longer than one sample is always allowed.
             false => whole.ns() <= (LONGEST_IN_ROUNDS * left).max(LONGEST_SAMPLE_NS),
         };
@@ -191,7 +192,7 @@ impl Bench<'_, '_> {
             return;
         }
         if fits {
-            return self.plan_whole(entry, share);
+            return self.plan_whole(entry, slot_ns);
         }
         if !operation.can_be_sampled() {
             entry.estimate = Some(whole);
@@ -199,20 +200,20 @@ impl Bench<'_, '_> {
         }
         // `cost` includes the kinds that are not sampled, so this size is rather too small.
         let each = cost / size.min(all).max(1) as f64;
-        let size = ((share / each) as usize).clamp(FEWEST_ELEMENTS, all.max(FEWEST_ELEMENTS));
-        entry.job.sample = Some(Sample { scanned, size });
+        let size = ((slot_ns / each) as usize).clamp(MIN_ELEMENTS, all.max(MIN_ELEMENTS));
+        entry.job.sample = Some(ElementSample { scanned, size });
         entry.untimed = 0;
         let start = self.clock.now().wall_ns;
         let run = self.run(entry.subject, &entry.job, [0, 1], true);
-        keep(entry, run);
+        record_warm_up(entry, run);
         let cost = self.clock.now().wall_ns - start;
-        self.plan_rounds(entry, cost, share);
+        self.plan_rounds(entry, cost, slot_ns);
     }
 
     /// Returns the largest number of elements among the kinds that are scanned.
-    fn most_asked(&self, scanned: [bool; 3]) -> usize {
-        let asked = (0..3).filter(|&k| scanned[k]);
-        asked.map(|k| self.population[k]).max().unwrap_or(0)
+    fn max_elements(&self, scanned: [bool; 3]) -> usize {
+        let counts = (0..3).filter(|&k| scanned[k]);
+        counts.map(|k| self.population[k]).max().unwrap_or(0)
     }
 
     /// Times a few elements, then more, until that takes as long as a sample may.
@@ -221,18 +222,18 @@ impl Bench<'_, '_> {
         subject: usize,
         operation: Operation,
         scanned: [bool; 3],
-        share: f64,
+        slot_ns: f64,
     ) -> Probe {
-        let all = self.most_asked(scanned);
+        let all = self.max_elements(scanned);
         let mut size = 4;
         loop {
-            let sample = Some(Sample { scanned, size });
+            let sample = Some(ElementSample { scanned, size });
             let start = self.clock.now().wall_ns;
             let whole = self
                 .run(subject, &Job { operation, sample }, [0, 1], false)
                 .time;
             let cost = self.clock.now().wall_ns - start;
-            if cost > share.min(LONGEST_SAMPLE_NS) || size >= all || self.stopped() {
+            if cost > slot_ns.min(LONGEST_SAMPLE_NS) || size >= all || self.stopped() {
                 return Probe { whole, cost, size };
             }
             size *= 4;
@@ -241,18 +242,24 @@ impl Bench<'_, '_> {
 
     /// Plans an operation that makes or edits a mesh. Its time is estimated first, from patches and
     /// from its searches. It is then run in rounds, once, or not at all.
-    fn plan_maker(&mut self, entry: &mut Entry, scanned: [bool; 3], share: f64, left: f64) {
+    fn plan_mesh_operation(
+        &mut self,
+        entry: &mut Entry,
+        scanned: [bool; 3],
+        slot_ns: f64,
+        left: f64,
+    ) {
         // A single face shows whether the operation is refused.
-        let run = self.run(entry.subject, &of_a_patch(entry, 1), [0, 1], false);
+        let run = self.run(entry.subject, &patch_job(entry, 1), [0, 1], false);
         entry.refusal = run.refusal;
         if self.stopped() || entry.refusal.is_some() {
             return;
         }
         let searches = scanned.contains(&true);
-        let mut estimate = self.time_by_patches(entry, share);
+        let mut estimate = self.time_by_patches(entry, slot_ns);
         if searches {
             // A patch does not show the cost of searching the whole mesh.
-            let search = self.search_time(entry, scanned, share);
+            let search = self.search_time(entry, scanned, slot_ns);
             let patch = estimate.filter(|patch| patch.ns() > search.ns());
             estimate = Some(patch.unwrap_or(search));
         }
@@ -260,32 +267,35 @@ impl Bench<'_, '_> {
             return;
         }
         let most = match (searches, self.named) {
-            (true, _) => share,
-            (false, false) => SMALL_SHARE * left,
+            (true, _) => slot_ns,
+            (false, false) => LONGEST_UNNAMED * left,
             (false, true) => LONGEST_IN_ROUNDS * left,
         };
         let fits = |whole: &Time| whole.ns() <= most.max(LONGEST_SAMPLE_NS);
         match estimate.filter(|whole| !fits(whole)) {
-            None => self.plan_whole(entry, share),
+            None => self.plan_whole(entry, slot_ns),
             too_long => entry.estimate = too_long,
         }
     }
 
     /// Runs the operation of `entry` on a patch of `size` faces, with tables of the same size as in
     /// a later run.
-    fn run_grown(&mut self, entry: &Entry, size: usize) -> Run {
+    fn run_patch(&mut self, entry: &Entry, size: usize) -> Run {
         let untimed = u32::from(entry.job.operation.grows_tables());
-        self.run(entry.subject, &of_a_patch(entry, size), [untimed, 1], false)
+        self.run(entry.subject, &patch_job(entry, size), [untimed, 1], false)
     }
 
     /// Returns the time of all searches of an operation that makes a mesh, estimated from samples.
-    fn search_time(&mut self, entry: &Entry, scanned: [bool; 3], share: f64) -> Time {
-        let mut total = Time::none_like(self.clock.now());
-        for kind in Kind::ALL.into_iter().filter(|kind| scanned[kind.index()]) {
-            let only = Kind::ALL.map(|other| other == kind);
+    fn search_time(&mut self, entry: &Entry, scanned: [bool; 3], slot_ns: f64) -> Time {
+        let mut total = Time::zero_like(self.clock.now());
+        for kind in ElementKind::ALL
+            .into_iter()
+            .filter(|kind| scanned[kind.index()])
+        {
+            let only = ElementKind::ALL.map(|other| other == kind);
             for &relation in entry.job.operation.relations(kind) {
-                let asked = Operation::Relation(relation);
-                let probe = self.probe(entry.subject, asked, only, share);
+                let query = Operation::Relation(relation);
+                let probe = self.probe(entry.subject, query, only, slot_ns);
                 total = total.plus(probe.whole);
             }
         }
@@ -295,15 +305,15 @@ impl Bench<'_, '_> {
     /// Runs the operation on larger and larger patches, and returns its time scaled to the whole
     /// mesh; `None` if the next patch would be the whole mesh. Patches fit the cache, so the
     /// estimate is rather too low.
-    fn time_by_patches(&mut self, entry: &mut Entry, share: f64) -> Option<Time> {
-        let all = self.population[Kind::Face.index()];
+    fn time_by_patches(&mut self, entry: &mut Entry, slot_ns: f64) -> Option<Time> {
+        let all = self.population[ElementKind::Face.index()];
         let mut size = FIRST_PATCH;
         while size < all {
             let start = self.clock.now().wall_ns;
-            let run = self.run_grown(entry, size);
+            let run = self.run_patch(entry, size);
             entry.refusal = run.refusal;
             let cost = self.clock.now().wall_ns - start;
-            if cost > share || size.saturating_mul(4) >= all || self.stopped() {
+            if cost > slot_ns || size.saturating_mul(4) >= all || self.stopped() {
                 return Some(run.time);
             }
             if entry.refusal.is_some() {
@@ -326,16 +336,16 @@ struct Probe {
 }
 
 /// Returns the operation of `entry` on a patch of `size` faces.
-fn of_a_patch(entry: &Entry, size: usize) -> Job {
+fn patch_job(entry: &Entry, size: usize) -> Job {
     let scanned = [false; 3];
     Job {
-        sample: Some(Sample { scanned, size }),
+        sample: Some(ElementSample { scanned, size }),
         ..entry.job
     }
 }
 
 /// Stores the result of the run as the warm-up; no time if it was refused.
-fn keep(entry: &mut Entry, run: Run) {
+fn record_warm_up(entry: &mut Entry, run: Run) {
     entry.warm_up = run.refusal.is_none().then_some(run.time);
     entry.outcome = run.outcome;
     entry.refusal = run.refusal;

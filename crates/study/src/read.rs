@@ -9,7 +9,7 @@ use serde_json::error::Category;
 use crate::collection::Collection;
 use crate::growth::GrowthReport;
 use crate::orders::OrdersReport;
-use crate::pick::Answer;
+use crate::pick::PickReport;
 use crate::report::{Report, SCHEMA};
 use crate::why::Why;
 
@@ -61,7 +61,7 @@ pub enum Results {
     /// The result of `sixfold why`.
     Why(Box<Why>),
     /// The result of `sixfold pick`.
-    Pick(Box<Answer>),
+    Pick(Box<PickReport>),
 }
 
 impl Results {
@@ -77,7 +77,7 @@ impl Results {
             Self::Orders(orders) => orders.write_json(writer),
             Self::Growth(growth) => growth.write_json(writer),
             Self::Why(why) => why.write_json(writer),
-            Self::Pick(answer) => answer.write_json(writer),
+            Self::Pick(pick) => pick.write_json(writer),
         }
     }
 
@@ -91,13 +91,13 @@ impl Results {
         Ok(match kind(text)? {
             Kind::Study => Self::Study(Report::read_json(text)?.into()),
             Kind::Collection => Self::Collection(Collection::read_json(text)?.into()),
-            Kind::Orders => Self::Orders(parsed(text)?),
-            Kind::Growth => Self::Growth(parsed(text)?),
-            Kind::Why => Self::Why(parsed(text)?),
-            Kind::Pick => Self::Pick(parsed(text)?),
+            Kind::Orders => Self::Orders(parse_json(text)?),
+            Kind::Growth => Self::Growth(parse_json(text)?),
+            Kind::Why => Self::Why(parse_json(text)?),
+            Kind::Pick => Self::Pick(parse_json(text)?),
             Kind::Other => {
                 return Err(ReadError::OtherKind {
-                    found: Kind::Other.words(),
+                    found: Kind::Other.description(),
                     wanted: "results that a report can show",
                 });
             }
@@ -115,12 +115,12 @@ impl Report {
         check_schema(text)?;
         let kind = kind(text)?;
         let other = || ReadError::OtherKind {
-            found: kind.words(),
+            found: kind.description(),
             wanted: "the result of `sixfold study` for one mesh",
         };
         match kind {
             Kind::Study => {
-                let report: Self = parsed(text)?;
+                let report: Self = parse_json(text)?;
                 report.check()?;
                 Ok(report)
             }
@@ -172,7 +172,7 @@ pub(crate) fn check_schema(text: &str) -> Result<(), ReadError> {
         schema: Option<u64>,
     }
 
-    let head: Head = parsed(text)?;
+    let head: Head = parse_json(text)?;
     match head.schema {
         None => Err(ReadError::Foreign),
         Some(found) if found != u64::from(SCHEMA) => Err(ReadError::OtherSchema { found }),
@@ -193,7 +193,7 @@ enum Kind {
 }
 
 impl Kind {
-    const fn words(self) -> &'static str {
+    const fn description(self) -> &'static str {
         match self {
             Self::Study => "the result of `sixfold study`",
             Self::Collection => "a collection of several meshes",
@@ -219,7 +219,7 @@ fn kind(text: &str) -> Result<Kind, ReadError> {
         drift: Option<serde::de::IgnoredAny>,
     }
 
-    let fields: Fields = parsed(text)?;
+    let fields: Fields = parse_json(text)?;
     let found = [
         // A comparison has `rows`, too.
         (fields.drift.is_some(), Kind::Other),
@@ -230,11 +230,11 @@ fn kind(text: &str) -> Result<Kind, ReadError> {
         (fields.studies.is_some(), Kind::Collection),
         (fields.results.is_some(), Kind::Study),
     ];
-    let found = found.into_iter().find(|(there, _)| *there);
+    let found = found.into_iter().find(|(present, _)| *present);
     Ok(found.map_or(Kind::Other, |(_, kind)| kind))
 }
 
-pub(crate) fn parsed<T: DeserializeOwned>(text: &str) -> Result<T, ReadError> {
+pub(crate) fn parse_json<T: DeserializeOwned>(text: &str) -> Result<T, ReadError> {
     serde_json::from_str(text).map_err(|error| {
         // Text that is cut off within a number or a word is a syntax error to the parser.
         let lines = text.lines().count();
@@ -269,17 +269,17 @@ mod tests {
     use sixfold::shapes;
 
     use super::*;
-    use crate::{Settings, Specimen, study};
+    use crate::{Settings, StudyMesh, study};
     use sixfold_workload::Operation;
 
     fn written() -> String {
-        let specimen = Specimen::new("ball", shapes::icosahedron());
+        let study_mesh = StudyMesh::new("ball", shapes::icosahedron());
         let settings = Settings {
             operations: vec![Operation::Boundary, Operation::EdgeLength],
             budget: Duration::from_millis(30),
             ..Settings::default()
         };
-        let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ());
+        let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ());
         let mut text = Vec::new();
         let report = report.expect("a study");
         report.write_json(&mut text).expect("memory");
@@ -300,7 +300,7 @@ mod tests {
     fn text_of_other_programs_is_refused() {
         let text = written();
         let half = &text[..text.len() / 2];
-        for (given, says) in [
+        for (given, expected) in [
             ("", "ends too early"),
             (half, "ends too early"),
             ("{\"schema\": 1.", "ends too early"),
@@ -316,8 +316,8 @@ mod tests {
             ("{\"schema\": 1}", "another command"),
             ("{\"schema\": 1, \"results\": []}", "missing field"),
         ] {
-            let error = Report::read_json(given).expect_err(says).to_string();
-            assert!(error.contains(says), "{given:.40}: {error}");
+            let error = Report::read_json(given).expect_err(expected).to_string();
+            assert!(error.contains(expected), "{given:.40}: {error}");
         }
     }
 }

@@ -8,9 +8,9 @@ use serde_json::ser::{Formatter, PrettyFormatter};
 use serde_with::{KeyValueMap, serde_as};
 use sixfold::{Capabilities, Facts, TableBytes};
 
+use crate::disturbance::undisturbed;
 use crate::environment::Environment;
 use crate::external::ExternalReport;
-use crate::gauge::undisturbed;
 use crate::timer::Timer;
 use sixfold_workload::Operation;
 
@@ -48,7 +48,8 @@ pub struct Report {
     /// The noise, as the difference of a backend from itself; `None` if nothing was measured twice.
     pub control: Option<Control>,
     /// The main results, as sentences.
-    pub words: Vec<String>,
+    #[serde(rename = "words")]
+    pub sentences: Vec<String>,
     /// Possible faults of the measurement with remedies, as sentences.
     pub warnings: Vec<String>,
     /// All samples.
@@ -229,7 +230,7 @@ impl ResultRow {
             ci_low_ns: None,
             ci_high_ns: None,
             elements: None,
-            per: operation.per().into(),
+            per: operation.unit().into(),
             ns_per_element: None,
             wall_median_ns: None,
             wall_min_ns: None,
@@ -265,8 +266,8 @@ impl ResultRow {
 /// Ratio of the first time to the median above which the first time is shown.
 pub const FIRST_TIME_SHOWN: f64 = 1.1;
 
-/// One backend that was entered twice (an A/A control): the difference of its two columns is caused
-/// by the machine and the clock alone.
+/// One backend that was measured twice (an A/A control): the difference of its two columns is
+/// caused by the machine and the clock alone.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Control {
     /// The backend.
@@ -401,7 +402,7 @@ impl Report {
     }
 
     /// Returns the results of external programs that differ from those of our backends.
-    pub fn other_work(&self) -> impl Iterator<Item = &ResultRow> {
+    pub fn external_mismatches(&self) -> impl Iterator<Item = &ResultRow> {
         let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
         self.results
             .iter()
@@ -431,10 +432,10 @@ impl Report {
     pub fn write_csv(&self, writer: impl io::Write) -> io::Result<()> {
         let mut lines = csv::Writer::from_writer(writer);
         if self.results.is_empty() {
-            lines.write_record(COLUMNS).map_err(unwrapped)?;
+            lines.write_record(COLUMNS).map_err(into_io_error)?;
         }
         for row in &self.results {
-            lines.serialize(row).map_err(unwrapped)?;
+            lines.serialize(row).map_err(into_io_error)?;
         }
         lines.flush()
     }
@@ -453,7 +454,7 @@ impl Inspection {
 
 /// Returns the I/O error inside an error of CSV, so that a closed pipe can be recognised by its
 /// kind.
-pub(crate) fn unwrapped(error: csv::Error) -> io::Error {
+pub(crate) fn into_io_error(error: csv::Error) -> io::Error {
     match error.into_kind() {
         csv::ErrorKind::Io(cause) => cause,
         other => io::Error::other(format!("{other:?}")),
@@ -461,7 +462,7 @@ pub(crate) fn unwrapped(error: csv::Error) -> io::Error {
 }
 
 pub(crate) fn write_json(value: &impl Serialize, mut writer: impl io::Write) -> io::Result<()> {
-    let mut serializer = Serializer::with_formatter(&mut writer, Rows::default());
+    let mut serializer = Serializer::with_formatter(&mut writer, RowFormatter::default());
     value.serialize(&mut serializer).map_err(io::Error::from)?;
     writeln!(writer)
 }
@@ -469,9 +470,9 @@ pub(crate) fn write_json(value: &impl Serialize, mut writer: impl io::Write) -> 
 /// A JSON formatter with one line per field, and arrays on one line: columns of samples have
 /// thousands of values.
 #[derive(Default)]
-struct Rows<'a>(PrettyFormatter<'a>);
+struct RowFormatter<'a>(PrettyFormatter<'a>);
 
-impl Formatter for Rows<'_> {
+impl Formatter for RowFormatter<'_> {
     fn begin_array_value<W: ?Sized + io::Write>(
         &mut self,
         w: &mut W,

@@ -19,12 +19,12 @@ impl Slope {
     /// least two sizes.
     ///
     /// Points are (size, time); points without a logarithm are left out.
-    pub(crate) fn of(points: impl IntoIterator<Item = (f64, f64)>) -> Option<Self> {
-        let there = points.into_iter().filter(|&(size, time)| {
-            let fit = |x: f64| x > 0.0 && x.is_finite();
-            fit(size) && fit(time)
+    pub(crate) fn fit(points: impl IntoIterator<Item = (f64, f64)>) -> Option<Self> {
+        let valid = points.into_iter().filter(|&(size, time)| {
+            let has_log = |x: f64| x > 0.0 && x.is_finite();
+            has_log(size) && has_log(time)
         });
-        let logs: Vec<(f64, f64)> = there.map(|(size, time)| (size.ln(), time.ln())).collect();
+        let logs: Vec<(f64, f64)> = valid.map(|(size, time)| (size.ln(), time.ln())).collect();
         let count = logs.len() as f64;
         let (sum_x, sum_y) = logs
             .iter()
@@ -55,7 +55,8 @@ mod tests {
     fn exact_powers_are_found_to_the_last_digits() {
         for exponent in [0.0, 0.5, 1.0, 1.37, 2.0] {
             let sizes = [1e3, 3e3, 1e4, 5e4, 1e6];
-            let slope = Slope::of(sizes.map(|n: f64| (n, 7.0 * n.powf(exponent)))).expect("a line");
+            let slope =
+                Slope::fit(sizes.map(|n: f64| (n, 7.0 * n.powf(exponent)))).expect("a line");
             assert!((slope.exponent - exponent).abs() < 1e-12, "{slope:?}");
             assert!(
                 slope.standard_error.expect("five points") < 1e-7,
@@ -77,7 +78,7 @@ mod tests {
         };
         let points = [1e3, 1e4, 1e5, 1e6, 1e7].map(|n| (n, time(n)));
         let exponent = |points: &[(f64, f64)]| {
-            let slope = Slope::of(points.iter().copied()).expect("a line");
+            let slope = Slope::fit(points.iter().copied()).expect("a line");
             (slope.exponent, slope.standard_error.expect("three points"))
         };
         let (small, large, all) = (
@@ -95,17 +96,19 @@ mod tests {
     #[test]
     fn the_standard_error_agrees_with_the_textbook() {
         let points = [(1.0, 2.0), (2.0, 4.0), (3.0, 5.0), (4.0, 4.0), (5.0, 5.0)];
-        let slope = Slope::of(points.map(|(x, y): (f64, f64)| (x.exp(), y.exp()))).expect("a line");
+        let slope =
+            Slope::fit(points.map(|(x, y): (f64, f64)| (x.exp(), y.exp()))).expect("a line");
         assert!((slope.exponent - 0.6).abs() < 1e-12);
         assert!((slope.standard_error.expect("five") - 0.08_f64.sqrt()).abs() < 1e-12);
     }
 
     #[test]
     fn too_few_points_give_no_slope_or_no_error() {
-        assert_eq!(Slope::of([]), None);
-        assert_eq!(Slope::of([(5.0, 1.0)]), None);
-        assert_eq!(Slope::of([(5.0, 1.0), (5.0, 2.0)]), None);
-        let two = Slope::of([(1.0, 1.0), (10.0, 100.0), (0.0, 3.0), (7.0, f64::NAN)]).expect("two");
+        assert_eq!(Slope::fit([]), None);
+        assert_eq!(Slope::fit([(5.0, 1.0)]), None);
+        assert_eq!(Slope::fit([(5.0, 1.0), (5.0, 2.0)]), None);
+        let two =
+            Slope::fit([(1.0, 1.0), (10.0, 100.0), (0.0, 3.0), (7.0, f64::NAN)]).expect("two");
         assert!((two.exponent - 2.0).abs() < 1e-12);
         assert_eq!((two.standard_error, two.sizes), (None, 2));
     }

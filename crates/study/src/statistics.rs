@@ -26,7 +26,7 @@ impl Median {
     /// about the distribution of the samples. With fewer than six samples no method can reach 95 %:
     /// then the interval is from the smallest to the largest sample, and contains the true median
     /// with a probability of 93.75 % for five, 87.5 % for four, and 75 % for three.
-    pub(crate) fn of(samples: impl IntoIterator<Item = f64>) -> Option<Self> {
+    pub(crate) fn from_samples(samples: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut sorted: Vec<f64> = samples.into_iter().collect();
         sorted.sort_unstable_by(f64::total_cmp);
         let count = sorted.len();
@@ -34,10 +34,10 @@ impl Median {
         let interval = match count {
             0..3 => None,
             3..6 => Some([least, sorted[count - 1]]),
-            _ => Some(bootstrapped(&sorted)),
+            _ => Some(bootstrap_interval(&sorted)),
         };
         Some(Self {
-            value: middle(&sorted),
+            value: median_of_sorted(&sorted),
             least,
             interval,
         })
@@ -45,7 +45,7 @@ impl Median {
 }
 
 /// Returns the median of sorted samples; at least one sample is required.
-fn middle(sorted: &[f64]) -> f64 {
+fn median_of_sorted(sorted: &[f64]) -> f64 {
     let count = sorted.len();
     f64::midpoint(sorted[(count - 1) / 2], sorted[count / 2])
 }
@@ -61,8 +61,10 @@ pub(crate) fn geometric_mean(values: &[f64]) -> Option<(f64, Option<[f64; 2]>)> 
     }
     let interval = (count >= 3).then(|| {
         let mut random = ChaCha8Rng::seed_from_u64(count as u64);
-        middle_of(count.max(6), || {
-            let sum: f64 = (0..count).map(|_| logs[drawn(&mut random, count)]).sum();
+        resampled_interval(count.max(6), || {
+            let sum: f64 = (0..count)
+                .map(|_| logs[draw_index(&mut random, count)])
+                .sum();
             sum / count as f64
         })
     });
@@ -70,7 +72,7 @@ pub(crate) fn geometric_mean(values: &[f64]) -> Option<(f64, Option<[f64; 2]>)> 
 }
 
 /// Draws an index below `count`, with equal probabilities.
-fn drawn(random: &mut ChaCha8Rng, count: usize) -> usize {
+fn draw_index(random: &mut ChaCha8Rng, count: usize) -> usize {
     // The high half of the product is uniform, except for a bias of at most `count` / 2³².
     ((u64::from(random.next_u32()) * count as u64) >> 32) as usize
 }
@@ -88,28 +90,28 @@ pub(crate) fn quotient(samples: &[f64], others: &[f64]) -> Option<(f64, Option<[
     if fewest == 0 {
         return None;
     }
-    let [a, b] = [0, 1].map(|i| middle(&sorted[i]));
+    let [a, b] = [0, 1].map(|i| median_of_sorted(&sorted[i]));
     if !(a / b).is_finite() {
         return None;
     }
     let interval = (fewest >= 3).then(|| {
-        let [mut a, mut b] = [0, 1].map(|i| Resampling::of(&sorted[i], i as u64));
-        middle_of(fewest.max(6), || a.median() / b.median())
+        let [mut a, mut b] = [0, 1].map(|i| Resampling::new(&sorted[i], i as u64));
+        resampled_interval(fewest.max(6), || a.median() / b.median())
     });
     Some((a / b, interval))
 }
 
 /// Returns the middle part of the medians of resampled `sorted`; O(resamples · samples).
-fn bootstrapped(sorted: &[f64]) -> [f64; 2] {
-    let mut resampling = Resampling::of(sorted, 0);
-    middle_of(sorted.len(), || resampling.median())
+fn bootstrap_interval(sorted: &[f64]) -> [f64; 2] {
+    let mut resampling = Resampling::new(sorted, 0);
+    resampled_interval(sorted.len(), || resampling.median())
 }
 
 /// Returns the interval of a figure over resamples of `count` samples, without the tails.
-fn middle_of(count: usize, mut figure: impl FnMut() -> f64) -> [f64; 2] {
+fn resampled_interval(count: usize, mut figure: impl FnMut() -> f64) -> [f64; 2] {
     let mut figures: Vec<f64> = (0..RESAMPLES).map(|_| figure()).collect();
     figures.sort_unstable_by(f64::total_cmp);
-    let skipped = (left_out(count) * RESAMPLES as f64) as usize;
+    let skipped = (tail_probability(count) * RESAMPLES as f64) as usize;
     [figures[skipped], figures[RESAMPLES - 1 - skipped]]
 }
 
@@ -123,7 +125,7 @@ struct Resampling<'s> {
 
 impl<'s> Resampling<'s> {
     /// `stream` makes parallel sequences independent.
-    fn of(sorted: &'s [f64], stream: u64) -> Self {
+    fn new(sorted: &'s [f64], stream: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(sorted.len() as u64);
         random.set_stream(stream);
         Self {
@@ -138,11 +140,11 @@ impl<'s> Resampling<'s> {
         let count = self.sorted.len();
         self.drawn.fill(0);
         for _ in 0..count {
-            self.drawn[drawn(&mut self.random, count)] += 1;
+            self.drawn[draw_index(&mut self.random, count)] += 1;
         }
         f64::midpoint(
-            self.sorted[ranked(&self.drawn, (count - 1) / 2)],
-            self.sorted[ranked(&self.drawn, count / 2)],
+            self.sorted[index_of_rank(&self.drawn, (count - 1) / 2)],
+            self.sorted[index_of_rank(&self.drawn, count / 2)],
         )
     }
 }
@@ -151,7 +153,7 @@ impl<'s> Resampling<'s> {
 /// for few samples, because the spread within a sample is smaller than that of its population. It
 /// is Φ(−√(n / (n − 1)) · t), where t is the 97.5 % quantile of Student's distribution with n − 1
 /// degrees of freedom.
-fn left_out(count: usize) -> f64 {
+fn tail_probability(count: usize) -> f64 {
     let n = count as f64;
     let freedom = n - 1.0;
     // Cornish and Fisher's expansion about the normal quantile; its error is below 1 % for 5
@@ -177,7 +179,7 @@ fn left_out(count: usize) -> f64 {
 }
 
 /// Returns which sample has `rank` in a resample in which each was drawn `drawn` times.
-fn ranked(drawn: &[u32], rank: usize) -> usize {
+fn index_of_rank(drawn: &[u32], rank: usize) -> usize {
     let mut below = 0;
     let at = drawn.iter().position(|&times| {
         below += times as usize;
@@ -210,9 +212,11 @@ mod tests {
                 chances[n / 2 + 1..].iter().sum::<f64>()
             };
             let samples = (1..=n).map(|i| i as f64);
-            let [low, high] = Median::of(samples).and_then(|m| m.interval).expect("many");
+            let [low, high] = Median::from_samples(samples)
+                .and_then(|m| m.interval)
+                .expect("many");
             // If a rank is close to the quantile, chance decides between it and its neighbour.
-            let out = left_out(n);
+            let out = tail_probability(n);
             let (below, above) = (at_most(low as usize - 1), at_most(low as usize));
             assert!(
                 below < 1.5 * out && above > out / 1.5,
@@ -237,17 +241,17 @@ mod tests {
             (100, 2.307),
             (100_000, 2.5),
         ] {
-            let out = 100.0 * left_out(n);
+            let out = 100.0 * tail_probability(n);
             assert!((out - percent).abs() < 0.02, "{n}: {out} %");
         }
     }
 
     #[test]
     fn few_samples_have_no_interval() {
-        assert_eq!(Median::of([]), None);
-        let two = Median::of([4.0, 2.0]).expect("two samples");
+        assert_eq!(Median::from_samples([]), None);
+        let two = Median::from_samples([4.0, 2.0]).expect("two samples");
         assert_eq!((two.value, two.least, two.interval), (3.0, 2.0, None));
-        let five = Median::of([5.0, 1.0, 4.0, 2.0, 3.0]).expect("five samples");
+        let five = Median::from_samples([5.0, 1.0, 4.0, 2.0, 3.0]).expect("five samples");
         assert_eq!((five.value, five.interval), (3.0, Some([1.0, 5.0])));
     }
 
@@ -281,7 +285,7 @@ mod tests {
             // Uniform in [0, 1), squared: skewed, with the median at 1/4.
             let mut draw = || (random.next_u32() as f64 / 2_f64.powi(32)).powi(2);
             let samples: Vec<f64> = (0..25).map(|_| draw()).collect();
-            let [low, high] = Median::of(samples)
+            let [low, high] = Median::from_samples(samples)
                 .and_then(|m| m.interval)
                 .expect("25 samples");
             covered += usize::from(low <= 0.25 && 0.25 <= high);

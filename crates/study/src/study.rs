@@ -5,35 +5,35 @@ use std::time::Duration;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use sixfold::{Counts, Facts, PolygonMesh, QueryCost, Relation, Spread, roster};
+use sixfold::{Counts, Distribution, Facts, PolygonMesh, QueryCost, Relation, roster};
 
-use crate::agreement::judge;
-use crate::control::{entered_twice, noise};
+use crate::agreement::compare_checksums;
+use crate::control::{measured_twice, noise};
 use crate::environment::Environment;
-use crate::external::{self, External, MeshFile, PATIENCE};
+use crate::external::{self, EXTERNAL_TIMEOUT, External, MeshFile};
 use crate::heap::{CacheState, Memory};
-use crate::inspect::{Specimen, per_vertex, unbuilt};
-use crate::measure::{Bench, Entry, Progress};
-use crate::orders::on_the_bench_bytes;
+use crate::inspect::{StudyMesh, per_vertex, unbuilt};
+use crate::measure::{Entry, Measurement, Progress};
+use crate::orders::prepared_bytes;
+use crate::ranking::rank;
 use crate::report::{
     Agreement, BackendReport, Control, RawSamples, Refusal, Report, ResultRow, SCHEMA,
 };
-use crate::standing::places;
+use crate::sentences::sentences;
 use crate::statistics::Median;
 use crate::timer::Timer;
 use crate::warnings::warnings;
-use crate::words::words;
 use sixfold_workload::Backend;
 use sixfold_workload::Draw;
 use sixfold_workload::Operation;
-use sixfold_workload::Subject;
+use sixfold_workload::TimedBackend;
 use sixfold_workload::pages::Policy;
 use sixfold_workload::unknown;
 use sixfold_workload::{MachineClock, Time};
 
 /// The largest valence or degree of a mesh that is not skewed. Walking around such an element once
 /// for each neighbour takes about a millisecond.
-const MOST_NEIGHBOURS: usize = 1000;
+const MAX_NEIGHBOURS: usize = 1000;
 
 /// The settings of a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,7 +45,7 @@ pub struct Settings {
     /// External programs that take part in the study.
     pub externals: Vec<External>,
     /// Time limit for one answer of an external program.
-    pub patience: Duration,
+    pub external_timeout: Duration,
     /// The operations; empty for all. A subdivision that takes a large part of the budget is run
     /// only if it is named here; otherwise its time is estimated.
     pub operations: Vec<Operation>,
@@ -68,7 +68,7 @@ impl Default for Settings {
             backends: Vec::new(),
             extra: Vec::new(),
             externals: Vec::new(),
-            patience: PATIENCE,
+            external_timeout: EXTERNAL_TIMEOUT,
             operations: Vec::new(),
             budget: Duration::from_secs(20),
             seed: 1,
@@ -135,10 +135,10 @@ impl Settings {
         if let Some(name) = self.backends.iter().find(unknown) {
             return Err(StudyError::UnknownBackend { name: name.clone() });
         }
-        let asked = |backend: &Backend| {
+        let requested = |backend: &Backend| {
             self.backends.is_empty() || self.backends.iter().any(|name| name == backend.name())
         };
-        Ok(all.into_iter().filter(asked).collect())
+        Ok(all.into_iter().filter(requested).collect())
     }
 
     /// Refuses two columns with the same name.
@@ -146,22 +146,22 @@ impl Settings {
         let ours = Backend::roster()
             .into_iter()
             .chain(self.extra.iter().copied());
-        let mut taken: Vec<String> = ours.map(|backend| backend.name().to_owned()).collect();
+        let mut names: Vec<String> = ours.map(|backend| backend.name().to_owned()).collect();
         for External { name, .. } in &self.externals {
-            if taken.contains(name) {
+            if names.contains(name) {
                 return Err(StudyError::RepeatedExternal { name: name.clone() });
             }
-            taken.push(name.clone());
+            names.push(name.clone());
         }
         Ok(())
     }
 
     /// Returns the chosen operations, each once, in the order in which tables show them.
     fn chosen_operations(&self) -> Vec<Operation> {
-        let asked = |operation: &Operation| {
+        let requested = |operation: &Operation| {
             self.operations.is_empty() || self.operations.contains(operation)
         };
-        Operation::ALL.into_iter().filter(asked).collect()
+        Operation::ALL.into_iter().filter(requested).collect()
     }
 }
 
@@ -174,7 +174,7 @@ impl Settings {
 ///
 /// An unknown backend, a mesh without faces, or a mesh that none of the chosen backends can hold.
 pub fn study(
-    specimen: &Specimen,
+    study_mesh: &StudyMesh,
     settings: &Settings,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
@@ -182,40 +182,40 @@ pub fn study(
     let chosen = settings.chosen_backends()?;
     settings.check_externals()?;
     let operations = settings.chosen_operations();
-    let polygons = &specimen.polygons;
+    let polygons = &study_mesh.polygons;
     if polygons.face_count() == 0 {
         return Err(StudyError::NoFaces);
     }
-    let environment = Environment::here(settings.seed, settings.budget.as_secs_f64());
-    let counts = polygons.counts(specimen.facts.edges);
+    let environment = Environment::detect(settings.seed, settings.budget.as_secs_f64());
+    let counts = polygons.counts(study_mesh.facts.edges);
     let needed = needed_bytes(&chosen, &operations, &counts);
     let mut memory = Memory::start(settings.heap, settings.caches, needed);
-    let skewed = is_skewed(&specimen.facts);
+    let skewed = is_skewed(&study_mesh.facts);
     let draw = chosen
         .iter()
         .any(|backend| skewed || scans(backend, &operations))
-        .then(|| Draw::of(polygons, settings.seed));
+        .then(|| Draw::new(polygons, settings.seed));
 
     let mut backends = Vec::new();
-    let mut subjects: Vec<Box<dyn Subject + '_>> = Vec::new();
+    let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
     for backend in &chosen {
-        let (report, subject) = put_on_the_bench(backend, polygons, draw.as_ref(), &counts);
+        let (report, subject) = prepare(backend, polygons, draw.as_ref(), &counts);
         backends.push(report);
         subjects.extend(subject);
     }
     let mesh_file = match settings.externals.is_empty() {
         true => None,
         false => Some(
-            MeshFile::of(polygons).map_err(|cause| StudyError::NoMeshFile {
+            MeshFile::write(polygons).map_err(|cause| StudyError::NoMeshFile {
                 cause: cause.to_string(),
             })?,
         ),
     };
     let mut programs = Vec::new();
     for (external, mesh) in settings.externals.iter().zip(mesh_file.iter().cycle()) {
-        let patience = settings.patience;
+        let timeout = settings.external_timeout;
         let (report, subject) =
-            external::put_on_the_bench(external, mesh, &counts, &memory.heap, patience, stop);
+            external::prepare(external, mesh, &counts, &memory.heap, timeout, stop);
         backends.push(report);
         programs.extend(subject);
     }
@@ -229,18 +229,18 @@ pub fn study(
     }
 
     // Builds one backend a second time, for the control. It holds these polygons, as before.
-    let first = entered_twice(&subjects);
-    let held = |backend: &&Backend| backend.name() == subjects[first].name();
-    let again = chosen.iter().find(held);
-    let again = again.and_then(|backend| backend.put_on_the_bench(polygons, draw.as_ref()).ok());
+    let first = measured_twice(&subjects);
+    let is_first = |backend: &&Backend| backend.name() == subjects[first].name();
+    let again = chosen.iter().find(is_first);
+    let again = again.and_then(|backend| backend.prepare(polygons, draw.as_ref()).ok());
     let second = subjects.len();
     subjects.extend(again.map(|(subject, _)| subject));
     let control = (subjects.len() > second).then_some(second);
     subjects.extend(programs);
 
     let clock = MachineClock::start();
-    let timer = Timer::of(&clock);
-    let mut bench = Bench {
+    let timer = Timer::measure(&clock);
+    let mut measurement = Measurement {
         control,
         subjects: &mut subjects,
         population: [counts.vertices, counts.edges, counts.faces],
@@ -253,8 +253,8 @@ pub fn study(
         stop,
         progress,
     };
-    let mut entries = bench.measure(&operations);
-    let timer = timer.beside(&entries);
+    let mut entries = measurement.measure(&operations);
+    let timer = timer.with_entries(&entries);
     let again = control;
     let control = again.and_then(|second| {
         crate::control::control(&entries, first, second, subjects[first].name())
@@ -262,24 +262,24 @@ pub fn study(
     let raw = raw(&entries, &subjects, again);
     entries.retain(|entry| Some(entry.subject) != again);
     let interrupted = stop.load(Ordering::Relaxed);
-    let agreements = judge(&entries, &mut subjects, polygons, &clock, stop);
+    let agreements = compare_checksums(&entries, &mut subjects, polygons, &clock, stop);
     let results = results(&entries, agreements, &subjects, polygons, control.as_ref());
     let refusals = refusals(&entries, &subjects);
     let scanning = |backend: &str, relation: Relation| {
         let costs = chosen.iter().find(|b| b.name() == backend);
         costs.is_some_and(|b| b.info.costs[relation as usize] == QueryCost::Scan)
     };
-    let words = words(&backends, &results, polygons, control.as_ref(), &scanning);
+    let sentences = sentences(&backends, &results, polygons, control.as_ref(), &scanning);
     let environment = environment.with_memory(&memory);
     let warnings = warnings(&environment, &timer, &results, control.as_ref());
     Ok(Report {
         schema: SCHEMA,
-        mesh: specimen.report(),
+        mesh: study_mesh.report(),
         backends,
         results,
         refusals,
         control,
-        words,
+        sentences,
         warnings,
         raw,
         interrupted,
@@ -294,17 +294,17 @@ pub fn study(
 pub(crate) fn needed_bytes(backends: &[Backend], operations: &[Operation], counts: &Counts) -> u64 {
     let bytes = backends
         .iter()
-        .map(|backend| on_the_bench_bytes(backend, counts));
+        .map(|backend| prepared_bytes(backend, counts));
     let (all, most) = bytes.fold((0, 0_u64), |(all, most), one| (all + one, most.max(one)));
-    let makes = operations.iter().any(|operation| operation.makes_a_mesh());
+    let makes = operations.iter().any(|operation| operation.creates_mesh());
     all + most * if makes { 10 } else { 3 }
 }
 
 /// Returns whether a vertex or face has so high a valence or degree that one walk around it for each
 /// of its neighbours can exceed any budget.
 pub(crate) fn is_skewed(facts: &Facts) -> bool {
-    let most = |spread: &Option<Spread>| spread.as_ref().map_or(0, |s| s.max);
-    most(&facts.valence).max(most(&facts.face_degree)) > MOST_NEIGHBOURS
+    let most = |spread: &Option<Distribution>| spread.as_ref().map_or(0, |s| s.max);
+    most(&facts.valence).max(most(&facts.face_degree)) > MAX_NEIGHBOURS
 }
 
 /// Returns whether some operation scans on this backend.
@@ -317,13 +317,13 @@ pub(crate) fn scans(backend: &Backend, operations: &[Operation]) -> bool {
 }
 
 /// Builds a backend, and reports its memory or why it refuses the mesh.
-pub(crate) fn put_on_the_bench<'a>(
+pub(crate) fn prepare<'a>(
     backend: &Backend,
     polygons: &'a PolygonMesh,
     draw: Option<&'a Draw>,
     counts: &Counts,
-) -> (BackendReport, Option<Box<dyn Subject + 'a>>) {
-    match backend.put_on_the_bench(polygons, draw) {
+) -> (BackendReport, Option<Box<dyn TimedBackend + 'a>>) {
+    match backend.prepare(polygons, draw) {
         Err(refusal) => (unbuilt(backend, counts, Err(refusal)), None),
         Ok((subject, memory)) => {
             let bytes = memory.total();
@@ -343,7 +343,7 @@ pub(crate) fn put_on_the_bench<'a>(
 pub(crate) fn results(
     entries: &[Entry],
     agreements: Vec<Agreement>,
-    subjects: &[Box<dyn Subject + '_>],
+    subjects: &[Box<dyn TimedBackend + '_>],
     polygons: &PolygonMesh,
     control: Option<&Control>,
 ) -> Vec<ResultRow> {
@@ -360,33 +360,32 @@ pub(crate) fn results(
                 times.clear();
             }
         }
-        let places = places(&ranked, noise);
+        let ranks = rank(&ranked, noise);
         // The number of elements of a whole run is known if some backend made one.
         let counted = group
             .iter()
             .filter(|e| e.job.sample.is_none() && subjects[e.subject].merged_vertices() == 0)
             .find_map(|e| e.outcome);
-        for (((entry, times), place), agreement) in
-            group.iter().zip(&times).zip(places).zip(verdicts)
+        for (((entry, times), rank), agreement) in group.iter().zip(&times).zip(ranks).zip(verdicts)
         {
             if times.is_empty() && entry.estimate.is_none() {
                 continue; // refused, or the study was stopped before
             }
-            let median = Median::of(times.iter().map(|(_, time)| time.ns()));
-            let wall = Median::of(times.iter().map(|(_, time)| time.wall_ns));
+            let median = Median::from_samples(times.iter().map(|(_, time)| time.ns()));
+            let wall = Median::from_samples(times.iter().map(|(_, time)| time.wall_ns));
             let elements = match entry.job.sample {
                 Some(_) => counted.or(entry.outcome),
                 None => entry.outcome.or(counted),
             };
             let elements = elements.map(|outcome| outcome.elements);
-            let expected = entry.job.operation.expected(polygons) as u64;
+            let expected = entry.job.operation.estimated_elements(polygons) as u64;
             let elements = elements.or(entry.estimate.map(|_| expected));
             let per_element = |ns: f64| match elements {
                 Some(n) if n > 0 => Some(ns / n as f64),
                 _ => None,
             };
             let interval = median.and_then(|m| m.interval);
-            let ratio = place.and_then(|p| p.ratio.interval);
+            let ratio = rank.and_then(|p| p.ratio.interval);
             rows.push(ResultRow {
                 backend: subjects[entry.subject].name().into(),
                 operation: entry.job.operation,
@@ -395,7 +394,7 @@ pub(crate) fn results(
                 ci_low_ns: interval.map(|[low, _]| low),
                 ci_high_ns: interval.map(|[_, high]| high),
                 elements,
-                per: entry.job.operation.per().into(),
+                per: entry.job.operation.unit().into(),
                 ns_per_element: median.and_then(|m| per_element(m.value)),
                 wall_median_ns: wall.map(|m| m.value),
                 wall_min_ns: wall.map(|m| m.least),
@@ -407,8 +406,8 @@ pub(crate) fn results(
                     .map(|outcome| outcome.checksum)
                     .filter(|checksum| checksum.is_finite()),
                 agreement,
-                standing: place.map(|p| p.standing),
-                ratio_to_best: place.map(|p| p.ratio.value),
+                standing: rank.map(|p| p.standing),
+                ratio_to_best: rank.map(|p| p.ratio.value),
                 ratio_ci_low: ratio.map(|[low, _]| low),
                 ratio_ci_high: ratio.map(|[_, high]| high),
                 samples: times.len(),
@@ -436,11 +435,11 @@ fn most_faults<'t>(samples: impl IntoIterator<Item = &'t Time>) -> Option<u64> {
 /// a backend.
 fn raw(
     entries: &[Entry],
-    subjects: &[Box<dyn Subject + '_>],
+    subjects: &[Box<dyn TimedBackend + '_>],
     control: Option<usize>,
 ) -> Vec<RawSamples> {
-    let taken = entries.iter().filter(|entry| !entry.samples.is_empty());
-    let columns = taken.map(|entry| RawSamples {
+    let sampled = entries.iter().filter(|entry| !entry.samples.is_empty());
+    let columns = sampled.map(|entry| RawSamples {
         backend: subjects[entry.subject].name().into(),
         operation: entry.job.operation,
         control: Some(entry.subject) == control,
@@ -457,7 +456,7 @@ fn raw(
 }
 
 /// Returns the operations that backends refuse, in the order of the entries.
-pub(crate) fn refusals(entries: &[Entry], subjects: &[Box<dyn Subject + '_>]) -> Vec<Refusal> {
+pub(crate) fn refusals(entries: &[Entry], subjects: &[Box<dyn TimedBackend + '_>]) -> Vec<Refusal> {
     let refusal = |entry: &Entry| {
         let reason = entry.refusal.clone()?;
         Some(Refusal {

@@ -21,9 +21,9 @@ pub struct Timer {
     /// The uncertainty of `overhead_ns`, in nanoseconds: its difference from the time for reading
     /// in an empty loop, or the excess of the 95 % quantile in that loop over the median, whichever
     /// is larger.
-    #[serde(default)]
-    pub left_ns: f64,
-    /// `left_ns` divided by `shortest_ns`; `None` if nothing was measured.
+    #[serde(default, rename = "left_ns")]
+    pub uncertainty_ns: f64,
+    /// `uncertainty_ns` divided by `shortest_ns`; `None` if nothing was measured.
     pub largest_share: Option<f64>,
     /// The shortest stretch between two readings, in nanoseconds.
     #[serde(default)]
@@ -32,7 +32,7 @@ pub struct Timer {
 
 impl Timer {
     /// Reads `clock` repeatedly, with nothing between the readings.
-    pub(crate) fn of(clock: &dyn Clock) -> Self {
+    pub(crate) fn measure(clock: &dyn Clock) -> Self {
         let runs = black_box(1_u32);
         let empty = || {
             let start = clock.now();
@@ -46,19 +46,19 @@ impl Timer {
         let (usual, longest) = (times[TRIALS / 2], times[TRIALS * 95 / 100]);
         let overhead_ns = clock.overhead().ns();
         // The overhead may be as in this empty loop, or reading may take longer than usual.
-        let left_ns = (overhead_ns - usual).abs().max(longest - usual);
+        let uncertainty_ns = (overhead_ns - usual).abs().max(longest - usual);
         let steps = times.iter().copied().filter(|&ns| ns > 0.0);
         Self {
             resolution_ns: steps.min_by(f64::total_cmp).unwrap_or(0.0),
             overhead_ns,
-            left_ns,
+            uncertainty_ns,
             largest_share: None,
             shortest_ns: None,
         }
     }
 
     /// Adds the shortest of the samples that were taken.
-    pub(crate) fn beside(self, entries: &[Entry]) -> Self {
+    pub(crate) fn with_entries(self, entries: &[Entry]) -> Self {
         let shortest = entries.iter().filter_map(Entry::shortest_sample_ns);
         self.with_shortest(shortest.min_by(f64::total_cmp))
     }
@@ -66,7 +66,7 @@ impl Timer {
     /// Adds the shortest stretch between two readings.
     pub(crate) fn with_shortest(self, shortest_ns: Option<f64>) -> Self {
         Self {
-            largest_share: shortest_ns.map(|ns| self.left_ns / ns),
+            largest_share: shortest_ns.map(|ns| self.uncertainty_ns / ns),
             shortest_ns,
             ..self
         }

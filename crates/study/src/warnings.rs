@@ -28,13 +28,13 @@ pub(crate) fn warnings(
 ) -> Vec<String> {
     let all = [
         nothing_measured(environment, results),
-        not_kept(environment),
-        faulted(environment, results),
+        pages_not_kept(environment),
+        page_faults(environment, results),
         busy(environment),
         interrupted(environment, results),
         noisy(control),
         coarse(timer),
-        wall_alone(environment),
+        wall_time_only(environment),
         few(results),
         wide(results),
         powersave(environment),
@@ -43,11 +43,11 @@ pub(crate) fn warnings(
 }
 
 /// Returns the warnings about the machine itself.
-pub(crate) fn of_machine(environment: &Environment) -> Vec<String> {
+pub(crate) fn machine_warnings(environment: &Environment) -> Vec<String> {
     let all = [
-        not_kept(environment),
+        pages_not_kept(environment),
         busy(environment),
-        wall_alone(environment),
+        wall_time_only(environment),
         powersave(environment),
     ];
     all.into_iter().flatten().collect()
@@ -65,7 +65,7 @@ fn nothing_measured(environment: &Environment, results: &[ResultRow]) -> Option<
 }
 
 /// Warns if pages are not kept although that was set, or if page faults are not counted.
-fn not_kept(environment: &Environment) -> Option<String> {
+fn pages_not_kept(environment: &Environment) -> Option<String> {
     let heap = environment.heap.as_ref()?;
     match &heap.reason {
         Some(reason) => Some(format!(
@@ -79,10 +79,10 @@ fn not_kept(environment: &Environment) -> Option<String> {
 }
 
 /// Warns about samples with page faults if pages are kept.
-fn faulted(environment: &Environment, results: &[ResultRow]) -> Option<String> {
+fn page_faults(environment: &Environment, results: &[ResultRow]) -> Option<String> {
     let heap = environment.heap.as_ref()?;
-    let faulted = |row: &&ResultRow| row.faults.is_some_and(|faults| faults > 0);
-    let rows = results.iter().filter(faulted);
+    let has_faults = |row: &&ResultRow| row.faults.is_some_and(|faults| faults > 0);
+    let rows = results.iter().filter(has_faults);
     let worst = rows.clone().max_by_key(|row| row.faults)?;
     let (count, faults) = (rows.count(), worst.faults.unwrap_or(0));
     let ResultRow {
@@ -113,7 +113,7 @@ fn interrupted(environment: &Environment, results: &[ResultRow]) -> Option<Strin
     let ratios = results
         .iter()
         .filter_map(|row| Some(row.wall_median_ns? / row.median_ns?));
-    let ratio = Median::of(ratios)?.value;
+    let ratio = Median::from_samples(ratios)?.value;
     (ratio > INTERRUPTED).then(|| {
         format!(
             "Other programs used the processor for {:.0} % of the time and disturbed the caches. Stop them, or pin the study to its own core.",
@@ -131,7 +131,7 @@ fn noisy(control: Option<&Control>) -> Option<String> {
 }
 
 fn coarse(timer: &Timer) -> Option<String> {
-    let share = timer.resolution_ns.max(timer.left_ns) / timer.shortest_ns?;
+    let share = timer.resolution_ns.max(timer.uncertainty_ns) / timer.shortest_ns?;
     (share > COARSE).then(|| {
         format!(
             "The clock is too coarse: its error is up to {:.1} % of the shortest sample. Study a larger mesh.",
@@ -140,7 +140,7 @@ fn coarse(timer: &Timer) -> Option<String> {
     })
 }
 
-fn wall_alone(environment: &Environment) -> Option<String> {
+fn wall_time_only(environment: &Environment) -> Option<String> {
     (environment.clock == "wall").then(|| {
         "This platform does not report the processor time of a thread: the figures are wall time, which other programs make longer. Keep the machine quiet.".to_owned()
     })
@@ -159,7 +159,7 @@ fn few(results: &[ResultRow]) -> Option<String> {
 }
 
 fn wide(results: &[ResultRow]) -> Option<String> {
-    let doubt = |row: &ResultRow| {
+    let half_width = |row: &ResultRow| {
         let (low, high) = row.ci_low_ns.zip(row.ci_high_ns)?;
         let median = row.median_ns?;
         Some((median - low).max(high - median) / median)
@@ -167,9 +167,9 @@ fn wide(results: &[ResultRow]) -> Option<String> {
     let known: Vec<(f64, &ResultRow)> = results
         .iter()
         .filter(|row| row.samples >= FEW)
-        .filter_map(|row| Some((doubt(row)?, row)))
+        .filter_map(|row| Some((half_width(row)?, row)))
         .collect();
-    let wide = known.iter().filter(|(doubt, _)| *doubt > WIDE);
+    let wide = known.iter().filter(|(half_width, _)| *half_width > WIDE);
     let (count, all) = (wide.clone().count(), known.len());
     let (worst, row) = wide.max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!(
@@ -197,7 +197,7 @@ mod tests {
 
     use super::*;
     use crate::report::{ControlRow, Standing};
-    use crate::words::row;
+    use crate::sentences::row;
 
     fn quiet() -> Environment {
         Environment {
@@ -205,7 +205,7 @@ mod tests {
             cores: Some(2),
             governor: Some("performance".into()),
             clock: "thread-cpu".into(),
-            ..Environment::here(1, 20.0)
+            ..Environment::detect(1, 20.0)
         }
     }
 
@@ -222,15 +222,15 @@ mod tests {
     const TIMER: Timer = Timer {
         resolution_ns: 20.0,
         overhead_ns: 600.0,
-        left_ns: 100.0,
+        uncertainty_ns: 100.0,
         largest_share: Some(0.0005),
         shortest_ns: Some(200_000.0),
     };
 
     #[test]
     fn a_good_run_has_no_warnings() {
-        let said = warnings(&quiet(), &TIMER, &[fine()], None);
-        assert_eq!(said, [""; 0]);
+        let messages = warnings(&quiet(), &TIMER, &[fine()], None);
+        assert_eq!(messages, [""; 0]);
     }
 
     #[test]
@@ -330,11 +330,14 @@ mod tests {
                 "--operations",
             ),
         ];
-        for (said, fault, remedy) in cases {
-            let [said] = &said[..] else {
-                panic!("{fault}: {said:?}");
+        for (messages, fault, remedy) in cases {
+            let [message] = &messages[..] else {
+                panic!("{fault}: {messages:?}");
             };
-            assert!(said.contains(fault) && said.contains(remedy), "{said}");
+            assert!(
+                message.contains(fault) && message.contains(remedy),
+                "{message}"
+            );
         }
     }
 }

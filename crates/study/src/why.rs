@@ -2,7 +2,7 @@
 //!
 //! Counts of reads need no clock and have no noise ([`Reads`]). A study of the same relations gives
 //! their times. [`MemorySpeed`] gives the time on this machine for moving the bytes, or for waiting
-//! for them. [`Bound::of`] compares the three.
+//! for them. [`Bound::from_times`] compares the three.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,11 +11,13 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 use serde_with::{KeyValueMap, serde_as};
 use sixfold::Relation;
-use sixfold_workload::{Backend, CACHE_LINES, Counted, Kind, LINE_BYTES, MOST_READS, MemorySpeed};
-use sixfold_workload::{Operation, REACH, Reads, Rung, SAMPLE};
+use sixfold_workload::{
+    Backend, CACHE_LINES, ElementKind, LINE_BYTES, MAX_READS, MemorySpeed, ReadsObserver,
+};
+use sixfold_workload::{BufferSpeed, Operation, REACH, Reads, SCAN_SAMPLE};
 
 use crate::environment::Environment;
-use crate::inspect::{Specimen, unbuilt};
+use crate::inspect::{StudyMesh, unbuilt};
 use crate::measure::Progress;
 use crate::report::{Agreement, BackendReport, MeshReport, Report, SCHEMA, write_json};
 use crate::study::{Settings, StudyError, study};
@@ -56,7 +58,7 @@ pub struct Why {
     /// The model of memory that the counts use.
     pub model: Model,
     /// The speed of reading buffers of growing size; `None` if nothing was measured.
-    pub memory: Option<Vec<Rung>>,
+    pub memory: Option<Vec<BufferSpeed>>,
     /// The results, sorted by relation, then in the order of the roster.
     pub rows: Vec<WhyRow>,
     /// Whether it was stopped early, so that some rows or times are missing.
@@ -82,12 +84,12 @@ pub struct Model {
 
 impl Model {
     /// The model of this version.
-    pub const HERE: Self = Self {
+    pub const CURRENT: Self = Self {
         line_bytes: LINE_BYTES,
         cache_lines: CACHE_LINES,
         reach: REACH,
-        sample: SAMPLE,
-        most_reads: MOST_READS,
+        sample: SCAN_SAMPLE,
+        most_reads: MAX_READS,
     };
 }
 
@@ -115,7 +117,7 @@ pub struct Timed {
     /// Whether other backends have the same results.
     pub agreement: Agreement,
     /// The speed of reading memory of the size of the sweep.
-    pub speed: Rung,
+    pub speed: BufferSpeed,
     /// The time per element for moving its bytes at that speed, in nanoseconds.
     pub floor_ns: f64,
     /// The time per element for its jumps at that speed, one after the other, in nanoseconds.
@@ -146,7 +148,7 @@ impl Bound {
     ///   processor overlaps several jumps, so they may take less: they can be the reason, but not
     ///   necessarily the only one.
     /// - `Work` if neither explains half of the time.
-    pub fn of(ns: f64, floor_ns: f64, waits_ns: f64) -> Self {
+    pub fn from_times(ns: f64, floor_ns: f64, waits_ns: f64) -> Self {
         if 2.0 * floor_ns >= ns {
             Self::Bandwidth
         } else if 2.0 * waits_ns >= ns {
@@ -194,25 +196,25 @@ impl Why {
 ///
 /// As [`study`].
 pub fn why(
-    specimen: &Specimen,
+    study_mesh: &StudyMesh,
     settings: &WhySettings,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<Why, StudyError> {
-    let asked = |relation: &Relation| {
+    let requested = |relation: &Relation| {
         settings.relations.is_empty() || settings.relations.contains(relation)
     };
-    let relations: Vec<Relation> = Relation::ALL.into_iter().filter(asked).collect();
+    let relations: Vec<Relation> = Relation::ALL.into_iter().filter(requested).collect();
     let mut study_settings = Settings {
         backends: settings.backends.clone(),
         extra: settings.extra.clone(),
         operations: relations.iter().copied().map(Operation::Relation).collect(),
         ..Settings::default()
     };
-    if specimen.polygons.face_count() == 0 {
+    if study_mesh.polygons.face_count() == 0 {
         return Err(StudyError::NoFaces);
     }
-    let (backends, mut rows) = count_all(specimen, &study_settings, &relations, stop, progress)?;
+    let (backends, mut rows) = count_all(study_mesh, &study_settings, &relations, stop, progress)?;
     // The sort is stable: rows of one relation stay in the order of the roster.
     rows.sort_by_key(|row| row.reads.relation);
     let mut environment = None;
@@ -220,7 +222,7 @@ pub fn why(
         && !stop.load(Ordering::Relaxed)
     {
         study_settings.budget = *budget;
-        let report = study(specimen, &study_settings, stop, progress)?;
+        let report = study(study_mesh, &study_settings, stop, progress)?;
         for row in &mut rows {
             row.timed = timed(row, &report, memory);
         }
@@ -229,10 +231,10 @@ pub fn why(
     let memory = settings.timing.as_ref().map(|timing| &timing.memory);
     Ok(Why {
         schema: SCHEMA,
-        mesh: specimen.report(),
+        mesh: study_mesh.report(),
         backends,
-        model: Model::HERE,
-        memory: memory.map(|memory| memory.rungs().to_vec()),
+        model: Model::CURRENT,
+        memory: memory.map(|memory| memory.speeds().to_vec()),
         rows,
         interrupted: stop.load(Ordering::Relaxed),
         environment,
@@ -241,25 +243,25 @@ pub fn why(
 
 /// Counts the reads of each backend, and reports whether it can hold the mesh.
 fn count_all(
-    specimen: &Specimen,
+    study_mesh: &StudyMesh,
     settings: &Settings,
     relations: &[Relation],
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<(Vec<BackendReport>, Vec<WhyRow>), StudyError> {
     let chosen = settings.chosen_backends()?;
-    let counts = specimen.polygons.counts(specimen.facts.edges);
+    let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
     let (mut backends, mut rows) = (Vec::new(), Vec::new());
     let all = (chosen.len() * relations.len()) as f64;
     for (i, backend) in chosen.iter().enumerate() {
-        let mut counting = Rows {
+        let mut counting = RowCollector {
             backend: backend.name(),
             done: (i * relations.len()) as f64 / all,
             step: 1.0 / all,
             rows: &mut rows,
             progress,
         };
-        let polygons = &specimen.polygons;
+        let polygons = &study_mesh.polygons;
         let verdict = backend.count_reads(polygons, relations, stop, &mut counting);
         backends.push(unbuilt(backend, &counts, verdict));
     }
@@ -275,7 +277,7 @@ fn count_all(
 }
 
 /// The rows of one backend, collected while counting.
-struct Rows<'a> {
+struct RowCollector<'a> {
     backend: &'static str,
     done: f64,
     step: f64,
@@ -283,8 +285,8 @@ struct Rows<'a> {
     progress: &'a mut dyn FnMut(Progress<'_>),
 }
 
-impl Counted for Rows<'_> {
-    fn begins(&mut self, relation: Relation) {
+impl ReadsObserver for RowCollector<'_> {
+    fn relation_started(&mut self, relation: Relation) {
         (self.progress)(Progress {
             done: self.done,
             stage: "counting",
@@ -294,10 +296,10 @@ impl Counted for Rows<'_> {
         self.done += self.step;
     }
 
-    fn ends(&mut self, reads: Reads) {
+    fn relation_counted(&mut self, reads: Reads) {
         self.rows.push(WhyRow {
             backend: self.backend.to_owned(),
-            per: Kind::asked(reads.relation).name().into(),
+            per: ElementKind::queried_by(reads.relation).name().into(),
             reads,
             timed: None,
         });
@@ -319,7 +321,7 @@ fn timed(row: &WhyRow, report: &Report, memory: &MemorySpeed) -> Option<Timed> {
         speed,
         floor_ns,
         waits_ns,
-        bound: Bound::of(ns_per_element, floor_ns, waits_ns),
+        bound: Bound::from_times(ns_per_element, floor_ns, waits_ns),
     })
 }
 
@@ -331,8 +333,8 @@ mod tests {
 
     fn counted(settings: &WhySettings) -> Result<Why, StudyError> {
         let grid = shapes::triangle_grid(6, 6).expect("a grid");
-        let specimen = Specimen::new("grid", grid);
-        why(&specimen, settings, &AtomicBool::new(false), &mut |_| ())
+        let study_mesh = StudyMesh::new("grid", grid);
+        why(&study_mesh, settings, &AtomicBool::new(false), &mut |_| ())
     }
 
     #[test]
@@ -344,18 +346,22 @@ mod tests {
             (10.0, 4.9, 4.9, Bound::Work),
             (2.0, 0.0, 0.0, Bound::Work),
         ] {
-            assert_eq!(Bound::of(ns, floor, waits), bound, "{ns} {floor} {waits}");
+            assert_eq!(
+                Bound::from_times(ns, floor, waits),
+                bound,
+                "{ns} {floor} {waits}"
+            );
         }
     }
 
     #[test]
     fn rows_are_sorted_by_relation() {
-        let asked = WhySettings {
+        let settings = WhySettings {
             backends: vec!["half-edge".into(), "polygon-soup".into()],
             relations: vec![Relation::FaceVertices, Relation::VertexFaces],
             ..WhySettings::default()
         };
-        let why = counted(&asked).expect("both can hold the mesh");
+        let why = counted(&settings).expect("both can hold the mesh");
         let rows: Vec<_> = why
             .rows
             .iter()
@@ -385,7 +391,7 @@ mod tests {
             &AtomicBool::new(false),
         );
         let memory = memory.expect("not stopped");
-        let asked = WhySettings {
+        let settings = WhySettings {
             backends: vec!["half-edge".into()],
             relations: vec![Relation::VertexFaces],
             timing: Some(Timing {
@@ -394,25 +400,25 @@ mod tests {
             }),
             ..WhySettings::default()
         };
-        let why = counted(&asked).expect("it can hold the mesh");
+        let why = counted(&settings).expect("it can hold the mesh");
         let [row] = &why.rows[..] else {
             panic!("one row: {:?}", why.rows);
         };
         let timed = row.timed.expect("measured");
-        assert_eq!(timed.speed, memory.rungs()[0], "it fits the smallest");
+        assert_eq!(timed.speed, memory.speeds()[0], "it fits the smallest");
         let floor = row.reads.moved_bytes / timed.speed.gb_per_s;
         assert_eq!(timed.floor_ns, floor);
         assert_eq!(timed.waits_ns, row.reads.jumps * timed.speed.latency_ns);
         assert!(timed.ns_per_element > 0.0 && why.mismatches() == 0);
-        assert_eq!(why.memory.as_deref(), Some(memory.rungs()));
+        assert_eq!(why.memory.as_deref(), Some(memory.speeds()));
     }
 
     #[test]
     fn refusing_backends_are_listed_and_no_backend_is_an_error() {
         let quads = shapes::torus(4, 4).expect("a torus");
-        let specimen = Specimen::new("quads", quads);
-        let go = AtomicBool::new(false);
-        let all = why(&specimen, &WhySettings::default(), &go, &mut |_| ());
+        let study_mesh = StudyMesh::new("quads", quads);
+        let stop = AtomicBool::new(false);
+        let all = why(&study_mesh, &WhySettings::default(), &stop, &mut |_| ());
         let all = all.expect("five can hold the mesh");
         assert_eq!(all.backends.len(), 6);
         assert_eq!(all.rows.len(), 5 * 9, "a corner table holds triangles");
@@ -420,7 +426,7 @@ mod tests {
             backends: vec!["corner-table".into()],
             ..WhySettings::default()
         };
-        let none = why(&specimen, &only, &go, &mut |_| ());
+        let none = why(&study_mesh, &only, &stop, &mut |_| ());
         assert!(matches!(none, Err(StudyError::NoneHolds { .. })));
     }
 }

@@ -7,18 +7,18 @@ use sixfold::shapes::{self, Order};
 use sixfold::{Facts, PolygonMesh};
 use sixfold_study::{
     Agreement, GrowthError, GrowthReport, GrowthSettings, Operation, OrdersError, OrdersReport,
-    Settings, Specimen, StudyError, growth, orders,
+    Settings, StudyError, StudyMesh, growth, orders,
 };
 
 /// Returns a mesh of irregular triangles, so that different elements give different sums.
 fn blobs() -> PolygonMesh {
-    let recipe = shapes::recipe("blobs").expect("a known shape");
-    recipe.make(&[("faces", 1500.0)]).expect("a valid size")
+    let generator = shapes::generator("blobs").expect("a known shape");
+    generator.build(&[("faces", 1500.0)]).expect("a valid size")
 }
 
 fn quick_orders(mesh: PolygonMesh, settings: &Settings) -> Result<OrdersReport, OrdersError> {
-    let specimen = Specimen::new("test", mesh);
-    orders(&specimen, settings, &AtomicBool::new(false), &mut |_| ())
+    let study_mesh = StudyMesh::new("test", mesh);
+    orders(&study_mesh, settings, &AtomicBool::new(false), &mut |_| ())
 }
 
 fn brief(milliseconds: u64, operations: &[&str]) -> Settings {
@@ -34,7 +34,7 @@ fn brief(milliseconds: u64, operations: &[&str]) -> Settings {
 #[test]
 fn every_order_does_the_same_work_on_every_structure() {
     let mesh = blobs();
-    let facts = Facts::of(&mesh);
+    let facts = Facts::from_polygons(&mesh);
     let names = [
         "vertex_vertices",
         "edge_faces",
@@ -44,7 +44,7 @@ fn every_order_does_the_same_work_on_every_structure() {
     ];
     let report = quick_orders(mesh, &brief(400, &names)).expect("all backends hold it");
     assert_eq!(report.results.len(), names.len() * 6 * 4);
-    assert_eq!(report.mismatches(), 0, "{:?}", report.words);
+    assert_eq!(report.mismatches(), 0, "{:?}", report.sentences);
     let mut sampled = 0;
     for row in &report.results {
         let context = format!(
@@ -85,12 +85,12 @@ fn orders_are_ranked_within_a_structure_and_compared_between_them() {
     let report = quick_orders(blobs(), &brief(400, &["vertex_faces", "face_vertices"]));
     let report = report.expect("all backends hold it");
     assert_eq!(report.orders, Order::ALL);
-    for of_one in report
+    for backend_rows in report
         .results
         .chunk_by(|a, b| a.row.operation == b.row.operation && a.row.backend == b.row.backend)
     {
-        let of_one: Vec<Order> = of_one.iter().map(|row| row.order).collect();
-        assert_eq!(of_one, Order::ALL);
+        let backend_rows: Vec<Order> = backend_rows.iter().map(|row| row.order).collect();
+        assert_eq!(backend_rows, Order::ALL);
     }
     for pair in report.results.chunks(4) {
         let least = pair
@@ -116,10 +116,10 @@ fn orders_are_ranked_within_a_structure_and_compared_between_them() {
         assert!(comparison.structures.is_some() && comparison.larger.is_some());
         assert!(comparison.noise >= 1.02);
     }
-    let words = report.words.join(" ");
+    let sentences = report.sentences.join(" ");
     assert!(
-        words.contains("Of 12 pairs") && words.contains("entered twice"),
-        "{words}"
+        sentences.contains("Of 12 pairs") && sentences.contains("measured twice"),
+        "{sentences}"
     );
     assert!(
         report
@@ -178,7 +178,7 @@ fn scans_grow_quadratically_and_local_queries_linearly() {
     let faces: Vec<usize> = report.sizes.iter().map(|size| size.faces).collect();
     assert_eq!(faces.len(), 4);
     assert!(faces.is_sorted() && faces[0].abs_diff(400) < 40 && faces[3].abs_diff(12_800) < 1280);
-    assert_eq!(report.mismatches(), 0, "{:?}", report.words);
+    assert_eq!(report.mismatches(), 0, "{:?}", report.sentences);
     assert_eq!(report.fits.len(), 2 * 6);
     for fit in &report.fits {
         let slope = fit.all.expect("four sizes");
@@ -190,17 +190,17 @@ fn scans_grow_quadratically_and_local_queries_linearly() {
         assert!(expected.contains(&slope.exponent), "{fit:?}");
     }
     for size in &report.sizes {
-        assert_eq!(size.weights.len(), 6);
+        assert_eq!(size.backend_bytes.len(), 6);
         let (v, f) = (size.vertices as i64, size.faces as i64);
         assert_eq!(v - size.edges as i64 + f, 0, "a torus");
     }
     // Each structure has one row for each data cache that the platform reports.
     let data = report.caches.iter().filter(|cache| cache.holds_data());
-    assert_eq!(report.cache_ends.len(), 6 * data.count());
-    let said = report.words.join(" ");
+    assert_eq!(report.cache_limits.len(), 6 * data.count());
+    let sentences = report.sentences.join(" ");
     assert!(
-        said.contains("face_vertices: ") && said.contains("to the power"),
-        "{said}"
+        sentences.contains("face_vertices: ") && sentences.contains("to the power"),
+        "{sentences}"
     );
 }
 
@@ -243,8 +243,11 @@ fn sizes_beyond_the_budget_are_left_out_and_listed() {
     assert!(!report.interrupted && !report.sizes.is_empty());
     assert_eq!(report.left_out.last(), Some(&40_000_000));
     assert_eq!(report.left_out.len() + report.sizes.len(), 4);
-    let words = report.words.join(" ");
-    assert!(words.contains("40,000,000 faces are left out"), "{words}");
+    let sentences = report.sentences.join(" ");
+    assert!(
+        sentences.contains("40,000,000 faces are left out"),
+        "{sentences}"
+    );
     let all = quick_growth(&small()).expect("all backends hold it");
     assert!(all.left_out.is_empty(), "{:?}", all.left_out);
 }
@@ -255,8 +258,8 @@ fn growth_of_a_quad_shape_excludes_corner_tables() {
     settings.shape = "torus".into();
     settings.study.operations.remove(0);
     let report = quick_growth(&settings).expect("five hold quads");
-    assert_eq!((report.backends.len(), report.unheld.len()), (5, 1));
-    assert_eq!(report.unheld[0].backend, "corner-table");
+    assert_eq!((report.backends.len(), report.refused_by.len()), (5, 1));
+    assert_eq!(report.refused_by[0].backend, "corner-table");
     settings.study.backends = vec!["corner-table".into()];
     let refused = quick_growth(&settings).err();
     assert!(matches!(

@@ -8,14 +8,14 @@ use std::time::Duration;
 
 use sixfold::shapes;
 use sixfold_study::{
-    MachineClock, PickError, Policy, Question, Series, Settings, Specimen, Start, built_in, pages,
-    pick, study, timed,
+    MachineClock, PickError, PickSettings, Policy, Series, Settings, Start, StudyMesh, built_in,
+    pages, pick, study, timed,
 };
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
 
 fn main() {
-    let heap = pages::put_in_force(Policy::Kept);
+    let heap = pages::set_policy(Policy::Kept);
     if heap.policy != Policy::Kept || !heap.counts_faults {
         println!("nothing to test on this platform: {heap:?}");
         return;
@@ -27,7 +27,7 @@ fn main() {
         });
     }
     with_time_enough(3, no_sample_of_a_pick_faults);
-    assert_eq!(pages::put_in_force(Policy::System).policy, Policy::System);
+    assert_eq!(pages::set_policy(Policy::System).policy, Policy::System);
 }
 
 /// Calls `test` with a budget of `seconds`, doubled until there is time for the samples that it
@@ -63,13 +63,13 @@ fn freed_pages_are_kept_until_they_are_returned() {
 /// Returns whether the budget was enough for more than 20 samples.
 fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> bool {
     let polygons = shapes::geodesic(frequency).expect("a sphere");
-    let specimen = Specimen::new("sphere", polygons);
+    let study_mesh = StudyMesh::new("sphere", polygons);
     let settings = Settings {
         backends: STRUCTURES.map(str::to_owned).to_vec(),
         budget,
         ..Settings::default()
     };
-    let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ());
+    let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ());
     let report = report.expect("all four can hold the mesh");
     let heap = report.environment.heap.as_ref().expect("a heap report");
     assert_eq!((heap.policy, &heap.reason), (Policy::Kept, &None));
@@ -79,7 +79,7 @@ fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> bool {
         assert!(
             faults.iter().all(|&n| n == 0),
             "{}: {} on {}: {faults:?}",
-            specimen.name,
+            study_mesh.name,
             raw.operation,
             raw.backend
         );
@@ -97,8 +97,8 @@ fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> bool {
 
 /// Returns whether the budget was enough.
 fn no_sample_of_a_pick_faults(budget: Duration) -> bool {
-    let specimen = Specimen::new("sphere", shapes::geodesic(24).expect("a sphere"));
-    let question = Question {
+    let study_mesh = StudyMesh::new("sphere", shapes::geodesic(24).expect("a sphere"));
+    let settings = PickSettings {
         workload: built_in("remeshing").expect("a built-in workload"),
         backends: STRUCTURES.map(str::to_owned).to_vec(),
         needs: Vec::new(),
@@ -107,17 +107,17 @@ fn no_sample_of_a_pick_faults(budget: Duration) -> bool {
         seed: 1,
         heap: Policy::Kept,
     };
-    let answer = pick(
-        &[specimen],
-        &question,
+    let report = pick(
+        &[study_mesh],
+        &settings,
         &AtomicBool::new(false),
         &mut |_, _| (),
     );
-    let answer = match answer {
+    let report = match report {
         Err(PickError::BudgetTooSmall { .. }) => return false,
-        answer => answer.expect("all four can hold the mesh"),
+        report => report.expect("all four can hold the mesh"),
     };
-    for ranked in &answer.ranking {
+    for ranked in &report.ranking {
         assert_eq!(ranked.faults, Some(0), "{}", ranked.backend);
         assert!(ranked.first_build_ns > Some(0.0), "{}", ranked.backend);
     }

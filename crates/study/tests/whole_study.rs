@@ -6,26 +6,26 @@ use std::time::Duration;
 use sixfold::subdivision::Method;
 use sixfold::{Facts, Relation, shapes};
 use sixfold_study::{
-    Agreement, Operation, Report, Settings, Specimen, Standing, StudyError, study,
+    Agreement, Operation, Report, Settings, Standing, StudyError, StudyMesh, study,
 };
 
-fn quick(specimen: &Specimen, settings: &Settings) -> Result<Report, StudyError> {
-    study(specimen, settings, &AtomicBool::new(false), &mut |_| ())
+fn quick(study_mesh: &StudyMesh, settings: &Settings) -> Result<Report, StudyError> {
+    study(study_mesh, settings, &AtomicBool::new(false), &mut |_| ())
 }
 
 #[test]
 fn scans_are_sampled_and_long_operations_are_estimated() {
     let mesh = shapes::triangle_grid(45, 40).expect("a grid");
-    let facts = Facts::of(&mesh);
-    let specimen = Specimen::new("grid", mesh);
+    let facts = Facts::from_polygons(&mesh);
+    let study_mesh = StudyMesh::new("grid", mesh);
     let settings = Settings {
         budget: Duration::from_millis(100),
         seed: 5,
         ..Settings::default()
     };
-    let report = quick(&specimen, &settings).expect("all backends hold it");
-    let asked = Operation::ALL.len() * report.backends.len();
-    assert_eq!(report.results.len() + report.refusals.len(), asked);
+    let report = quick(&study_mesh, &settings).expect("all backends hold it");
+    let expected_rows = Operation::ALL.len() * report.backends.len();
+    assert_eq!(report.results.len() + report.refusals.len(), expected_rows);
     // Two structures cannot split their own tables, and corner tables cannot hold quads.
     assert_eq!(report.refusals.len(), 2 * 2 + 3, "{:?}", report.refusals);
     for row in &report.results {
@@ -34,7 +34,7 @@ fn scans_are_sampled_and_long_operations_are_estimated() {
         match row.operation {
             Operation::FfBfs if estimated => assert_eq!(row.agreement, Agreement::Unchecked),
             // In this short time, an operation may be run on a single structure.
-            operation if operation.makes_a_mesh() => {
+            operation if operation.creates_mesh() => {
                 assert!(row.agreement != Agreement::Mismatch, "{context}: {row:?}");
             }
             _ => assert_eq!(row.agreement, Agreement::Same, "{context}: {row:?}"),
@@ -70,10 +70,10 @@ fn scans_are_sampled_and_long_operations_are_estimated() {
     let search = soup(Operation::FfBfs);
     assert!(search.estimated_ns.or(search.median_ns) > Some(1e6));
     assert!(!soup(Operation::FaceBarycenter).sampled);
-    let words = report.words.join(" ");
+    let sentences = report.sentences.join(" ");
     assert!(
-        words.contains("polygon-soup scans all 3,600 faces"),
-        "{words}"
+        sentences.contains("polygon-soup scans all 3,600 faces"),
+        "{sentences}"
     );
 }
 
@@ -86,16 +86,16 @@ fn a_vertex_with_many_faces_stays_within_the_time_limit() {
     let corners: Vec<_> = rim.chain([sixfold::Point::Z]).collect();
     let fan = (0..10_000).map(|i| [10_000, i, (i + 1) % 10_000]);
     let mesh = sixfold::PolygonMesh::new(corners, fan).expect("valid");
-    let specimen = Specimen::new("fan", mesh);
+    let study_mesh = StudyMesh::new("fan", mesh);
     let settings = Settings {
         budget: Duration::from_millis(200),
         ..Settings::default()
     };
     let start = std::time::Instant::now();
-    let report = quick(&specimen, &settings).expect("all backends hold it");
+    let report = quick(&study_mesh, &settings).expect("all backends hold it");
     // A full run visits 10⁸ adjacent edges at that vertex on each backend.
     assert!(start.elapsed() < Duration::from_secs(15));
-    assert_eq!(report.mismatches().count(), 0, "{:?}", report.words);
+    assert_eq!(report.mismatches().count(), 0, "{:?}", report.sentences);
     let edges = Operation::Relation(Relation::EdgeEdges);
     for row in report.rows(edges) {
         assert!(row.sampled, "{row:?}");
@@ -107,21 +107,24 @@ fn a_vertex_with_many_faces_stays_within_the_time_limit() {
     // A structure that is sampled does not necessarily scan.
     for walker in ["half-edge", "winged-edge", "corner-table", "face-vertex"] {
         let scans = format!("{walker} scans all");
-        let said = report.words.iter().any(|words| words.contains(&scans));
-        assert!(!said, "{:?}", report.words);
+        let found = report
+            .sentences
+            .iter()
+            .any(|sentence| sentence.contains(&scans));
+        assert!(!found, "{:?}", report.sentences);
     }
 }
 
 #[test]
 fn a_csv_without_rows_has_the_same_header() {
-    let specimen = Specimen::new("cube", shapes::cube());
+    let study_mesh = StudyMesh::new("cube", shapes::cube());
     let settings = Settings {
         budget: Duration::ZERO,
         ..Settings::default()
     };
     let first_line = |stopped: bool| {
         let stop = AtomicBool::new(stopped);
-        let report = study(&specimen, &settings, &stop, &mut |_| ()).expect("a cube");
+        let report = study(&study_mesh, &settings, &stop, &mut |_| ()).expect("a cube");
         assert_eq!(report.results.is_empty(), stopped);
         let mut csv = Vec::new();
         report.write_csv(&mut csv).expect("memory");
@@ -134,20 +137,20 @@ fn a_csv_without_rows_has_the_same_header() {
 
 #[test]
 fn unknown_backends_and_unsuitable_meshes_are_refused() {
-    let specimen = Specimen::new("cube", shapes::cube());
+    let study_mesh = StudyMesh::new("cube", shapes::cube());
     let settings = |backend: &str| Settings {
         backends: vec![backend.into()],
         ..Settings::default()
     };
-    let unknown = quick(&specimen, &settings("abacus")).expect_err("no such backend");
+    let unknown = quick(&study_mesh, &settings("abacus")).expect_err("no such backend");
     assert!(unknown.to_string().contains("half-edge"), "{unknown}");
-    let empty = Specimen::new("nothing", sixfold::PolygonMesh::default());
+    let empty = StudyMesh::new("nothing", sixfold::PolygonMesh::default());
     let none = quick(&empty, &Settings::default()).expect_err("no faces");
     assert_eq!(none, StudyError::NoFaces);
     let corners = [sixfold::Point::ZERO, sixfold::Point::X, sixfold::Point::Y];
     let twice = sixfold::PolygonMesh::new(corners, [[0, 1, 2], [0, 1, 2]]).expect("valid");
-    let specimen = Specimen::new("twice", twice);
-    let refused = quick(&specimen, &settings("half-edge")).expect_err("not oriented");
+    let study_mesh = StudyMesh::new("twice", twice);
+    let refused = quick(&study_mesh, &settings("half-edge")).expect_err("not oriented");
     assert!(refused.to_string().contains("v0→v1"), "{refused}");
 }
 
@@ -161,7 +164,7 @@ fn searched(operations: Vec<Operation>, budget: Duration) -> sixfold_study::Resu
         budget,
         ..Settings::default()
     };
-    let report = quick(&Specimen::new("grid", mesh), &settings).expect("both hold it");
+    let report = quick(&StudyMesh::new("grid", mesh), &settings).expect("both hold it");
     let of_soup = |row: &&sixfold_study::ResultRow| {
         let gather = row.operation == Operation::Loop(Method::Gather);
         gather && row.backend == "polygon-soup"
@@ -174,34 +177,34 @@ fn searched(operations: Vec<Operation>, budget: Duration) -> sixfold_study::Resu
 fn a_scanning_subdivision_is_run_if_it_is_named() {
     let named = vec![Operation::Loop(Method::Gather)];
     let run = searched(named.clone(), Duration::from_secs(3));
-    let took = run.median_ns.expect("it was run");
+    let measured_ns = run.median_ns.expect("it was run");
     assert_eq!(run.elements, Some(4 * 2 * 40 * 35));
     assert!(
         !run.by_name_only && run.agreement == Agreement::Same,
         "{run:?}"
     );
     // A tenth of the budget is too much for an operation that is not named.
-    let tight = Duration::from_nanos(10 * took as u64);
+    let tight = Duration::from_nanos(10 * measured_ns as u64);
     let left_out = searched(Vec::new(), tight);
     let estimate = left_out.estimated_ns.expect("only estimated");
     assert!(left_out.median_ns.is_none(), "{left_out:?}");
     assert!(
-        (0.2..5.0).contains(&(estimate / took)),
-        "estimate {estimate}, measured {took}"
+        (0.2..5.0).contains(&(estimate / measured_ns)),
+        "estimate {estimate}, measured {measured_ns}"
     );
     // Longer than the budget: it is not run even if it is named.
-    let hopeless = searched(named, tight / 1000);
-    assert!(hopeless.estimated_ns.is_some() && !hopeless.by_name_only);
+    let too_long = searched(named, tight / 1000);
+    assert!(too_long.estimated_ns.is_some() && !too_long.by_name_only);
 }
 
 #[test]
 fn a_scheme_refuses_a_mesh_with_the_same_reason_on_all_backends() {
-    let specimen = Specimen::new("cube", shapes::cube());
+    let study_mesh = StudyMesh::new("cube", shapes::cube());
     let settings = Settings {
         budget: Duration::from_millis(100),
         ..Settings::default()
     };
-    let report = quick(&specimen, &settings).expect("quads");
+    let report = quick(&study_mesh, &settings).expect("quads");
     let loops = |operation: Operation| matches!(operation, Operation::Loop(_));
     assert!(report.results.iter().all(|row| !loops(row.operation)));
     let refused = report.refusals.iter().filter(|r| loops(r.operation));
@@ -218,19 +221,19 @@ fn a_scheme_refuses_a_mesh_with_the_same_reason_on_all_backends() {
 }
 
 #[test]
-fn one_backend_is_entered_twice_to_show_the_noise() {
+fn one_backend_is_measured_twice_to_show_the_noise() {
     let mesh = shapes::triangle_grid(20, 20).expect("a grid");
     let settings = Settings {
         operations: vec![Operation::Circulate, Operation::EdgeLength],
         budget: Duration::from_millis(300),
         ..Settings::default()
     };
-    let report = quick(&Specimen::new("grid", mesh), &settings).expect("all backends hold it");
+    let report = quick(&StudyMesh::new("grid", mesh), &settings).expect("all backends hold it");
     assert_eq!(report.results.len(), 2 * report.backends.len());
     let control = report.control.expect("there was time for rounds");
     assert_eq!(control.backend, "face-vertex", "the first without scans");
     assert_eq!(control.operations.len(), 2);
     assert!(control.typical >= 1.0 && control.worst >= control.typical);
-    let shown = |words: &String| words.starts_with("Noise: face-vertex was entered twice");
-    assert!(report.words.iter().any(shown), "{:?}", report.words);
+    let shown = |sentence: &String| sentence.starts_with("Noise: face-vertex was measured twice");
+    assert!(report.sentences.iter().any(shown), "{:?}", report.sentences);
 }

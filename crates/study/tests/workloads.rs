@@ -9,7 +9,7 @@ use sixfold::{
     shapes, support,
 };
 use sixfold_conformance::edit::{Action, Model, Rules};
-use sixfold_study::{Editing, MachineClock, Operation, Solo};
+use sixfold_study::{BackendRunner, EditPass, MachineClock, Operation};
 
 /// The expected results of the operations, computed by brute force.
 struct Oracle<'a> {
@@ -20,7 +20,7 @@ struct Oracle<'a> {
 }
 
 impl<'a> Oracle<'a> {
-    fn of(mesh: &'a PolygonMesh) -> Self {
+    fn new(mesh: &'a PolygonMesh) -> Self {
         let corners = |face: &[sixfold::VertexId]| face.iter().map(|v| v.index()).collect();
         let faces: Vec<Vec<usize>> = mesh.faces().iter().map(|(_, f)| corners(f)).collect();
         let mut edges: BTreeMap<_, BTreeSet<usize>> = BTreeMap::new();
@@ -48,7 +48,7 @@ impl<'a> Oracle<'a> {
     }
 
     /// Returns the adjacent faces of each face.
-    fn beside(&self) -> Vec<BTreeSet<usize>> {
+    fn adjacent_faces(&self) -> Vec<BTreeSet<usize>> {
         let mut sets = vec![BTreeSet::new(); self.faces.len()];
         for faces in self.edges.values() {
             for &f in faces {
@@ -68,7 +68,7 @@ impl<'a> Oracle<'a> {
             Relation::VertexFaces | Relation::FaceVertices | Relation::FaceEdges => corners,
             Relation::EdgeEdges => valences.map(|n| n * n.saturating_sub(1)).sum(),
             Relation::EdgeFaces => self.edges.values().map(BTreeSet::len).sum(),
-            Relation::FaceFaces => self.beside().iter().map(BTreeSet::len).sum(),
+            Relation::FaceFaces => self.adjacent_faces().iter().map(BTreeSet::len).sum(),
         }
     }
 
@@ -103,7 +103,7 @@ impl<'a> Oracle<'a> {
     }
 
     fn depths(&self) -> usize {
-        let beside = self.beside();
+        let adjacent = self.adjacent_faces();
         let mut depths = vec![None; self.faces.len()];
         while let Some(seed) = depths.iter().position(Option::is_none) {
             depths[seed] = Some(0);
@@ -111,7 +111,7 @@ impl<'a> Oracle<'a> {
             while !ring.is_empty() {
                 depth += 1;
                 let next: BTreeSet<usize> =
-                    ring.iter().flat_map(|&f| &beside[f]).copied().collect();
+                    ring.iter().flat_map(|&f| &adjacent[f]).copied().collect();
                 ring = next.into_iter().filter(|&f| depths[f].is_none()).collect();
                 ring.iter().for_each(|&f| depths[f] = Some(depth));
             }
@@ -151,16 +151,16 @@ impl<'a> Oracle<'a> {
             let rim = ring.iter().copied();
             let rim = rim.filter(|&w| self.edges[&[v.min(w), v.max(w)]].len() == 1);
             let rim: Vec<usize> = rim.collect();
-            let beside = self.mean(ring.iter().copied());
+            let ring_mean = self.mean(ring.iter().copied());
             points.push(match (rim.len(), quads) {
                 (0, true) => {
                     let faces = mean_of(around.iter().map(centre));
-                    mix([(1.0 - 2.0 / n, at), (1.0 / n, beside), (1.0 / n, faces)])
+                    mix([(1.0 - 2.0 / n, at), (1.0 / n, ring_mean), (1.0 / n, faces)])
                 }
                 (0, false) => {
                     let turn = 3.0 / 8.0 + (std::f64::consts::TAU / n).cos() / 4.0;
                     let weight = 5.0 / 8.0 - turn * turn;
-                    mix([(1.0 - weight, at), (weight, beside)])
+                    mix([(1.0 - weight, at), (weight, ring_mean)])
                 }
                 _ if around.len() == 1 => at,
                 _ => mix([(0.75, at), (0.25, self.mean(rim.into_iter()))]),
@@ -199,18 +199,18 @@ impl<'a> Oracle<'a> {
             Operation::AllQueries => all(),
             Operation::CatmullClark(_) => field(self.refined(Scheme::CatmullClark).into_iter()),
             Operation::Loop(_) => field(self.refined(Scheme::Loop).into_iter()),
-            Operation::Editing(Editing::SplitCollapse) => self.edges.keys().map(length).sum(),
-            Operation::Editing(Editing::FlipAll) => self.flipped(),
-            Operation::Editing(Editing::DecimateHalf) => self.decimated(0.5),
-            Operation::Editing(Editing::DecimateTenth) => self.decimated(0.1),
+            Operation::EditPass(EditPass::SplitCollapse) => self.edges.keys().map(length).sum(),
+            Operation::EditPass(EditPass::FlipAll) => self.flipped(),
+            Operation::EditPass(EditPass::DecimateHalf) => self.decimated(0.5),
+            Operation::EditPass(EditPass::DecimateTenth) => self.decimated(0.1),
         }
     }
 
     /// Returns the sum of the edge lengths after flipping every edge twice, by the model of
     /// `sixfold-conformance`.
     fn flipped(&self) -> f64 {
-        let mut model = Model::of(self.mesh);
-        let rules = Rules::of::<EditableHalfEdgeMesh>();
+        let mut model = Model::from_polygons(self.mesh);
+        let rules = Rules::new::<EditableHalfEdgeMesh>();
         let mut edges: Vec<[usize; 2]> = Vec::new();
         for face in &self.faces {
             for (i, &a) in face.iter().enumerate() {
@@ -232,7 +232,7 @@ impl<'a> Oracle<'a> {
                 }
             }
         }
-        Oracle::of(&model.to_polygons()).checksum(Operation::EdgeLength)
+        Oracle::new(&model.to_polygons()).checksum(Operation::EdgeLength)
     }
 
     /// Returns the sum of the edge lengths of the decimated mesh; the operator has its own tests.
@@ -243,14 +243,14 @@ impl<'a> Oracle<'a> {
             ..Decimation::default()
         };
         decimate(&mut mesh, &to).expect("triangles");
-        Oracle::of(&mesh.to_polygons()).checksum(Operation::EdgeLength)
+        Oracle::new(&mesh.to_polygons()).checksum(Operation::EdgeLength)
     }
 
     fn elements(&self, operation: Operation) -> usize {
-        if operation == Operation::Editing(Editing::FlipAll) {
+        if operation == Operation::EditPass(EditPass::FlipAll) {
             return 2 * self.edges.len();
         }
-        match operation.per() {
+        match operation.unit() {
             "vertex" => self.mesh.vertex_count(),
             "edge" => self.edges.len(),
             "face" => self.faces.len(),
@@ -310,16 +310,16 @@ fn patchwork() -> PolygonMesh {
 
 /// Returns whether the operation can run, by the table of schemes and structures and the degrees of
 /// the mesh.
-fn runs(operation: Operation, backend: &BackendInfo, mesh: &PolygonMesh) -> bool {
-    let Some(refining) = operation.refining() else {
-        return !operation.makes_a_mesh() || mesh.faces().uniform_degree() == Some(3);
+fn can_run(operation: Operation, backend: &BackendInfo, mesh: &PolygonMesh) -> bool {
+    let Some(job) = operation.subdivision_job() else {
+        return !operation.creates_mesh() || mesh.faces().uniform_degree() == Some(3);
     };
-    let scheme = refining.subdivision.scheme;
+    let scheme = job.subdivision.scheme;
     let mut rows = support(scheme).into_iter();
     let row = rows.find(|row| row.backend == backend.name);
     let row = row.expect("a row for each backend of the roster");
-    let takes = scheme != Scheme::Loop || mesh.faces().uniform_degree() == Some(3);
-    takes && row.holds_result && row.methods.contains(&refining.way.method())
+    let accepts_degrees = scheme != Scheme::Loop || mesh.faces().uniform_degree() == Some(3);
+    accepts_degrees && row.holds_result && row.methods.contains(&job.way.method())
 }
 
 #[test]
@@ -331,15 +331,15 @@ fn operations_agree_with_the_face_list() {
         ("grid", shapes::triangle_grid(6, 4).expect("a grid")),
     ];
     for (name, mesh) in &meshes {
-        let oracle = Oracle::of(mesh);
+        let oracle = Oracle::new(mesh);
         for backend in roster() {
-            if backend.verdict(mesh).is_err() {
+            if backend.check(mesh).is_err() {
                 continue;
             }
-            let mut solo = Solo::new(backend.name, mesh).expect("it can hold the mesh");
+            let mut runner = BackendRunner::new(backend.name, mesh).expect("it can hold the mesh");
             for operation in Operation::ALL {
-                let run = solo.run(operation, &MachineClock::start());
-                if !runs(operation, &backend, mesh) {
+                let run = runner.run(operation, &MachineClock::start());
+                if !can_run(operation, &backend, mesh) {
                     assert!(run.checksum.is_nan() && run.elements == 0, "{run:?}");
                     continue;
                 }

@@ -19,8 +19,8 @@ pub(crate) struct Bilinear;
 impl Mask for Bilinear {
     const SPLIT: Split = Split::Quads;
     const APPROXIMATES: bool = false;
-    const EDGES_SEE_FACES: bool = false;
-    const VERTICES_SEE_FACES: bool = false;
+    const EDGES_USE_FACES: bool = false;
+    const VERTICES_USE_FACES: bool = false;
 
     #[inline(always)]
     fn face(self, corners: Point, degree: usize) -> Point {

@@ -32,49 +32,49 @@
 //! ```
 //!
 //! - An extraordinary boundary vertex, with k ≠ 3 triangles, has the masks of Zorin & Schröder
-//!   (2000). Their leading eigenvectors are those of a half-plane ([`rim_weights`]).
+//!   (2000). Their leading eigenvectors are those of a half-plane ([`boundary_weights`]).
 //! - The paper has no mask for an inner vertex of valence 2; its edges get their midpoints.
 
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 
-use sixfold_core::{Creases, MeshQuery, Point, Refine, Split, in_given_parts};
+use sixfold_core::{Creases, MeshQuery, Point, Refine, Split, map_chunks};
 
+use crate::connectivity::vertex_numbers;
 use crate::error::SubdivisionError;
 use crate::manifold;
 use crate::mask::midpoint;
-use crate::native::{keep, place};
+use crate::native::{compute_rows, copy_rows};
 use crate::scheme::Scheme;
-use crate::sheet::vertex_numbers;
-use crate::step::{Outline, Step};
+use crate::step::{Step, StepBuilder};
 
 /// Number of valences with precomputed weights, from 0; few vertices have a higher valence.
-const LOOKED_UP: usize = 16;
+const PRECOMPUTED: usize = 16;
 
 /// The weights around extraordinary vertices.
 struct Butterfly {
-    rings: [Vec<f32>; LOOKED_UP],
+    rings: [Vec<f32>; PRECOMPUTED],
 }
 
 /// Runs one step with queries for each new point.
 pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
     manifold::check(mesh, Scheme::Butterfly)?;
     let scheme = Butterfly::new();
-    let mut outline = Outline::of(Split::Triangles, mesh, 3 * mesh.face_count());
+    let mut builder = StepBuilder::new(Split::Triangles, mesh, 3 * mesh.face_count());
     let numbers = vertex_numbers(mesh);
     let mut regular = mesh.vertex_map(false);
     mesh.vertices().for_each(|v| {
         regular[v] = is_regular(mesh, v);
-        outline.points.push(mesh.position(v));
+        builder.points.push(mesh.position(v));
     });
     let mut edge_points = mesh.edge_map(0_u32);
     mesh.edges().for_each(|e| {
-        edge_points[e] = outline.points.len() as u32;
+        edge_points[e] = builder.points.len() as u32;
         let point = scheme.edge(mesh, e, |v| regular[v]);
-        outline.points.push(point);
+        builder.points.push(point);
     });
-    outline.split_faces(mesh, |v| numbers[v], |e| edge_points[e])?;
-    outline.finish(Creases::default())
+    builder.split_faces(mesh, |v| numbers[v], |e| edge_points[e])?;
+    builder.finish(Creases::default())
 }
 
 /// Runs one step in the tables of the structure.
@@ -83,18 +83,18 @@ pub(crate) fn native<M: Refine>(
     numbers: &M::EdgeNumbers,
     child: &mut M,
 ) -> Result<Creases, SubdivisionError> {
-    if !manifold::is_sure::<M>() {
+    if !manifold::is_always_manifold::<M>() {
         manifold::check(mesh, Scheme::Butterfly)?;
     }
     mesh.split_into(Split::Triangles, numbers, child)?;
     let scheme = Butterfly::new();
     let mut regular = vec![false; mesh.vertex_count()];
-    place(&mut regular, |v| is_regular(mesh, v));
+    compute_rows(&mut regular, |v| is_regular(mesh, v));
     let (vertices, points) = child.positions_mut().split_at_mut(mesh.vertex_count());
-    keep(vertices, mesh.position_rows());
-    in_given_parts(points, &mesh.edge_parts(numbers), |part, _, points| {
+    copy_rows(vertices, mesh.position_rows());
+    map_chunks(points, &mesh.edge_chunks(numbers), |chunk, _, points| {
         let mut points = points.iter_mut();
-        mesh.edges_of_part(numbers, part).for_each(|e| {
+        mesh.edges_of_chunk(numbers, chunk).for_each(|e| {
             if let Some(point) = points.next() {
                 *point = scheme.edge(mesh, e, |v| regular[v.index()]);
             }
@@ -153,14 +153,14 @@ impl Butterfly {
         let at = mesh.position(v);
         let is_open = mesh.vertex_faces(v).count() < ring.len();
         let (weights, start) = match (is_open, self.rings.get(ring.len())) {
-            (true, _) => (Cow::Owned(rim_weights(ring.len() - 1, start)), 0),
+            (true, _) => (Cow::Owned(boundary_weights(ring.len() - 1, start)), 0),
             (false, Some(weights)) => (Cow::Borrowed(weights), start),
             (false, None) => (Cow::Owned(ring_weights(ring.len())), start),
         };
-        let turned = ring[start..].iter().chain(&ring[..start]);
+        let rotated = ring[start..].iter().chain(&ring[..start]);
         // Adding differences gives `v` the remaining weight, and equal positions stay exactly
         // equal.
-        turned.zip(&*weights).fold(at, |point, (&w, &weight)| {
+        rotated.zip(&*weights).fold(at, |point, (&w, &weight)| {
             point + (mesh.position(w) - at) * weight
         })
     }
@@ -233,7 +233,7 @@ fn ring_weights(valence: usize) -> Vec<f32> {
 ///   first, last  ±(cos iθ)/4 ∓ sin 2θ sin 2iθ / (4k (cos θ − cos 2θ))
 ///   j between    (sin iθ sin jθ + (sin 2iθ sin 2jθ)/2)/k
 /// ```
-fn rim_weights(triangles: usize, i: usize) -> Vec<f32> {
+fn boundary_weights(triangles: usize, i: usize) -> Vec<f32> {
     let (k, i) = (triangles as f64, i as f64);
     let theta = PI / k;
     let end = 0.25 * (i * theta).cos()
@@ -256,19 +256,19 @@ mod tests {
     use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
-    use crate::alike::{
-        all_ways, assert_affine, assert_alike, assert_near, assert_same_on_threads, built, native,
-        triangle_mesh,
+    use crate::test_support::{
+        all_methods, assert_affine, assert_equivalent, assert_near, assert_same_on_threads, build,
+        native, triangle_mesh,
     };
 
     fn step(polygons: &PolygonMesh) -> PolygonMesh {
-        let step = gather(&built::<IndexedFaceSet>(polygons));
+        let step = gather(&build::<IndexedFaceSet>(polygons));
         step.expect("a manifold").polygons
     }
 
     /// Returns the ends and the point of every edge in a step of `polygons`.
     fn edge_points(polygons: &PolygonMesh) -> Vec<([Point; 2], Point)> {
-        let mesh: IndexedFaceSet = built(polygons);
+        let mesh: IndexedFaceSet = build(polygons);
         let ends = mesh.edges().map(|e| mesh.edge_vertices(e));
         let ends = ends.map(|ends| ends.map(|v| mesh.position(v)));
         let step = step(polygons);
@@ -290,7 +290,7 @@ mod tests {
         for triangles in 2..=12 {
             let angle = |i: usize| PI * i as f64 / triangles as f64;
             for i in 1..triangles {
-                let weights = rim_weights(triangles, i);
+                let weights = boundary_weights(triangles, i);
                 let at = weights.iter().enumerate().map(|(j, &w)| {
                     let (sin, cos) = angle(j).sin_cos();
                     Point::new(cos as f32, sin as f32, 0.0) * w
@@ -381,7 +381,7 @@ mod tests {
             (c[1] + c[4]) * 0.5 + (c[3] + c[2]) * 0.125 - (c[0] + c[5] + ghosts) * 0.0625;
         assert_near(between(1, 4), expected);
         // 3 has two triangles: the crease mask with k = 2, i = 1 on the ring 0, 1, 4.
-        let weights = rim_weights(2, 1);
+        let weights = boundary_weights(2, 1);
         let expected = weights.iter().zip([c[0], c[1], c[4]]);
         let expected = expected.fold(c[3], |p, (&w, at)| p + (at - c[3]) * w);
         assert_near(between(3, 1), expected);
@@ -390,9 +390,9 @@ mod tests {
     #[test]
     fn non_manifold_meshes_return_errors() {
         let corners = [0.0, 1.0, 2.0, 3.0, 4.0].map(Point::splat);
-        let refused = |faces: &[[u32; 3]]| {
+        let error_of = |faces: &[[u32; 3]]| {
             let polygons = PolygonMesh::new(corners, faces).expect("valid");
-            let mesh: IndexedFaceSet = built(&polygons);
+            let mesh: IndexedFaceSet = build(&polygons);
             let error = gather(&mesh).expect_err("no rule");
             let native = native::<FaceVertexMesh>(Scheme::Butterfly, &polygons, 0);
             assert_eq!(native, Err(error.clone()));
@@ -404,11 +404,11 @@ mod tests {
             ends: [0, 1].map(VertexId::new),
             faces,
         };
-        assert_eq!(refused(&[[0, 1, 2], [1, 0, 3], [1, 0, 4]]), edge(3));
-        assert_eq!(refused(&[[0, 1, 2], [0, 1, 3]]), edge(2));
+        assert_eq!(error_of(&[[0, 1, 2], [1, 0, 3], [1, 0, 4]]), edge(3));
+        assert_eq!(error_of(&[[0, 1, 2], [0, 1, 3]]), edge(2));
         let vertex = VertexId::new(0);
         let several = SubdivisionError::NonManifoldVertex { scheme, vertex };
-        assert_eq!(refused(&[[0, 1, 2], [0, 3, 4]]), several);
+        assert_eq!(error_of(&[[0, 1, 2], [0, 3, 4]]), several);
     }
 
     #[test]
@@ -419,11 +419,11 @@ mod tests {
     proptest! {
         #[test]
         fn all_methods_agree_and_old_vertices_stay(mesh in triangle_mesh()) {
-            let meshes = all_ways(Scheme::Butterfly, &mesh, 0).expect("a manifold");
+            let meshes = all_methods(Scheme::Butterfly, &mesh, 0).expect("a manifold");
             let known = mesh.vertex_count();
             for other in &meshes {
                 prop_assert_eq!(&other.positions()[..known], mesh.positions());
-                assert_alike(&meshes[0], other, known);
+                assert_equivalent(&meshes[0], other, known);
             }
         }
 

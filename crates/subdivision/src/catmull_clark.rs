@@ -26,8 +26,8 @@ pub(crate) struct CatmullClark;
 impl Mask for CatmullClark {
     const SPLIT: Split = Split::Quads;
     const APPROXIMATES: bool = true;
-    const EDGES_SEE_FACES: bool = true;
-    const VERTICES_SEE_FACES: bool = true;
+    const EDGES_USE_FACES: bool = true;
+    const VERTICES_USE_FACES: bool = true;
 
     #[inline(always)]
     fn face(self, corners: Point, degree: usize) -> Point {
@@ -54,7 +54,7 @@ mod tests {
     use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
-    use crate::alike::assert_near;
+    use crate::test_support::assert_near;
     use crate::{Boundary, Method, Scheme, Subdivision, subdivide, subdivide_native};
 
     /// Builds a cube from −1 to 1; the bits of `i` give the coordinates of corner `i`.

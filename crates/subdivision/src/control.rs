@@ -1,6 +1,8 @@
 //! Sharpness of the control mesh, and control faces that are not part of the result.
 
-use sixfold_core::{Creases, EdgeUse, Pair, PolygonMesh, Representation, SHARP_FOR_EVER, VertexId};
+use sixfold_core::{
+    Creases, EdgeUse, Pair, PolygonMesh, Representation, SHARPNESS_INFINITE, VertexId,
+};
 
 use crate::error::SubdivisionError;
 use crate::options::Boundary;
@@ -14,14 +16,14 @@ impl Subdivision {
     /// - With [`Boundary::EdgeAndCorner`], vertices with exactly one face.
     /// - Edges with three or more faces, and edges whose two faces run along them in the same
     ///   direction. Boundary edges are not listed: every step finds them.
-    /// - Vertices at such edges, and vertices with several fans. Exception: a vertex inside the
-    ///   spine of a book moves along the spine, as on a crease. It has two such edges, no boundary
+    /// - Vertices at such edges, and vertices with several fans. Exception: a vertex inside a curve
+    ///   of such edges moves along the curve, as on a crease. It has two such edges, no boundary
     ///   edge, and more faces than edges.
     ///
     /// # Errors
     ///
     /// Returns [`SubdivisionError::NoCreases`] if the scheme has no rules for `creases`.
-    pub fn control<M: Representation>(
+    pub fn control_creases<M: Representation>(
         &self,
         mesh: &M,
         polygons: &PolygonMesh,
@@ -47,13 +49,15 @@ impl Subdivision {
     /// Returns `creases` with the elements that the rules make sharp in `polygons`.
     fn sharpened<M: Representation>(&self, polygons: &PolygonMesh, creases: &Creases) -> Creases {
         let (mut edges, mut corners) = (creases.edges().to_vec(), creases.corners().to_vec());
-        let for_ever = |v: VertexId| (v, f32::INFINITY);
-        let mut around = vec![Around::default(); polygons.vertex_count()];
+        let infinite = |v: VertexId| (v, f32::INFINITY);
+        let mut around = vec![VertexCounts::default(); polygons.vertex_count()];
         for v in polygons.faces().corners() {
             around[v.index()].faces += 1;
         }
-        let holds = M::CAPABILITIES;
-        if holds.non_manifold_vertices || holds.non_manifold_edges || holds.inconsistent_orientation
+        let capabilities = M::CAPABILITIES;
+        if capabilities.non_manifold_vertices
+            || capabilities.non_manifold_edges
+            || capabilities.inconsistent_orientation
         {
             let uses = polygons.edge_uses();
             for edge in &uses {
@@ -62,20 +66,20 @@ impl Subdivision {
                     edges.push((Pair::new(a, b), f32::INFINITY));
                 }
                 for v in edge.ends {
-                    around[v.index()].see(edge);
+                    around[v.index()].add(edge);
                 }
             }
-            let odd = |v: &VertexId| around[v.index()].odd_edges > 0;
+            let is_on_edge = |v: &VertexId| around[v.index()].non_manifold_edges > 0;
             let several = polygons.vertices_of_several_fans();
-            let non_manifold = polygons.vertices().filter(odd).chain(several);
-            let kept = non_manifold.filter(|v| !around[v.index()].is_inside_a_spine());
-            corners.extend(kept.map(for_ever));
+            let non_manifold = polygons.vertices().filter(is_on_edge).chain(several);
+            let kept = non_manifold.filter(|v| !around[v.index()].is_on_non_manifold_curve());
+            corners.extend(kept.map(infinite));
         }
         if self.boundary == Boundary::EdgeAndCorner {
             let alone = polygons.vertices().filter(|v| around[v.index()].faces == 1);
-            corners.extend(alone.map(for_ever));
+            corners.extend(alone.map(infinite));
         }
-        Creases::sorted(edges, corners)
+        Creases::from_entries(edges, corners)
     }
 
     /// Returns, by face of the control mesh, whether the boundary rule leaves it out of the result.
@@ -92,7 +96,7 @@ impl Subdivision {
             .filter(|edge| edge.is_boundary())
             .map(|edge| edge.ends)
         {
-            if creases.edge(a, b) < SHARP_FOR_EVER {
+            if creases.edge(a, b) < SHARPNESS_INFINITE {
                 open[a.index()] = true;
                 open[b.index()] = true;
             }
@@ -110,24 +114,24 @@ impl Subdivision {
 
 /// The number of faces and edges at a vertex.
 #[derive(Clone, Copy, Debug, Default)]
-struct Around {
+struct VertexCounts {
     faces: usize,
     edges: usize,
     boundary_edges: usize,
     /// Edges with three or more faces, or with two that run in the same direction.
-    odd_edges: usize,
+    non_manifold_edges: usize,
 }
 
-impl Around {
-    fn see(&mut self, edge: &EdgeUse) {
+impl VertexCounts {
+    fn add(&mut self, edge: &EdgeUse) {
         self.edges += 1;
         self.boundary_edges += usize::from(edge.is_boundary());
-        self.odd_edges += usize::from(!edge.is_manifold());
+        self.non_manifold_edges += usize::from(!edge.is_manifold());
     }
 
     /// Returns whether the sheets at this vertex meet along one curve that passes through it.
-    fn is_inside_a_spine(&self) -> bool {
-        self.odd_edges == 2 && self.boundary_edges == 0 && self.faces > self.edges
+    fn is_on_non_manifold_curve(&self) -> bool {
+        self.non_manifold_edges == 2 && self.boundary_edges == 0 && self.faces > self.edges
     }
 }
 
@@ -146,7 +150,7 @@ pub fn renumbered<M: Representation>(
     for (number, v) in (0..).zip(mesh.vertices()) {
         numbers[v] = VertexId::new(number);
     }
-    let number = |v: VertexId| numbers[M::vertex_name(polygons, v)];
+    let number = |v: VertexId| numbers[M::vertex_handle(polygons, v)];
     let mut edges: Vec<_> = creases.edges().to_vec();
     for (ends, _) in &mut edges {
         let [a, b] = ends.ends().map(number);
@@ -156,10 +160,10 @@ pub fn renumbered<M: Representation>(
     for (v, _) in &mut corners {
         *v = number(*v);
     }
-    // Of several entries for one element, `sorted` keeps the last.
+    // Of several entries for one element, `from_entries` keeps the last.
     edges.sort_by(|a, b| a.1.total_cmp(&b.1));
     corners.sort_by(|a, b| a.1.total_cmp(&b.1));
-    Creases::sorted(edges, corners)
+    Creases::from_entries(edges, corners)
 }
 
 #[cfg(test)]
@@ -179,7 +183,7 @@ mod tests {
     ///   │  0  │  1  │  2  │
     ///   0 ─── 1 ─── 2 ─── 3
     /// ```
-    fn nine() -> PolygonMesh {
+    fn nine_quads() -> PolygonMesh {
         let at = |i: u32| Point::new((i % 4) as f32, (i / 4) as f32, 0.0);
         let quad = |i: u32| [i, i + 1, i + 5, i + 4];
         let points: Vec<Point> = (0..16).map(at).collect();
@@ -187,40 +191,43 @@ mod tests {
         PolygonMesh::new(points, lower.map(quad)).expect("nine quads")
     }
 
-    /// Returns the faces that stay with boundary `none`, and the number of faces after a step.
-    fn staying(sharp: impl Fn([u32; 2]) -> f32, rim_corners: f32) -> (Vec<usize>, usize) {
-        let nine = nine();
-        let uses = nine.edge_uses();
-        let rim = uses.iter().filter(|edge| edge.is_boundary());
-        let rim: Vec<[u32; 2]> = rim
+    /// Returns the faces that are kept with boundary `none`, and the number of faces after a step.
+    fn kept_faces(sharp: impl Fn([u32; 2]) -> f32, corner_sharpness: f32) -> (Vec<usize>, usize) {
+        let mesh = nine_quads();
+        let uses = mesh.edge_uses();
+        let boundary = uses.iter().filter(|edge| edge.is_boundary());
+        let boundary: Vec<[u32; 2]> = boundary
             .map(|edge| edge.ends.map(|v| v.index() as u32))
             .collect();
-        let corners: Vec<_> = rim.iter().map(|&[a, _]| (a, rim_corners)).collect();
-        let edges = rim.iter().map(|&ends| (ends, sharp(ends)));
-        let creases = Creases::new(&nine, edges, corners).expect("edges of the rim");
+        let corners: Vec<_> = boundary
+            .iter()
+            .map(|&[a, _]| (a, corner_sharpness))
+            .collect();
+        let edges = boundary.iter().map(|&ends| (ends, sharp(ends)));
+        let creases = Creases::new(&mesh, edges, corners).expect("edges of the boundary");
         let scheme = Subdivision {
             boundary: Boundary::None,
             ..Subdivision::new(Scheme::CatmullClark)
         };
-        let out = scheme.left_out(&nine, &creases).expect("boundary none");
-        let faces = nine.faces().iter().map(|(f, _): (FaceId, _)| f.index());
-        let stay: Vec<usize> = faces.filter(|&f| !out[f]).collect();
+        let out = scheme.left_out(&mesh, &creases).expect("boundary none");
+        let faces = mesh.faces().iter().map(|(f, _): (FaceId, _)| f.index());
+        let kept: Vec<usize> = faces.filter(|&f| !out[f]).collect();
         let step =
-            subdivide::<IndexedFaceSet>(&scheme, Method::Gather, &nine, &creases, 1, |_, _| ());
-        (stay, step.expect("quads").polygons.face_count())
+            subdivide::<IndexedFaceSet>(&scheme, Method::Gather, &mesh, &creases, 1, |_, _| ());
+        (kept, step.expect("quads").polygons.face_count())
     }
 
     #[test]
     fn faces_at_an_open_boundary_are_left_out() {
-        assert_eq!(staying(|_| 0.0, 0.0), (vec![4], 4));
+        assert_eq!(kept_faces(|_| 0.0, 0.0), (vec![4], 4));
         // Neither finite sharpness nor sharp corners close a boundary.
-        assert_eq!(staying(|_| 9.99, f32::INFINITY), (vec![4], 4));
+        assert_eq!(kept_faces(|_| 9.99, f32::INFINITY), (vec![4], 4));
         // All boundary edges are infinitely sharp.
         let all: Vec<usize> = (0..9).collect();
-        assert_eq!(staying(|_| 10.0, 0.0), (all, 36));
+        assert_eq!(kept_faces(|_| 10.0, 0.0), (all, 36));
         // Only the left side is sharp: 4 and 8 have two sharp boundary edges, 0 and 12 only one.
         let left = |[a, b]: [u32; 2]| if a % 4 == 0 && b % 4 == 0 { 10.0 } else { 0.0 };
-        assert_eq!(staying(left, 0.0), (vec![3, 4], 8));
+        assert_eq!(kept_faces(left, 0.0), (vec![3, 4], 8));
     }
 
     #[test]
@@ -230,7 +237,7 @@ mod tests {
                 boundary,
                 ..Subdivision::new(Scheme::CatmullClark)
             };
-            assert_eq!(scheme.left_out(&nine(), &Creases::default()), None);
+            assert_eq!(scheme.left_out(&nine_quads(), &Creases::default()), None);
         }
     }
 
@@ -244,7 +251,7 @@ mod tests {
             boundary,
             ..Subdivision::new(Scheme::CatmullClark)
         };
-        let creases = scheme.control(&mesh, &polygons, &Creases::default());
+        let creases = scheme.control_creases(&mesh, &polygons, &Creases::default());
         let creases = creases.expect("creases");
         let edges = creases.edges().iter();
         let edges = edges.map(|(ends, _)| ends.ends().map(|v| v.index()));

@@ -16,7 +16,7 @@
 //! position is w · (position of the current kind) + (1 − w) · (position of the next kind). Here w
 //! is the mean of the sharpnesses that reach zero.
 
-use sixfold_core::{Creases, Pair, Point, SHARP_FOR_EVER, VertexId};
+use sixfold_core::{Creases, Pair, Point, SHARPNESS_INFINITE, VertexId};
 
 use crate::mask::midpoint;
 use crate::options::Creasing;
@@ -30,9 +30,9 @@ pub(crate) struct SharpEdge {
     pub(crate) ends: [u32; 2],
     /// Above 0.
     pub(crate) sharpness: f32,
-    /// Whether it is sharp by its number of faces, as a boundary edge or an edge with three faces.
-    /// Its halves will be so too, and need no entry.
-    pub(crate) by_nature: bool,
+    /// Whether it is sharp because of its number of faces, as a boundary edge or an edge with three
+    /// faces. Its halves have the same number of faces, and need no entry.
+    pub(crate) by_topology: bool,
 }
 
 /// The sharp elements of one level.
@@ -65,7 +65,7 @@ pub(crate) enum Rule {
 }
 
 impl Rule {
-    pub(crate) fn of(own: f32, sharp_edges: usize) -> Self {
+    pub(crate) fn new(own: f32, sharp_edges: usize) -> Self {
         match sharp_edges {
             _ if own > 0.0 => Self::Corner,
             // A dart moves like a smooth vertex.
@@ -77,8 +77,8 @@ impl Rule {
 }
 
 /// Returns the sharpness one level later, without the influence of other edges.
-fn worn(sharpness: f32) -> f32 {
-    if sharpness >= SHARP_FOR_EVER {
+fn next_sharpness(sharpness: f32) -> f32 {
+    if sharpness >= SHARPNESS_INFINITE {
         f32::INFINITY
     } else {
         (sharpness - 1.0).max(0.0)
@@ -86,7 +86,7 @@ fn worn(sharpness: f32) -> f32 {
 }
 
 pub(crate) fn is_semi_sharp(sharpness: f32) -> bool {
-    sharpness > 0.0 && sharpness < SHARP_FOR_EVER
+    sharpness > 0.0 && sharpness < SHARPNESS_INFINITE
 }
 
 impl SharpLevel {
@@ -115,7 +115,7 @@ impl SharpLevel {
         self.place_edges(&children, &old, points, first_edge);
         spokes.sort_unstable_by_key(|spoke| (spoke.at, spoke.edge));
         let corners = self.place_vertices(&spokes, &old, points);
-        Creases::sorted(self.halves(&children, first_edge), corners)
+        Creases::from_entries(self.halves(&children, first_edge), corners)
     }
 
     /// Returns the two spokes of every edge.
@@ -129,14 +129,14 @@ impl SharpLevel {
                     far,
                     sharpness: edge.sharpness,
                     edge: (number, end),
-                    child: worn(edge.sharpness),
+                    child: next_sharpness(edge.sharpness),
                 })
             })
             .collect();
         if creasing == Creasing::Chaikin {
             spokes.sort_unstable_by_key(|spoke| (spoke.at, spoke.edge));
             for around in spokes.chunk_by_mut(|a, b| a.at == b.at) {
-                even_out(around);
+                apply_chaikin(around);
             }
         }
         spokes
@@ -170,30 +170,31 @@ impl SharpLevel {
         points: &mut [Point],
     ) -> Vec<(VertexId, f32)> {
         let mut own = self.corners.iter().copied().peekable();
-        let alone = |(v, sharpness): (VertexId, f32), points: &mut [Point]| {
+        let place_isolated = |(v, sharpness): (VertexId, f32), points: &mut [Point]| {
             let v = v.index() as u32;
-            points[v as usize] = placed(v, sharpness, &[], old, points[v as usize]);
+            points[v as usize] = new_position(v, sharpness, &[], old, points[v as usize]);
         };
         for around in spokes.chunk_by(|a, b| a.at == b.at) {
             let v = around[0].at;
             while let Some(corner) = own.next_if(|(corner, _)| corner.index() < v as usize) {
-                alone(corner, points);
+                place_isolated(corner, points);
             }
             let corner = own.next_if(|(corner, _)| corner.index() == v as usize);
             let sharpness = corner.map_or(0.0, |(_, sharpness)| sharpness);
-            points[v as usize] = placed(v, sharpness, around, old, points[v as usize]);
+            points[v as usize] = new_position(v, sharpness, around, old, points[v as usize]);
         }
         for corner in own {
-            alone(corner, points);
+            place_isolated(corner, points);
         }
-        let next = self.corners.iter().map(|&(v, s)| (v, worn(s)));
+        let next = self.corners.iter().map(|&(v, s)| (v, next_sharpness(s)));
         next.collect()
     }
 
     /// Returns the halves of the edges, from each end to the edge point, with their sharpness.
     fn halves(&self, children: &[[f32; 2]], first_edge: usize) -> Vec<(Pair<VertexId>, f32)> {
-        let told = self.edges.iter().zip(children);
-        told.filter(|(edge, _)| !edge.by_nature)
+        let explicit = self.edges.iter().zip(children);
+        explicit
+            .filter(|(edge, _)| !edge.by_topology)
             .flat_map(|(edge, children)| {
                 // This number fits; otherwise the step has returned an error before.
                 let middle = VertexId::new((first_edge + edge.edge) as u32);
@@ -208,7 +209,7 @@ impl SharpLevel {
 }
 
 /// Applies Chaikin's rule to the sharpness of the halves around one vertex.
-fn even_out(around: &mut [Spoke]) {
+fn apply_chaikin(around: &mut [Spoke]) {
     let semi_sharp = |spoke: &&Spoke| is_semi_sharp(spoke.sharpness);
     let (count, sum) = around
         .iter()
@@ -229,10 +230,16 @@ fn even_out(around: &mut [Spoke]) {
 }
 
 /// Returns the new position of vertex `v` with the sharpness `own` and the sharp edges `around`.
-fn placed(v: u32, own: f32, around: &[Spoke], old: &impl Fn(u32) -> Point, smooth: Point) -> Point {
-    let staying = || around.iter().filter(|spoke| spoke.child > 0.0);
-    let now = Rule::of(own, around.len());
-    let then = Rule::of(worn(own), staying().count());
+fn new_position(
+    v: u32,
+    own: f32,
+    around: &[Spoke],
+    old: &impl Fn(u32) -> Point,
+    smooth: Point,
+) -> Point {
+    let still_sharp = || around.iter().filter(|spoke| spoke.child > 0.0);
+    let current = Rule::new(own, around.len());
+    let next = Rule::new(next_sharpness(own), still_sharp().count());
     let at = |rule: Rule, ends: &mut dyn Iterator<Item = &Spoke>| match rule {
         Rule::Corner => old(v),
         Rule::Crease => {
@@ -241,18 +248,18 @@ fn placed(v: u32, own: f32, around: &[Spoke], old: &impl Fn(u32) -> Point, smoot
         }
         Rule::Smooth => smooth,
     };
-    let parent = at(now, &mut around.iter());
-    if now == then || now == Rule::Smooth {
+    let parent = at(current, &mut around.iter());
+    if current == next || current == Rule::Smooth {
         return parent;
     }
-    at(then, &mut staying()).lerp(parent, transition(own, around))
+    at(next, &mut still_sharp()).lerp(parent, blend_weight(own, around))
 }
 
 /// Returns the weight of the current kind for a vertex that changes its kind: the mean of the
 /// sharpnesses that reach zero, at most 1.
-fn transition(own: f32, around: &[Spoke]) -> f32 {
+fn blend_weight(own: f32, around: &[Spoke]) -> f32 {
     let edges = around.iter().filter(|spoke| spoke.child == 0.0);
-    let vertex = (own > 0.0 && worn(own) == 0.0).then_some(own);
+    let vertex = (own > 0.0 && next_sharpness(own) == 0.0).then_some(own);
     let ending = edges.map(|spoke| spoke.sharpness).chain(vertex);
     let (count, sum) = ending.fold((0_u32, 0.0), |(count, sum), s| (count + 1, sum + s));
     (sum / count.max(1) as f32).min(1.0)
@@ -295,7 +302,7 @@ mod tests {
             boundary: Boundary::EdgeOnly,
             ..Subdivision::new(Scheme::CatmullClark)
         };
-        let creases = subdivision.control(&mesh, &hill, &creases);
+        let creases = subdivision.control_creases(&mesh, &hill, &creases);
         let step = subdivision.gather(&mesh, &creases.expect("creases"), 0);
         step.expect("quads")
     }
@@ -401,7 +408,7 @@ mod tests {
     /// At vertex 4, 3/4 of the own sharpness plus 1/4 of the mean of the others, minus 1. At the
     /// far end, which has no others, only minus 1.
     #[test]
-    fn chaikin_evens_out_sharpness() {
+    fn chaikin_averages_sharpness() {
         let chaikin = |spokes: &[f32], expected: &[[f32; 2]]| {
             assert_halves(Creasing::Chaikin, spokes, expected);
         };

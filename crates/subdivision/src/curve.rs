@@ -57,9 +57,13 @@ pub enum Ends {
 /// # Ok::<(), sixfold_subdivision::CurveError>(())
 /// ```
 pub fn cubic_b_spline(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<Point>, CurveError> {
-    repeated(points, levels, cubic_loss(ends), least(ends), |points| {
-        cubic_step(points, ends)
-    })
+    run_steps(
+        points,
+        levels,
+        cubic_loss(ends),
+        min_points(ends),
+        |points| cubic_step(points, ends),
+    )
 }
 
 /// Returns the points of a polygon after its corners are cut `levels` times. They converge to the
@@ -77,7 +81,7 @@ pub fn chaikin(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<Point>, 
         Ends::Kept => (0, 2),
         Ends::Dropped => (2, 3),
     };
-    repeated(points, levels, loss, least, |points| {
+    run_steps(points, levels, loss, least, |points| {
         chaikin_step(points, ends)
     })
 }
@@ -89,7 +93,7 @@ pub fn chaikin(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<Point>, 
 /// periodic if the polygon is closed. Returns `None` outside, and for too few points. O(1).
 pub fn cubic_b_spline_at(points: &[Point], ends: Ends, t: f64) -> Option<Point> {
     let n = points.len();
-    if n < least(ends) {
+    if n < min_points(ends) {
         return None;
     }
     let (first, last) = cubic_domain(n, ends);
@@ -140,7 +144,7 @@ fn control(points: &[Point], ends: Ends, number: usize) -> Point {
 }
 
 /// Returns the smallest number of points of a cubic.
-pub(crate) fn least(ends: Ends) -> usize {
+pub(crate) fn min_points(ends: Ends) -> usize {
     match ends {
         Ends::Closed => 3,
         Ends::Kept => 2,
@@ -203,7 +207,7 @@ fn chaikin_step(points: &[Point], ends: Ends) -> Vec<Point> {
 }
 
 /// Runs `levels` steps; each makes 2n − `loss` points from n.
-fn repeated(
+fn run_steps(
     points: &[Point],
     levels: u32,
     loss: usize,
@@ -282,7 +286,7 @@ mod tests {
     #[test]
     fn each_invalid_input_returns_its_error() {
         for ends in ALL {
-            let few = least(ends) - 1;
+            let few = min_points(ends) - 1;
             let error = cubic_b_spline(&vec![Point::ZERO; few], ends, 1).unwrap_err();
             let expected = CurveError::TooFewPoints {
                 given: few,

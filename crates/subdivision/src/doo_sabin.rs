@@ -31,13 +31,13 @@ use std::f64::consts::TAU;
 
 use sixfold_core::{Creases, FaceList, MeshQuery, Point, PolygonMesh, VertexId};
 
+use crate::connectivity::{Connectivity, non_manifold_vertex, vertex_numbers};
 use crate::error::SubdivisionError;
 use crate::scheme::Scheme;
-use crate::sheet::{Sheet, non_manifold_vertex, vertex_numbers};
 use crate::step::Step;
 
-/// Number of degrees with precomputed turns, from 0; few faces have more corners.
-const KEPT: usize = 16;
+/// Number of degrees with precomputed roots of unity, from 0; few faces have more corners.
+const PRECOMPUTED: usize = 16;
 
 /// The weights of Doo & Sabin (1978).
 ///
@@ -45,55 +45,53 @@ const KEPT: usize = 16;
 /// vᵢ' = vᵢ/4 + 3/4 · mean + (cos(2πi/n) Σ cos(2πj/n) vⱼ + sin(2πi/n) Σ sin(2πj/n) vⱼ)/(2n).
 struct DooSabin {
     /// By degree, cos and sin of 2πi/n.
-    turns: [Vec<[f32; 2]>; KEPT],
+    unit_roots: [Vec<[f32; 2]>; PRECOMPUTED],
 }
 
 /// Returns cos and sin of 2πi/n for every i.
-fn turns(degree: usize) -> Vec<[f32; 2]> {
+fn unit_roots(degree: usize) -> Vec<[f32; 2]> {
     let angles = (0..degree).map(|i| TAU * i as f64 / degree as f64);
-    let turns = angles.map(|angle| [angle.cos() as f32, angle.sin() as f32]);
-    turns.collect()
+    let unit_roots = angles.map(|angle| [angle.cos() as f32, angle.sin() as f32]);
+    unit_roots.collect()
 }
 
 impl DooSabin {
     fn new() -> Self {
         Self {
-            turns: std::array::from_fn(turns),
+            unit_roots: std::array::from_fn(unit_roots),
         }
     }
 
     /// Appends the points of the corners of a face; O(degree).
     fn face(&self, corners: &[Point], points: &mut Vec<Point>) {
-        let made;
-        let turns = match self.turns.get(corners.len()) {
-            Some(turns) => turns,
+        let computed;
+        let unit_roots = match self.unit_roots.get(corners.len()) {
+            Some(unit_roots) => unit_roots,
             None => {
-                made = turns(corners.len());
-                &made
+                computed = unit_roots(corners.len());
+                &computed
             }
         };
         let share = 1.0 / corners.len() as f32;
         let mut sums = [Point::ZERO; 3];
-        for (&at, &[cos, sin]) in corners.iter().zip(turns) {
+        for (&at, &[cos, sin]) in corners.iter().zip(unit_roots) {
             sums[0] += at;
             sums[1] += at * cos;
             sums[2] += at * sin;
         }
-        let [mean, along, aside] = sums.map(|sum| sum * share);
-        points.extend(
-            corners.iter().zip(turns).map(|(&at, &[cos, sin])| {
-                at * 0.25 + mean * 0.75 + (along * cos + aside * sin) * 0.5
-            }),
-        );
+        let [mean, cos_mean, sin_mean] = sums.map(|sum| sum * share);
+        points.extend(corners.iter().zip(unit_roots).map(|(&at, &[cos, sin])| {
+            at * 0.25 + mean * 0.75 + (cos_mean * cos + sin_mean * sin) * 0.5
+        }));
     }
 }
 
 /// Runs one step with queries for the faces of each edge, and for the ring and the faces of each
 /// vertex. O(sum of the squares of the degrees) plus the cost of the queries.
 pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
-    let sheet = Sheet::gathered(mesh, Scheme::DooSabin)?;
-    let mut draft = Draft::of(mesh, &sheet)?;
-    draft.edge_faces(&sheet)?;
+    let connectivity = Connectivity::gathered(mesh, Scheme::DooSabin)?;
+    let mut builder = Builder::new(mesh, &connectivity)?;
+    builder.add_edge_faces(&connectivity)?;
     let mut first_corners = mesh.face_map(0_u32);
     let mut first = 0;
     mesh.faces().for_each(|f| {
@@ -107,10 +105,10 @@ pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
         spokes.clear();
         mesh.vertex_faces(v).for_each(|f| {
             let mut corner = first_corners[f];
-            while sheet.corners[corner as usize] != numbers[v] {
-                corner = sheet.after(corner);
+            while connectivity.corners[corner as usize] != numbers[v] {
+                corner = connectivity.next(corner);
             }
-            let [_, next] = sheet.ends(corner);
+            let [_, next] = connectivity.ends(corner);
             spokes.push((next, corner));
         });
         spokes.sort_unstable();
@@ -125,61 +123,61 @@ pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
             around.extend(at.ok().map(|at| spokes[at].1));
         });
         if valence == around.len() {
-            draft.vertex_face(&around)?;
+            builder.add_vertex_face(&around)?;
         }
     }
-    draft.finish()
+    builder.finish()
 }
 
 /// Runs one step from one pass over the faces, whose corners are then linked around the vertices.
 pub(crate) fn scatter<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
-    let sheet = Sheet::scattered(mesh, Scheme::DooSabin)?;
-    let mut draft = Draft::of(mesh, &sheet)?;
-    draft.edge_faces(&sheet)?;
-    sheet.fans(mesh.vertex_count(), Scheme::DooSabin, |around| {
-        draft.vertex_face(around)
+    let connectivity = Connectivity::scattered(mesh, Scheme::DooSabin)?;
+    let mut builder = Builder::new(mesh, &connectivity)?;
+    builder.add_edge_faces(&connectivity)?;
+    connectivity.for_each_inner_fan(mesh.vertex_count(), Scheme::DooSabin, |around| {
+        builder.add_vertex_face(around)
     })?;
-    draft.finish()
+    builder.finish()
 }
 
-/// The faces and points made so far.
-struct Draft {
+/// The faces and points computed so far.
+struct Builder {
     points: Vec<Point>,
     faces: FaceList,
 }
 
-impl Draft {
+impl Builder {
     /// Adds the moved corners of the old faces, and the faces that they form.
-    fn of<M: MeshQuery>(mesh: &M, sheet: &Sheet) -> Result<Self, SubdivisionError> {
+    fn new<M: MeshQuery>(mesh: &M, connectivity: &Connectivity) -> Result<Self, SubdivisionError> {
         let scheme = DooSabin::new();
-        let mut draft = Self {
-            points: Vec::with_capacity(sheet.corners.len()),
-            faces: FaceList::with_capacity(4 * sheet.corners.len()),
+        let mut builder = Self {
+            points: Vec::with_capacity(connectivity.corners.len()),
+            faces: FaceList::with_capacity(4 * connectivity.corners.len()),
         };
         let mut corners = Vec::new();
         for f in mesh.faces() {
             corners.clear();
             mesh.face_vertices(f)
                 .for_each(|v| corners.push(mesh.position(v)));
-            let first = draft.points.len() as u32;
-            scheme.face(&corners, &mut draft.points);
-            draft.push(first..draft.points.len() as u32)?;
+            let first = builder.points.len() as u32;
+            scheme.face(&corners, &mut builder.points);
+            builder.push(first..builder.points.len() as u32)?;
         }
-        Ok(draft)
+        Ok(builder)
     }
 
     /// Adds a quad across each inner edge.
     ///
     /// ```text
-    ///      b             side c runs a → b, d is the side across it:
-    ///   lb │ rb          (la, ra, rb, lb) = (c, after(d), d, after(c))
+    ///      b             side c runs a → b, d is its twin:
+    ///   lb │ rb          (la, ra, rb, lb) = (c, next(d), d, next(c))
     ///   la │ ra
     ///      a
     /// ```
-    fn edge_faces(&mut self, sheet: &Sheet) -> Result<(), SubdivisionError> {
-        for edge in sheet.edges() {
+    fn add_edge_faces(&mut self, connectivity: &Connectivity) -> Result<(), SubdivisionError> {
+        for edge in connectivity.edges() {
             if let Some(other) = edge.second {
-                let [lb, ra] = [edge.first, other].map(|side| sheet.after(side));
+                let [lb, ra] = [edge.first, other].map(|side| connectivity.next(side));
                 self.push([edge.first, ra, other, lb])?;
             }
         }
@@ -187,7 +185,7 @@ impl Draft {
     }
 
     /// Adds the face of an inner vertex from the corners around it; two corners give no face.
-    fn vertex_face(&mut self, around: &[u32]) -> Result<(), SubdivisionError> {
+    fn add_vertex_face(&mut self, around: &[u32]) -> Result<(), SubdivisionError> {
         if around.len() > 2 {
             self.push(around.iter().copied())?;
         }
@@ -215,7 +213,7 @@ mod tests {
     use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
-    use crate::alike::{assert_affine, assert_alike, assert_near, built};
+    use crate::test_support::{assert_affine, assert_equivalent, assert_near, build};
     use crate::{Method, Subdivision, subdivide};
 
     fn step_of<M: Representation>(method: Method, polygons: &PolygonMesh) -> PolygonMesh {
@@ -234,10 +232,10 @@ mod tests {
             let mut points = Vec::new();
             DooSabin::new().face(&unit, &mut points);
             for (i, point) in points.iter().enumerate() {
-                let turn = TAU * (i as f64 - 1.0) / n;
+                let angle = TAU * (i as f64 - 1.0) / n;
                 let weight = match i {
                     1 => (n + 5.0) / (4.0 * n),
-                    _ => (3.0 + 2.0 * turn.cos()) / (4.0 * n),
+                    _ => (3.0 + 2.0 * angle.cos()) / (4.0 * n),
                 };
                 assert_near(*point, Point::X * weight as f32);
             }
@@ -265,7 +263,7 @@ mod tests {
                     .count()
             };
             assert_eq!([degrees(3), degrees(4)], [8, 18]);
-            let facts = Facts::of(&step);
+            let facts = Facts::from_polygons(&step);
             assert_eq!((facts.genus, facts.edges), (Some(0), 48));
             assert_eq!(facts.valence.map(|v| (v.min, v.max)), Some((4, 4)));
         }
@@ -276,7 +274,7 @@ mod tests {
         let corners = [Point::ZERO, Point::X, Point::Y];
         let pillow = PolygonMesh::new(corners, [[0, 1, 2], [0, 2, 1]]).expect("two triangles");
         for method in [Method::Gather, Method::Scatter] {
-            let facts = Facts::of(&step_of::<IndexedFaceSet>(method, &pillow));
+            let facts = Facts::from_polygons(&step_of::<IndexedFaceSet>(method, &pillow));
             assert_eq!([facts.vertices, facts.edges, facts.faces], [6, 9, 5]);
             assert_eq!(facts.genus, Some(0));
         }
@@ -289,7 +287,7 @@ mod tests {
             let step = step_of::<IndexedFaceSet>(method, &grid);
             // 6 faces, 7 inner edges, 2 inner vertices.
             assert_eq!([step.vertex_count(), step.face_count()], [24, 15]);
-            let facts = Facts::of(&step);
+            let facts = Facts::from_polygons(&step);
             assert_eq!((facts.boundary_loops, facts.boundary_edges), (Some(1), 16));
         }
     }
@@ -297,8 +295,8 @@ mod tests {
     #[test]
     fn non_manifold_meshes_return_errors() {
         let corners = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(Point::splat);
-        let refused = |faces: &[[u32; 3]]| {
-            let mesh: IndexedFaceSet = built(&PolygonMesh::new(corners, faces).expect("valid"));
+        let error_of = |faces: &[[u32; 3]]| {
+            let mesh: IndexedFaceSet = build(&PolygonMesh::new(corners, faces).expect("valid"));
             let errors = [gather(&mesh), scatter(&mesh)].map(|step| step.expect_err("no rule"));
             assert_eq!(errors[0], errors[1]);
             errors[0].clone()
@@ -309,11 +307,11 @@ mod tests {
             ends: [0, 1].map(VertexId::new),
             faces,
         };
-        assert_eq!(refused(&[[0, 1, 2], [1, 0, 3], [1, 0, 4]]), edge(3));
-        assert_eq!(refused(&[[0, 1, 2], [0, 1, 3]]), edge(2));
+        assert_eq!(error_of(&[[0, 1, 2], [1, 0, 3], [1, 0, 4]]), edge(3));
+        assert_eq!(error_of(&[[0, 1, 2], [0, 1, 3]]), edge(2));
         let vertex = VertexId::new(0);
         let several = SubdivisionError::NonManifoldVertex { scheme, vertex };
-        assert_eq!(refused(&[[0, 1, 2], [0, 3, 4]]), several);
+        assert_eq!(error_of(&[[0, 1, 2], [0, 3, 4]]), several);
         let cones = [
             [0, 1, 2],
             [0, 2, 3],
@@ -322,8 +320,11 @@ mod tests {
             [0, 5, 6],
             [0, 6, 4],
         ];
-        assert_eq!(refused(&cones), several);
-        assert_eq!(refused(&[cones[0], cones[1], cones[2], [0, 4, 5]]), several);
+        assert_eq!(error_of(&cones), several);
+        assert_eq!(
+            error_of(&[cones[0], cones[1], cones[2], [0, 4, 5]]),
+            several
+        );
     }
 
     #[test]
@@ -350,13 +351,13 @@ mod tests {
         fn all_methods_agree(mesh in sixfold_conformance::strategy::manifold_mesh()) {
             let list = step_of::<IndexedFaceSet>(Method::Gather, &mesh);
             let known = list.vertex_count();
-            assert_alike(&list, &step_of::<IndexedFaceSet>(Method::Scatter, &mesh), known);
+            assert_equivalent(&list, &step_of::<IndexedFaceSet>(Method::Scatter, &mesh), known);
             // A structure may start a face at another corner, so compare with its own order of
             // corners.
             let halves = HalfEdgeMesh::from_polygons(&mesh).expect("a manifold").to_polygons();
             let list = step_of::<IndexedFaceSet>(Method::Gather, &halves);
             for method in [Method::Gather, Method::Scatter] {
-                assert_alike(&list, &step_of::<HalfEdgeMesh>(method, &mesh), known);
+                assert_equivalent(&list, &step_of::<HalfEdgeMesh>(method, &mesh), known);
             }
         }
 

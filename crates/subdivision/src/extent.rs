@@ -17,12 +17,12 @@ pub struct Extent {
     /// Vertices without a face.
     pub isolated_vertices: usize,
     /// Inner vertices with exactly two faces.
-    pub pinched_vertices: usize,
+    pub valence_two_vertices: usize,
 }
 
 impl Extent {
     /// Returns the extent of `polygons`; O(corners) expected.
-    pub fn of(polygons: &PolygonMesh) -> Self {
+    pub fn from_polygons(polygons: &PolygonMesh) -> Self {
         let mut corners = vec![0_usize; polygons.vertex_count()];
         for v in polygons.faces().corners() {
             corners[v.index()] += 1;
@@ -36,13 +36,13 @@ impl Extent {
         }
         let vertices = || corners.iter().zip(&open);
         let boundary = vertices().filter(|&(_, &open)| open);
-        let pinched = vertices().filter(|&(&corners, &open)| corners == 2 && !open);
+        let valence_two = vertices().filter(|&(&corners, &open)| corners == 2 && !open);
         Self {
             counts: polygons.counts(uses.len()),
             boundary_edges,
             boundary_corners: boundary.map(|(&corners, _)| corners).sum(),
             isolated_vertices: vertices().filter(|&(&corners, _)| corners == 0).count(),
-            pinched_vertices: pinched.count(),
+            valence_two_vertices: valence_two.count(),
         }
     }
 
@@ -53,20 +53,21 @@ impl Extent {
             boundary_edges: boundary,
             boundary_corners,
             isolated_vertices: isolated,
-            pinched_vertices: pinched,
+            valence_two_vertices: valence_two,
         } = self;
         let inner_edges = counts.edges.saturating_sub(boundary);
         let all_vertices = counts.vertices.saturating_sub(boundary);
-        let inner_vertices = all_vertices.saturating_sub(isolated.saturating_add(pinched));
+        let inner_vertices = all_vertices.saturating_sub(isolated.saturating_add(valence_two));
         let added = |a: usize, b: usize| a.saturating_add(b);
         let corners = added(counts.corners, inner_edges.saturating_mul(4));
         let fans = counts.corners.saturating_sub(boundary_corners);
         Self {
             counts: Counts {
                 vertices: counts.corners,
-                edges: added(counts.corners, inner_edges.saturating_mul(2)).saturating_sub(pinched),
+                edges: added(counts.corners, inner_edges.saturating_mul(2))
+                    .saturating_sub(valence_two),
                 faces: added(added(counts.faces, inner_edges), inner_vertices),
-                corners: added(corners, fans.saturating_sub(pinched.saturating_mul(2))),
+                corners: added(corners, fans.saturating_sub(valence_two.saturating_mul(2))),
                 uniform: false,
             },
             boundary_edges: boundary_corners,
@@ -74,7 +75,7 @@ impl Extent {
                 .saturating_mul(3)
                 .saturating_sub(boundary.saturating_mul(2)),
             isolated_vertices: 0,
-            pinched_vertices: 0,
+            valence_two_vertices: 0,
         }
     }
 
@@ -91,7 +92,7 @@ impl Extent {
         };
         let more = boundary.saturating_mul(corners);
         Self {
-            counts: split.grown(&self.counts, boundary),
+            counts: split.refined_counts(&self.counts, boundary),
             boundary_edges: boundary.saturating_mul(edges),
             boundary_corners: self.boundary_corners.saturating_add(more),
             ..*self
@@ -106,7 +107,7 @@ impl Subdivision {
     /// or more faces at an edge, the vertices, edges and faces are still exact for Catmull–Clark,
     /// Loop, bilinear and midpoint. Sizes above `usize` saturate. A Doo–Sabin result is reported
     /// with mixed degrees.
-    pub fn grown(&self, extent: &Extent, level: u32) -> Extent {
+    pub fn refined_extent(&self, extent: &Extent, level: u32) -> Extent {
         match self.split(level) {
             Some(split) => extent.face_split(split),
             None => {
@@ -124,15 +125,15 @@ mod tests {
     use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
-    use crate::alike::triangle_mesh;
+    use crate::test_support::triangle_mesh;
     use crate::{Method, subdivide};
 
     /// Asserts that two steps of a scheme have the sizes computed in advance.
-    fn assert_foretold(scheme: Scheme, polygons: &PolygonMesh) {
+    fn assert_predicted(scheme: Scheme, polygons: &PolygonMesh) {
         let subdivision = Subdivision::new(scheme);
-        let mut extent = Extent::of(polygons);
+        let mut extent = Extent::from_polygons(polygons);
         for level in 0..2 {
-            extent = subdivision.grown(&extent, level);
+            extent = subdivision.refined_extent(&extent, level);
             let none = Creases::default();
             let levels = level + 1;
             let step = subdivide::<IndexedFaceSet>(
@@ -143,7 +144,7 @@ mod tests {
                 levels,
                 |_, _| (),
             );
-            let mut got = Extent::of(&step.expect("a manifold").polygons);
+            let mut got = Extent::from_polygons(&step.expect("a manifold").polygons);
             got.counts.uniform = extent.counts.uniform;
             assert_eq!(got, extent, "{scheme}, level {levels}");
         }
@@ -162,26 +163,26 @@ mod tests {
             boundary_edges: usize::MAX,
             boundary_corners: usize::MAX,
             isolated_vertices: usize::MAX,
-            pinched_vertices: usize::MAX,
+            valence_two_vertices: usize::MAX,
         };
         for scheme in Scheme::ALL {
-            let grown = Subdivision::new(scheme).grown(&huge, 1);
-            assert_eq!(grown.counts.corners, usize::MAX, "{scheme}");
+            let refined = Subdivision::new(scheme).refined_extent(&huge, 1);
+            assert_eq!(refined.counts.corners, usize::MAX, "{scheme}");
         }
     }
 
     proptest! {
         #[test]
-        fn polygons_grow_as_computed(mesh in sixfold_conformance::strategy::manifold_mesh()) {
+        fn polygons_have_the_predicted_extent(mesh in sixfold_conformance::strategy::manifold_mesh()) {
             for scheme in [Scheme::DooSabin, Scheme::CatmullClark] {
-                assert_foretold(scheme, &mesh);
+                assert_predicted(scheme, &mesh);
             }
         }
 
         #[test]
-        fn triangles_grow_as_computed(mesh in triangle_mesh()) {
+        fn triangles_have_the_predicted_extent(mesh in triangle_mesh()) {
             for scheme in [Scheme::Sqrt3, Scheme::Loop, Scheme::Butterfly] {
-                assert_foretold(scheme, &mesh);
+                assert_predicted(scheme, &mesh);
             }
         }
     }

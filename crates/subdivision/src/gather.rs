@@ -12,7 +12,7 @@ use crate::SubdivisionError;
 use crate::crease::{SharpEdge, SharpLevel};
 use crate::mask::{Mask, midpoint};
 use crate::options::Creasing;
-use crate::step::{Marked, Outline, Step};
+use crate::step::{CreaseVertices, Step, StepBuilder};
 
 /// Runs one step of a scheme that splits faces.
 pub(crate) fn step<M: MeshQuery, K: Mask>(
@@ -22,66 +22,66 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
     creasing: Creasing,
     corners: usize,
 ) -> Result<Step, SubdivisionError> {
-    let mut outline = Outline::of(K::SPLIT, mesh, corners);
+    let mut builder = StepBuilder::new(K::SPLIT, mesh, corners);
     // The map stays empty if no face value is read.
     let mut values: FaceMap<M, Point> = HandleMap::filled(0, Point::ZERO);
-    if K::EDGES_SEE_FACES || K::VERTICES_SEE_FACES || outline.has_face_points() {
+    if K::EDGES_USE_FACES || K::VERTICES_USE_FACES || builder.has_face_points() {
         values = mesh.face_map(Point::ZERO);
         mesh.faces()
             .for_each(|f| values[f] = face_value(mesh, mask, f));
     }
     let mut numbers = mesh.vertex_map(0_u32);
-    numbers.reserve(outline.vertices());
+    numbers.reserve(builder.vertices());
     let mut number = 0;
     mesh.vertices().for_each(|v| {
         numbers[v] = number;
         number += 1;
-        outline.points.push(if K::APPROXIMATES {
+        builder.points.push(if K::APPROXIMATES {
             vertex_point(mesh, mask, v, |f| values[f])
         } else {
             mesh.position(v)
         });
     });
-    if outline.has_face_points() {
-        mesh.faces().for_each(|f| outline.points.push(values[f]));
+    if builder.has_face_points() {
+        mesh.faces().for_each(|f| builder.points.push(values[f]));
     }
-    let first_edge = outline.points.len();
-    let marked = Marked::of(creases, mesh.vertex_count());
+    let first_edge = builder.points.len();
+    let crease_vertices = CreaseVertices::new(creases, mesh.vertex_count());
     let mut level = SharpLevel {
         edges: Vec::new(),
         corners: creases.corners().to_vec(),
     };
     let mut edge_points = mesh.edge_map(0_u32);
-    edge_points.reserve(outline.expected_edges());
+    edge_points.reserve(builder.expected_edges());
     mesh.edges().for_each(|e| {
-        let edge = outline.points.len() - first_edge;
-        edge_points[e] = outline.points.len() as u32;
+        let edge = builder.points.len() - first_edge;
+        edge_points[e] = builder.points.len() as u32;
         let ends = mesh.edge_vertices(e);
         let (point, faces) = edge_point(mesh, mask, e, |f| values[f]);
-        outline.points.push(point);
-        let by_nature = faces != 2;
+        builder.points.push(point);
+        let by_topology = faces != 2;
         let ends = ends.map(|v| numbers[v]);
-        let sharpness = marked.sharpness(creases, ends, by_nature);
+        let sharpness = crease_vertices.sharpness(creases, ends, by_topology);
         if K::APPROXIMATES && sharpness > 0.0 {
             level.edges.push(SharpEdge {
                 edge,
                 ends,
                 sharpness,
-                by_nature,
+                by_topology,
             });
         }
     });
-    outline.split_faces(mesh, |v| numbers[v], |e| edge_points[e])?;
+    builder.split_faces(mesh, |v| numbers[v], |e| edge_points[e])?;
     if level.is_empty() {
-        return outline.finish(Creases::default());
+        return builder.finish(Creases::default());
     }
-    let old = by_number(mesh);
-    let creases = level.place(old, &mut outline.points, first_edge, creasing);
-    outline.finish(creases)
+    let old = positions_by_number(mesh);
+    let creases = level.place(old, &mut builder.points, first_edge, creasing);
+    builder.finish(creases)
 }
 
 /// Collects the positions of the vertices; returns a function from number to position.
-pub(crate) fn by_number<M: MeshQuery>(mesh: &M) -> impl Fn(u32) -> Point {
+pub(crate) fn positions_by_number<M: MeshQuery>(mesh: &M) -> impl Fn(u32) -> Point {
     let positions: Vec<Point> = mesh.vertices().map(|v| mesh.position(v)).collect();
     move |v| positions[v as usize]
 }
@@ -127,7 +127,7 @@ pub(crate) fn edge_point<M: MeshQuery, K: Mask>(
     let ends = mesh.edge_vertices(e).map(|v| mesh.position(v));
     let (mut sum, mut faces) = (Point::ZERO, 0);
     mesh.edge_faces(e).for_each(|f| {
-        if K::EDGES_SEE_FACES {
+        if K::EDGES_USE_FACES {
             sum += face_value(f);
         }
         faces += 1;
@@ -152,7 +152,7 @@ pub(crate) fn vertex_point<M: MeshQuery, K: Mask>(
         return at;
     }
     let mut faces = Point::ZERO;
-    if K::VERTICES_SEE_FACES {
+    if K::VERTICES_USE_FACES {
         mesh.vertex_faces(v).for_each(|f| faces += face_value(f));
     }
     mask.vertex(at, valence, neighbours, faces)

@@ -24,38 +24,38 @@ pub fn subdivide<M: Representation>(
     levels: u32,
     mut watch: impl FnMut(u32, usize),
 ) -> Result<Step, SubdivisionError> {
-    let mut at = Step {
+    let mut step = Step {
         polygons: polygons.clone(),
         creases: creases.clone(),
     };
     if levels == 0 {
-        return Ok(at);
+        return Ok(step);
     }
     let mut left_out = subdivision.left_out(polygons, creases);
     for level in 0..levels {
-        let mesh = built::<M>(&at.polygons, level)?;
+        let mesh = build_level::<M>(&step.polygons, level)?;
         let creases = if level == 0 {
-            subdivision.control(&mesh, &at.polygons, &at.creases)?
+            subdivision.control_creases(&mesh, &step.polygons, &step.creases)?
         } else {
-            renumbered(&mesh, &at.polygons, &at.creases)
+            renumbered(&mesh, &step.polygons, &step.creases)
         };
         let next = match method {
             Method::Gather => subdivision.gather(&mesh, &creases, level)?,
             Method::Scatter => subdivision.scatter(&mesh, &creases, level)?,
-            Method::Native => return Err(subdivision.not_by_polygons()),
+            Method::Native => return Err(subdivision.native_error()),
         };
         // The parts of one face are consecutive: as many as it has corners, or four.
         left_out = left_out.map(|left_out| {
-            let degrees = at.polygons.faces().iter().map(|(_, face)| face.len());
+            let degrees = step.polygons.faces().iter().map(|(_, face)| face.len());
             let parts = degrees.map(|degree| subdivision.parts_of(degree));
             let each = left_out.into_iter().zip(parts);
             each.flat_map(|(out, parts)| std::iter::repeat_n(out, parts))
                 .collect()
         });
-        at = next;
-        watch(level + 1, at.polygons.face_count());
+        step = next;
+        watch(level + 1, step.polygons.face_count());
     }
-    Ok(without(at, left_out))
+    Ok(without_faces(step, left_out))
 }
 
 /// Runs `levels` steps in the tables of a structure of type `M`, which is built once, on the
@@ -80,8 +80,8 @@ pub fn subdivide_native<M: Refine>(
         });
     }
     let mut left_out = subdivision.left_out(polygons, creases);
-    let mut mesh = built::<M>(polygons, 0)?;
-    let mut creases = subdivision.control(&mesh, polygons, creases)?;
+    let mut mesh = build_level::<M>(polygons, 0)?;
+    let mut creases = subdivision.control_creases(&mesh, polygons, creases)?;
     let mut numbers = M::EdgeNumbers::default();
     for level in 0..levels {
         let mut child = M::empty();
@@ -96,7 +96,7 @@ pub fn subdivide_native<M: Refine>(
         watch(level + 1, mesh.face_count());
     }
     let polygons = mesh.to_polygons();
-    Ok(without(Step { polygons, creases }, left_out))
+    Ok(without_faces(Step { polygons, creases }, left_out))
 }
 
 /// Builds the structure of a level from its polygons.
@@ -104,7 +104,10 @@ pub fn subdivide_native<M: Refine>(
 /// # Errors
 ///
 /// Returns [`SubdivisionError::Build`] with the refusal and the level; the control mesh is level 0.
-pub fn built<M: Representation>(polygons: &PolygonMesh, level: u32) -> Result<M, SubdivisionError> {
+pub fn build_level<M: Representation>(
+    polygons: &PolygonMesh,
+    level: u32,
+) -> Result<M, SubdivisionError> {
     M::from_polygons(polygons).map_err(|refusal| SubdivisionError::Build {
         structure: M::NAME,
         level,
@@ -114,42 +117,46 @@ pub fn built<M: Representation>(polygons: &PolygonMesh, level: u32) -> Result<M,
 
 /// Returns the mesh without the faces that are left out, and without the vertices of only such
 /// faces.
-fn without(step: Step, left_out: Option<Vec<bool>>) -> Step {
+fn without_faces(step: Step, left_out: Option<Vec<bool>>) -> Step {
     let Some(left_out) = left_out.filter(|left_out| left_out.contains(&true)) else {
         return step;
     };
     let Step { polygons, creases } = step;
-    let stays = |f: FaceId| !left_out[f.index()];
+    let is_kept = |f: FaceId| !left_out[f.index()];
     let faces = || polygons.faces().iter();
-    let mut used = vec![false; polygons.vertex_count()];
-    let mut lost = used.clone();
+    let mut on_kept = vec![false; polygons.vertex_count()];
+    let mut on_removed = on_kept.clone();
     for (f, face) in faces() {
-        let seen = if stays(f) { &mut used } else { &mut lost };
+        let marks = if is_kept(f) {
+            &mut on_kept
+        } else {
+            &mut on_removed
+        };
         for v in face {
-            seen[v.index()] = true;
+            marks[v.index()] = true;
         }
     }
     let mut positions = Vec::new();
-    let mut names = vec![None; polygons.vertex_count()];
+    let mut new_ids = vec![None; polygons.vertex_count()];
     for v in polygons.vertices() {
         // Vertices that had no face before stay, isolated.
-        if used[v.index()] || !lost[v.index()] {
-            names[v.index()] = Some(VertexId::new(positions.len() as u32));
+        if on_kept[v.index()] || !on_removed[v.index()] {
+            new_ids[v.index()] = Some(VertexId::new(positions.len() as u32));
             positions.push(polygons.position(v));
         }
     }
     let mut kept = FaceList::default();
-    for (_, face) in faces().filter(|&(f, _)| stays(f)) {
-        let renamed = face.iter().filter_map(|v| names[v.index()]);
-        kept.push(renamed).expect("fewer faces than before");
+    for (_, face) in faces().filter(|&(f, _)| is_kept(f)) {
+        let new_face = face.iter().filter_map(|v| new_ids[v.index()]);
+        kept.push(new_face).expect("fewer faces than before");
     }
     let edges = creases.edges().iter().filter_map(|&(ends, sharpness)| {
-        let [a, b] = ends.ends().map(|v| names[v.index()]);
+        let [a, b] = ends.ends().map(|v| new_ids[v.index()]);
         Some((sixfold_core::Pair::new(a?, b?), sharpness))
     });
     let corners = creases.corners().iter();
-    let corners = corners.filter_map(|&(v, sharpness)| Some((names[v.index()]?, sharpness)));
-    let creases = Creases::sorted(edges.collect(), corners.collect());
+    let corners = corners.filter_map(|&(v, sharpness)| Some((new_ids[v.index()]?, sharpness)));
+    let creases = Creases::from_entries(edges.collect(), corners.collect());
     let polygons = PolygonMesh::from_faces(positions, kept).expect("faces of a mesh");
     Step { polygons, creases }
 }

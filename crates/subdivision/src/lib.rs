@@ -15,11 +15,10 @@
 //! Each scheme has its weights in a file of its own. Points at sharp edges and vertices are placed
 //! afterwards, in one file for all schemes and methods (`crease.rs`).
 
-#[cfg(test)]
-mod alike;
 mod bilinear;
 mod butterfly;
 mod catmull_clark;
+mod connectivity;
 mod control;
 mod crease;
 mod curve;
@@ -40,17 +39,18 @@ mod patch;
 mod scatter;
 mod scheme;
 mod select;
-mod sheet;
 mod sqrt3;
 mod step;
 mod subdivision;
 mod tangent;
+#[cfg(test)]
+mod test_support;
 
 pub use control::renumbered;
 pub use curve::{Ends, chaikin, cubic_b_spline, cubic_b_spline_at};
 pub use error::{CurveError, LocalError, SubdivisionError};
 pub use extent::Extent;
-pub use levels::{built, subdivide, subdivide_native};
+pub use levels::{build_level, subdivide, subdivide_native};
 pub use limit::{LimitNormal, LimitPoint, NoLimit};
 pub use local::{LocalMesh, refine_locally};
 pub use options::{Boundary, Creasing, LoopWeights};

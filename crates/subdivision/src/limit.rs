@@ -17,13 +17,13 @@
 //!
 //! Positions: Halstead, Kass & DeRose (1993), Loop (1987). Tangents: `tangent.rs`.
 
-use sixfold_core::{Creases, FaceId, MeshQuery, Point, SHARP_FOR_EVER, VertexId, VertexMap};
+use sixfold_core::{Creases, FaceId, MeshQuery, Point, SHARPNESS_INFINITE, VertexId, VertexMap};
 
 use crate::crease::{Rule, is_semi_sharp};
 use crate::error::SubdivisionError;
 use crate::loop_scheme::beta;
 use crate::scheme::Scheme;
-use crate::step::Marked;
+use crate::step::CreaseVertices;
 use crate::subdivision::Subdivision;
 use crate::tangent::{Fan, Surface, far_corner, normal, rounding};
 
@@ -100,10 +100,10 @@ impl Subdivision {
     /// Returns the limit of each vertex of `mesh` after infinitely many levels, for Catmull–Clark
     /// and Loop.
     ///
-    /// `creases` are those of `mesh.to_polygons()`, from [`control`](Self::control) or from the
-    /// step that made the mesh. Next to faces that are not quads, Catmull–Clark has limits only on
-    /// creases and at corners; after one step, everywhere. O(valence log valence) per vertex, plus
-    /// the costs of EF, VV, VF and FV.
+    /// `creases` are those of `mesh.to_polygons()`, from [`control_creases`](Self::control_creases)
+    /// or from the step that made the mesh. Next to faces that are not quads, Catmull–Clark has
+    /// limits only on creases and at corners; after one step, everywhere. O(valence log valence)
+    /// per vertex, plus the costs of EF, VV, VF and FV.
     ///
     /// # Errors
     ///
@@ -117,7 +117,7 @@ impl Subdivision {
         match self.scheme {
             Scheme::CatmullClark => Ok(limits(mesh, creases, Surface::CatmullClark)),
             Scheme::Loop => {
-                all_triangles(mesh, self.scheme)?;
+                check_triangles(mesh, self.scheme)?;
                 Ok(limits(mesh, creases, Surface::Loop(self.loop_weights)))
             }
             scheme => Err(SubdivisionError::NoLimit { scheme }),
@@ -126,7 +126,7 @@ impl Subdivision {
 }
 
 /// Checks that every face has three corners.
-fn all_triangles<M: MeshQuery>(mesh: &M, scheme: Scheme) -> Result<(), SubdivisionError> {
+fn check_triangles<M: MeshQuery>(mesh: &M, scheme: Scheme) -> Result<(), SubdivisionError> {
     let degrees = mesh.faces().map(|f| mesh.face_vertices(f).count());
     match (0..).zip(degrees).find(|&(_, degree)| degree != 3) {
         Some((face, degree)) => Err(SubdivisionError::NotATriangle {
@@ -151,12 +151,12 @@ fn spokes<M: MeshQuery>(mesh: &M, creases: &Creases) -> Vec<Spoke<M::Vertex>> {
     for (number, v) in (0..).zip(mesh.vertices()) {
         numbers[v] = number;
     }
-    let marked = Marked::of(creases, mesh.vertex_count());
+    let crease_vertices = CreaseVertices::new(creases, mesh.vertex_count());
     let mut spokes = Vec::new();
     for e in mesh.edges() {
         let ends = mesh.edge_vertices(e);
-        let by_nature = mesh.edge_faces(e).count() != 2;
-        let sharpness = marked.sharpness(creases, ends.map(|v| numbers[v]), by_nature);
+        let by_topology = mesh.edge_faces(e).count() != 2;
+        let sharpness = crease_vertices.sharpness(creases, ends.map(|v| numbers[v]), by_topology);
         if sharpness > 0.0 {
             let [a, b] = ends;
             spokes.extend([(a, b), (b, a)].map(|(at, far)| Spoke {
@@ -196,15 +196,15 @@ fn limit_of<M: MeshQuery>(
     surface: Surface,
 ) -> LimitPoint {
     let at = mesh.position(v);
-    let for_ever = around
+    let infinite = around
         .iter()
-        .filter(|spoke| spoke.sharpness >= SHARP_FOR_EVER);
-    let is_corner = own >= SHARP_FOR_EVER || for_ever.count() > 2;
+        .filter(|spoke| spoke.sharpness >= SHARPNESS_INFINITE);
+    let is_corner = own >= SHARPNESS_INFINITE || infinite.count() > 2;
     let mut sharpness = around.iter().map(|spoke| spoke.sharpness).chain([own]);
     if !is_corner && sharpness.any(is_semi_sharp) {
         return LimitPoint::Undefined(NoLimit::SemiSharp);
     }
-    match Rule::of(own, around.len()) {
+    match Rule::new(own, around.len()) {
         Rule::Corner => LimitPoint::Defined {
             position: at,
             normal: corner_normal(mesh, v),
@@ -235,7 +235,7 @@ fn corner_normal<M: MeshQuery>(mesh: &M, v: M::Vertex) -> LimitNormal {
     let place = place.expect("VF and FV agree");
     let at = mesh.position(v);
     let edges = [1, n - 1].map(|steps| mesh.position(corners[(place + steps) % n]) - at);
-    one(normal(edges, rounding(at, &edges)))
+    single_normal(normal(edges, rounding(at, &edges)))
 }
 
 fn smooth_limit<M: MeshQuery>(mesh: &M, v: M::Vertex, surface: Surface) -> LimitPoint {
@@ -267,11 +267,11 @@ fn smooth_limit<M: MeshQuery>(mesh: &M, v: M::Vertex, surface: Surface) -> Limit
             at * (1.0 - n * omega) as f32 + neighbours * omega as f32
         }
     };
-    let fan = Fan::around(mesh, v, surface);
+    let fan = Fan::new(mesh, v, surface);
     let normal = fan.and_then(|fan| normal(fan.tangents(surface), fan.rounding));
     LimitPoint::Defined {
         position,
-        normal: one(normal),
+        normal: single_normal(normal),
     }
 }
 
@@ -281,17 +281,17 @@ fn crease_normal<M: MeshQuery>(
     ends: [M::Vertex; 2],
     surface: Surface,
 ) -> LimitNormal {
-    let Some(fan) = Fan::around(mesh, v, surface) else {
+    let Some(fan) = Fan::new(mesh, v, surface) else {
         return LimitNormal::Undefined;
     };
-    let place = |end: M::Vertex| fan.names.iter().position(|&name| name == end);
+    let place = |end: M::Vertex| fan.neighbours.iter().position(|&w| w == end);
     let (Some(first), Some(second)) = (place(ends[0]), place(ends[1])) else {
         return LimitNormal::Undefined;
     };
     let side = |from, to| normal(fan.sector(from, to).tangents(surface), fan.rounding);
-    let last = fan.names.len() - 1;
+    let last = fan.neighbours.len() - 1;
     if [first.min(second), first.max(second)] == [0, last] && !fan.is_closed {
-        return one(side(0, last));
+        return single_normal(side(0, last));
     }
     match (side(first, second), side(second, first)) {
         (Some(a), Some(b)) if fan.is_closed => LimitNormal::TwoSides([a, b]),
@@ -299,6 +299,6 @@ fn crease_normal<M: MeshQuery>(
     }
 }
 
-fn one(normal: Option<Point>) -> LimitNormal {
+fn single_normal(normal: Option<Point>) -> LimitNormal {
     normal.map_or(LimitNormal::Undefined, LimitNormal::One)
 }

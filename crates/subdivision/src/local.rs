@@ -172,9 +172,9 @@ impl LocalMesh {
         let mut step = Step::new(self, mesh)?;
         for f in chosen {
             step.chosen[f.index()] = true;
-            step.waiting.push(f.index());
+            step.queue.push(f.index());
         }
-        step.close();
+        step.propagate();
         step.finish()
     }
 }
@@ -194,7 +194,7 @@ struct Step<'a, M: MeshQuery> {
     red: Vec<bool>,
     chosen: Vec<bool>,
     /// Faces that must become red.
-    waiting: Vec<usize>,
+    queue: Vec<usize>,
 }
 
 impl<'a, M: MeshQuery> Step<'a, M> {
@@ -212,8 +212,8 @@ impl<'a, M: MeshQuery> Step<'a, M> {
         for first in 0..count {
             if before.kinds[first].half == Some(Half::First) {
                 let [f, g] = [first, first + 1].map(|half| faces[half]);
-                faces[first] = f.turned(g);
-                faces[first + 1] = g.turned(f);
+                faces[first] = f.rotated_to_apex(g);
+                faces[first + 1] = g.rotated_to_apex(f);
             }
         }
         Ok(Self {
@@ -225,13 +225,13 @@ impl<'a, M: MeshQuery> Step<'a, M> {
             split_sides: vec![0; count],
             red: vec![false; count],
             chosen: vec![false; count],
-            waiting: Vec::new(),
+            queue: Vec::new(),
         })
     }
 
     /// Makes faces red until no other face must be red; splits every side at most once.
-    fn close(&mut self) {
-        while let Some(f) = self.waiting.pop() {
+    fn propagate(&mut self) {
+        while let Some(f) = self.queue.pop() {
             if self.red[f] {
                 continue;
             }
@@ -242,11 +242,11 @@ impl<'a, M: MeshQuery> Step<'a, M> {
                 // The side of the whole face not halved yet: c–a of (a, m, c), b–c of (b, c, m).
                 Some(Half::First) => {
                     self.split(sides[2]);
-                    self.waiting.push(f + 1);
+                    self.queue.push(f + 1);
                 }
                 Some(Half::Second) => {
                     self.split(sides[0]);
-                    self.waiting.push(f - 1);
+                    self.queue.push(f - 1);
                 }
             }
         }
@@ -261,7 +261,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
             self.split_sides[f] += 1;
             // A half is not halved again.
             if self.split_sides[f] > 1 || self.before[f].half.is_some() {
-                self.waiting.push(f);
+                self.queue.push(f);
             }
         }
     }
@@ -273,10 +273,10 @@ impl<'a, M: MeshQuery> Step<'a, M> {
             let elements = "corners";
             return Err(PolygonError::TooMany { elements, limit }.into());
         }
-        let mut names = mesh.vertex_map(VertexId::new(0));
+        let mut new_ids = mesh.vertex_map(VertexId::new(0));
         let mut points: Vec<Point> = Vec::with_capacity(mesh.vertex_count());
         for v in mesh.vertices() {
-            names[v] = VertexId::new(sixfold_core::row(points.len()));
+            new_ids[v] = VertexId::new(sixfold_core::row(points.len()));
             points.push(mesh.position(v));
         }
         let mut middles = mesh.edge_map(None);
@@ -285,7 +285,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
             let [a, b] = ends.map(|v| mesh.position(v));
             let middle = midpoint([a, b]);
             if a != b && (middle == a || middle == b) {
-                let ends = ends.map(|v| names[v]);
+                let ends = ends.map(|v| new_ids[v]);
                 return Err(LocalError::TooShort { ends });
             }
             middles[e] = Some(VertexId::new(sixfold_core::row(points.len())));
@@ -293,7 +293,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
         }
         let mut parts = Parts::default();
         for (f, &Triangle { corners, sides }) in self.faces.iter().enumerate() {
-            let corners = corners.map(|v| names[v]);
+            let corners = corners.map(|v| new_ids[v]);
             let middles_of = |sides: [M::Edge; 3]| sides.map(|side| middles[side]);
             let kind = Kind {
                 half: None,
@@ -312,8 +312,8 @@ impl<'a, M: MeshQuery> Step<'a, M> {
                         ..kind
                     };
                     let other = self.faces[f + 1];
-                    let halves = [corners, other.corners.map(|v| names[v])];
-                    parts.split_again(kind, halves, [sides, other.sides].map(middles_of))?;
+                    let halves = [corners, other.corners.map(|v| new_ids[v])];
+                    parts.split_pair(kind, halves, [sides, other.sides].map(middles_of))?;
                 }
                 // Handled with the first half.
                 Some(Half::Second) => {}
@@ -346,9 +346,9 @@ struct Triangle<V, E> {
 
 impl<V: Copy + Eq, E: Copy> Triangle<V, E> {
     /// Returns the same face, starting at the corner that `other` does not have.
-    fn turned(self, other: Self) -> Self {
-        let alone = |v: &V| !other.corners.contains(v);
-        let from = self.corners.iter().position(alone);
+    fn rotated_to_apex(self, other: Self) -> Self {
+        let is_apex = |v: &V| !other.corners.contains(v);
+        let from = self.corners.iter().position(is_apex);
         let from = from.expect("L2: the halves of a face share two corners");
         let turn = |i: usize| (from + i) % 3;
         Self {
@@ -413,7 +413,7 @@ impl Parts {
 
     /// Adds the parts of the whole of two halves (a, m, c) and (b, c, m), which is now red. The
     /// outer parts at a and b are halved if their part of the side is split again.
-    fn split_again(
+    fn split_pair(
         &mut self,
         kind: Kind,
         [[a, m, c], [b, ..]]: [[VertexId; 3]; 2],

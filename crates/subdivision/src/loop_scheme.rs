@@ -21,13 +21,13 @@ use crate::mask::Mask;
 use crate::options::LoopWeights;
 
 /// Number of valences with precomputed β, from 0; few vertices have a higher valence.
-const LOOKED_UP: usize = 16;
+const PRECOMPUTED: usize = 16;
 
 /// The weights of Loop (1987), or of Warren.
 #[derive(Clone, Copy)]
 pub(crate) struct Loop {
     weights: LoopWeights,
-    betas: [f32; LOOKED_UP],
+    betas: [f32; PRECOMPUTED],
 }
 
 impl Loop {
@@ -61,8 +61,8 @@ pub(crate) fn beta(weights: LoopWeights, valence: usize) -> f64 {
 impl Mask for Loop {
     const SPLIT: Split = Split::Triangles;
     const APPROXIMATES: bool = true;
-    const EDGES_SEE_FACES: bool = true;
-    const VERTICES_SEE_FACES: bool = false;
+    const EDGES_USE_FACES: bool = true;
+    const VERTICES_USE_FACES: bool = false;
 
     /// Returns the sum of the corners. The sums of both faces together contain the ends twice and
     /// the two far corners once, so no corner has to be distinguished from another.
@@ -89,7 +89,7 @@ mod tests {
     use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
-    use crate::alike::assert_near;
+    use crate::test_support::assert_near;
     use crate::{Method, Scheme, Subdivision, subdivide};
 
     #[test]

@@ -1,14 +1,14 @@
 //! Checks that a mesh is an oriented manifold, for schemes that look across edges or around
 //! vertices.
 
-use sixfold_core::{MeshQuery, Refine, in_given_parts};
+use sixfold_core::{MeshQuery, Refine, map_chunks};
 
+use crate::connectivity::{non_manifold_edge, non_manifold_vertex};
 use crate::error::SubdivisionError;
 use crate::scheme::Scheme;
-use crate::sheet::{non_manifold_edge, non_manifold_vertex};
 
 /// Returns whether `f` has `b` after `a`.
-pub(crate) fn runs<M: MeshQuery>(mesh: &M, f: M::Face, [a, b]: [M::Vertex; 2]) -> bool {
+pub(crate) fn has_side<M: MeshQuery>(mesh: &M, f: M::Face, [a, b]: [M::Vertex; 2]) -> bool {
     let (mut first, mut last, mut found) = (None, None, false);
     mesh.face_vertices(f).for_each(|v| {
         found |= last == Some(a) && v == b;
@@ -24,7 +24,7 @@ fn check_edge<M: MeshQuery>(mesh: &M, e: M::Edge) -> Result<(), usize> {
     let ends = mesh.edge_vertices(e);
     let mut along = [0, 0];
     mesh.edge_faces(e)
-        .for_each(|f| along[usize::from(runs(mesh, f, ends))] += 1);
+        .for_each(|f| along[usize::from(has_side(mesh, f, ends))] += 1);
     if along.iter().all(|&faces| faces <= 1) {
         Ok(())
     } else {
@@ -55,29 +55,31 @@ pub(crate) fn check<M: MeshQuery>(mesh: &M, scheme: Scheme) -> Result<(), Subdiv
 }
 
 /// Returns whether every mesh in a structure of type `M` passes [`check`].
-pub(crate) fn is_sure<M: Refine>() -> bool {
-    let can = M::CAPABILITIES;
-    !(can.non_manifold_edges || can.non_manifold_vertices || can.inconsistent_orientation)
+pub(crate) fn is_always_manifold<M: Refine>() -> bool {
+    let capabilities = M::CAPABILITIES;
+    !(capabilities.non_manifold_edges
+        || capabilities.non_manifold_vertices
+        || capabilities.inconsistent_orientation)
 }
 
 /// Returns the boundary edges in their order, each in the direction of its face. Threads share the
-/// parts.
+/// chunks.
 ///
 /// # Errors
 ///
 /// The first edge with three faces, or with two that run along it in the same direction.
-pub(crate) fn boundary<M: Refine>(
+pub(crate) fn boundary_edges<M: Refine>(
     mesh: &M,
     numbers: &M::EdgeNumbers,
     scheme: Scheme,
 ) -> Result<Vec<[u32; 2]>, SubdivisionError> {
-    let parts = mesh.edge_parts(numbers);
-    let is_sure = is_sure::<M>();
+    let chunks = mesh.edge_chunks(numbers);
+    let is_always_manifold = is_always_manifold::<M>();
     // No value is stored by edge, so the rows take no memory.
-    let mut rows = vec![(); parts.last().copied().unwrap_or(0)];
-    let found = in_given_parts(&mut rows, &parts, |part, _, _| {
+    let mut rows = vec![(); chunks.last().copied().unwrap_or(0)];
+    let found = map_chunks(&mut rows, &chunks, |chunk, _, _| {
         let mut boundary = Vec::new();
-        for e in mesh.edges_of_part(numbers, part) {
+        for e in mesh.edges_of_chunk(numbers, chunk) {
             let (mut face, mut faces) = (None, 0);
             mesh.edge_faces(e).for_each(|f| {
                 face = Some(f);
@@ -86,8 +88,12 @@ pub(crate) fn boundary<M: Refine>(
             let ends = mesh.edge_vertices(e);
             if let (Some(f), 1) = (face, faces) {
                 let [a, b] = ends.map(|v| v.index() as u32);
-                boundary.push(if runs(mesh, f, ends) { [a, b] } else { [b, a] });
-            } else if !is_sure && check_edge(mesh, e).is_err() {
+                boundary.push(if has_side(mesh, f, ends) {
+                    [a, b]
+                } else {
+                    [b, a]
+                });
+            } else if !is_always_manifold && check_edge(mesh, e).is_err() {
                 let ends = ends.map(|v| v.index() as u32);
                 return Err(non_manifold_edge(scheme, ends, faces));
             }
@@ -95,8 +101,8 @@ pub(crate) fn boundary<M: Refine>(
         Ok(boundary)
     });
     let mut all = Vec::new();
-    for part in found {
-        all.append(&mut part?);
+    for chunk in found {
+        all.append(&mut chunk?);
     }
     Ok(all)
 }

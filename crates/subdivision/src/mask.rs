@@ -14,9 +14,9 @@ pub(crate) trait Mask: Copy + Sync {
     /// no rules: their edge points are midpoints anyway.
     const APPROXIMATES: bool;
     /// Whether `edge` uses face values.
-    const EDGES_SEE_FACES: bool;
+    const EDGES_USE_FACES: bool;
     /// Whether `vertex` uses face values.
-    const VERTICES_SEE_FACES: bool;
+    const VERTICES_USE_FACES: bool;
 
     /// Returns the face value of a face with `degree` corners, whose sum is `corners`. If the split
     /// has face points, it is the face point.

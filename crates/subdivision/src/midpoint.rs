@@ -19,8 +19,8 @@ pub(crate) struct Midpoint;
 impl Mask for Midpoint {
     const SPLIT: Split = Split::Triangles;
     const APPROXIMATES: bool = false;
-    const EDGES_SEE_FACES: bool = false;
-    const VERTICES_SEE_FACES: bool = false;
+    const EDGES_USE_FACES: bool = false;
+    const VERTICES_USE_FACES: bool = false;
 
     fn face(self, corners: Point, _: usize) -> Point {
         corners
@@ -42,14 +42,14 @@ mod tests {
 
     use super::*;
     use crate::Scheme;
-    use crate::alike::all_ways;
+    use crate::test_support::all_methods;
 
     /// Boundaries do not become curves here: corners stay, and so do all vertices.
     #[test]
     fn a_triangle_keeps_its_corners() {
         let corners = [Point::ZERO, Point::X, Point::Y];
         let triangle = PolygonMesh::new(corners, [[0, 1, 2]]).expect("a triangle");
-        for mesh in all_ways(Scheme::Midpoint, &triangle, 0).expect("a triangle") {
+        for mesh in all_methods(Scheme::Midpoint, &triangle, 0).expect("a triangle") {
             assert_eq!(mesh.positions()[..3], corners);
             for middle in [[0.5, 0.0], [0.0, 0.5], [0.5, 0.5]] {
                 let middle = Point::new(middle[0], middle[1], 0.0);

@@ -4,7 +4,9 @@
 //! computed independently, with the queries and rules of a gather, so the points are the same on
 //! any number of threads.
 
-use sixfold_core::{Creases, FaceId, PART, Point, Refine, RowId, Split, in_given_parts, in_parts};
+use sixfold_core::{
+    CHUNK_ROWS, Creases, FaceId, Point, Refine, RowId, Split, for_each_chunk, map_chunks,
+};
 
 use crate::SubdivisionError;
 use crate::crease::{SharpEdge, SharpLevel};
@@ -27,7 +29,7 @@ pub(crate) fn step<M: Refine, K: Mask>(
     let first_edge = vertices + face_points;
     let (old, rest) = child.positions_mut().split_at_mut(vertices);
     let (face_points, edge_points) = rest.split_at_mut(face_points);
-    place(face_points, |f| face_value(mesh, mask, f));
+    compute_rows(face_points, |f| face_value(mesh, mask, f));
     let face_points = &*face_points;
     let value = |f: FaceId| match K::SPLIT {
         Split::Quads => face_points[f.index()],
@@ -36,34 +38,34 @@ pub(crate) fn step<M: Refine, K: Mask>(
         _ => face_value(mesh, mask, f),
     };
     if K::APPROXIMATES {
-        place(old, |v| vertex_point(mesh, mask, v, value));
+        compute_rows(old, |v| vertex_point(mesh, mask, v, value));
     } else {
-        keep(old, mesh.position_rows());
+        copy_rows(old, mesh.position_rows());
     }
-    let parts = mesh.edge_parts(numbers);
-    let sharp = in_given_parts(edge_points, &parts, |part, range, points| {
-        let mut by_nature = Vec::new();
+    let chunks = mesh.edge_chunks(numbers);
+    let sharp = map_chunks(edge_points, &chunks, |chunk, range, points| {
+        let mut by_topology = Vec::new();
         let mut at = 0;
-        mesh.edges_of_part(numbers, part).for_each(|e| {
+        mesh.edges_of_chunk(numbers, chunk).for_each(|e| {
             let (point, faces) = edge_point(mesh, mask, e, value);
             points[at] = point;
             if K::APPROXIMATES && faces != 2 {
-                by_nature.push(SharpEdge {
+                by_topology.push(SharpEdge {
                     edge: range.start + at,
                     ends: mesh.edge_vertices(e).map(|v| v.index() as u32),
                     sharpness: f32::INFINITY,
-                    by_nature: true,
+                    by_topology: true,
                 });
             }
             at += 1;
         });
-        by_nature
+        by_topology
     });
     let mut level = SharpLevel {
         edges: sharp.concat(),
         corners: creases.corners().to_vec(),
     };
-    level.edges.extend(creased(mesh, creases, numbers));
+    level.edges.extend(crease_edges(mesh, creases, numbers));
     if level.is_empty() {
         return Ok(Creases::default());
     }
@@ -71,38 +73,38 @@ pub(crate) fn step<M: Refine, K: Mask>(
     Ok(level.place(old, child.positions_mut(), first_edge, creasing))
 }
 
-/// Computes the value of each row; threads share the parts.
-pub(crate) fn place<H: RowId, T: Send>(rows: &mut [T], value: impl Fn(H) -> T + Sync) {
-    in_parts(rows, PART, |first, rows| {
+/// Computes the value of each row; threads share the chunks.
+pub(crate) fn compute_rows<H: RowId, T: Send>(rows: &mut [T], value: impl Fn(H) -> T + Sync) {
+    for_each_chunk(rows, CHUNK_ROWS, |first, rows| {
         for (row, name) in rows.iter_mut().zip(first as u32..) {
             *row = value(H::from_row(name));
         }
     });
 }
 
-/// Copies `old`; threads share the parts.
-pub(crate) fn keep(points: &mut [Point], old: &[Point]) {
-    in_parts(points, PART, |first, points| {
+/// Copies `old`; threads share the chunks.
+pub(crate) fn copy_rows(points: &mut [Point], old: &[Point]) {
+    for_each_chunk(points, CHUNK_ROWS, |first, points| {
         points.copy_from_slice(&old[first..first + points.len()]);
     });
 }
 
-/// Returns the edges with an entry in `creases` that are not sharp by nature.
-fn creased<M: Refine>(
+/// Returns the edges with an entry in `creases` that are not sharp by topology.
+fn crease_edges<M: Refine>(
     mesh: &M,
     creases: &Creases,
     numbers: &M::EdgeNumbers,
 ) -> impl Iterator<Item = SharpEdge> {
     creases.edges().iter().filter_map(|&(pair, sharpness)| {
         let [a, b] = pair.ends();
-        let runs_to_b = |&e: &M::Edge| mesh.edge_vertices(e).contains(&b);
-        let e = mesh.vertex_edges(a).find(runs_to_b);
+        let ends_at_b = |&e: &M::Edge| mesh.edge_vertices(e).contains(&b);
+        let e = mesh.vertex_edges(a).find(ends_at_b);
         let e = e.expect("creases are those of the mesh");
         (mesh.edge_faces(e).count() == 2).then(|| SharpEdge {
             edge: mesh.edge_number(numbers, e),
             ends: [a, b].map(|v| v.index() as u32),
             sharpness,
-            by_nature: false,
+            by_topology: false,
         })
     })
 }

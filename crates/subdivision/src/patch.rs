@@ -16,7 +16,7 @@
 
 use sixfold_core::{FaceList, MAX_ROWS, Point, PolygonError, PolygonMesh, VertexId};
 
-use crate::curve::{Ends, cubic_b_spline_at, cubic_count, cubic_domain, cubic_step, least};
+use crate::curve::{Ends, cubic_b_spline_at, cubic_count, cubic_domain, cubic_step, min_points};
 use crate::error::CurveError;
 
 /// Control points in rows, and the uniform bicubic B-spline patch that they define.
@@ -70,7 +70,7 @@ impl ControlGrid {
             return Err(CurveError::RaggedGrid { given, columns });
         }
         for (given, ends) in [columns, given / columns].into_iter().zip(ends) {
-            let least = least(ends);
+            let least = min_points(ends);
             if given < least {
                 return Err(CurveError::TooFewPoints { given, least });
             }
@@ -113,8 +113,9 @@ impl ControlGrid {
         // Checked before the first step. By G2 sizes grow with every level, so this loop ends
         // early.
         for _ in 0..levels.min(usize::BITS) {
-            let next: [usize; 2] =
-                std::array::from_fn(|way| cubic_count(sizes[way], self.ends[way]));
+            let next: [usize; 2] = std::array::from_fn(|direction| {
+                cubic_count(sizes[direction], self.ends[direction])
+            });
             sizes = next;
             let points = sizes[0].checked_mul(sizes[1]);
             if points.is_none_or(|points| points > MAX_ROWS) {
@@ -172,7 +173,7 @@ impl ControlGrid {
     /// Returns the first and last parameters, along rows and along columns.
     pub fn domain(&self) -> [(f64, f64); 2] {
         let sizes = [self.columns, self.rows()];
-        std::array::from_fn(|way| cubic_domain(sizes[way], self.ends[way]))
+        std::array::from_fn(|direction| cubic_domain(sizes[direction], self.ends[direction]))
     }
 
     /// Returns the grid as quads, counter-clockwise if rows run to the right and columns up. Vertex
@@ -183,9 +184,9 @@ impl ControlGrid {
     /// Returns [`PolygonError::TooMany`] if there are more corners than [`MAX_ROWS`].
     pub fn to_polygons(&self) -> Result<PolygonMesh, PolygonError> {
         let sizes = [self.columns, self.rows()];
-        let [across, up]: [usize; 2] = std::array::from_fn(|way| {
-            let is_open = self.ends[way] != Ends::Closed;
-            sizes[way] - usize::from(is_open)
+        let [across, up]: [usize; 2] = std::array::from_fn(|direction| {
+            let is_open = self.ends[direction] != Ends::Closed;
+            sizes[direction] - usize::from(is_open)
         });
         let limit = MAX_ROWS;
         if across.saturating_mul(up).saturating_mul(4) > limit {
@@ -274,7 +275,7 @@ mod tests {
                 let grid = ControlGrid::new(7, points.clone(), ends).expect("7 × 6");
                 let polygons = grid.to_polygons().expect("small");
                 let mesh = IndexedFaceSet::from_polygons(&polygons).expect("a grid");
-                let control = scheme.control(&mesh, &polygons, &Creases::default());
+                let control = scheme.control_creases(&mesh, &polygons, &Creases::default());
                 let step = scheme
                     .gather(&mesh, &control.expect("none"), 0)
                     .expect("quads");
@@ -334,10 +335,10 @@ mod tests {
             let levels = 5;
             let refined = grid.refined(levels).expect("small");
             let step = f64::from(1 << levels).recip();
-            let place = |way: usize, i: usize| {
-                let (first, last) = grid.domain()[way];
+            let place = |direction: usize, i: usize| {
+                let (first, last) = grid.domain()[direction];
                 // Dropped ends leave one point before the first parameter, where there is no patch.
-                let shift = f64::from(u8::from(grid.ends()[way] == Ends::Dropped));
+                let shift = f64::from(u8::from(grid.ends()[direction] == Ends::Dropped));
                 let at = first + (i as f64 - shift) * step;
                 (first <= at && at <= last).then_some(at)
             };
@@ -356,9 +357,9 @@ mod tests {
         #[test]
         fn a_step_does_not_change_the_patch(grid in grid(), at in prop::array::uniform2(0.0..1.0)) {
             let refined = grid.refined(1).expect("small");
-            let place = |grid: &ControlGrid, way: usize| {
-                let (first, last) = grid.domain()[way];
-                first + at[way] * (last - first)
+            let place = |grid: &ControlGrid, direction: usize| {
+                let (first, last) = grid.domain()[direction];
+                first + at[direction] * (last - first)
             };
             let [before, after] = [&grid, &refined]
                 .map(|grid| grid.evaluate(place(grid, 0), place(grid, 1)).expect("within"));

@@ -12,10 +12,10 @@ use sixfold_core::{Creases, HandleMap, MeshQuery, Point};
 
 use crate::SubdivisionError;
 use crate::crease::{SharpEdge, SharpLevel};
-use crate::gather::by_number;
+use crate::gather::positions_by_number;
 use crate::mask::{Mask, midpoint};
 use crate::options::Creasing;
-use crate::step::{Marked, Outline, Step};
+use crate::step::{CreaseVertices, Step, StepBuilder};
 
 /// The sums over the edges of a vertex.
 #[derive(Clone, Copy, Default)]
@@ -32,7 +32,7 @@ struct EdgeSum {
 }
 
 /// Marks an edge that has no number yet.
-const UNMET: u32 = u32::MAX;
+const UNNUMBERED: u32 = u32::MAX;
 
 /// Runs one step of a scheme that splits faces.
 ///
@@ -45,27 +45,27 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
     creasing: Creasing,
     corners: usize,
 ) -> Result<Step, SubdivisionError> {
-    let mut outline = Outline::of(K::SPLIT, mesh, corners);
+    let mut builder = StepBuilder::new(K::SPLIT, mesh, corners);
     let mut numbers = mesh.vertex_map(0_u32);
-    numbers.reserve(outline.vertices());
+    numbers.reserve(builder.vertices());
     mesh.vertices().for_each(|v| {
-        numbers[v] = outline.points.len() as u32;
-        outline.points.push(mesh.position(v));
+        numbers[v] = builder.points.len() as u32;
+        builder.points.push(mesh.position(v));
     });
-    let vertices = outline.points.len();
-    if outline.has_face_points() {
-        outline
+    let vertices = builder.points.len();
+    if builder.has_face_points() {
+        builder
             .points
             .resize(vertices + mesh.face_count(), Point::ZERO);
     }
-    let first_edge = outline.points.len();
+    let first_edge = builder.points.len();
     let mut vertex_faces = Vec::new();
-    if K::VERTICES_SEE_FACES {
+    if K::VERTICES_USE_FACES {
         vertex_faces.resize(vertices, Point::ZERO);
     }
-    let mut edge_numbers = mesh.edge_map(UNMET);
-    edge_numbers.reserve(outline.expected_edges());
-    let mut edges: Vec<EdgeSum> = Vec::with_capacity(outline.expected_edges());
+    let mut edge_numbers = mesh.edge_map(UNNUMBERED);
+    edge_numbers.reserve(builder.expected_edges());
+    let mut edges: Vec<EdgeSum> = Vec::with_capacity(builder.expected_edges());
     // For one face: its vertices, and the edge points of the sides that start there.
     let (mut own, mut middles) = (Vec::new(), Vec::new());
     let mut face_point = vertices;
@@ -75,14 +75,14 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
         let mut sum = Point::ZERO;
         mesh.face_vertices(f).for_each(|v| {
             let number = numbers[v];
-            sum += outline.points[number as usize];
+            sum += builder.points[number as usize];
             own.push(number);
         });
         let value = mask.face(sum, own.len());
         let mut corner = 0;
         mesh.face_edges(f).for_each(|e| {
             let number = &mut edge_numbers[e];
-            if *number == UNMET {
+            if *number == UNNUMBERED {
                 *number = edges.len() as u32;
                 let next = if corner + 1 == own.len() {
                     0
@@ -93,26 +93,26 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
                     ends: [own[corner], own[next]],
                     count: 0,
                 });
-                outline.points.push(Point::ZERO);
+                builder.points.push(Point::ZERO);
             }
             let middle = first_edge + *number as usize;
-            outline.points[middle] += value;
+            builder.points[middle] += value;
             edges[*number as usize].count += 1;
             middles.push(middle as u32);
             corner += 1;
         });
-        if K::VERTICES_SEE_FACES {
+        if K::VERTICES_USE_FACES {
             for &v in &own {
                 vertex_faces[v as usize] += value;
             }
         }
-        outline.split_face(&own, &middles, face_point as u32);
-        if outline.has_face_points() {
-            outline.points[face_point] = value;
+        builder.split_face(&own, &middles, face_point as u32);
+        if builder.has_face_points() {
+            builder.points[face_point] = value;
         }
         face_point += 1;
     });
-    let (old, edge_points) = outline.points.split_at_mut(first_edge);
+    let (old, edge_points) = builder.points.split_at_mut(first_edge);
     let mut sums = Vec::new();
     if K::APPROXIMATES {
         sums.resize(vertices, VertexSum::default());
@@ -124,7 +124,7 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
             }
         }
     }
-    let marked = Marked::of(creases, vertices);
+    let crease_vertices = CreaseVertices::new(creases, vertices);
     let mut level = SharpLevel {
         edges: Vec::new(),
         corners: creases.corners().to_vec(),
@@ -135,28 +135,28 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
             2 => mask.edge(places, *point),
             _ => midpoint(places),
         };
-        let by_nature = count != 2;
-        let sharpness = marked.sharpness(creases, ends, by_nature);
+        let by_topology = count != 2;
+        let sharpness = crease_vertices.sharpness(creases, ends, by_topology);
         if K::APPROXIMATES && sharpness > 0.0 {
             level.edges.push(SharpEdge {
                 edge: number,
                 ends,
                 sharpness,
-                by_nature,
+                by_topology,
             });
         }
     }
     for (v, sum) in sums.iter().enumerate().filter(|(_, sum)| sum.valence > 0) {
-        let faces = match K::VERTICES_SEE_FACES {
+        let faces = match K::VERTICES_USE_FACES {
             true => vertex_faces[v],
             false => Point::ZERO,
         };
         old[v] = mask.vertex(old[v], sum.valence as usize, sum.neighbours, faces);
     }
     if level.is_empty() {
-        return outline.finish(Creases::default());
+        return builder.finish(Creases::default());
     }
-    let old = by_number(mesh);
-    let creases = level.place(old, &mut outline.points, first_edge, creasing);
-    outline.finish(creases)
+    let old = positions_by_number(mesh);
+    let creases = level.place(old, &mut builder.points, first_edge, creasing);
+    builder.finish(creases)
 }

@@ -89,7 +89,7 @@ impl Scheme {
     }
 
     /// Returns the scheme with this [`name`](Self::name).
-    pub fn named(name: &str) -> Option<Self> {
+    pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|scheme| scheme.name() == name)
     }
 

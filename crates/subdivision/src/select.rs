@@ -66,13 +66,13 @@ impl Selection {
                 for (number, f) in (0..).zip(mesh.faces()) {
                     let face = FaceId::new(number);
                     let corners = triangle(mesh, f, face)?.map(|v| mesh.position(v));
-                    if touches(corners, min, max) {
+                    if intersects_box(corners, min, max) {
                         chosen.push(face);
                     }
                 }
                 Ok(chosen)
             }
-            &Self::Angle(degrees) => bent(mesh, degrees),
+            &Self::Angle(degrees) => faces_along_folds(mesh, degrees),
         }
     }
 }
@@ -96,7 +96,7 @@ pub(crate) fn triangle<M: MeshQuery>(
 
 /// Returns whether a triangle and a box have a point in common. They have no common point if their
 /// projections on some line are apart; thirteen lines are enough (Akenine-Möller 2001).
-fn touches(corners: [Point; 3], min: Point, max: Point) -> bool {
+fn intersects_box(corners: [Point; 3], min: Point, max: Point) -> bool {
     let [a, b, c] = corners;
     // Cuts the box to the bounds of the triangle; this tests the three lines along the axes.
     let (min, max) = (min.max(a.min(b).min(c)), max.min(a.max(b).max(c)));
@@ -107,23 +107,24 @@ fn touches(corners: [Point; 3], min: Point, max: Point) -> bool {
     let [min, max] = [min, max].map(Point::as_dvec3);
     let sides = [0, 1, 2].map(|i| corners[(i + 1) % 3] - corners[i]);
     let axes = [Point::X, Point::Y, Point::Z].map(Point::as_dvec3);
-    let across = sides
+    let edge_products = sides
         .iter()
         .flat_map(|side| axes.map(|axis| side.cross(axis)));
-    let mut lines = across.chain([sides[0].cross(sides[1])]);
+    let mut lines = edge_products.chain([sides[0].cross(sides[1])]);
     lines.all(|line| {
-        let shadow = corners.map(|corner| line.dot(corner));
+        let projections = corners.map(|corner| line.dot(corner));
         let (low, high) = (line * min, line * max);
         let least = low.min(high).element_sum();
         let most = low.max(high).element_sum();
         // Allows for rounding in sums of products of three differences: contact must not be missed.
-        let slack = 1e-12 * line.abs().dot(min.abs().max(max.abs()));
-        shadow.iter().any(|&at| at >= least - slack) && shadow.iter().any(|&at| at <= most + slack)
+        let tolerance = 1e-12 * line.abs().dot(min.abs().max(max.abs()));
+        projections.iter().any(|&at| at >= least - tolerance)
+            && projections.iter().any(|&at| at <= most + tolerance)
     })
 }
 
 /// Returns the faces along edges that bend by more than `degrees`.
-fn bent<M: MeshQuery>(mesh: &M, degrees: f32) -> Result<Vec<FaceId>, LocalError> {
+fn faces_along_folds<M: MeshQuery>(mesh: &M, degrees: f32) -> Result<Vec<FaceId>, LocalError> {
     let mut numbers = mesh.face_map(FaceId::new(0));
     let mut chosen = vec![false; mesh.face_count()];
     for (number, f) in (0..).zip(mesh.faces()) {
@@ -131,7 +132,7 @@ fn bent<M: MeshQuery>(mesh: &M, degrees: f32) -> Result<Vec<FaceId>, LocalError>
         triangle(mesh, f, FaceId::new(number))?;
     }
     // The normal of a face, and whether it runs from `a` to `b`.
-    let seen = |f: M::Face, a: M::Vertex, b: M::Vertex| {
+    let normal_and_direction = |f: M::Face, a: M::Vertex, b: M::Vertex| {
         let corners: Vec<M::Vertex> = mesh.face_vertices(f).collect();
         let forward = (0..3).any(|i| corners[i] == a && corners[(i + 1) % 3] == b);
         let at = |i: usize| mesh.position(corners[i]).as_dvec3();
@@ -142,7 +143,8 @@ fn bent<M: MeshQuery>(mesh: &M, degrees: f32) -> Result<Vec<FaceId>, LocalError>
         let faces: Vec<M::Face> = mesh.edge_faces(e).collect();
         let is_bent = match faces[..] {
             [f, g] => {
-                let ((m, along), (n, other)) = (seen(f, a, b), seen(g, a, b));
+                let (m, along) = normal_and_direction(f, a, b);
+                let (n, other) = normal_and_direction(g, a, b);
                 // If both run in the same direction, one of the normals points to the other side.
                 let n = if along == other { -n } else { n };
                 let angle = m.cross(n).length().atan2(m.dot(n));
@@ -171,7 +173,7 @@ mod tests {
     #[test]
     fn a_box_selects_the_triangles_it_touches() {
         let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 4.0]].map(Point::from);
-        let near = |min: [f32; 3], max: [f32; 3]| touches(corners, min.into(), max.into());
+        let near = |min: [f32; 3], max: [f32; 3]| intersects_box(corners, min.into(), max.into());
         assert!(
             near([1.0, 1.0, 1.0], [1.0, 1.0, 1.0]),
             "a point in the plane"
@@ -193,7 +195,7 @@ mod tests {
         );
         assert!(!near([5.0, 0.0, 0.0], [9.0, 9.0, 9.0]), "outside");
         let side = [[0.0, 0.0, 0.0], [2.0, 2.0, 0.1], [4.0, 4.0, 0.0]].map(Point::from);
-        let upright = |min: [f32; 3], max: [f32; 3]| touches(side, min.into(), max.into());
+        let upright = |min: [f32; 3], max: [f32; 3]| intersects_box(side, min.into(), max.into());
         assert!(upright([0.9, 0.9, 0.0], [1.0, 1.0, 9.0]));
         assert!(!upright([0.9, 1.1, 0.0], [1.0, 1.2, 9.0]));
     }

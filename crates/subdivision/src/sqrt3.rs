@@ -29,20 +29,20 @@ use std::f64::consts::TAU;
 use sixfold_core::{Creases, FaceList, MAX_ROWS, MeshQuery, Point, PolygonError, PolygonMesh};
 use sixfold_core::{Refine, Split, VertexId};
 
+use crate::connectivity::Connectivity;
 use crate::error::SubdivisionError;
 use crate::gather::{corner_sum, neighbour_sum};
 use crate::manifold;
-use crate::native::place;
+use crate::native::compute_rows;
 use crate::scheme::Scheme;
-use crate::sheet::Sheet;
 use crate::step::Step;
 
 /// Number of valences with precomputed α, from 0; few vertices have a higher valence.
-const LOOKED_UP: usize = 16;
+const PRECOMPUTED: usize = 16;
 
 /// The weights of Kobbelt (2000).
 struct Sqrt3 {
-    alphas: [f32; LOOKED_UP],
+    alphas: [f32; PRECOMPUTED],
 }
 
 /// Returns the total weight of all `valence` neighbours.
@@ -77,7 +77,7 @@ fn face_point(corners: Point) -> Point {
 
 /// Runs one step with queries for each new point.
 pub(crate) fn gather<M: MeshQuery>(mesh: &M, trisect: bool) -> Result<Step, SubdivisionError> {
-    let sheet = Sheet::gathered(mesh, Scheme::Sqrt3)?;
+    let connectivity = Connectivity::gathered(mesh, Scheme::Sqrt3)?;
     let scheme = Sqrt3::new();
     let old: Vec<Point> = mesh.vertices().map(|v| mesh.position(v)).collect();
     let mut points = Vec::with_capacity(old.len() + mesh.face_count());
@@ -86,17 +86,17 @@ pub(crate) fn gather<M: MeshQuery>(mesh: &M, trisect: bool) -> Result<Step, Subd
         scheme.vertex(mesh.position(v), sum, valence)
     }));
     points.extend(mesh.faces().map(|f| face_point(corner_sum(mesh, f).0)));
-    finish(&sheet, &old, points, trisect)
+    finish(&connectivity, &old, points, trisect)
 }
 
 /// Runs one step with one pass over the faces.
 pub(crate) fn scatter<M: MeshQuery>(mesh: &M, trisect: bool) -> Result<Step, SubdivisionError> {
-    let sheet = Sheet::scattered(mesh, Scheme::Sqrt3)?;
+    let connectivity = Connectivity::scattered(mesh, Scheme::Sqrt3)?;
     let scheme = Sqrt3::new();
     let old: Vec<Point> = mesh.vertices().map(|v| mesh.position(v)).collect();
     let mut sums = vec![(Point::ZERO, 0); old.len()];
-    for edge in sheet.edges() {
-        let [a, b] = sheet.ends(edge.first).map(|v| v as usize);
+    for edge in connectivity.edges() {
+        let [a, b] = connectivity.ends(edge.first).map(|v| v as usize);
         for (v, far) in [(a, b), (b, a)] {
             sums[v].0 += old[far];
             sums[v].1 += 1;
@@ -105,9 +105,9 @@ pub(crate) fn scatter<M: MeshQuery>(mesh: &M, trisect: bool) -> Result<Step, Sub
     let mut points = Vec::with_capacity(old.len() + mesh.face_count());
     let vertices = old.iter().zip(sums);
     points.extend(vertices.map(|(&at, (sum, valence))| scheme.vertex(at, sum, valence)));
-    let faces = sheet.corners.as_chunks::<3>().0.iter();
+    let faces = connectivity.corners.as_chunks::<3>().0.iter();
     points.extend(faces.map(|face| face_point(face.iter().map(|&v| old[v as usize]).sum())));
-    finish(&sheet, &old, points, trisect)
+    finish(&connectivity, &old, points, trisect)
 }
 
 /// Runs one step in the tables of the structure.
@@ -117,31 +117,36 @@ pub(crate) fn native<M: Refine>(
     trisect: bool,
     child: &mut M,
 ) -> Result<Creases, SubdivisionError> {
-    let rim = Rim::of(manifold::boundary(mesh, numbers, Scheme::Sqrt3)?);
+    let boundary = BoundaryCurves::new(manifold::boundary_edges(mesh, numbers, Scheme::Sqrt3)?);
     mesh.split_into(Split::Sqrt3 { trisect }, numbers, child)?;
     let scheme = Sqrt3::new();
     let (vertices, points) = child.positions_mut().split_at_mut(mesh.vertex_count());
     let (faces, cuts) = points.split_at_mut(mesh.face_count());
-    place(faces, |f| face_point(corner_sum(mesh, f).0));
-    place(vertices, |v| {
+    compute_rows(faces, |f| face_point(corner_sum(mesh, f).0));
+    compute_rows(vertices, |v| {
         let (sum, valence) = neighbour_sum(mesh, v);
         scheme.vertex(mesh.position(v), sum, valence)
     });
-    rim.place(trisect, mesh.position_rows(), vertices, cuts);
+    boundary.place(trisect, mesh.position_rows(), vertices, cuts);
     Ok(Creases::default())
 }
 
 /// Places the boundary, and builds the triangles.
 fn finish(
-    sheet: &Sheet,
+    connectivity: &Connectivity,
     old: &[Point],
     mut points: Vec<Point>,
     trisect: bool,
 ) -> Result<Step, SubdivisionError> {
-    let open = || sheet.edges().iter().filter(|edge| edge.second.is_none());
-    let rim = Rim::of(open().map(|edge| sheet.ends(edge.first)).collect());
-    let cut = if trisect { rim.sides.len() } else { 0 };
-    let size = 3 * sheet.corners.len() + 6 * cut;
+    let open = || {
+        connectivity
+            .edges()
+            .iter()
+            .filter(|edge| edge.second.is_none())
+    };
+    let boundary = BoundaryCurves::new(open().map(|edge| connectivity.ends(edge.first)).collect());
+    let cut = if trisect { boundary.sides.len() } else { 0 };
+    let size = 3 * connectivity.corners.len() + 6 * cut;
     if size > MAX_ROWS {
         let (elements, limit) = ("corners", MAX_ROWS);
         return Err(PolygonError::TooMany { elements, limit }.into());
@@ -149,20 +154,27 @@ fn finish(
     let first_cut = points.len() as u32;
     points.resize(points.len() + 2 * cut, Point::ZERO);
     let (vertices, rest) = points.split_at_mut(old.len());
-    let (_, cuts) = rest.split_at_mut(sheet.corners.len() / 3);
-    rim.place(trisect, old, vertices, cuts);
+    let (_, cuts) = rest.split_at_mut(connectivity.corners.len() / 3);
+    boundary.place(trisect, old, vertices, cuts);
     // By side: the first of the two points of a boundary side.
-    let mut cut_of = vec![0; if trisect { sheet.corners.len() } else { 0 }];
+    let mut cut_of = vec![
+        0;
+        if trisect {
+            connectivity.corners.len()
+        } else {
+            0
+        }
+    ];
     if trisect {
         for (rank, edge) in (0..).zip(open()) {
             cut_of[edge.first as usize] = first_cut + 2 * rank;
         }
     }
     let mut corners = Vec::with_capacity(size);
-    for side in 0..sheet.corners.len() as u32 {
+    for side in 0..connectivity.corners.len() as u32 {
         let face = |side: u32| old.len() as u32 + side / 3;
-        let ([a, b], centre) = (sheet.ends(side), face(side));
-        match sheet.across(side) {
+        let ([a, b], centre) = (connectivity.ends(side), face(side));
+        match connectivity.twin(side) {
             Some(other) => corners.extend([a, face(other), centre]),
             None if trisect => {
                 let near = cut_of[side as usize];
@@ -179,15 +191,15 @@ fn finish(
 }
 
 /// The boundary of a mesh, as curves.
-struct Rim {
+struct BoundaryCurves {
     /// Its edges in their order, each in the direction of its face.
     sides: Vec<[u32; 2]>,
     /// The same edges from both ends, sorted.
     spokes: Vec<[u32; 2]>,
 }
 
-impl Rim {
-    fn of(sides: Vec<[u32; 2]>) -> Self {
+impl BoundaryCurves {
+    fn new(sides: Vec<[u32; 2]>) -> Self {
         let both = sides.iter().flat_map(|&[a, b]| [[a, b], [b, a]]);
         let mut spokes: Vec<[u32; 2]> = both.collect();
         spokes.sort_unstable();
@@ -208,12 +220,12 @@ impl Rim {
             };
         }
         for (&[a, b], cuts) in self.sides.iter().zip(cuts.as_chunks_mut().0) {
-            *cuts = [self.third(a, b, at), self.third(b, a, at)];
+            *cuts = [self.third_point(a, b, at), self.third_point(b, a, at)];
         }
     }
 
     /// Returns the point between `near` and `far` that is nearer to `near`.
-    fn third(&self, near: u32, far: u32, at: impl Fn(u32) -> Point) -> Point {
+    fn third_point(&self, near: u32, far: u32, at: impl Fn(u32) -> Point) -> Point {
         let first = self.spokes.partition_point(|spoke| spoke[0] < near);
         let around = self.spokes[first..].iter();
         let mut others = around
@@ -235,8 +247,8 @@ mod tests {
     use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
-    use crate::alike::{
-        all_ways, assert_affine, assert_alike, assert_near, assert_same_on_threads, built,
+    use crate::test_support::{
+        all_methods, assert_affine, assert_equivalent, assert_near, assert_same_on_threads, build,
         triangle_mesh,
     };
     use crate::{Method, Subdivision, subdivide};
@@ -267,7 +279,7 @@ mod tests {
     #[test]
     fn a_tetrahedron_matches_the_paper() {
         let tetrahedron = sixfold_shapes::tetrahedron();
-        for mesh in all_ways(Scheme::Sqrt3, &tetrahedron, 0).expect("triangles") {
+        for mesh in all_methods(Scheme::Sqrt3, &tetrahedron, 0).expect("triangles") {
             assert_eq!([mesh.vertex_count(), mesh.face_count()], [8, 12]);
             let centre = tetrahedron.positions().iter().sum::<Point>() * 0.25;
             for (v, &old) in tetrahedron.positions().iter().enumerate() {
@@ -304,7 +316,7 @@ mod tests {
                 "{expected}"
             );
         }
-        for mesh in all_ways(Scheme::Sqrt3, &triangle, 1).expect("a triangle") {
+        for mesh in all_methods(Scheme::Sqrt3, &triangle, 1).expect("a triangle") {
             assert_eq!(mesh.face_count(), 9);
         }
     }
@@ -313,7 +325,7 @@ mod tests {
     fn edges_at_a_crossing_of_boundaries_are_cut_in_thirds() {
         let corners = [0.0, 1.0, 2.0, 3.0, 4.0].map(|x| Point::new(x, x * x, 0.0));
         let bow_tie = PolygonMesh::new(corners, [[0, 1, 2], [0, 3, 4]]).expect("two triangles");
-        let mesh: IndexedFaceSet = built(&bow_tie);
+        let mesh: IndexedFaceSet = build(&bow_tie);
         let step = gather(&mesh, true).expect("edges of one face");
         assert_eq!(step.polygons.positions()[0], corners[0]);
         let third = |p: &Point| p.distance(corners[0].lerp(corners[1], 1.0 / 3.0)) < 1e-6;
@@ -359,14 +371,14 @@ mod tests {
         let faces = expected.iter().map(|face| face.map(|v| v as u32));
         let expected = PolygonMesh::new(twice.positions(), faces);
         let expected = expected.expect("the vertices of the torus");
-        assert_alike(&expected, &twice, twice.vertex_count());
+        assert_equivalent(&expected, &twice, twice.vertex_count());
     }
 
     #[test]
     fn non_manifold_edges_return_errors() {
         let corners = [0.0, 1.0, 2.0, 3.0, 4.0].map(Point::splat);
-        let refused = |faces: &[[u32; 3]]| {
-            let mesh: IndexedFaceSet = built(&PolygonMesh::new(corners, faces).expect("valid"));
+        let error_of = |faces: &[[u32; 3]]| {
+            let mesh: IndexedFaceSet = build(&PolygonMesh::new(corners, faces).expect("valid"));
             let none = Creases::default();
             let scheme = Subdivision::new(Scheme::Sqrt3);
             let errors = [
@@ -381,8 +393,8 @@ mod tests {
             ends: [a, b].map(VertexId::new),
             faces,
         };
-        assert_eq!(refused(&[[0, 1, 2], [1, 0, 3], [0, 1, 4]]), error(0, 1, 3));
-        assert_eq!(refused(&[[0, 1, 2], [0, 1, 3]]), error(0, 1, 2));
+        assert_eq!(error_of(&[[0, 1, 2], [1, 0, 3], [0, 1, 4]]), error(0, 1, 3));
+        assert_eq!(error_of(&[[0, 1, 2], [0, 1, 3]]), error(0, 1, 2));
     }
 
     #[test]
@@ -395,9 +407,9 @@ mod tests {
         #[test]
         fn all_methods_agree(mesh in triangle_mesh(), level in 0..2_u32) {
             let known = mesh.vertex_count() + mesh.face_count();
-            let meshes = all_ways(Scheme::Sqrt3, &mesh, level).expect("a manifold");
+            let meshes = all_methods(Scheme::Sqrt3, &mesh, level).expect("a manifold");
             for other in &meshes[1..] {
-                assert_alike(&meshes[0], other, known);
+                assert_equivalent(&meshes[0], other, known);
             }
         }
 

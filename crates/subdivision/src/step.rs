@@ -17,7 +17,7 @@ pub struct Step {
 }
 
 /// The points and corners made so far.
-pub(crate) struct Outline {
+pub(crate) struct StepBuilder {
     split: Split,
     vertices: usize,
     expected_edges: usize,
@@ -26,10 +26,10 @@ pub(crate) struct Outline {
     pub(crate) points: Vec<Point>,
 }
 
-impl Outline {
-    /// Builds an empty outline with capacity for the split of `mesh`, whose faces have `corners`
+impl StepBuilder {
+    /// Builds an empty mesh with capacity for the split of `mesh`, whose faces have `corners`
     /// corners in total.
-    pub(crate) fn of<M: MeshQuery>(split: Split, mesh: &M, corners: usize) -> Self {
+    pub(crate) fn new<M: MeshQuery>(split: Split, mesh: &M, corners: usize) -> Self {
         let (vertices, faces) = (mesh.vertex_count(), mesh.face_count());
         // Exact on a closed mesh and, by Euler's formula, close on a mesh with boundaries. If there are
         // more edges, the tables grow.
@@ -85,14 +85,14 @@ impl Outline {
     /// Splits a face with these corners; `middles` are the points of the sides that start there.
     #[inline(always)]
     pub(crate) fn split_face(&mut self, corners: &[u32], middles: &[u32], face_point: u32) {
-        let mut before = middles[middles.len() - 1];
+        let mut prev = middles[middles.len() - 1];
         for (&corner, &middle) in corners.iter().zip(middles) {
             let part = match self.split {
-                Split::Quads => &[corner, middle, face_point, before][..],
-                _ => &[corner, middle, before],
+                Split::Quads => &[corner, middle, face_point, prev][..],
+                _ => &[corner, middle, prev],
             };
             self.corners.extend(part.iter().map(|&v| VertexId::new(v)));
-            before = middle;
+            prev = middle;
         }
         if self.split == Split::Triangles {
             self.corners
@@ -113,28 +113,28 @@ impl Outline {
 }
 
 /// The vertices with a crease, so that few edges are looked up.
-pub(crate) struct Marked(Vec<bool>);
+pub(crate) struct CreaseVertices(Vec<bool>);
 
-impl Marked {
-    pub(crate) fn of(creases: &Creases, vertices: usize) -> Self {
+impl CreaseVertices {
+    pub(crate) fn new(creases: &Creases, vertices: usize) -> Self {
         if creases.edges().is_empty() {
             return Self(Vec::new());
         }
-        let mut marked = vec![false; vertices];
+        let mut has_crease = vec![false; vertices];
         for v in creases.edges().iter().flat_map(|(ends, _)| ends.ends()) {
-            marked[v.index()] = true;
+            has_crease[v.index()] = true;
         }
-        Self(marked)
+        Self(has_crease)
     }
 
     /// Returns the sharpness of the edge between two vertices.
-    pub(crate) fn sharpness(&self, creases: &Creases, ends: [u32; 2], by_nature: bool) -> f32 {
-        if by_nature {
+    pub(crate) fn sharpness(&self, creases: &Creases, ends: [u32; 2], by_topology: bool) -> f32 {
+        if by_topology {
             return f32::INFINITY;
         }
         let [a, b] = ends;
-        let marked = |v: u32| self.0.get(v as usize).is_some_and(|&marked| marked);
-        if marked(a) && marked(b) {
+        let has_crease = |v: u32| self.0.get(v as usize).is_some_and(|&has_crease| has_crease);
+        if has_crease(a) && has_crease(b) {
             creases.edge(VertexId::new(a), VertexId::new(b))
         } else {
             0.0

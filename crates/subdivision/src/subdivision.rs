@@ -51,8 +51,8 @@ impl Subdivision {
 
     /// Runs one step with queries for each new point.
     ///
-    /// `creases` are those of `mesh.to_polygons()`, from [`control`](Self::control) or the step
-    /// before; `level` is the number of steps before this one.
+    /// `creases` are those of `mesh.to_polygons()`, from [`control_creases`](Self::control_creases)
+    /// or the step before; `level` is the number of steps before this one.
     ///
     /// # Errors
     ///
@@ -65,7 +65,7 @@ impl Subdivision {
     ) -> Result<Step, SubdivisionError> {
         let corners = self.check(mesh)?;
         by_mask!(self, mask => gather::step(mesh, mask, creases, self.creasing, corners), {
-            Scheme::Sqrt3 => sqrt3::gather(mesh, is_second(level)),
+            Scheme::Sqrt3 => sqrt3::gather(mesh, trisects(level)),
             Scheme::Butterfly => butterfly::gather(mesh),
             Scheme::DooSabin => doo_sabin::gather(mesh),
         })
@@ -86,8 +86,8 @@ impl Subdivision {
     ) -> Result<Step, SubdivisionError> {
         let corners = self.check(mesh)?;
         by_mask!(self, mask => scatter::step(mesh, mask, creases, self.creasing, corners), {
-            Scheme::Sqrt3 => sqrt3::scatter(mesh, is_second(level)),
-            Scheme::Butterfly => Err(self.no_method(Method::Scatter, "gather or native")),
+            Scheme::Sqrt3 => sqrt3::scatter(mesh, trisects(level)),
+            Scheme::Butterfly => Err(self.method_error(Method::Scatter, "gather or native")),
             Scheme::DooSabin => doo_sabin::scatter(mesh),
         })
     }
@@ -112,9 +112,9 @@ impl Subdivision {
     ) -> Result<Creases, SubdivisionError> {
         mesh.number_edges(numbers);
         by_mask!(self, mask => native::step(mesh, mask, creases, self.creasing, numbers, child), {
-            Scheme::Sqrt3 => sqrt3::native(mesh, numbers, is_second(level), child),
+            Scheme::Sqrt3 => sqrt3::native(mesh, numbers, trisects(level), child),
             Scheme::Butterfly => butterfly::native(mesh, numbers, child),
-            Scheme::DooSabin => Err(self.not_by_polygons()),
+            Scheme::DooSabin => Err(self.native_error()),
         })
     }
 
@@ -122,7 +122,7 @@ impl Subdivision {
     pub fn split(&self, level: u32) -> Option<Split> {
         match self.scheme.kind().split? {
             Split::Sqrt3 { .. } => Some(Split::Sqrt3 {
-                trisect: is_second(level),
+                trisect: trisects(level),
             }),
             split => Some(split),
         }
@@ -138,11 +138,11 @@ impl Subdivision {
 
     /// Returns the error for a native step that starts from polygons or that the scheme does not
     /// have.
-    pub(crate) fn not_by_polygons(&self) -> SubdivisionError {
-        self.no_method(Method::Native, "gather or scatter")
+    pub(crate) fn native_error(&self) -> SubdivisionError {
+        self.method_error(Method::Native, "gather or scatter")
     }
 
-    fn no_method(&self, method: Method, choice: &'static str) -> SubdivisionError {
+    fn method_error(&self, method: Method, choice: &'static str) -> SubdivisionError {
         SubdivisionError::NoMethod {
             scheme: self.scheme,
             method,
@@ -154,15 +154,15 @@ impl Subdivision {
     /// result; O(faces). Returns the total number of corners of the faces.
     fn check<M: MeshQuery>(&self, mesh: &M) -> Result<usize, SubdivisionError> {
         let kind = self.scheme.kind();
-        let (mut corners, mut odd) = (0, None);
+        let (mut corners, mut non_triangle) = (0, None);
         for (number, f) in (0..).zip(mesh.faces()) {
             let degree = mesh.face_vertices(f).count();
             corners += degree;
-            if degree != 3 && kind.takes == "triangles" && odd.is_none() {
-                odd = Some((FaceId::new(number), degree));
+            if degree != 3 && kind.takes == "triangles" && non_triangle.is_none() {
+                non_triangle = Some((FaceId::new(number), degree));
             }
         }
-        if let Some((face, degree)) = odd {
+        if let Some((face, degree)) = non_triangle {
             let scheme = self.scheme;
             return Err(SubdivisionError::NotATriangle {
                 scheme,
@@ -182,6 +182,6 @@ impl Subdivision {
 }
 
 /// Returns whether √3 cuts boundary edges in step `level`, counted from 0.
-fn is_second(level: u32) -> bool {
+fn trisects(level: u32) -> bool {
     level % 2 == 1
 }

@@ -20,9 +20,9 @@ pub(crate) fn normal([a, b]: [Point; 2], rounding: f32) -> Option<Point> {
 
 /// Estimates the error of a sum over the points around `at`, because positions are rounded.
 pub(crate) fn rounding(at: Point, around: &[Point]) -> f32 {
-    let reach = around.iter().map(|p| p.length()).fold(0.0, f32::max);
+    let radius = around.iter().map(|p| p.length()).fold(0.0, f32::max);
     // The weights are up to six.
-    6.0 * f32::EPSILON * around.len() as f32 * (at.length() + reach)
+    6.0 * f32::EPSILON * around.len() as f32 * (at.length() + radius)
 }
 
 /// Returns the neighbour after `v` in `f`, and the position of the corner opposite to `v`, if `f`
@@ -55,7 +55,7 @@ pub(crate) fn far_corner<M: MeshQuery>(
 ///     e₂ ── v ─── e₀
 /// ```
 pub(crate) struct Fan<V> {
-    pub(crate) names: Vec<V>,
+    pub(crate) neighbours: Vec<V>,
     pub(crate) is_closed: bool,
     edges: Vec<Point>,
     far: Vec<Point>,
@@ -66,30 +66,26 @@ pub(crate) struct Fan<V> {
 impl<V: Handle> Fan<V> {
     /// Builds the fan; `None` if the faces have no such order, or if `surface` has no mask for a
     /// face.
-    pub(crate) fn around<M: MeshQuery<Vertex = V>>(
-        mesh: &M,
-        v: V,
-        surface: Surface,
-    ) -> Option<Self> {
+    pub(crate) fn new<M: MeshQuery<Vertex = V>>(mesh: &M, v: V, surface: Surface) -> Option<Self> {
         let at = mesh.position(v);
-        let names: Vec<V> = mesh.one_ring(v)?.collect();
+        let neighbours: Vec<V> = mesh.one_ring(v)?.collect();
         let faces = mesh.vertex_faces(v);
-        let edges = names.iter().map(|&name| mesh.position(name) - at);
+        let edges = neighbours.iter().map(|&w| mesh.position(w) - at);
         let edges: Vec<Point> = edges.collect();
         let (is_closed, far) = match surface {
             Surface::CatmullClark => {
                 let far: Option<Vec<(V, Point)>> = faces.map(|f| far_corner(mesh, v, f)).collect();
                 let mut far = far?;
                 far.sort_unstable_by_key(|&(after, _)| after);
-                let place = |name: &V| far.binary_search_by_key(name, |&(after, _)| after).ok();
-                let ordered = names.iter().filter_map(place);
+                let place = |w: &V| far.binary_search_by_key(w, |&(after, _)| after).ok();
+                let ordered = neighbours.iter().filter_map(place);
                 let ordered = ordered.map(|place| far[place].1 - at).collect();
-                (far.len() == names.len(), ordered)
+                (far.len() == neighbours.len(), ordered)
             }
-            Surface::Loop(_) => (faces.count() == names.len(), Vec::new()),
+            Surface::Loop(_) => (faces.count() == neighbours.len(), Vec::new()),
         };
         Some(Self {
-            names,
+            neighbours,
             is_closed,
             rounding: rounding(at, &edges),
             edges,
@@ -116,13 +112,13 @@ impl<V: Handle> Fan<V> {
     pub(crate) fn sector(&self, from: usize, to: usize) -> Sector {
         let n = self.edges.len();
         let faces = if to > from { to - from } else { to + n - from };
-        let turned = |points: &[Point], count: usize| {
+        let rotated = |points: &[Point], count: usize| {
             let all = points.iter().cycle().skip(from);
             all.take(count).copied().collect()
         };
         Sector {
-            edges: turned(&self.edges, faces + 1),
-            far: turned(&self.far, faces),
+            edges: rotated(&self.edges, faces + 1),
+            far: rotated(&self.far, faces),
         }
     }
 }
@@ -169,13 +165,14 @@ impl Sector {
         };
         // The weight l, from the columns of e₀ and of the vertex, whose weight makes the sum zero.
         let mode = surface.mode(angle);
-        let ends = (8.0 * mode.spill * angle.sin() - mode.weight() / (angle / 2.0).tan())
+        let ends = (8.0 * mode.neighbour_weight * angle.sin()
+            - mode.weight() / (angle / 2.0).tan())
             / (8.0 * mode.value - 2.0);
         let across = inside(mode, angle) + (first + last) * ends as f32;
         let second = surface.mode(2.0 * angle);
-        let ahead = second.value - 0.5;
-        let along = if ahead > 1e-9 {
-            let ends = second.spill * (2.0 * angle).sin() / ahead;
+        let gap = second.value - 0.5;
+        let along = if gap > 1e-9 {
+            let ends = second.neighbour_weight * (2.0 * angle).sin() / gap;
             inside(second, 2.0 * angle) + (first - last) * ends as f32
         } else {
             first - last
@@ -201,7 +198,7 @@ struct Mode {
     /// The amplitude at far corners, for each of their two edges.
     far: f64,
     /// The weight of an old neighbour in the new points next to it.
-    spill: f64,
+    neighbour_weight: f64,
 }
 
 impl Surface {
@@ -217,14 +214,14 @@ impl Surface {
                     value,
                     edge,
                     far: 1.0,
-                    spill: value,
+                    neighbour_weight: value,
                 }
             }
             Self::Loop(_) => Mode {
                 value: 0.375 + 0.25 * cos,
                 edge: 1.0,
                 far: 0.0,
-                spill: 0.125,
+                neighbour_weight: 0.125,
             },
         }
     }

@@ -115,8 +115,9 @@ pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
     e: EdgeId,
     v: VertexId,
     at: EdgeId,
-    /// The other end, and the first edge there.
-    then: Option<(VertexId, EdgeId)>,
+    /// The start of the walk around the other end: this end and the first edge there. `None` during
+    /// that walk.
+    next_walk: Option<(VertexId, EdgeId)>,
 }
 
 impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
@@ -131,7 +132,7 @@ impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
             e,
             v,
             at,
-            then: Some((other, there)),
+            next_walk: Some((other, there)),
         }
     }
 }
@@ -142,7 +143,7 @@ impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
     #[inline]
     fn next(&mut self) -> Option<EdgeId> {
         while self.at == self.e {
-            (self.v, self.at) = self.then.take()?;
+            (self.v, self.at) = self.next_walk.take()?;
         }
         let edge = self.at;
         self.at = Run::from(self.mesh.record(edge), self.v).ccw();
@@ -156,7 +157,7 @@ impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
             e,
             mut v,
             mut at,
-            mut then,
+            mut next_walk,
         } = self;
         let mut folded = init;
         loop {
@@ -164,7 +165,7 @@ impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
                 folded = f(folded, at);
                 at = Run::from(mesh.record(at), v).ccw();
             }
-            match then.take() {
+            match next_walk.take() {
                 Some(other) => (v, at) = other,
                 None => return folded,
             }
@@ -179,25 +180,26 @@ mod tests {
     use super::*;
     use crate::mesh::WingedEdgeMesh;
 
-    /// Builds a polygon with `3 * petals` sides, and petals that share three sides with it each.
-    fn flower(petals: u32) -> WingedEdgeMesh {
-        let sides = 3 * petals;
-        let corners = vec![Point::ZERO; (sides + petals) as usize];
-        let petal = |p: u32| {
-            let [a, b, c, d] = [0, 1, 2, 3].map(|i| (3 * p + i) % sides);
-            vec![d, c, b, a, sides + p]
+    /// Builds a polygon with `3 * count` sides, and `count` neighbours that share three sides with
+    /// it each.
+    fn polygon_with_neighbours(count: u32) -> WingedEdgeMesh {
+        let sides = 3 * count;
+        let corners = vec![Point::ZERO; (sides + count) as usize];
+        let neighbour = |n: u32| {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|i| (3 * n + i) % sides);
+            vec![d, c, b, a, sides + n]
         };
-        let faces = std::iter::once((0..sides).collect()).chain((0..petals).map(petal));
+        let faces = std::iter::once((0..sides).collect()).chain((0..count).map(neighbour));
         let polygons = PolygonMesh::new(corners, faces).expect("valid");
         WingedEdgeMesh::from_polygons(&polygons).expect("manifold")
     }
 
     #[test]
     fn a_face_with_many_sides_lists_each_neighbour_once() {
-        for petals in [2, 3, 4, 5, 31, 32, 33, 34, 300] {
-            let mesh = flower(petals);
+        for count in [2, 3, 4, 5, 31, 32, 33, 34, 300] {
+            let mesh = polygon_with_neighbours(count);
             let middle = FaceId::new(0);
-            let expected: Vec<FaceId> = (1..=petals).map(FaceId::new).collect();
+            let expected: Vec<FaceId> = (1..=count).map(FaceId::new).collect();
             let folded = mesh.face_faces(middle).fold(Vec::new(), |mut faces, f| {
                 faces.push(f);
                 faces
@@ -211,15 +213,16 @@ mod tests {
                 faces
             });
             assert_eq!(rest, expected);
-            for petal in expected {
-                assert!(mesh.face_faces(petal).eq([middle]), "{petal} of {petals}");
+            for neighbour in expected {
+                let is_only_neighbour = mesh.face_faces(neighbour).eq([middle]);
+                assert!(is_only_neighbour, "{neighbour} of {count}");
             }
         }
     }
 
     #[test]
     fn a_walk_continued_after_some_steps_ends_at_the_same_place() {
-        let mesh = flower(4);
+        let mesh = polygon_with_neighbours(4);
         for v in mesh.vertices() {
             let whole: Vec<EdgeId> = mesh.vertex_edges(v).collect();
             let mut rest = mesh.vertex_edges(v);

@@ -19,7 +19,7 @@ impl<E: Editing> Representation for AnyWingedEdgeMesh<Untraced, E> {
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
 
     fn type_path() -> &'static str {
-        match E::DELETES {
+        match E::CAN_DELETE {
             true => "sixfold_winged_edge::EditableWingedEdgeMesh",
             false => "sixfold_winged_edge::WingedEdgeMesh",
         }
@@ -28,32 +28,32 @@ impl<E: Editing> Representation for AnyWingedEdgeMesh<Untraced, E> {
     /// Pairs the sides, writes each side into its edge, then links the boundary loops, without
     /// hashing; O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
-        let refusal = || Self::CAPABILITIES.refusal(polygons);
+        let error = || Self::CAPABILITIES.build_error(polygons);
         let faces = polygons.faces();
         // Uses separate scratch memory. The rows of the edges are four times as large: if the sides
         // were sorted in them, they would not fit in the caches, and building 392,000 triangles
         // took 1.5× the time.
-        let pairs = TwinPairs::of(polygons.vertex_count(), faces).ok_or_else(refusal)?;
-        let mut draft = Draft::link(polygons.vertex_count(), faces, &pairs);
+        let pairs = TwinPairs::new(polygons.vertex_count(), faces).ok_or_else(error)?;
+        let mut builder = Builder::from_faces(polygons.vertex_count(), faces, &pairs);
         let closed = faces.corners().len() == 2 * pairs.edge_count;
-        if (!closed && !draft.close_boundary_loops()) || !draft.every_vertex_is_one_fan() {
-            return Err(refusal());
+        if (!closed && !builder.close_boundary_loops()) || !builder.every_vertex_is_one_fan() {
+            return Err(error());
         }
-        Ok(Self::of(
+        Ok(Self::from_tables(
             polygons.positions().to_vec(),
-            draft.spokes,
-            draft.edges,
-            draft.sides,
+            builder.spokes,
+            builder.edges,
+            builder.sides,
         ))
     }
 
     /// If there are holes, the rows after them get lower numbers.
     fn to_polygons(&self) -> PolygonMesh {
-        const FEW: &str = "no more corners than sides of edges";
+        const EXPECTED: &str = "no more corners than sides of edges";
         let mut faces = FaceList::with_capacity(2 * self.edge_count());
         if self.vertex_holes.is_empty() {
             for f in self.faces() {
-                faces.push(self.face_vertices(f)).expect(FEW);
+                faces.push(self.face_vertices(f)).expect(EXPECTED);
             }
             return PolygonMesh::from_faces(self.positions().to_vec(), faces).expect("I7");
         }
@@ -61,17 +61,17 @@ impl<E: Editing> Representation for AnyWingedEdgeMesh<Untraced, E> {
         for f in self.faces() {
             let corners = self.face_vertices(f);
             let corners = corners.map(|v| VertexId::new(rows[v.index()]));
-            faces.push(corners).expect(FEW);
+            faces.push(corners).expect(EXPECTED);
         }
         let positions = self.vertices().map(|v| self.positions()[v.index()]);
         PolygonMesh::from_faces(positions.collect(), faces).expect("I7")
     }
 
-    fn vertex_name(_: &PolygonMesh, v: VertexId) -> VertexId {
+    fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
         v
     }
 
-    fn face_name(_: &PolygonMesh, f: FaceId) -> FaceId {
+    fn face_handle(_: &PolygonMesh, f: FaceId) -> FaceId {
         f
     }
 
@@ -128,7 +128,7 @@ impl<E: Editing> Measured for AnyWingedEdgeMesh<Untraced, E> {
 
 impl<E: Editing> AnyWingedEdgeMesh<Untraced, E> {
     /// Builds a mesh from these tables, without holes.
-    pub(crate) fn of(
+    pub(crate) fn from_tables(
         positions: Vec<Point>,
         spokes: Vec<Slot<EdgeId>>,
         edges: Vec<Edge>,
@@ -147,32 +147,32 @@ impl<E: Editing> AnyWingedEdgeMesh<Untraced, E> {
 }
 
 /// The tables during construction.
-struct Draft {
+struct Builder {
     spokes: Vec<Slot<EdgeId>>,
     edges: Vec<Edge>,
     sides: Vec<EdgeId>,
 }
 
-impl Draft {
+impl Builder {
     /// Writes the side of every corner into its edge. Sides without a face stay blank, except for
     /// their ends.
-    fn link(vertices: usize, faces: &FaceList, pairs: &TwinPairs) -> Self {
-        let mut draft = Self {
+    fn from_faces(vertices: usize, faces: &FaceList, pairs: &TwinPairs) -> Self {
+        let mut builder = Self {
             spokes: vec![Slot::NONE; vertices],
             edges: vec![Edge::BLANK; pairs.edge_count],
             sides: Vec::with_capacity(faces.len()),
         };
         let halves = pairs.half_of_corner.as_slice();
         match faces.uniform_degree() {
-            Some(3) => draft.link_uniform::<3>(faces.corners(), halves),
-            Some(4) => draft.link_uniform::<4>(faces.corners(), halves),
+            Some(3) => builder.link_uniform::<3>(faces.corners(), halves),
+            Some(4) => builder.link_uniform::<4>(faces.corners(), halves),
             _ => {
                 for (f, corners) in faces.iter() {
-                    draft.link_face(f, corners, &halves[faces.range(f)]);
+                    builder.link_face(f, corners, &halves[faces.range(f)]);
                 }
             }
         }
-        draft
+        builder
     }
 
     /// Links faces of one degree, which is known at compile time so that the loop is unrolled.
@@ -189,8 +189,8 @@ impl Draft {
 
     #[inline(always)]
     fn link_face(&mut self, face: FaceId, corners: &[VertexId], halves: &[u32]) {
-        let name = |half: u32| EdgeId::new(half >> 1);
-        self.sides.push(name(halves[0]));
+        let edge_id = |half: u32| EdgeId::new(half >> 1);
+        self.sides.push(edge_id(halves[0]));
         let last = corners.len() - 1;
         for i in 0..corners.len() {
             let (next, prev) = (
@@ -198,14 +198,14 @@ impl Draft {
                 if i == 0 { last } else { i - 1 },
             );
             let (here, then) = (corners[i], corners[next]);
-            let edge = &mut self.edges[name(halves[i]).index()];
+            let edge = &mut self.edges[edge_id(halves[i]).index()];
             let side = Side::right_if(halves[i] & 1 == 1);
             // The even half-edge of a pair runs from the lower end to the higher end.
             edge.ends = [here.min(then), here.max(then)];
             edge.faces[side.index()] = Slot::some(face);
-            edge.next.link(side, name(halves[next]));
-            edge.prev.link(side, name(halves[prev]));
-            self.spokes[here.index()] = Slot::some(name(halves[i]));
+            edge.next.link(side, edge_id(halves[next]));
+            edge.prev.link(side, edge_id(halves[prev]));
+            self.spokes[here.index()] = Slot::some(edge_id(halves[i]));
         }
     }
 
@@ -250,20 +250,20 @@ impl Draft {
 
     /// Returns whether the walks around all vertices visit every edge twice, once from each end.
     fn every_vertex_is_one_fan(&self) -> bool {
-        let mut met = 0;
+        let mut visited = 0;
         for (v, spoke) in (0..).map(VertexId::new).zip(&self.spokes) {
             let Some(first) = spoke.get() else {
                 continue;
             };
             let mut e = first;
             loop {
-                met += 1;
+                visited += 1;
                 e = Run::from(&self.edges[e.index()], v).ccw();
                 if e == first {
                     break;
                 }
             }
         }
-        met == 2 * self.edges.len()
+        visited == 2 * self.edges.len()
     }
 }

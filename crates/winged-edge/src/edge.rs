@@ -27,7 +27,7 @@ pub struct Edge {
 }
 
 /// The value of both ends of a deleted edge; no vertex has this row.
-const NOWHERE: VertexId = VertexId::new(u32::MAX);
+const NO_VERTEX: VertexId = VertexId::new(u32::MAX);
 
 /// The value of the side of a deleted face; no edge has this row.
 pub(crate) const NO_EDGE: EdgeId = EdgeId::new(u32::MAX);
@@ -42,15 +42,15 @@ impl Edge {
     };
 
     /// The row of a deleted edge.
-    pub(crate) const HOLE: Self = Self {
-        ends: [NOWHERE; 2],
+    pub(crate) const DELETED: Self = Self {
+        ends: [NO_VERTEX; 2],
         ..Self::BLANK
     };
 
     /// Returns whether the edge is deleted.
     #[inline(always)]
-    pub(crate) fn is_hole(&self) -> bool {
-        self.ends[0] == NOWHERE
+    pub(crate) fn is_deleted(&self) -> bool {
+        self.ends[0] == NO_VERTEX
     }
 
     /// Returns the side without a face, if there is one.
@@ -97,7 +97,7 @@ pub(crate) struct Run<'a> {
 impl<'a> Run<'a> {
     /// Returns the run of `edge` along `side`.
     #[inline(always)]
-    pub(crate) fn on(edge: &'a Edge, side: Side) -> Self {
+    pub(crate) fn new(edge: &'a Edge, side: Side) -> Self {
         Self { edge, side }
     }
 
@@ -124,8 +124,8 @@ impl<'a> Run<'a> {
 
     /// Returns the run of the same edge along its other side.
     #[inline(always)]
-    pub(crate) fn back(self) -> Self {
-        Self::on(self.edge, self.side.other())
+    pub(crate) fn twin(self) -> Self {
+        Self::new(self.edge, self.side.other())
     }
 
     // No step waits for these four. A value that the side test has already read is selected, which
@@ -195,14 +195,14 @@ pub(crate) struct RunId {
 impl RunId {
     /// Returns the run of `edge` along `side`.
     #[inline(always)]
-    pub(crate) const fn on(edge: EdgeId, side: Side) -> Self {
+    pub(crate) const fn new(edge: EdgeId, side: Side) -> Self {
         Self { edge, side }
     }
 
     /// Returns the run of the same edge along its other side.
     #[inline(always)]
-    pub(crate) fn back(self) -> Self {
-        Self::on(self.edge, self.side.other())
+    pub(crate) fn twin(self) -> Self {
+        Self::new(self.edge, self.side.other())
     }
 }
 

@@ -16,21 +16,21 @@ use crate::mesh::{AnyWingedEdgeMesh, EditableWingedEdgeMesh, WingedEdgeMesh};
 mod add;
 mod collapse;
 mod compact;
-mod cut;
 mod flip;
 mod merge;
+mod primitives;
 mod remove;
+mod split;
 mod split_vertex;
-mod surgery;
 #[cfg(test)]
 mod tests;
 
 impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 
-    type Whole = WingedEdgeMesh<P>;
+    type Compact = WingedEdgeMesh<P>;
 
-    fn into_whole(mut self) -> WingedEdgeMesh<P> {
+    fn into_compact(mut self) -> WingedEdgeMesh<P> {
         self.compact(&mut ());
         AnyWingedEdgeMesh {
             positions: self.positions,
@@ -108,7 +108,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
     ) -> Result<VertexId, Refusal<Self>> {
         self.check_edge(e)?;
         self.check_room([1, 1, 0])?;
-        Ok(self.insert(e, at, log).0)
+        Ok(self.cut_edge(e, at, log).0)
     }
 
     /// O(1).
@@ -139,7 +139,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
         ends: [VertexId; 2],
         log: &mut impl EditLog<Self>,
     ) -> Result<EdgeId, Refusal<Self>> {
-        self.split(f, ends, log)
+        self.split_between(f, ends, log)
     }
 
     /// O(degree) of both faces. The larger face stays.
@@ -187,6 +187,6 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
 
     /// O(rows).
     fn compact(&mut self, log: &mut impl EditLog<Self>) {
-        self.close_holes(log);
+        self.compact_tables(log);
     }
 }

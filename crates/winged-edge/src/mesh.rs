@@ -1,8 +1,8 @@
 //! The tables, their invariants, and the classic operators.
 
 use sixfold_core::{
-    EDGE_HOLES, EdgeId, Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe, Slot, Table,
-    Untraced, VERTEX_HOLES, VertexId, Whole,
+    Compact, EDGE_HOLES, EdgeId, Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe,
+    Slot, Table, Untraced, VERTEX_HOLES, VertexId,
 };
 
 use crate::edge::{Edge, NO_EDGE, Run};
@@ -64,7 +64,7 @@ pub struct AnyWingedEdgeMesh<P: Probe, E: Editing> {
 sixfold_core::clone_by_field!(AnyWingedEdgeMesh<P: Probe, E: Editing> { positions, spokes, edges, sides, vertex_holes, edge_holes, face_holes });
 
 /// A winged-edge mesh that cannot delete elements: an [`AnyWingedEdgeMesh`] without holes.
-pub type WingedEdgeMesh<P = Untraced> = AnyWingedEdgeMesh<P, Whole>;
+pub type WingedEdgeMesh<P = Untraced> = AnyWingedEdgeMesh<P, Compact>;
 
 /// A winged-edge mesh that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an
 /// [`AnyWingedEdgeMesh`] with holes.
@@ -92,7 +92,7 @@ impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
     #[inline]
     pub fn edge(&self, e: EdgeId) -> &Edge {
         let edge = self.record(e);
-        if E::DELETES && edge.is_hole() {
+        if E::CAN_DELETE && edge.is_deleted() {
             no_such_edge(e);
         }
         edge
@@ -181,7 +181,7 @@ impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
     #[inline]
     pub fn side(&self, f: FaceId) -> EdgeId {
         let side = *self.sides.read(f.index());
-        if E::DELETES && side == NO_EDGE {
+        if E::CAN_DELETE && side == NO_EDGE {
             no_such_face(f);
         }
         side

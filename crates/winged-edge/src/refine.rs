@@ -38,8 +38,9 @@
 use std::ops::Range;
 
 use sixfold_core::{
-    Counts, EdgeId, FaceId, MeshQuery, NoHoles, PART, Point, Ranks, Refine, RefineError, RowId,
-    Slot, Split, Table, VertexId, all_rows, check_split, in_parts, row, row_parts, rows_of_part,
+    CHUNK_ROWS, Counts, EdgeId, FaceId, MeshQuery, NoHoles, Point, Ranks, Refine, RefineError,
+    RowId, Slot, Split, Table, VertexId, all_rows, check_split, chunk_starts, for_each_chunk, row,
+    rows_of_chunk,
 };
 
 use crate::edge::Edge;
@@ -71,13 +72,13 @@ impl Refine for WingedEdgeMesh {
         });
     }
 
-    fn edge_parts(&self, _: &Ranks) -> Vec<usize> {
-        row_parts(self.edges.len())
+    fn edge_chunks(&self, _: &Ranks) -> Vec<usize> {
+        chunk_starts(self.edges.len())
     }
 
     #[inline]
-    fn edges_of_part(&self, _: &Ranks, part: usize) -> impl Iterator<Item = EdgeId> {
-        rows_of_part(self.edges.len(), part).map(EdgeId::new)
+    fn edges_of_chunk(&self, _: &Ranks, chunk: usize) -> impl Iterator<Item = EdgeId> {
+        rows_of_chunk(self.edges.len(), chunk).map(EdgeId::new)
     }
 
     /// Returns the row of `e`; O(1).
@@ -168,15 +169,15 @@ impl WingedEdgeMesh {
     /// Refuses two triangles that share two edges: the vertex between these edges has no other
     /// edge.
     fn check_double_edges(&self) -> Result<(), RefineError> {
-        let twofold = |edge: &Edge| {
+        let is_double = |edge: &Edge| {
             let alone = edge.next.on(Side::LEFT) == edge.prev.on(Side::RIGHT);
             alone && !edge.faces.contains(&Slot::NONE)
         };
-        if all_rows(self.edge_records(), |edge| !twofold(edge)) {
+        if all_rows(self.edge_records(), |edge| !is_double(edge)) {
             return Ok(());
         }
-        let mut twofold = self.edge_records().iter().filter(|edge| twofold(edge));
-        match twofold.next().map(Edge::faces) {
+        let mut doubled = self.edge_records().iter().filter(|edge| is_double(edge));
+        match doubled.next().map(Edge::faces) {
             Some([Some(first), Some(second)]) => Err(RefineError::DoubleEdge { first, second }),
             _ => Ok(()),
         }
@@ -216,13 +217,13 @@ struct Splitting<'a, const QUADS: bool, const CLOSED: bool> {
 
 /// The rows of the child that come from consecutive edges: two halves for each, and one edge for
 /// each corner.
-struct Part<'a> {
+struct Chunk<'a> {
     halves: &'a mut [Edge],
     inner: &'a mut [Edge],
 }
 
 /// A run and the child edges along it. Its ranks have no meaning without a face.
-struct Run {
+struct SplitRun {
     face: Slot<FaceId>,
     has_face: bool,
     /// h₀ and h₁.
@@ -247,34 +248,34 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
 
     fn fill_edges(self, child: &mut [Edge]) {
         let (mut halves, mut inner) = child.split_at_mut(2 * self.edges.len());
-        let part_of = |start| start..self.edges.len().min(start + PART);
-        let mut parts = Vec::with_capacity(self.edges.len().div_ceil(PART));
-        for start in (0..self.edges.len()).step_by(PART) {
-            let edges = part_of(start);
+        let chunk_at = |start| start..self.edges.len().min(start + CHUNK_ROWS);
+        let mut chunks = Vec::with_capacity(self.edges.len().div_ceil(CHUNK_ROWS));
+        for start in (0..self.edges.len()).step_by(CHUNK_ROWS) {
+            let edges = chunk_at(start);
             let corners = self.ranks.rank(2 * edges.end) - self.ranks.rank(2 * edges.start);
             let (here, beyond) = halves.split_at_mut(2 * edges.len());
             let (inside, after) = inner.split_at_mut(corners);
-            parts.push(Part {
+            chunks.push(Chunk {
                 halves: here,
                 inner: inside,
             });
             (halves, inner) = (beyond, after);
         }
-        in_parts(&mut parts, 1, |number, parts| {
-            for part in parts {
-                self.fill_part(part_of(number * PART), part);
+        for_each_chunk(&mut chunks, 1, |number, chunks| {
+            for chunk in chunks {
+                self.fill_chunk(chunk_at(number * CHUNK_ROWS), chunk);
             }
         });
     }
 
     /// Fills the rows block by block. The reads of the wings come first: they may be anywhere in
     /// memory, and a short loop has more of them in flight at once.
-    fn fill_part(self, edges: Range<usize>, part: &mut Part<'_>) {
+    fn fill_chunk(self, edges: Range<usize>, chunk: &mut Chunk<'_>) {
         let mut rank = self.ranks.rank(2 * edges.start) as u32;
-        let mut inner = part.inner.iter_mut();
+        let mut inner = chunk.inner.iter_mut();
         let mut e = edges.start as u32;
         let mut wings = [[[Side::LEFT; 2]; 2]; BLOCK];
-        let halves = part.halves.as_chunks_mut::<2>().0;
+        let halves = chunk.halves.as_chunks_mut::<2>().0;
         for (edges, halves) in self.edges[edges]
             .chunks(BLOCK)
             .zip(halves.chunks_mut(BLOCK))
@@ -314,11 +315,11 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
 
     /// Returns the run of `e` along `side`, with rank `rank`. Its wings run on the sides `wings`.
     #[inline(always)]
-    fn run(self, e: EdgeId, edge: &Edge, side: Side, wings: [Side; 2], rank: u32) -> Run {
+    fn run(self, e: EdgeId, edge: &Edge, side: Side, wings: [Side; 2], rank: u32) -> SplitRun {
         let [before, after] = [edge.prev.on(side), edge.next.on(side)];
         let [before_on, after_on] = wings;
         let face = edge.faces[side.index()];
-        Run {
+        SplitRun {
             face,
             has_face: CLOSED || face != Slot::NONE,
             halves: [half(e, side), half(e, side.other())],
@@ -356,19 +357,19 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
 
     /// Returns the two halves of `e`, from start to middle and from middle to end.
     #[inline(always)]
-    fn halves(self, e: EdgeId, edge: &Edge, left: &Run, right: &Run) -> [Edge; 2] {
+    fn halves(self, e: EdgeId, edge: &Edge, left: &SplitRun, right: &SplitRun) -> [Edge; 2] {
         let ([start, end], m) = (edge.ends, self.middle(e));
         let ([left_first, left_second], [right_first, right_second]) =
-            (self.lanes(left), self.lanes(right));
+            (self.links(left), self.links(right));
         [
-            between([start, m], left_first, right_second),
-            between([m, end], left_second, right_first),
+            edge_record([start, m], left_first, right_second),
+            edge_record([m, end], left_second, right_first),
         ]
     }
 
     /// Returns what h₀ and h₁ of a run have along its side.
     #[inline(always)]
-    fn lanes(self, run: &Run) -> [Lane; 2] {
+    fn links(self, run: &SplitRun) -> [Links; 2] {
         let [first, second] = run.halves;
         let [_, own, after] = run.ranks;
         let (faces, next, prev) = if !run.has_face {
@@ -379,12 +380,12 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
             (faces, self.inner(own), self.inner(prev))
         };
         [
-            Lane {
+            Links {
                 face: faces[0],
                 next,
                 prev: run.half_before,
             },
-            Lane {
+            Links {
                 face: faces[1],
                 next: run.half_after,
                 prev,
@@ -395,31 +396,31 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
     /// Returns the edge that `run`, which has a face, adds inside it, starting at the middle of
     /// `e`.
     #[inline(always)]
-    fn inner_edge(self, e: EdgeId, run: &Run) -> Edge {
+    fn inner_edge(self, e: EdgeId, run: &SplitRun) -> Edge {
         let face = run.face.get().expect("a run with a face");
         let [first, second] = run.halves;
         let [before, own, after] = run.ranks;
         let (end, left_next, right) = if QUADS {
-            let right = Lane {
+            let right = Links {
                 face: Slot::some(FaceId::new(after)),
                 next: second,
                 prev: self.inner(after),
             };
             (self.face_point(face), self.inner(before), right)
         } else {
-            let right = Lane {
+            let right = Links {
                 face: Slot::some(self.middle_face(face)),
                 next: self.inner(after),
                 prev: self.inner(before),
             };
             (run.middle_before, run.half_before, right)
         };
-        let left = Lane {
+        let left = Links {
             face: Slot::some(FaceId::new(own)),
             next: left_next,
             prev: first,
         };
-        between([self.middle(e), end], left, right)
+        edge_record([self.middle(e), end], left, right)
     }
 
     /// Returns the vertex in the middle of `face`; for quads only.
@@ -439,12 +440,12 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
     /// middle triangle.
     fn fill_sides(self, child: &mut [EdgeId]) {
         let (of_corners, of_middles) = child.split_at_mut(self.ranks.members());
-        in_parts(of_corners, PART, |first, sides| {
+        for_each_chunk(of_corners, CHUNK_ROWS, |first, sides| {
             for (rank, side) in (first as u32..).zip(sides) {
                 *side = self.inner(rank);
             }
         });
-        in_parts(of_middles, PART, |first, sides| {
+        for_each_chunk(of_middles, CHUNK_ROWS, |first, sides| {
             for ((face, &parent), side) in (first..).zip(&self.sides[first..]).zip(sides) {
                 *side = self.edge_inside(FaceId::new(face as u32), parent);
             }
@@ -464,7 +465,7 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
     fn fill_spokes(self, child: &mut [Slot<EdgeId>]) {
         let (old, new) = child.split_at_mut(self.spokes.len());
         let (of_faces, of_edges) = new.split_at_mut(if QUADS { self.sides.len() } else { 0 });
-        in_parts(old, PART, |first, spokes| {
+        for_each_chunk(old, CHUNK_ROWS, |first, spokes| {
             for ((v, parent), spoke) in (first as u32..).zip(&self.spokes[first..]).zip(spokes) {
                 *spoke = Slot::from(parent.get().map(|e| {
                     let [start, _] = self.edges[e.index()].ends;
@@ -472,12 +473,12 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
                 }));
             }
         });
-        in_parts(of_faces, PART, |first, spokes| {
+        for_each_chunk(of_faces, CHUNK_ROWS, |first, spokes| {
             for ((face, &e), spoke) in (first as u32..).zip(&self.sides[first..]).zip(spokes) {
                 *spoke = Slot::some(self.edge_inside(FaceId::new(face), e));
             }
         });
-        in_parts(of_edges, PART, |first, spokes| {
+        for_each_chunk(of_edges, CHUNK_ROWS, |first, spokes| {
             if CLOSED {
                 for (e, spoke) in (first as u32..).zip(spokes) {
                     *spoke = Slot::some(half(EdgeId::new(e), Side::LEFT));
@@ -496,19 +497,19 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
 
 /// What an edge has on one of its sides: the face and two wings.
 #[derive(Clone, Copy)]
-struct Lane {
+struct Links {
     face: Slot<FaceId>,
     next: EdgeId,
     prev: EdgeId,
 }
 
 #[inline(always)]
-fn between(ends: [VertexId; 2], left: Lane, right: Lane) -> Edge {
+fn edge_record(ends: [VertexId; 2], left: Links, right: Links) -> Edge {
     Edge {
         ends,
         faces: [left.face, right.face],
-        next: Wings::of([left.next, right.next]),
-        prev: Wings::of([left.prev, right.prev]),
+        next: Wings::new([left.next, right.next]),
+        prev: Wings::new([left.prev, right.prev]),
     }
 }
 
@@ -559,7 +560,7 @@ mod tests {
     }
 
     #[test]
-    fn a_triangle_in_quads_is_as_drawn() {
+    fn a_split_into_quads_gives_the_expected_tables() {
         // v3 is the face point; v4, v5 and v6 are the middles.
         let child = split(Split::Quads);
         let expected = [
@@ -579,7 +580,7 @@ mod tests {
     }
 
     #[test]
-    fn a_triangle_in_four_is_as_drawn() {
+    fn a_split_into_triangles_gives_the_expected_tables() {
         // v3, v4 and v5 are the middles; f3 is the triangle between them.
         let child = split(Split::Triangles);
         let expected = [

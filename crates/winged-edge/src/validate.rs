@@ -11,16 +11,16 @@ use crate::mesh::AnyWingedEdgeMesh;
 pub(crate) fn validate<E: Editing>(
     mesh: &AnyWingedEdgeMesh<Untraced, E>,
 ) -> Result<(), InvariantError> {
-    holes_are_marked(mesh)?;
-    names_exist(mesh)?;
-    sides_differ(mesh)?;
-    ends_meet(mesh)?;
-    faces_agree(mesh)?;
-    wings_undo_each_other(mesh)?;
-    spokes(mesh)?;
-    one_fan_each(mesh)?;
-    faces(mesh)?;
-    edges_differ(mesh)
+    check_holes(mesh)?;
+    check_handles(mesh)?;
+    check_edge_sides(mesh)?;
+    check_ends(mesh)?;
+    check_cycle_faces(mesh)?;
+    check_inverse_wings(mesh)?;
+    check_spokes(mesh)?;
+    check_fans(mesh)?;
+    check_faces(mesh)?;
+    check_distinct_edges(mesh)
 }
 
 fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> {
@@ -45,9 +45,7 @@ fn records<E: Editing>(
 }
 
 /// Checks the first part of I9: exactly the rows of deleted elements are marked as deleted.
-fn holes_are_marked<E: Editing>(
-    mesh: &AnyWingedEdgeMesh<Untraced, E>,
-) -> Result<(), InvariantError> {
+fn check_holes<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let [vertices, edges, faces] = [mesh.spokes.len(), mesh.edges.len(), mesh.sides.len()];
     for (holes, rows) in [
         (&mesh.vertex_holes, vertices),
@@ -62,7 +60,7 @@ fn holes_are_marked<E: Editing>(
     if let Some(v) = (0..vertices).find(spoke_kept) {
         return fails("I9", format!("v{v} is deleted, but has a spoke"));
     }
-    let edge_differs = |&e: &usize| mesh.edge_holes.has(e) != mesh.edge_records()[e].is_hole();
+    let edge_differs = |&e: &usize| mesh.edge_holes.has(e) != mesh.edge_records()[e].is_deleted();
     if let Some(e) = (0..edges).find(edge_differs) {
         return fails("I9", format!("deletion marks of e{e} disagree"));
     }
@@ -73,9 +71,9 @@ fn holes_are_marked<E: Editing>(
     }
 }
 
-/// Checks the second part of I1 and of I9: every handle in the tables names an element that exists;
-/// the other checks walk, and need this.
-fn names_exist<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+/// Checks the second part of I1 and of I9: every handle in the tables refers to an element that
+/// exists. The other checks walk along these handles, so they rely on this check.
+fn check_handles<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let [vertices, edges, faces] = [mesh.positions.len(), mesh.edges.len(), mesh.sides.len()];
     if vertices != mesh.spokes.len() {
         let spokes = mesh.spokes.len();
@@ -107,7 +105,9 @@ fn names_exist<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), 
 }
 
 /// Checks the first part of I1.
-fn sides_differ<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_edge_sides<E: Editing>(
+    mesh: &AnyWingedEdgeMesh<Untraced, E>,
+) -> Result<(), InvariantError> {
     for (e, edge) in records(mesh) {
         let ([start, end], [left, right]) = (edge.ends(), edge.faces());
         if start == end {
@@ -120,7 +120,7 @@ fn sides_differ<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(),
     Ok(())
 }
 
-fn ends_meet<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_ends<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     for (e, run) in runs(mesh) {
         for (wing, v) in [(run.next(), run.target()), (run.prev(), run.origin())] {
             if !mesh.edge(wing).ends().contains(&v) {
@@ -134,7 +134,9 @@ fn ends_meet<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), In
     Ok(())
 }
 
-fn faces_agree<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_cycle_faces<E: Editing>(
+    mesh: &AnyWingedEdgeMesh<Untraced, E>,
+) -> Result<(), InvariantError> {
     for (e, run) in runs(mesh) {
         let next = Run::from(mesh.edge(run.next()), run.target());
         if next.face() != run.face() {
@@ -148,7 +150,7 @@ fn faces_agree<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), 
     Ok(())
 }
 
-fn wings_undo_each_other<E: Editing>(
+fn check_inverse_wings<E: Editing>(
     mesh: &AnyWingedEdgeMesh<Untraced, E>,
 ) -> Result<(), InvariantError> {
     for (e, run) in runs(mesh) {
@@ -167,7 +169,7 @@ fn wings_undo_each_other<E: Editing>(
     Ok(())
 }
 
-fn spokes<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_spokes<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     for v in mesh.vertices() {
         if let Some(e) = mesh.spoke(v).filter(|&e| !mesh.edge(e).ends().contains(&v)) {
             return fails("I5", format!("{v} is not an end of its spoke {e}"));
@@ -187,7 +189,7 @@ fn spokes<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), Invar
     Ok(())
 }
 
-fn one_fan_each<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_fans<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let mut edges = vec![0_usize; mesh.vertex_rows()];
     for (_, run) in runs(mesh) {
         edges[run.origin().index()] += 1;
@@ -204,7 +206,7 @@ fn one_fan_each<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(),
     Ok(())
 }
 
-fn faces<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_faces<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
     let mut along = 0;
     for f in mesh.faces() {
         let e = mesh.side(f);
@@ -228,7 +230,9 @@ fn faces<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), Invari
     Ok(())
 }
 
-fn edges_differ<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_distinct_edges<E: Editing>(
+    mesh: &AnyWingedEdgeMesh<Untraced, E>,
+) -> Result<(), InvariantError> {
     let mut ends = HashSet::new();
     for e in mesh.edges() {
         let [a, b] = mesh.edge_vertices(e);
@@ -290,8 +294,8 @@ mod tests {
     }
 
     /// Overwrites the wing on the left (0) or on the right (1).
-    fn put(wings: &mut Wings, side: usize, wing: EdgeId) {
-        wings.put(Side::right_if(side == 1), wing);
+    fn set_wing(wings: &mut Wings, side: usize, wing: EdgeId) {
+        wings.set(Side::right_if(side == 1), wing);
     }
 
     /// Replaces the vertex `merged` by `kept` in all records, and clears its spoke.
@@ -307,8 +311,8 @@ mod tests {
     fn references_to_missing_elements_break_i1() {
         let (v, e, f) = (VertexId::new(9), EdgeId::new(9), Slot::some(FaceId::new(9)));
         assert_eq!(broken(|m| inner(m).ends[1] = v), "I1");
-        assert_eq!(broken(|m| put(&mut inner(m).next, 0, e)), "I1");
-        assert_eq!(broken(|m| put(&mut inner(m).prev, 1, e)), "I1");
+        assert_eq!(broken(|m| set_wing(&mut inner(m).next, 0, e)), "I1");
+        assert_eq!(broken(|m| set_wing(&mut inner(m).prev, 1, e)), "I1");
         assert_eq!(broken(|m| inner(m).faces[1] = f), "I1");
         assert_eq!(broken(|m| m.spokes.rows_mut()[0] = Slot::some(e)), "I1");
         assert_eq!(broken(|m| m.sides.rows_mut()[0] = e), "I1");
@@ -331,13 +335,13 @@ mod tests {
     fn wings_at_another_vertex_break_i2() {
         let far = |m: &mut EditableWingedEdgeMesh, side, a, b| {
             let wing = between(m, a, b);
-            put(&mut inner(m).next, side, wing);
+            set_wing(&mut inner(m).next, side, wing);
         };
         assert_eq!(broken(|m| far(m, 0, 0, 1)), "I2");
         assert_eq!(broken(|m| far(m, 1, 2, 3)), "I2");
         let behind = |m: &mut EditableWingedEdgeMesh| {
             let wing = between(m, 2, 3);
-            put(&mut inner(m).prev, 0, wing);
+            set_wing(&mut inner(m).prev, 0, wing);
         };
         assert_eq!(broken(behind), "I2");
         assert_eq!(broken(|m| inner(m).ends[1] = VertexId::new(4)), "I2");
@@ -368,7 +372,7 @@ mod tests {
             let next = Run::from(mesh.edge(to), v).cw();
             let blank = usize::from(mesh.edge(e).ends()[0] == v);
             let mut broken = mesh.clone();
-            put(&mut broken.edges.rows_mut()[e.index()].next, blank, next);
+            set_wing(&mut broken.edges.rows_mut()[e.index()].next, blank, next);
             assert_eq!(broken.validate().expect_err("not inverse").invariant, "I4");
         }
     }
@@ -415,14 +419,15 @@ mod tests {
             ],
         );
         merge(&mut folded, 0, 2);
-        assert_eq!(faces(&folded).expect_err("a corner twice").invariant, "I7");
+        let repeated = check_faces(&folded).expect_err("a corner twice");
+        assert_eq!(repeated.invariant, "I7");
     }
 
     #[test]
     fn edges_with_the_same_ends_break_i8() {
         let mut mesh = mesh(4, &[&[0, 1, 2], &[1, 0, 3]]);
         merge(&mut mesh, 2, 3);
-        let parallel = edges_differ(&mesh).expect_err("parallel edges");
+        let parallel = check_distinct_edges(&mesh).expect_err("parallel edges");
         assert_eq!(parallel.invariant, "I8");
     }
 
@@ -450,15 +455,15 @@ mod tests {
         assert_eq!(broken(&|m| m.sides.rows_mut()[1] = diagonal), "I9");
         assert_eq!(broken(&|m| m.sides.rows_mut()[0] = NO_EDGE), "I9");
         assert_eq!(
-            broken(&|m| m.edges.rows_mut()[diagonal.index()] = Edge::HOLE),
+            broken(&|m| m.edges.rows_mut()[diagonal.index()] = Edge::DELETED),
             "I9"
         );
-        assert_eq!(broken(&|m| m.edge_holes.dig(diagonal.index())), "I9");
-        assert_eq!(broken(&|m| m.face_holes.dig(7)), "I9");
+        assert_eq!(broken(&|m| m.edge_holes.insert(diagonal.index())), "I9");
+        assert_eq!(broken(&|m| m.face_holes.insert(7)), "I9");
         assert_eq!(broken(&|m| m.sides.rows_mut()[0] = side), "I9");
         assert_eq!(broken(&|m| inner(m).ends[0] = VertexId::new(3)), "I9");
         assert_eq!(broken(&|m| inner(m).faces[1] = Slot::some(gone)), "I9");
-        assert_eq!(broken(&|m| put(&mut inner(m).next, 0, side)), "I9");
+        assert_eq!(broken(&|m| set_wing(&mut inner(m).next, 0, side)), "I9");
         assert_eq!(broken(&|m| m.spokes.rows_mut()[0] = Slot::some(side)), "I9");
     }
 }

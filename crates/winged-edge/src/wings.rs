@@ -54,14 +54,14 @@ impl Wings {
 
     /// Packs the left wing and the right wing.
     #[inline(always)]
-    pub(crate) fn of([left, right]: [EdgeId; 2]) -> Self {
+    pub(crate) fn new([left, right]: [EdgeId; 2]) -> Self {
         Self(u64::from(left.row()) | u64::from(right.row()) << 32)
     }
 
     #[inline(always)]
     pub(crate) fn on(self, side: Side) -> EdgeId {
-        let turned = self.0.rotate_left(32);
-        EdgeId::new(select_unpredictable(side.right, turned, self.0) as u32)
+        let swapped = self.0.rotate_left(32);
+        EdgeId::new(select_unpredictable(side.right, swapped, self.0) as u32)
     }
 
     /// Returns the left wing, then the right wing.
@@ -79,7 +79,7 @@ impl Wings {
 
     /// Overwrites the wing of a side.
     #[inline(always)]
-    pub(crate) fn put(&mut self, side: Side, wing: EdgeId) {
+    pub(crate) fn set(&mut self, side: Side, wing: EdgeId) {
         // Writes the whole word: if only one half were written, the next load of the whole word
         // would wait.
         let shift = u32::from(side.right) << 5;
@@ -107,11 +107,11 @@ mod tests {
             assert_eq!(wings.both(), [EdgeId::new(0), right]);
             wings.link(Side::LEFT, left);
             assert_eq!(wings.both(), [left, right]);
-            assert_eq!(Wings::of([left, right]), wings);
-            let mut turned = Wings::of([right, left]);
-            turned.put(Side::RIGHT, right);
-            turned.put(Side::LEFT, left);
-            assert_eq!(turned, wings);
+            assert_eq!(Wings::new([left, right]), wings);
+            let mut swapped = Wings::new([right, left]);
+            swapped.set(Side::RIGHT, right);
+            swapped.set(Side::LEFT, left);
+            assert_eq!(swapped, wings);
             assert_eq!(wings.on(Side::RIGHT.other()), left);
         }
     }

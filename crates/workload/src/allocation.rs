@@ -7,7 +7,7 @@ use sixfold::{Counts, EditVisitor, FaceId, MeshEdit, PolygonMesh, Representation
 use crate::backend::Backend;
 use crate::candidate::Job;
 use crate::clock::{Clock, Time};
-use crate::editing::Editing;
+use crate::edit_pass::EditPass;
 use crate::operation::Operation;
 use crate::series::Series;
 
@@ -38,7 +38,7 @@ pub enum NotCounted {
 }
 
 /// The maximum number of faces of a mesh on which operations that scan are run.
-pub const MOST_SCANNED_FACES: usize = 2_000;
+pub const MAX_SCANNED_FACES: usize = 2_000;
 
 /// A clock that returns bytes instead of time, so that set-up is excluded as it is in time
 /// measurements.
@@ -46,7 +46,7 @@ struct ByteClock<'a>(&'a dyn AllocationCounter);
 
 impl Clock for ByteClock<'_> {
     fn now(&self) -> Time {
-        Time::of_wall(self.0.allocated() as f64)
+        Time::from_wall_ns(self.0.allocated() as f64)
     }
 }
 
@@ -55,7 +55,7 @@ impl Backend {
     /// new tables: its first run, not the later runs, which reuse the tables.
     ///
     /// The result is the structure for `build`, the structure of the refined mesh for a
-    /// subdivision, the mesh after the edits for an edit workload, and the depth of each face for
+    /// subdivision, the mesh after the edits for a pass of edits, and the depth of each face for
     /// `ff_bfs`. `edges` is the number of edges of `polygons`.
     ///
     /// # Errors
@@ -68,10 +68,10 @@ impl Backend {
         edges: usize,
         counter: &dyn AllocationCounter,
     ) -> Result<Allocated, NotCounted> {
-        let native = operation.refining().map(|refining| refining.way.method());
-        let native = native == Some(Method::Native);
+        let method = operation.subdivision_job().map(|job| job.way.method());
+        let is_native = method == Some(Method::Native);
         let scans = operation.scans(&self.info.costs).contains(&true);
-        if scans && !native && polygons.face_count() > MOST_SCANNED_FACES {
+        if scans && !is_native && polygons.face_count() > MAX_SCANNED_FACES {
             return Err(NotCounted::Scans);
         }
         let bytes = self.allocated_by_run(operation, polygons, counter);
@@ -88,13 +88,13 @@ impl Backend {
         polygons: &PolygonMesh,
         counter: &dyn AllocationCounter,
     ) -> Result<usize, String> {
-        let bench = self.put_on_the_bench(polygons, None);
-        let (mut subject, _) = bench.map_err(|refusal| refusal.to_string())?;
+        let prepared = self.prepare(polygons, None);
+        let (mut backend, _) = prepared.map_err(|refusal| refusal.to_string())?;
         let job = Job {
             operation,
             sample: None,
         };
-        let run = subject.run(&job, &Series::once(&ByteClock(counter)));
+        let run = backend.run(&job, &Series::once(&ByteClock(counter)));
         match run.refusal {
             Some(refusal) => Err(refusal),
             None => Ok(run.time.wall_ns as usize),
@@ -104,9 +104,12 @@ impl Backend {
     fn result_bytes(&self, operation: Operation, polygons: &PolygonMesh, counts: &Counts) -> usize {
         let counts = match operation {
             Operation::FfBfs => return size_of::<FaceId>() * counts.faces,
-            Operation::Editing(editing) => counts_after(editing, self.name(), polygons, counts),
-            _ => match operation.refining().map(|job| job.subdivision.split(0)) {
-                Some(Some(split)) => split.grown(counts, 0),
+            Operation::EditPass(pass) => counts_after(pass, self.name(), polygons, counts),
+            _ => match operation
+                .subdivision_job()
+                .map(|job| job.subdivision.split(0))
+            {
+                Some(Some(split)) => split.refined_counts(counts, 0),
                 _ => *counts,
             },
         };
@@ -114,13 +117,8 @@ impl Backend {
     }
 }
 
-/// Returns the counts of the mesh after `editing` on the structure called `backend`.
-fn counts_after(
-    editing: Editing,
-    backend: &str,
-    polygons: &PolygonMesh,
-    before: &Counts,
-) -> Counts {
+/// Returns the counts of the mesh after `pass` on the structure called `backend`.
+fn counts_after(pass: EditPass, backend: &str, polygons: &PolygonMesh, before: &Counts) -> Counts {
     struct Decimated<'a>(&'a PolygonMesh, f64);
 
     impl EditVisitor for Decimated<'_> {
@@ -137,11 +135,11 @@ fn counts_after(
         }
     }
 
-    let ratio = match editing {
+    let ratio = match pass {
         // Neither changes the number of elements.
-        Editing::SplitCollapse | Editing::FlipAll => return *before,
-        Editing::DecimateHalf => 0.5,
-        Editing::DecimateTenth => 0.1,
+        EditPass::SplitCollapse | EditPass::FlipAll => return *before,
+        EditPass::DecimateHalf => 0.5,
+        EditPass::DecimateTenth => 0.1,
     };
     let counts = visit_editable(backend, &mut Decimated(polygons, ratio)).flatten();
     counts.unwrap_or(*before)

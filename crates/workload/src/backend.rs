@@ -8,14 +8,14 @@ use sixfold::{
     for_each_representation,
 };
 
-use crate::candidate::{Candidate, Subject};
-use crate::heap::{Heap, Weighed, weigh};
-use crate::reads::{Counted, count};
-use crate::sample::Draw;
+use crate::candidate::{TimedBackend, TimedStructure};
+use crate::draw::Draw;
+use crate::heap::{Heap, MeasuredMemory, measure_memory};
+use crate::reads::{ReadsObserver, count};
 
 /// A representation with its properties and the functions that build and measure it.
 ///
-/// [`Backend::roster`] returns those of Sixfold. [`Backend::of`] makes a backend from any other
+/// [`Backend::roster`] returns those of Sixfold. [`Backend::new`] makes a backend from any other
 /// representation, which a study then also measures (`Settings::extra` there).
 #[derive(Clone, Copy)]
 pub struct Backend {
@@ -24,33 +24,34 @@ pub struct Backend {
     /// Computes the bytes of its layout, by formula, for a mesh with these counts.
     pub layout_bytes: fn(&Counts) -> usize,
     pub(crate) build: Build,
-    pub(crate) weigh: fn(&PolygonMesh, &dyn Heap) -> Result<Weighed, BuildError>,
+    pub(crate) measure_memory: fn(&PolygonMesh, &dyn Heap) -> Result<MeasuredMemory, BuildError>,
     count: Count,
 }
 
 /// Builds the structure and prepares it for measurement. Its memory is read before anything is run.
-type Build = for<'a> fn(&'a PolygonMesh, Option<&'a Draw>) -> Result<OnTheBench<'a>, BuildError>;
+type Build = for<'a> fn(&'a PolygonMesh, Option<&'a Draw>) -> Result<Prepared<'a>, BuildError>;
 
 /// Builds the structure and counts the table reads of relations.
-type Count = fn(&PolygonMesh, &[Relation], &AtomicBool, &mut dyn Counted) -> Result<(), BuildError>;
+type Count =
+    fn(&PolygonMesh, &[Relation], &AtomicBool, &mut dyn ReadsObserver) -> Result<(), BuildError>;
 
 /// A structure ready to be measured, and its memory footprint.
-pub type OnTheBench<'a> = (Box<dyn Subject + 'a>, MemoryFootprint);
+pub type Prepared<'a> = (Box<dyn TimedBackend + 'a>, MemoryFootprint);
 
 impl Backend {
     /// Makes a backend from `M`.
-    pub fn of<M: Measured + 'static>() -> Self {
+    pub fn new<M: Measured + 'static>() -> Self {
         Self {
-            info: BackendInfo::of::<M>(),
+            info: BackendInfo::new::<M>(),
             layout_bytes: M::layout_bytes,
             build: |polygons, draw| {
                 let mesh = M::from_polygons(polygons)?;
                 let memory = mesh.memory();
-                Ok((Box::new(Candidate::new(polygons, draw, mesh)), memory))
+                Ok((Box::new(TimedStructure::new(polygons, draw, mesh)), memory))
             },
-            weigh: weigh::<M>,
-            count: |polygons, relations, stop, counted| {
-                count(M::from_polygons(polygons)?, relations, stop, counted);
+            measure_memory: measure_memory::<M>,
+            count: |polygons, relations, stop, observer| {
+                count(M::from_polygons(polygons)?, relations, stop, observer);
                 Ok(())
             },
         }
@@ -59,7 +60,7 @@ impl Backend {
     /// Returns every representation of Sixfold, in the order in which tables show them.
     pub fn roster() -> Vec<Self> {
         let mut backends = Vec::new();
-        for_each_representation!(M => { backends.push(Self::of::<M>()); });
+        for_each_representation!(M => { backends.push(Self::new::<M>()); });
         backends
     }
 
@@ -69,11 +70,11 @@ impl Backend {
     /// # Errors
     ///
     /// Returns the reason if the structure cannot hold `polygons`.
-    pub fn put_on_the_bench<'a>(
+    pub fn prepare<'a>(
         &self,
         polygons: &'a PolygonMesh,
         draw: Option<&'a Draw>,
-    ) -> Result<OnTheBench<'a>, BuildError> {
+    ) -> Result<Prepared<'a>, BuildError> {
         (self.build)(polygons, draw)
     }
 
@@ -83,8 +84,12 @@ impl Backend {
     /// # Errors
     ///
     /// Returns the reason if the structure cannot hold `polygons`.
-    pub fn weigh(&self, polygons: &PolygonMesh, heap: &dyn Heap) -> Result<Weighed, BuildError> {
-        (self.weigh)(polygons, heap)
+    pub fn measure_memory(
+        &self,
+        polygons: &PolygonMesh,
+        heap: &dyn Heap,
+    ) -> Result<MeasuredMemory, BuildError> {
+        (self.measure_memory)(polygons, heap)
     }
 
     /// Builds it from `polygons` and counts the table reads of `relations`, until `stop` is true.
@@ -97,9 +102,9 @@ impl Backend {
         polygons: &PolygonMesh,
         relations: &[Relation],
         stop: &AtomicBool,
-        counted: &mut dyn Counted,
+        observer: &mut dyn ReadsObserver,
     ) -> Result<(), BuildError> {
-        (self.count)(polygons, relations, stop, counted)
+        (self.count)(polygons, relations, stop, observer)
     }
 
     /// Returns its name, as users write it.

@@ -10,7 +10,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 /// The folder in which Linux describes the caches of the first processor.
-const FOLDER: &str = "/sys/devices/system/cpu/cpu0/cache";
+const CACHE_FOLDER: &str = "/sys/devices/system/cpu/cpu0/cache";
 
 /// One cache of one processor.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
@@ -36,8 +36,8 @@ impl Cache {
         Some(Self {
             level: file("level")?.trim().parse().ok()?,
             kind: file("type")?.trim().to_lowercase(),
-            bytes: size(file("size")?.trim()).filter(|&bytes| bytes > 0)?,
-            shared_by: file("shared_cpu_list").and_then(|list| listed(list.trim())),
+            bytes: parse_size(file("size")?.trim()).filter(|&bytes| bytes > 0)?,
+            shared_by: file("shared_cpu_list").and_then(|list| list_length(list.trim())),
         })
     }
 }
@@ -45,7 +45,7 @@ impl Cache {
 /// Returns the caches of the first processor, the nearest first. Empty if the platform does not
 /// report them.
 pub fn caches() -> Vec<Cache> {
-    let Ok(entries) = fs::read_dir(FOLDER) else {
+    let Ok(entries) = fs::read_dir(CACHE_FOLDER) else {
         return Vec::new();
     };
     let cache = |folder: &Path| Cache::read(|name| fs::read_to_string(folder.join(name)).ok());
@@ -58,7 +58,7 @@ pub fn caches() -> Vec<Cache> {
 }
 
 /// Returns the size in bytes of the last-level cache that holds data, if one is known.
-pub fn last_level(caches: &[Cache]) -> Option<u64> {
+pub fn last_level_bytes(caches: &[Cache]) -> Option<u64> {
     let data = caches.iter().filter(|cache| cache.holds_data());
     data.max_by_key(|cache| cache.level)
         .map(|cache| cache.bytes)
@@ -73,7 +73,7 @@ pub(crate) fn level_bytes(caches: &[Cache], level: u8) -> Option<u64> {
 }
 
 /// Parses a size such as `32K` or `1M` into bytes; K is 1024, M is 1024².
-fn size(text: &str) -> Option<u64> {
+fn parse_size(text: &str) -> Option<u64> {
     let digits = text.trim_end_matches(|c: char| !c.is_ascii_digit());
     let unit = match &text[digits.len()..] {
         "" => 1,
@@ -86,7 +86,7 @@ fn size(text: &str) -> Option<u64> {
 }
 
 /// Returns how many numbers a list such as `0-3,8` contains.
-fn listed(text: &str) -> Option<usize> {
+fn list_length(text: &str) -> Option<usize> {
     let part = |part: &str| {
         let (first, last) = part.split_once('-').unwrap_or((part, part));
         let (first, last): (usize, usize) = (first.parse().ok()?, last.parse().ok()?);
@@ -129,16 +129,19 @@ mod tests {
                 ..expected
             },
         ];
-        assert_eq!(last_level(&all), Some(32 << 20));
-        assert_eq!(last_level(&[]), None);
+        assert_eq!(last_level_bytes(&all), Some(32 << 20));
+        assert_eq!(last_level_bytes(&[]), None);
     }
 
     #[test]
     fn lists_and_sizes_are_parsed() {
-        assert_eq!(["0", "0-1", "0,4"].map(listed), [Some(1), Some(2), Some(2)]);
-        assert_eq!(["", "x", "3-1"].map(listed), [None; 3]);
         assert_eq!(
-            ["64", "48K", "2M"].map(size),
+            ["0", "0-1", "0,4"].map(list_length),
+            [Some(1), Some(2), Some(2)]
+        );
+        assert_eq!(["", "x", "3-1"].map(list_length), [None; 3]);
+        assert_eq!(
+            ["64", "48K", "2M"].map(parse_size),
             [Some(64), Some(49_152), Some(2 << 20)]
         );
     }
@@ -152,7 +155,7 @@ mod tests {
             shared_by: Some(1),
         };
         let caches = [level(1, "data", 32), level(2, "instruction", 64)];
-        assert_eq!(last_level(&caches), Some(32));
+        assert_eq!(last_level_bytes(&caches), Some(32));
     }
 
     #[test]

@@ -5,13 +5,13 @@ use std::hint::black_box;
 use sixfold::{MeshQuery, PolygonMesh, QueryCost, Relation, Representation};
 
 use crate::clock::Time;
-use crate::editing::Editing;
-use crate::operation::{Kind, Operation};
-use crate::refining::Refining;
-use crate::sample::{Draw, Side};
-use crate::series::{KeptCopies, Series, Start, second_level_bytes, time_making};
-use crate::subdividing::{patch, subdivide};
-use crate::sweeps::{All, Elements, Outputs, Tally, field_sum, share};
+use crate::draw::{Draw, Side};
+use crate::edit_pass::EditPass;
+use crate::operation::{ElementKind, Operation};
+use crate::series::{ReusedCopies, Series, Start, second_level_bytes, time_making};
+use crate::subdivide::{patch, subdivide};
+use crate::subdivision_job::SubdivisionJob;
+use crate::sweeps::{All, Elements, Outputs, SweepResult, field_sum, sweep_kind};
 
 /// A job to run: an operation on all elements, or on a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,13 +19,13 @@ pub struct Job {
     /// The operation.
     pub operation: Operation,
     /// The elements that represent all; `None` runs all of them.
-    pub sample: Option<Sample>,
+    pub sample: Option<ElementSample>,
 }
 
 /// The elements that represent all: the first ones of the draw, for the kinds whose queries scan.
 /// For a subdivision, the first faces as a mesh of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sample {
+pub struct ElementSample {
     /// By kind: whether it is sampled. All elements of the other kinds are visited.
     pub scanned: [bool; 3],
     /// The number of elements of each sampled kind, limited by how many the mesh has.
@@ -63,8 +63,9 @@ pub struct Outcome {
     pub elements: u64,
 }
 
-/// A backend that can be timed. Tests can implement it.
-pub trait Subject {
+/// A backend that is ready to be timed: a structure built from a mesh, or an external program. Tests
+/// can implement it.
+pub trait TimedBackend {
     /// Returns its name, as users write it.
     fn name(&self) -> &str;
     /// Returns whether it is an external program. Such a program runs only whole operations, and
@@ -89,23 +90,23 @@ pub trait Subject {
 
 /// A structure built from `polygons`, with storage for outputs and its handles of the drawn
 /// elements.
-pub(crate) struct Candidate<'a, M: Representation> {
+pub(crate) struct TimedStructure<'a, M: Representation> {
     polygons: &'a PolygonMesh,
     draw: Option<&'a Draw>,
     mesh: M,
     outputs: Outputs<M>,
-    chosen: Chosen<M>,
+    drawn: DrawnHandles<M>,
     merged_vertices: usize,
 }
 
-impl<'a, M: Representation + 'static> Candidate<'a, M> {
+impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
     /// Prepares `mesh`, which was built from `polygons`, for measurement.
     pub(crate) fn new(polygons: &'a PolygonMesh, draw: Option<&'a Draw>, mesh: M) -> Self {
         Self {
             polygons,
             draw,
             outputs: Outputs::for_mesh(&mesh),
-            chosen: Chosen::default(),
+            drawn: DrawnHandles::default(),
             merged_vertices: polygons.vertex_count().saturating_sub(mesh.vertex_count()),
             mesh,
         }
@@ -124,9 +125,10 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
     /// Smooths a copy of the mesh in each run; each copy starts with the original positions.
     fn smooth(&mut self, series: &Series<'_>) -> Run {
         let Self { mesh, outputs, .. } = self;
-        let mut copies = KeptCopies::default();
-        let mut tally = Tally::default();
+        let mut copies = ReusedCopies::default();
+        let mut result = SweepResult::default();
         let mut moved = Ok(());
+        fill_caches_with_outputs(mesh, outputs, series);
         let time = copies.time(
             series,
             mesh.memory().total(),
@@ -140,11 +142,17 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
                 fill_caches(copy, series);
             },
             |copy| {
-                tally = share(Operation::VvSmooth, Kind::Vertex, copy, &All, outputs);
+                result = sweep_kind(
+                    Operation::VvSmooth,
+                    ElementKind::Vertex,
+                    copy,
+                    &All,
+                    outputs,
+                );
                 moved = copy.set_positions(&outputs.vertices);
             },
         );
-        let outcome = copies.changed().filter(|_| series.check).map(|smoothed| {
+        let outcome = copies.used_copy().filter(|_| series.check).map(|smoothed| {
             let after = smoothed.vertices().map(|v| smoothed.position(v));
             let means = mesh.vertices().map(|v| outputs.vertices[v]);
             // If a vertex is its coordinates, smoothing can move two vertices to one position. The
@@ -157,61 +165,83 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
             };
             Outcome {
                 checksum,
-                elements: tally.elements,
+                elements: result.elements,
             }
         });
         Run::done(time, outcome)
     }
 
-    fn whole(&mut self, operation: Operation, series: &Series<'_>) -> Run {
+    fn run_whole(&mut self, operation: Operation, series: &Series<'_>) -> Run {
         fill_caches(&self.mesh, series);
-        let mut tallies = [Tally::default(); 3];
+        fill_caches_with_outputs(&self.mesh, &self.outputs, series);
+        let series = &Series {
+            untimed: series.untimed.max(
+                std::env::var("XU")
+                    .ok()
+                    .and_then(|x| x.parse().ok())
+                    .filter(|_| self.mesh.memory().total() > second_level_bytes())
+                    .unwrap_or(0),
+            ),
+            ..*series
+        };
+        let mut results = [SweepResult::default(); 3];
         let time = series.time_together(|| {
             for &kind in operation.kinds() {
                 let mesh = black_box(&self.mesh);
-                tallies[kind.index()] =
-                    black_box(share(operation, kind, mesh, &All, &mut self.outputs));
+                results[kind.index()] =
+                    black_box(sweep_kind(operation, kind, mesh, &All, &mut self.outputs));
             }
             black_box(&mut self.outputs);
         });
         let outcome = series
             .check
-            .then(|| self.outcome(operation, &All, tallies, [1.0; 3]));
+            .then(|| self.outcome(operation, &All, results, [1.0; 3]));
         Run::done(time, outcome)
     }
 
-    fn sampled(&mut self, operation: Operation, sample: Sample, series: &Series<'_>) -> Run {
+    fn run_sampled(
+        &mut self,
+        operation: Operation,
+        sample: ElementSample,
+        series: &Series<'_>,
+    ) -> Run {
         let series = &Series {
             untimed: 0,
             runs: 1,
             ..*series
         };
         let Some(draw) = self.draw else {
-            return self.whole(operation, series);
+            return self.run_whole(operation, series);
         };
-        self.chosen
-            .grow(&self.mesh, self.polygons, draw, sample.size);
+        self.drawn
+            .extend_to(&self.mesh, self.polygons, draw, sample.size);
         let population = draw.population();
         let size = population.map(|all| all.min(sample.size));
         let mut scale = [1.0; 3];
-        for kind in Kind::ALL {
+        for kind in ElementKind::ALL {
             let k = kind.index();
             if sample.scanned[k] && size[k] > 0 {
                 scale[k] = population[k] as f64 / size[k] as f64;
             }
         }
-        let chosen = Picked {
-            chosen: &self.chosen,
+        let elements = SampledElements {
+            drawn: &self.drawn,
             scanned: sample.scanned,
             size,
         };
-        let mut tallies = [Tally::default(); 3];
-        let mut total = Time::none_like(series.clock.now());
+        let mut results = [SweepResult::default(); 3];
+        let mut total = Time::zero_like(series.clock.now());
         for &kind in operation.kinds() {
             let k = kind.index();
             let time = series.timed(|| {
                 let mesh = black_box(&self.mesh);
-                tallies[k] = black_box(share(operation, kind, mesh, &chosen, &mut self.outputs));
+                results[k] = black_box(sweep_kind(
+                    operation,
+                    kind,
+                    mesh,
+                    &elements,
+                    &mut self.outputs,
+                ));
                 black_box(&mut self.outputs);
             });
             total = total.plus(time.scaled(scale[k]));
@@ -226,23 +256,23 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
         }
         let outcome = series
             .check
-            .then(|| self.outcome(operation, &chosen, tallies, scale));
+            .then(|| self.outcome(operation, &elements, results, scale));
         Run::done(total, outcome)
     }
 
     /// Subdivides all faces, or a patch that represents them.
     fn subdivide(
         &mut self,
-        refining: Refining,
-        sample: Option<Sample>,
+        subdivision: SubdivisionJob,
+        sample: Option<ElementSample>,
         series: &Series<'_>,
     ) -> Run {
-        let Some(Sample { size, .. }) = sample else {
-            return subdivide::<M>(refining, self.polygons, series);
+        let Some(ElementSample { size, .. }) = sample else {
+            return subdivide::<M>(subdivision, self.polygons, series);
         };
         let patch = patch(self.polygons, size);
         let scale = self.polygons.face_count() as f64 / patch.face_count() as f64;
-        let run = subdivide::<M>(refining, &patch, series);
+        let run = subdivide::<M>(subdivision, &patch, series);
         Run {
             time: run.time.scaled(scale),
             ..run
@@ -253,12 +283,12 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
         &self,
         operation: Operation,
         elements: &E,
-        tallies: [Tally; 3],
+        results: [SweepResult; 3],
         scale: [f64; 3],
     ) -> Outcome {
         let mesh = &self.mesh;
-        let mut sum = Tally::default();
-        tallies.into_iter().for_each(|tally| sum.add(tally));
+        let mut sum = SweepResult::default();
+        results.into_iter().for_each(|result| sum.add(result));
         let checksum = match operation {
             Operation::FaceBarycenter => {
                 let faces = elements.faces(mesh);
@@ -271,14 +301,14 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
             Operation::EdgeLength => sum.sum,
             _ => sum.count as f64,
         };
-        let of = Kind::ALL
+        let unit = ElementKind::ALL
             .into_iter()
-            .find(|kind| kind.name() == operation.per());
-        let scaled = |kind: Kind, number: u64| number as f64 * scale[kind.index()];
-        let visited = match of {
-            Some(kind) => scaled(kind, tallies[kind.index()].elements),
-            None => Kind::ALL
-                .map(|kind| scaled(kind, tallies[kind.index()].count))
+            .find(|kind| kind.name() == operation.unit());
+        let scaled = |kind: ElementKind, number: u64| number as f64 * scale[kind.index()];
+        let visited = match unit {
+            Some(kind) => scaled(kind, results[kind.index()].elements),
+            None => ElementKind::ALL
+                .map(|kind| scaled(kind, results[kind.index()].count))
                 .into_iter()
                 .sum(),
         };
@@ -289,7 +319,7 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
     }
 }
 
-impl<M: Representation + 'static> Subject for Candidate<'_, M> {
+impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
     fn name(&self) -> &str {
         M::NAME
     }
@@ -314,18 +344,18 @@ impl<M: Representation + 'static> Subject for Candidate<'_, M> {
     }
 
     fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
-        let refining = job.operation.refining();
-        let run = match (job.operation, job.sample, refining) {
-            (Operation::Editing(editing), sample, _) => {
-                edit::<M>(editing, self.polygons, sample, series)
+        let subdivision = job.operation.subdivision_job();
+        let run = match (job.operation, job.sample, subdivision) {
+            (Operation::EditPass(pass), sample, _) => {
+                run_edit_pass::<M>(pass, self.polygons, sample, series)
             }
-            (_, sample, Some(refining)) => self.subdivide(refining, sample, series),
+            (_, sample, Some(subdivision)) => self.subdivide(subdivision, sample, series),
             (Operation::Build, ..) => self.build(series),
             (operation, Some(sample), None) => {
-                return self.sampled(operation, sample, series);
+                return self.run_sampled(operation, sample, series);
             }
             (Operation::VvSmooth, ..) => self.smooth(series),
-            (operation, ..) => self.whole(operation, series),
+            (operation, ..) => self.run_whole(operation, series),
         };
         Run {
             time: run.time.scaled(1.0 / f64::from(series.runs)),
@@ -342,8 +372,7 @@ impl<M: Representation + 'static> Subject for Candidate<'_, M> {
 /// 200,000 faces then took 8 ms instead of 3 ms. After one sequential pass it takes 3 ms at once, as
 /// in a program that runs nothing else.
 fn fill_caches<M: Representation>(mesh: &M, series: &Series<'_>) {
-    let is_warm = matches!(series.start, Start::Warm);
-    if !is_warm || mesh.memory().total() <= second_level_bytes() {
+    if !needs_filling(mesh, series) {
         return;
     }
     let mesh = black_box(mesh);
@@ -363,22 +392,44 @@ fn fill_caches<M: Representation>(mesh: &M, series: &Series<'_>) {
     });
 }
 
-/// Runs a workload that changes the mesh, or runs it on a patch that represents the mesh.
-fn edit<M: Representation>(
-    editing: Editing,
+/// Reads the outputs of `mesh` from their start to their end, if [`fill_caches`] reads the mesh.
+fn fill_caches_with_outputs<M: Representation>(
+    mesh: &M,
+    outputs: &Outputs<M>,
+    series: &Series<'_>,
+) {
+    if !needs_filling(mesh, series) {
+        return;
+    }
+    mesh.vertices().for_each(|v| {
+        black_box(outputs.vertices[v]);
+    });
+    mesh.faces().for_each(|f| {
+        black_box(outputs.faces[f]);
+    });
+}
+
+/// Returns whether runs start with warm caches, and `mesh` is larger than the second-level cache.
+fn needs_filling<M: Representation>(mesh: &M, series: &Series<'_>) -> bool {
+    matches!(series.start, Start::Warm) && mesh.memory().total() > second_level_bytes()
+}
+
+/// Runs a pass of edits over the mesh, or over a patch that represents the mesh.
+fn run_edit_pass<M: Representation>(
+    pass: EditPass,
     polygons: &PolygonMesh,
-    sample: Option<Sample>,
+    sample: Option<ElementSample>,
     series: &Series<'_>,
 ) -> Run {
     let piece = sample.map(|sample| patch(polygons, sample.size));
-    let of = piece.as_ref().unwrap_or(polygons);
-    let editor = editing.on(M::NAME, of);
+    let input = piece.as_ref().unwrap_or(polygons);
+    let editor = pass.prepare(M::NAME, input);
     let editor = editor.unwrap_or_else(|| Err("it cannot be edited".into()));
     let mut editor = match editor {
         Ok(editor) => editor,
         Err(refusal) => {
             return Run {
-                time: Time::none_like(series.clock.now()),
+                time: Time::zero_like(series.clock.now()),
                 outcome: None,
                 refusal: Some(refusal),
             };
@@ -392,18 +443,18 @@ fn edit<M: Representation>(
             elements: edits.elements,
         }
     });
-    let scale = polygons.face_count() as f64 / of.face_count().max(1) as f64;
+    let scale = polygons.face_count() as f64 / input.face_count().max(1) as f64;
     Run::done(time.scaled(scale), outcome)
 }
 
 /// The structure's handles of the first elements of the draw.
-struct Chosen<M: MeshQuery> {
+struct DrawnHandles<M: MeshQuery> {
     vertices: Vec<M::Vertex>,
     edges: Vec<M::Edge>,
     faces: Vec<M::Face>,
 }
 
-impl<M: MeshQuery> Default for Chosen<M> {
+impl<M: MeshQuery> Default for DrawnHandles<M> {
     fn default() -> Self {
         Self {
             vertices: Vec::new(),
@@ -413,52 +464,53 @@ impl<M: MeshQuery> Default for Chosen<M> {
     }
 }
 
-impl<M: Representation> Chosen<M> {
+impl<M: Representation> DrawnHandles<M> {
     /// Looks up handles of drawn elements until there are `size` of each kind, or all of them.
-    fn grow(&mut self, mesh: &M, polygons: &PolygonMesh, draw: &Draw, size: usize) {
-        fn more<T>(drawn: &[T], named: usize, size: usize) -> &[T] {
-            &drawn[named..drawn.len().min(size).max(named)]
+    fn extend_to(&mut self, mesh: &M, polygons: &PolygonMesh, draw: &Draw, size: usize) {
+        fn missing<T>(drawn: &[T], known: usize, size: usize) -> &[T] {
+            &drawn[known..drawn.len().min(size).max(known)]
         }
-        let vertices = more(&draw.vertices, self.vertices.len(), size).iter();
+        let vertices = missing(&draw.vertices, self.vertices.len(), size).iter();
         self.vertices
-            .extend(vertices.map(|&v| M::vertex_name(polygons, v)));
-        let edges = more(&draw.edges, self.edges.len(), size).iter();
+            .extend(vertices.map(|&v| M::vertex_handle(polygons, v)));
+        let edges = missing(&draw.edges, self.edges.len(), size).iter();
         self.edges
-            .extend(edges.map(|&side| edge_name(mesh, polygons, side)));
-        let faces = more(&draw.faces, self.faces.len(), size).iter();
-        self.faces.extend(faces.map(|&f| M::face_name(polygons, f)));
+            .extend(edges.map(|&side| edge_handle(mesh, polygons, side)));
+        let faces = missing(&draw.faces, self.faces.len(), size).iter();
+        self.faces
+            .extend(faces.map(|&f| M::face_handle(polygons, f)));
     }
 }
 
 /// Returns the handle of the edge of `side`, looked up among the edges of its face.
-pub(crate) fn edge_name<M: Representation>(
+pub(crate) fn edge_handle<M: Representation>(
     mesh: &M,
     polygons: &PolygonMesh,
     side: Side,
 ) -> M::Edge {
-    let [a, b] = side.ends.map(|v| M::vertex_name(polygons, v));
+    let [a, b] = side.ends.map(|v| M::vertex_handle(polygons, v));
     let joins = |&e: &M::Edge| {
         let ends = mesh.edge_vertices(e);
         ends == [a, b] || ends == [b, a]
     };
-    mesh.face_edges(M::face_name(polygons, side.face))
+    mesh.face_edges(M::face_handle(polygons, side.face))
         .find(joins)
         .expect("a face has an edge for each of its sides")
 }
 
 /// The sampled elements of the kinds that are sampled, and all elements of the others.
-struct Picked<'c, M: MeshQuery> {
-    chosen: &'c Chosen<M>,
+struct SampledElements<'c, M: MeshQuery> {
+    drawn: &'c DrawnHandles<M>,
     scanned: [bool; 3],
     size: [usize; 3],
 }
 
-impl<M: MeshQuery> Picked<'_, M> {
+impl<M: MeshQuery> SampledElements<'_, M> {
     /// Returns the sampled `handles` of `kind`, or all of `others`, which may be costly to list.
     #[inline(always)]
     fn pick<'p, H: Copy, I: Iterator<Item = H> + 'p>(
         &self,
-        kind: Kind,
+        kind: ElementKind,
         handles: &'p [H],
         others: impl FnOnce() -> I,
     ) -> impl Iterator<Item = H> + 'p {
@@ -472,14 +524,16 @@ impl<M: MeshQuery> Picked<'_, M> {
     }
 }
 
-impl<M: MeshQuery> Elements<M> for Picked<'_, M> {
+impl<M: MeshQuery> Elements<M> for SampledElements<'_, M> {
     fn vertices<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Vertex> + 'a {
-        self.pick(Kind::Vertex, &self.chosen.vertices, || mesh.vertices())
+        self.pick(ElementKind::Vertex, &self.drawn.vertices, || {
+            mesh.vertices()
+        })
     }
     fn edges<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Edge> + 'a {
-        self.pick(Kind::Edge, &self.chosen.edges, || mesh.edges())
+        self.pick(ElementKind::Edge, &self.drawn.edges, || mesh.edges())
     }
     fn faces<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Face> + 'a {
-        self.pick(Kind::Face, &self.chosen.faces, || mesh.faces())
+        self.pick(ElementKind::Face, &self.drawn.faces, || mesh.faces())
     }
 }

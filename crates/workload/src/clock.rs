@@ -24,7 +24,7 @@ impl Time {
     }
 
     /// Makes a time that has only wall time.
-    pub fn of_wall(wall_ns: f64) -> Self {
+    pub fn from_wall_ns(wall_ns: f64) -> Self {
         Self {
             wall_ns,
             ..Self::default()
@@ -52,7 +52,7 @@ impl Time {
     }
 
     /// Returns a time of zero with the same clocks as `like`, and without counted page faults.
-    pub fn none_like(like: Self) -> Self {
+    pub fn zero_like(like: Self) -> Self {
         Self {
             faults: None,
             ..like.scaled(0.0)
@@ -62,12 +62,12 @@ impl Time {
     /// Subtracts `overhead` from both times, but leaves at least a tenth of each: work that is
     /// shorter than reading the clock still takes some time.
     fn without(self, overhead: Self) -> Self {
-        let less = |ns: f64, overhead: f64| (ns - overhead).max(0.1 * ns);
+        let subtract = |ns: f64, overhead: f64| (ns - overhead).max(0.1 * ns);
         Self {
             cpu_ns: self
                 .cpu_ns
-                .map(|ns| less(ns, overhead.cpu_ns.unwrap_or(0.0))),
-            wall_ns: less(self.wall_ns, overhead.wall_ns),
+                .map(|ns| subtract(ns, overhead.cpu_ns.unwrap_or(0.0))),
+            wall_ns: subtract(self.wall_ns, overhead.wall_ns),
             faults: self.faults,
         }
     }
@@ -108,7 +108,7 @@ const READINGS: usize = 301;
 /// Words that the work between two readings reads: more than a first-level cache holds.
 const WORDS: usize = 8192;
 /// Upper limit of the overhead, relative to reading the clock in a loop that does nothing else.
-const MOST_TIMES_HOT: f64 = 3.0;
+const MAX_OVERHEAD_RATIO: f64 = 3.0;
 
 /// The clocks of this machine and its counter of page faults.
 #[derive(Clone, Debug)]
@@ -151,7 +151,7 @@ impl MachineClock {
         };
         let [nothing, once, twice] = [0, 1, 2].map(median);
         let between = |nothing: f64, once: f64, twice: f64| {
-            (2.0 * once - twice).clamp(nothing, MOST_TIMES_HOT * nothing)
+            (2.0 * once - twice).clamp(nothing, MAX_OVERHEAD_RATIO * nothing)
         };
         Time {
             cpu_ns: nothing
@@ -252,28 +252,28 @@ mod tests {
 
     #[test]
     fn times_without_processor_time_stay_without_it() {
-        let wall = Time::of_wall;
+        let wall = Time::from_wall_ns;
         assert_eq!((wall(5.0) - wall(2.0)).scaled(2.0).ns(), 6.0);
-        assert_eq!(Time::none_like(wall(9.0)).plus(wall(4.0)), wall(4.0));
+        assert_eq!(Time::zero_like(wall(9.0)).plus(wall(4.0)), wall(4.0));
     }
 
     /// A clock with readings of 300 ns each, and a counter of page faults.
-    struct Slow(Mutex<(f64, u64)>);
+    struct SlowClock(Mutex<(f64, u64)>);
 
-    impl Clock for Slow {
+    impl Clock for SlowClock {
         fn now(&self) -> Time {
             let (ns, _) = &mut *self.0.lock().expect("no panics");
             *ns += 300.0;
             Time {
                 cpu_ns: Some(*ns),
-                ..Time::of_wall(*ns)
+                ..Time::from_wall_ns(*ns)
             }
         }
 
         fn overhead(&self) -> Time {
             Time {
                 cpu_ns: Some(300.0),
-                ..Time::of_wall(300.0)
+                ..Time::from_wall_ns(300.0)
             }
         }
 
@@ -284,7 +284,7 @@ mod tests {
 
     #[test]
     fn reading_the_clock_is_subtracted_and_faults_are_counted() {
-        let clock = Slow(Mutex::new((0.0, 10)));
+        let clock = SlowClock(Mutex::new((0.0, 10)));
         let work = |ns: f64| {
             timed(&clock, || {
                 let (now, faults) = &mut *clock.0.lock().expect("no panics");
@@ -298,6 +298,9 @@ mod tests {
         assert_eq!(time.plus(work(0.0)).faults, Some(8));
         assert_eq!(time.scaled(0.5).faults, Some(4));
         assert_eq!(work(-100.0).ns(), 20.0, "a tenth of the measured 200 ns");
-        assert_eq!(Time::none_like(time).plus(Time::of_wall(1.0)).faults, None);
+        assert_eq!(
+            Time::zero_like(time).plus(Time::from_wall_ns(1.0)).faults,
+            None
+        );
     }
 }

@@ -15,7 +15,7 @@ pub trait Heap {
 
 /// The memory of a structure: as counted by the allocator and as reported by the structure.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Weighed {
+pub struct MeasuredMemory {
     /// Bytes that the allocator counts after building minus those before: those of the structure.
     pub counted: usize,
     /// The maximum of the same difference during building; it includes the structure.
@@ -27,16 +27,16 @@ pub struct Weighed {
 }
 
 /// Builds `M` once and measures its memory.
-pub(crate) fn weigh<M: Representation>(
+pub(crate) fn measure_memory<M: Representation>(
     polygons: &PolygonMesh,
     heap: &dyn Heap,
-) -> Result<Weighed, BuildError> {
+) -> Result<MeasuredMemory, BuildError> {
     let before = heap.live();
     heap.restart_peak();
     let mesh = M::from_polygons(polygons)?;
     // Read first: the list of tables below is on the heap as well.
     let (live, peak) = (heap.live(), heap.peak());
-    Ok(Weighed {
+    Ok(MeasuredMemory {
         counted: live.saturating_sub(before),
         peak,
         memory: mesh.memory(),

@@ -18,7 +18,7 @@ use rand_chacha::rand_core::SeedableRng;
 use serde::{Deserialize, Serialize};
 
 use crate::clock::{Clock, timed};
-use crate::ledger::LINE_BYTES;
+use crate::read_probe::LINE_BYTES;
 
 /// Sizes of the buffers in bytes: the first is half of a small first-level cache, and each next one
 /// is four times as large. The last is far larger than the last-level cache of most machines.
@@ -35,16 +35,16 @@ const SIZES: [usize; 8] = [
 /// Number of timed series of each kind.
 const SERIES: usize = 7;
 /// Minimum number of bytes that a series reads sequentially.
-const STREAMED: usize = 1 << 24;
+const MIN_STREAMED_BYTES: usize = 1 << 24;
 /// Number of dependent reads in a series.
-const CHASED: usize = 1 << 16;
+const DEPENDENT_READS: usize = 1 << 16;
 
 /// Words of a cache line. The first may hold the index of another line.
 const WORDS: usize = LINE_BYTES / size_of::<u64>();
 
 /// The read speed of a buffer of one size.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Rung {
+pub struct BufferSpeed {
     /// The size of the buffer in bytes.
     pub bytes: usize,
     /// The bandwidth of sequential reads, in GB/s (bytes per nanosecond).
@@ -57,46 +57,47 @@ pub struct Rung {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct MemorySpeed {
     /// By size, the smallest first; never empty.
-    rungs: Vec<Rung>,
+    #[serde(rename = "rungs")]
+    speeds: Vec<BufferSpeed>,
 }
 
 impl MemorySpeed {
     /// Measures the speed. Takes one or two seconds and 256 MiB. Returns `None` if `stop` becomes
     /// true.
     pub fn measure(clock: &dyn Clock, stop: &AtomicBool) -> Option<Self> {
-        Self::of_sizes(&SIZES, clock, stop)
+        Self::measure_sizes(&SIZES, clock, stop)
     }
 
-    fn of_sizes(sizes: &[usize], clock: &dyn Clock, stop: &AtomicBool) -> Option<Self> {
-        let mut rungs = Vec::new();
+    fn measure_sizes(sizes: &[usize], clock: &dyn Clock, stop: &AtomicBool) -> Option<Self> {
+        let mut speeds = Vec::new();
         for &bytes in sizes {
             let words = cycle(bytes / LINE_BYTES);
             if stop.load(Ordering::Relaxed) {
                 return None;
             }
-            rungs.push(Rung {
+            speeds.push(BufferSpeed {
                 bytes,
                 gb_per_s: bandwidth(&words, clock),
                 latency_ns: latency(&words, clock),
             });
         }
-        Some(Self { rungs })
+        Some(Self { speeds })
     }
 
     /// Returns the measured speeds by size, the smallest first.
-    pub fn rungs(&self) -> &[Rung] {
-        &self.rungs
+    pub fn speeds(&self) -> &[BufferSpeed] {
+        &self.speeds
     }
 
     /// Returns the read speed for data of `bytes`: that of the largest buffer of at most this size,
     /// so that the speed is not underestimated; that of the smallest buffer if all are larger.
-    pub fn at(&self, bytes: usize) -> Rung {
-        let larger = self.rungs.partition_point(|rung| rung.bytes <= bytes);
-        self.rungs[larger.saturating_sub(1)]
+    pub fn at(&self, bytes: usize) -> BufferSpeed {
+        let larger = self.speeds.partition_point(|speed| speed.bytes <= bytes);
+        self.speeds[larger.saturating_sub(1)]
     }
 
     /// Returns the read speed of the largest buffer, which is that of the main memory.
-    pub fn memory(&self) -> Rung {
+    pub fn memory(&self) -> BufferSpeed {
         self.at(usize::MAX)
     }
 }
@@ -116,8 +117,8 @@ fn cycle(lines: usize) -> Vec<u64> {
 /// Measures the bandwidth of sequential reads, in bytes per nanosecond.
 fn bandwidth(words: &[u64], clock: &dyn Clock) -> f64 {
     let bytes = size_of_val(words);
-    let passes = (STREAMED / bytes).max(1);
-    let ns = least(clock, || {
+    let passes = (MIN_STREAMED_BYTES / bytes).max(1);
+    let ns = shortest_ns(clock, || {
         for _ in 0..passes {
             black_box(sum(black_box(words)));
         }
@@ -136,17 +137,17 @@ fn sum(words: &[u64]) -> u64 {
 /// Measures the time of one dependent read, in nanoseconds.
 fn latency(words: &[u64], clock: &dyn Clock) -> f64 {
     let mut at = 0;
-    let ns = least(clock, || {
-        for _ in 0..CHASED {
+    let ns = shortest_ns(clock, || {
+        for _ in 0..DEPENDENT_READS {
             at = words[WORDS * at] as usize;
         }
         at = black_box(at);
     });
-    ns / CHASED as f64
+    ns / DEPENDENT_READS as f64
 }
 
 /// Returns the shortest time of several series, in nanoseconds, after one untimed series.
-fn least(clock: &dyn Clock, mut series: impl FnMut()) -> f64 {
+fn shortest_ns(clock: &dyn Clock, mut series: impl FnMut()) -> f64 {
     series();
     let times = (0..SERIES).map(|_| timed(clock, &mut series).ns());
     // A coarse clock may measure 0.
@@ -179,41 +180,44 @@ mod tests {
 
     #[test]
     fn a_size_gets_the_speed_of_the_next_smaller_buffer() {
-        let rung = |bytes, latency_ns| Rung {
+        let buffer = |bytes, latency_ns| BufferSpeed {
             bytes,
             gb_per_s: 1.0,
             latency_ns,
         };
         let speed = MemorySpeed {
-            rungs: vec![rung(100, 1.0), rung(400, 4.0), rung(1600, 16.0)],
+            speeds: vec![buffer(100, 1.0), buffer(400, 4.0), buffer(1600, 16.0)],
         };
         let latencies = [0, 99, 100, 399, 400, 1600, usize::MAX].map(|at| speed.at(at).latency_ns);
         assert_eq!(latencies, [1.0, 1.0, 1.0, 1.0, 4.0, 16.0, 16.0]);
-        assert_eq!(speed.memory(), speed.rungs()[2]);
+        assert_eq!(speed.memory(), speed.speeds()[2]);
     }
 
     /// A clock that advances by one nanosecond at each reading.
-    struct Ticking(std::sync::atomic::AtomicU64);
+    struct TickingClock(std::sync::atomic::AtomicU64);
 
-    impl Clock for Ticking {
+    impl Clock for TickingClock {
         fn now(&self) -> Time {
-            Time::of_wall(self.0.fetch_add(1, Ordering::Relaxed) as f64)
+            Time::from_wall_ns(self.0.fetch_add(1, Ordering::Relaxed) as f64)
         }
     }
 
     #[test]
     fn speeds_are_bytes_and_reads_divided_by_time() {
-        let clock = Ticking(0.into());
-        let go = AtomicBool::new(false);
-        let speed = MemorySpeed::of_sizes(&[1 << 14], &clock, &go).expect("not stopped");
-        let Rung {
+        let clock = TickingClock(0.into());
+        let stop = AtomicBool::new(false);
+        let speed = MemorySpeed::measure_sizes(&[1 << 14], &clock, &stop).expect("not stopped");
+        let BufferSpeed {
             gb_per_s,
             latency_ns,
             ..
         } = speed.memory();
-        assert_eq!(gb_per_s, STREAMED as f64, "all bytes in one nanosecond");
-        assert_eq!(latency_ns, 1.0 / CHASED as f64);
-        go.store(true, Ordering::Relaxed);
-        assert_eq!(MemorySpeed::of_sizes(&[1 << 14], &clock, &go), None);
+        assert_eq!(
+            gb_per_s, MIN_STREAMED_BYTES as f64,
+            "all bytes in one nanosecond"
+        );
+        assert_eq!(latency_ns, 1.0 / DEPENDENT_READS as f64);
+        stop.store(true, Ordering::Relaxed);
+        assert_eq!(MemorySpeed::measure_sizes(&[1 << 14], &clock, &stop), None);
     }
 }

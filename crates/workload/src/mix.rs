@@ -5,24 +5,24 @@
 //! that is the same for all structures. So the parts share caches as they do in a program, and
 //! switching between them costs almost nothing. Passes over the whole mesh run between turns.
 
-mod bench;
 mod passes;
 mod places;
 mod route;
-mod script;
-mod streams;
-mod tables;
+mod route_handles;
+mod schedule;
+mod structure_mix;
+mod table_mix;
 
-use crate::candidate::{Run, Sample};
+use crate::candidate::{ElementSample, Run};
 use crate::clock::{Clock, Time};
 use crate::operation::Operation;
 use crate::series::Series;
 
-pub use bench::{MixOutcome, MixRefusal, set_up};
-pub use places::NoPlace;
+pub use places::EditPlaceError;
 pub use route::Route;
-pub use script::Script;
-pub use tables::tabulate;
+pub use schedule::Schedule;
+pub use structure_mix::{MixRefusal, PreparedMix, prepare_mix};
+pub use table_mix::tabulate;
 
 /// The time and the counts of some operations of a mix.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,8 +38,8 @@ pub struct MixRun {
     pub refused: u64,
 }
 
-/// A structure on which a mix can be run.
-pub trait Mixer {
+/// A backend on which a mix can be run: a structure, or relation tables.
+pub trait MixBackend {
     /// Returns its name, as users write it.
     fn name(&self) -> &'static str;
 
@@ -64,21 +64,21 @@ pub trait Mixer {
     fn run_part(&mut self, part: usize, first: u64, operations: u64, clock: &dyn Clock) -> MixRun;
 
     /// Returns the number of operations of `part` that visit each of its elements, or places, once.
-    fn cycle(&self, part: usize) -> u64;
+    fn cycle_length(&self, part: usize) -> u64;
 
     /// Runs a pass over the whole mesh, or over a sample that represents it.
     fn run_pass(
         &mut self,
         operation: Operation,
-        sample: Option<Sample>,
+        sample: Option<ElementSample>,
         series: &Series<'_>,
     ) -> Run;
 
-    /// Returns for each edit of the script, and each place, whether the edit is accepted.
-    fn accepted(&mut self) -> Vec<Vec<bool>>;
+    /// Returns for each edit of the schedule, and each place, whether the edit is accepted.
+    fn accepted_places(&mut self) -> Vec<Vec<bool>>;
 
     /// Keeps only the places that are true in `accepted`, which is the same for all structures.
-    fn keep(&mut self, accepted: &[Vec<bool>]);
+    fn keep_places(&mut self, accepted: &[Vec<bool>]);
 
     /// Builds it from the polygons as often as `series` describes and returns the time of one
     /// build.

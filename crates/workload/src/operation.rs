@@ -7,13 +7,13 @@ use serde_with::{DeserializeFromStr, SerializeDisplay};
 use sixfold::subdivision::{Method, Scheme};
 use sixfold::{PolygonMesh, QueryCost, Relation};
 
-use crate::editing::Editing;
-use crate::refining::{Refining, Way};
+use crate::edit_pass::EditPass;
+use crate::subdivision_job::{SubdivisionJob, Way};
 use crate::unknown::unknown;
 
 /// One kind of element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Kind {
+pub enum ElementKind {
     /// Vertices.
     Vertex,
     /// Edges.
@@ -22,17 +22,17 @@ pub enum Kind {
     Face,
 }
 
-impl Kind {
-    /// All three, in the order of [`Kind::index`].
+impl ElementKind {
+    /// All three, in the order of [`ElementKind::index`].
     pub const ALL: [Self; 3] = [Self::Vertex, Self::Edge, Self::Face];
 
-    /// Returns its index in [`Kind::ALL`].
+    /// Returns its index in [`ElementKind::ALL`].
     pub const fn index(self) -> usize {
         self as usize
     }
 
     /// Returns the kind of element at which `relation` starts.
-    pub const fn asked(relation: Relation) -> Self {
+    pub const fn queried_by(relation: Relation) -> Self {
         Self::ALL[relation as usize / 3]
     }
 
@@ -75,21 +75,22 @@ pub enum Operation {
     FfBfs,
     /// Queries the three relations of every element.
     AllQueries,
-    /// One step of Catmull–Clark by one method. [`Operation::refining`] gives its scheme and way.
+    /// One step of Catmull–Clark by one method. [`Operation::subdivision_job`] gives the
+    /// scheme and the way.
     CatmullClark(Method),
     /// One step of Loop by one method.
     Loop(Method),
-    /// A workload that changes the mesh, on a fresh copy each time.
-    Editing(Editing),
+    /// A pass of edits that changes the mesh, on a restored copy each time.
+    EditPass(EditPass),
 }
 
 const RELATIONS: &[Relation; 9] = &Relation::ALL;
 /// The relations that a step of Catmull–Clark queries of a vertex.
-const AROUND_VERTEX: &[Relation] = &[Relation::VertexVertices, Relation::VertexFaces];
+const VERTEX_RELATIONS: &[Relation] = &[Relation::VertexVertices, Relation::VertexFaces];
 /// The relations that a step by gathering or a native step queries of an edge.
-const AROUND_EDGE: &[Relation] = &[Relation::EdgeVertices, Relation::EdgeFaces];
+const EDGE_RELATIONS: &[Relation] = &[Relation::EdgeVertices, Relation::EdgeFaces];
 /// The relations that any step queries of a face.
-const AROUND_FACE: &[Relation] = &[Relation::FaceVertices, Relation::FaceEdges];
+const FACE_RELATIONS: &[Relation] = &[Relation::FaceVertices, Relation::FaceEdges];
 
 impl Operation {
     /// All operations, in the order in which tables show them.
@@ -118,10 +119,10 @@ impl Operation {
         Self::Loop(Method::Gather),
         Self::Loop(Method::Scatter),
         Self::Loop(Method::Native),
-        Self::Editing(Editing::SplitCollapse),
-        Self::Editing(Editing::FlipAll),
-        Self::Editing(Editing::DecimateHalf),
-        Self::Editing(Editing::DecimateTenth),
+        Self::EditPass(EditPass::SplitCollapse),
+        Self::EditPass(EditPass::FlipAll),
+        Self::EditPass(EditPass::DecimateHalf),
+        Self::EditPass(EditPass::DecimateTenth),
     ];
 
     /// Returns its name, as users write it: `vv_smooth`.
@@ -143,12 +144,12 @@ impl Operation {
             Self::Loop(Method::Gather) => "loop_gather",
             Self::Loop(Method::Scatter) => "loop_scatter",
             Self::Loop(Method::Native) => "loop_native",
-            Self::Editing(editing) => editing.name(),
+            Self::EditPass(pass) => pass.name(),
         }
     }
 
     /// Returns the subdivision of one level that it runs; `None` if it is not a subdivision.
-    pub fn refining(self) -> Option<Refining> {
+    pub fn subdivision_job(self) -> Option<SubdivisionJob> {
         let (scheme, method) = match self {
             Self::CatmullClark(method) => (Scheme::CatmullClark, method),
             Self::Loop(method) => (Scheme::Loop, method),
@@ -159,7 +160,7 @@ impl Operation {
             Method::Scatter => Way::Scatter,
             Method::Native => Way::Native,
         };
-        Some(Refining::new(scheme, way, 1))
+        Some(SubdivisionJob::new(scheme, way, 1))
     }
 
     /// Returns whether it is a subdivision.
@@ -169,8 +170,8 @@ impl Operation {
 
     /// Returns whether it makes another mesh, by subdivision or by edits. Such an operation takes
     /// long, and its time can be estimated from a patch of the mesh.
-    pub const fn makes_a_mesh(self) -> bool {
-        self.subdivides() || matches!(self, Self::Editing(_))
+    pub const fn creates_mesh(self) -> bool {
+        self.subdivides() || matches!(self, Self::EditPass(_))
     }
 
     /// Returns whether a run grows tables that the next run reuses, so that the first run takes
@@ -180,25 +181,25 @@ impl Operation {
             self,
             Self::CatmullClark(Method::Native)
                 | Self::Loop(Method::Native)
-                | Self::Editing(Editing::SplitCollapse | Editing::FlipAll)
+                | Self::EditPass(EditPass::SplitCollapse | EditPass::FlipAll)
         )
     }
 
     /// Returns whether the clock stops between runs, to restore what a run changed or drop what it
     /// made.
-    pub const fn stops_the_clock(self) -> bool {
-        matches!(self, Self::Build | Self::VvSmooth | Self::Editing(_))
+    pub const fn pauses_clock(self) -> bool {
+        matches!(self, Self::Build | Self::VvSmooth | Self::EditPass(_))
     }
 
     /// Returns whether it allocates memory within the timing, so that its time depends on the
     /// source of the pages.
     pub const fn allocates(self) -> bool {
-        matches!(self, Self::Build | Self::FfBfs) || self.makes_a_mesh()
+        matches!(self, Self::Build | Self::FfBfs) || self.creates_mesh()
     }
 
     /// Estimates the number of elements that it visits on `polygons`: the faces, or the new faces.
     /// Used if no run has counted them.
-    pub fn expected(self, polygons: &PolygonMesh) -> usize {
+    pub fn estimated_elements(self, polygons: &PolygonMesh) -> usize {
         match self {
             Self::CatmullClark(_) => polygons.corner_count(),
             Self::Loop(_) => polygons.face_count().saturating_mul(4),
@@ -208,66 +209,70 @@ impl Operation {
 
     /// Returns the unit of its element count: `vertex`, `edge`, `face`, `visit` (neighbours are
     /// counted) or `new face`.
-    pub const fn per(self) -> &'static str {
+    pub const fn unit(self) -> &'static str {
         match self {
-            Self::Relation(relation) => Kind::asked(relation).name(),
-            Self::VertexNormal | Self::VvSmooth => Kind::Vertex.name(),
-            Self::EdgeLength | Self::Boundary => Kind::Edge.name(),
-            Self::Build | Self::FaceBarycenter | Self::FfBfs => Kind::Face.name(),
+            Self::Relation(relation) => ElementKind::queried_by(relation).name(),
+            Self::VertexNormal | Self::VvSmooth => ElementKind::Vertex.name(),
+            Self::EdgeLength | Self::Boundary => ElementKind::Edge.name(),
+            Self::Build | Self::FaceBarycenter | Self::FfBfs => ElementKind::Face.name(),
             Self::Circulate | Self::AllQueries => "visit",
             Self::CatmullClark(_) | Self::Loop(_) => "new face",
-            Self::Editing(Editing::FlipAll) => "visit",
-            Self::Editing(_) => Kind::Face.name(),
+            Self::EditPass(EditPass::FlipAll) => "visit",
+            Self::EditPass(_) => ElementKind::Face.name(),
         }
     }
 
     /// Returns the kinds of elements that it visits, in the order of its steps.
-    pub const fn kinds(self) -> &'static [Kind] {
-        const V: &[Kind] = &[Kind::Vertex];
-        const E: &[Kind] = &[Kind::Edge];
-        const F: &[Kind] = &[Kind::Face];
+    pub const fn kinds(self) -> &'static [ElementKind] {
+        const V: &[ElementKind] = &[ElementKind::Vertex];
+        const E: &[ElementKind] = &[ElementKind::Edge];
+        const F: &[ElementKind] = &[ElementKind::Face];
         match self {
             Self::Build => &[],
-            Self::Relation(relation) => match Kind::asked(relation) {
-                Kind::Vertex => V,
-                Kind::Edge => E,
-                Kind::Face => F,
+            Self::Relation(relation) => match ElementKind::queried_by(relation) {
+                ElementKind::Vertex => V,
+                ElementKind::Edge => E,
+                ElementKind::Face => F,
             },
-            Self::Circulate => &[Kind::Vertex, Kind::Face],
+            Self::Circulate => &[ElementKind::Vertex, ElementKind::Face],
             Self::CatmullClark(Method::Scatter) | Self::Loop(Method::Scatter) => F,
-            Self::CatmullClark(_) | Self::Loop(_) => &Kind::ALL,
-            Self::Editing(Editing::FlipAll) => E,
-            Self::Editing(_) => V,
+            Self::CatmullClark(_) | Self::Loop(_) => &ElementKind::ALL,
+            Self::EditPass(EditPass::FlipAll) => E,
+            Self::EditPass(_) => V,
             Self::FaceBarycenter | Self::FfBfs => F,
-            Self::VertexNormal => &[Kind::Face, Kind::Vertex],
+            Self::VertexNormal => &[ElementKind::Face, ElementKind::Vertex],
             Self::VvSmooth => V,
             Self::EdgeLength | Self::Boundary => E,
-            Self::AllQueries => &Kind::ALL,
+            Self::AllQueries => &ElementKind::ALL,
         }
     }
 
     /// Returns the relations that it queries of elements of `kind`.
-    pub fn relations(self, kind: Kind) -> &'static [Relation] {
+    pub fn relations(self, kind: ElementKind) -> &'static [Relation] {
         let one = |relation: Relation| std::slice::from_ref(&RELATIONS[relation as usize]);
         match (self, kind) {
-            (Self::Relation(relation), _) if Kind::asked(relation) == kind => one(relation),
-            (Self::Circulate | Self::VertexNormal, Kind::Vertex) => one(Relation::VertexFaces),
-            (Self::Circulate | Self::VertexNormal | Self::FaceBarycenter, Kind::Face) => {
+            (Self::Relation(relation), _) if ElementKind::queried_by(relation) == kind => {
+                one(relation)
+            }
+            (Self::Circulate | Self::VertexNormal, ElementKind::Vertex) => {
+                one(Relation::VertexFaces)
+            }
+            (Self::Circulate | Self::VertexNormal | Self::FaceBarycenter, ElementKind::Face) => {
                 one(Relation::FaceVertices)
             }
-            (Self::VvSmooth, Kind::Vertex) => one(Relation::VertexVertices),
-            (Self::EdgeLength, Kind::Edge) => one(Relation::EdgeVertices),
-            (Self::Boundary, Kind::Edge) => one(Relation::EdgeFaces),
-            (Self::FfBfs, Kind::Face) => one(Relation::FaceFaces),
-            (Self::CatmullClark(_) | Self::Loop(_), Kind::Face) => AROUND_FACE,
+            (Self::VvSmooth, ElementKind::Vertex) => one(Relation::VertexVertices),
+            (Self::EdgeLength, ElementKind::Edge) => one(Relation::EdgeVertices),
+            (Self::Boundary, ElementKind::Edge) => one(Relation::EdgeFaces),
+            (Self::FfBfs, ElementKind::Face) => one(Relation::FaceFaces),
+            (Self::CatmullClark(_) | Self::Loop(_), ElementKind::Face) => FACE_RELATIONS,
             (Self::CatmullClark(Method::Scatter) | Self::Loop(Method::Scatter), _) => &[],
-            (Self::CatmullClark(_), Kind::Vertex) => AROUND_VERTEX,
-            (Self::Loop(_), Kind::Vertex) => one(Relation::VertexVertices),
-            (Self::CatmullClark(_) | Self::Loop(_), Kind::Edge) => AROUND_EDGE,
+            (Self::CatmullClark(_), ElementKind::Vertex) => VERTEX_RELATIONS,
+            (Self::Loop(_), ElementKind::Vertex) => one(Relation::VertexVertices),
+            (Self::CatmullClark(_) | Self::Loop(_), ElementKind::Edge) => EDGE_RELATIONS,
             // The minimum that an edit has to query.
-            (Self::Editing(Editing::FlipAll), Kind::Edge) => one(Relation::EdgeFaces),
-            (Self::Editing(Editing::FlipAll), _) => &[],
-            (Self::Editing(_), Kind::Vertex) => one(Relation::VertexFaces),
+            (Self::EditPass(EditPass::FlipAll), ElementKind::Edge) => one(Relation::EdgeFaces),
+            (Self::EditPass(EditPass::FlipAll), _) => &[],
+            (Self::EditPass(_), ElementKind::Vertex) => one(Relation::VertexFaces),
             (Self::AllQueries, _) => &RELATIONS[3 * kind.index()..][..3],
             _ => &[],
         }
@@ -275,7 +280,7 @@ impl Operation {
 
     /// Returns for each kind whether a structure with these costs scans all faces for each element.
     pub fn scans(self, costs: &[QueryCost; 9]) -> [bool; 3] {
-        Kind::ALL.map(|kind| {
+        ElementKind::ALL.map(|kind| {
             let relations = self.relations(kind);
             relations
                 .iter()
@@ -289,18 +294,18 @@ impl Operation {
     /// This is true for all relations except EV and FV. An edge has two ends, and the corners of
     /// all faces together are the corners of the mesh. The other relations visit a vertex of
     /// valence n from each of its n edges, or search a face of n sides n times for a side.
-    pub fn walks_around(self) -> [bool; 3] {
+    pub fn grows_with_valence(self) -> [bool; 3] {
         let corners = [Relation::EdgeVertices, Relation::FaceVertices];
-        Kind::ALL.map(|kind| self.relations(kind).iter().any(|r| !corners.contains(r)))
+        ElementKind::ALL.map(|kind| self.relations(kind).iter().any(|r| !corners.contains(r)))
     }
 
     /// Returns whether it can be run on a sample of elements.
     pub const fn can_be_sampled(self) -> bool {
-        !matches!(self, Self::Build | Self::FfBfs) && !self.makes_a_mesh()
+        !matches!(self, Self::Build | Self::FfBfs) && !self.creates_mesh()
     }
 
     /// Returns whether its checksum is a count, which is exactly equal for all structures.
-    pub const fn counts(self) -> bool {
+    pub const fn has_exact_checksum(self) -> bool {
         !matches!(
             self,
             Self::FaceBarycenter
@@ -309,7 +314,7 @@ impl Operation {
                 | Self::EdgeLength
                 | Self::CatmullClark(_)
                 | Self::Loop(_)
-                | Self::Editing(_)
+                | Self::EditPass(_)
         )
     }
 }
@@ -357,9 +362,13 @@ mod tests {
     #[test]
     fn relations_start_at_their_own_kind() {
         for operation in Operation::ALL {
-            for kind in Kind::ALL {
+            for kind in ElementKind::ALL {
                 let relations = operation.relations(kind);
-                assert!(relations.iter().all(|&r| Kind::asked(r) == kind));
+                assert!(
+                    relations
+                        .iter()
+                        .all(|&r| ElementKind::queried_by(r) == kind)
+                );
                 assert_eq!(
                     relations.is_empty(),
                     !operation.kinds().contains(&kind),
@@ -367,7 +376,7 @@ mod tests {
                 );
             }
         }
-        let all = Kind::ALL.map(|kind| Operation::AllQueries.relations(kind));
+        let all = ElementKind::ALL.map(|kind| Operation::AllQueries.relations(kind));
         assert_eq!(all.concat(), Relation::ALL);
     }
 
@@ -377,9 +386,12 @@ mod tests {
         costs[Relation::VertexFaces as usize] = QueryCost::Scan;
         assert_eq!(Operation::VertexNormal.scans(&costs), [true, false, false]);
         assert_eq!(Operation::FaceBarycenter.scans(&costs), [false; 3]);
-        assert_eq!(Operation::VertexNormal.walks_around(), [true, false, false]);
-        assert_eq!(Operation::EdgeLength.walks_around(), [false; 3]);
-        assert_eq!(Operation::AllQueries.walks_around(), [true; 3]);
+        assert_eq!(
+            Operation::VertexNormal.grows_with_valence(),
+            [true, false, false]
+        );
+        assert_eq!(Operation::EdgeLength.grows_with_valence(), [false; 3]);
+        assert_eq!(Operation::AllQueries.grows_with_valence(), [true; 3]);
         // Subdivisions scan if they query the faces of vertices. The rules of Loop do not need
         // them.
         let scans = |operation: Operation| operation.scans(&costs)[0];
@@ -391,9 +403,9 @@ mod tests {
     #[test]
     fn subdivisions_are_named_by_scheme_and_way() {
         for operation in Operation::ALL {
-            let named = operation.refining().map(|refining| {
-                let scheme = refining.subdivision.scheme.name().replace('-', "_");
-                format!("{scheme}_{}", refining.way)
+            let named = operation.subdivision_job().map(|job| {
+                let scheme = job.subdivision.scheme.name().replace('-', "_");
+                format!("{scheme}_{}", job.way)
             });
             assert_eq!(named.is_some(), operation.subdivides());
             assert_eq!(

@@ -4,15 +4,15 @@
 //! before. When a returned page is used again, it costs a page fault and is cleared. This can take
 //! longer than the measured operation, so the policy is a part of the experiment. [`Policy::Kept`]
 //! keeps freed pages in the process, so that no sample pays for page faults after a warm-up.
-//! [`give_back`] returns them on purpose, to measure the cost of a first run.
+//! [`release_pages`] returns them on purpose, to measure the cost of a first run.
 //!
 //! `Kept` is implemented for the GNU C library with `mallopt`: no block is mapped separately, the
 //! heap is never trimmed, and all threads share one heap, so that one thread can reuse a block that
 //! another thread freed. Sharing works only if the policy is set before the program starts its
 //! first thread, because glibc reads the number of heaps once. Threads with their own heap also
-//! keep its pages, but [`give_back`] returns only some of them. On other platforms, and in programs
-//! with another allocator, the active policy is [`Policy::System`], and [`put_in_force`] reports
-//! this.
+//! keep its pages, but [`release_pages`] returns only some of them. On other platforms, and in
+//! programs with another allocator, the active policy is [`Policy::System`], and [`set_policy`]
+//! reports this.
 
 use std::fmt;
 use std::str::FromStr;
@@ -86,10 +86,10 @@ pub struct HeapReport {
     pub counts_faults: bool,
 }
 
-/// Applies the policy `asked` to the whole program and reports the active policy. `Kept` becomes
-/// active only if the allocator of the program supports it, and a probe shows that pages are kept.
-pub fn put_in_force(asked: Policy) -> HeapReport {
-    let reason = match asked {
+/// Applies the policy `requested` to the whole program and reports the active policy. `Kept`
+/// becomes active only if the allocator of the program supports it, and a probe shows that pages are kept.
+pub fn set_policy(requested: Policy) -> HeapReport {
+    let reason = match requested {
         Policy::System => {
             stop_keeping();
             None
@@ -97,7 +97,7 @@ pub fn put_in_force(asked: Policy) -> HeapReport {
         Policy::Kept => keep().err(),
     };
     HeapReport {
-        policy: match (asked, &reason) {
+        policy: match (requested, &reason) {
             (Policy::Kept, None) => Policy::Kept,
             _ => Policy::System,
         },
@@ -111,7 +111,7 @@ pub fn put_in_force(asked: Policy) -> HeapReport {
 
 /// Makes the allocator keep freed pages in the process.
 fn keep() -> Result<(), String> {
-    if !platform::is_ours() {
+    if !platform::is_glibc_allocator() {
         return Err("keeping pages needs the glibc allocator; this program uses another".into());
     }
     KEEPING.store(true, Ordering::Relaxed);
@@ -120,12 +120,12 @@ fn keep() -> Result<(), String> {
         return Err("the allocator refused to keep pages".into());
     }
     // Allocates and frees a block twice. By default, its pages would be returned in between.
-    let block = || drop(touched_block(PROBE_BYTES));
-    block();
+    let allocate = || drop(touched_block(PROBE_BYTES));
+    allocate();
     let before = faults();
-    block();
+    allocate();
     match (before, faults()) {
-        (Some(before), Some(after)) if after - before > MOST_PROBE_FAULTS => {
+        (Some(before), Some(after)) if after - before > MAX_PROBE_FAULTS => {
             stop_keeping();
             Err("the allocator accepted the option to keep pages, but returned them".into())
         }
@@ -140,31 +140,31 @@ static KEEPING: AtomicBool = AtomicBool::new(false);
 fn stop_keeping() {
     if KEEPING.swap(false, Ordering::Relaxed) {
         platform::restore();
-        platform::give_back();
+        platform::release_pages();
     }
 }
 
 /// Size of the block that shows whether pages are kept.
 const PROBE_BYTES: usize = 16 << 20;
 /// Maximum number of page faults of the probe if pages are kept. The block has thousands of pages.
-const MOST_PROBE_FAULTS: u64 = 64;
+const MAX_PROBE_FAULTS: u64 = 64;
 /// The smallest page size of all platforms, in bytes.
-const LEAST_PAGE: usize = 4096;
+const MIN_PAGE_BYTES: usize = 4096;
 /// Size of the first blocks that are allocated to find freed blocks, in bytes. It is then halved.
-const LARGEST_FREED: usize = 1 << 20;
+const MAX_BLOCK_BYTES: usize = 1 << 20;
 
 /// Touches `bytes` in one block and the pages of all freed blocks, so that later allocations find
-/// their pages present. Pages that [`give_back`] returned are taken from the kernel again. Useful
-/// only if pages are kept. O(`bytes` + bytes of freed blocks), plus one walk over the list of freed
+/// their pages present. Pages that [`release_pages`] returned are taken from the kernel again.
+/// Useful only if pages are kept. O(`bytes` + bytes of freed blocks), plus one walk over the list of freed
 /// blocks for each MiB of them.
 pub fn reserve(bytes: usize) {
     let block = touched_block(bytes);
     // All blocks are held at the same time, so that each is a different one. Large blocks come
     // first, because small ones fit anywhere.
     let mut blocks = Vec::new();
-    let mut size = LARGEST_FREED;
+    let mut size = MAX_BLOCK_BYTES;
     let mut heap = platform::heap_bytes();
-    while size >= LEAST_PAGE && heap.is_some() {
+    while size >= MIN_PAGE_BYTES && heap.is_some() {
         let block = touched_block(size);
         let now = platform::heap_bytes();
         match block {
@@ -180,7 +180,7 @@ pub fn reserve(bytes: usize) {
 fn touched_block(bytes: usize) -> Option<Vec<u8>> {
     let mut block: Vec<u8> = Vec::new();
     block.try_reserve_exact(bytes).ok()?;
-    for page in block.spare_capacity_mut().chunks_mut(LEAST_PAGE) {
+    for page in block.spare_capacity_mut().chunks_mut(MIN_PAGE_BYTES) {
         page[0].write(1);
     }
     Some(std::hint::black_box(block))
@@ -188,13 +188,13 @@ fn touched_block(bytes: usize) -> Option<Vec<u8>> {
 
 /// Returns the pages of all freed blocks to the kernel, so that the next allocations pay for new
 /// ones. Does nothing if the allocator does not support it.
-pub fn give_back() {
-    platform::give_back();
+pub fn release_pages() {
+    platform::release_pages();
 }
 
-/// Returns whether the allocator supports [`give_back`].
-pub fn can_give_back() -> bool {
-    platform::is_ours()
+/// Returns whether the allocator supports [`release_pages`].
+pub fn can_release_pages() -> bool {
+    platform::is_glibc_allocator()
 }
 
 /// Returns the bytes of this process that are in memory, if the platform reports them.
@@ -284,9 +284,9 @@ mod platform {
 
     /// Size of a test block, in bytes: unusual, so that another thread hardly allocates the same
     /// size.
-    const WITNESS: usize = (1 << 20) + 4096 * 3;
+    const TEST_BLOCK_BYTES: usize = (1 << 20) + 4096 * 3;
     /// Number of attempts to see the test block in the counts of the allocator.
-    const LOOKS: usize = 16;
+    const ATTEMPTS: usize = 16;
     /// The heap grows by at least this many bytes at a time.
     const STEP: libc::c_int = 1 << 20;
 
@@ -322,7 +322,7 @@ mod platform {
         })
     }
 
-    pub(super) fn give_back() {
+    pub(super) fn release_pages() {
         // SAFETY: `malloc_trim` may be called at any time from any thread; it takes the locks of
         // all heaps, and returns only pages that lie within freed blocks.
         unsafe { libc::malloc_trim(0) };
@@ -348,21 +348,21 @@ mod platform {
 
     /// Returns whether Rust allocates from the GNU C library: its counts then include a test block.
     /// Because other threads may allocate at the same time, one of several attempts has to succeed.
-    pub(super) fn is_ours() -> bool {
-        let shows = || {
+    pub(super) fn is_glibc_allocator() -> bool {
+        let is_counted = || {
             let before = used();
-            let block: Vec<u8> = Vec::with_capacity(WITNESS);
+            let block: Vec<u8> = Vec::with_capacity(TEST_BLOCK_BYTES);
             let grown = used().wrapping_sub(before) as usize;
             std::hint::black_box(&block);
-            (WITNESS..2 * WITNESS).contains(&grown)
+            (TEST_BLOCK_BYTES..2 * TEST_BLOCK_BYTES).contains(&grown)
         };
-        (0..LOOKS).any(|_| shows())
+        (0..ATTEMPTS).any(|_| is_counted())
     }
 
     pub(super) fn allocator() -> String {
         // SAFETY: `gnu_get_libc_version` returns a static string that ends with a zero byte.
         let version = unsafe { CStr::from_ptr(libc::gnu_get_libc_version()) };
-        match is_ours() {
+        match is_glibc_allocator() {
             true => format!("glibc {}", version.to_string_lossy()),
             false => "of the program".into(),
         }
@@ -377,13 +377,13 @@ mod platform {
 
     pub(super) fn restore() {}
 
-    pub(super) fn give_back() {}
+    pub(super) fn release_pages() {}
 
     pub(super) fn heap_bytes() -> Option<u32> {
         None
     }
 
-    pub(super) fn is_ours() -> bool {
+    pub(super) fn is_glibc_allocator() -> bool {
         false
     }
 

@@ -5,13 +5,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde::{Deserialize, Serialize};
 use sixfold::{Measured, MeshQuery, QueryCost, Relation};
 
-use crate::ledger::{LINE_BYTES, Ledger, Step, Sum};
+use crate::read_probe::{CountingProbe, LINE_BYTES, ReadCounts, Step};
 
 /// Number of sampled elements if a structure scans: evenly spaced, including the first element.
-pub const SAMPLE: usize = 16;
+pub const SCAN_SAMPLE: usize = 16;
 /// If a query reads more rows than this on average, a sample is used too: at a vertex with very
 /// many faces, a walk is as slow as a scan.
-pub const MOST_READS: u64 = 256;
+pub const MAX_READS: u64 = 256;
 
 /// The reads of one relation, queried of every element in the order of the structure, or of a
 /// sample.
@@ -22,7 +22,8 @@ pub struct Reads {
     /// Number of elements of the queried kind.
     pub elements: u64,
     /// Number of elements that were queried.
-    pub asked: u64,
+    #[serde(rename = "asked")]
+    pub queried: u64,
     /// Whether only a sample was queried; the values per query are then means over the sample.
     pub sampled: bool,
     /// Results per query.
@@ -68,11 +69,11 @@ pub struct TableReads {
 }
 
 /// A receiver of the counts: called before and after each relation.
-pub trait Counted {
+pub trait ReadsObserver {
     /// Called before `relation` is queried.
-    fn begins(&mut self, relation: Relation);
+    fn relation_started(&mut self, relation: Relation);
     /// Called with the counts of a relation.
-    fn ends(&mut self, reads: Reads);
+    fn relation_counted(&mut self, reads: Reads);
 }
 
 /// Queries `relations` of `mesh` and counts the reads, until `stop` is true.
@@ -82,93 +83,111 @@ pub(crate) fn count<M: Measured>(
     mesh: M,
     relations: &[Relation],
     stop: &AtomicBool,
-    counted: &mut dyn Counted,
+    observer: &mut dyn ReadsObserver,
 ) {
-    let ledger = Ledger::of(&mesh.memory());
+    let probe = CountingProbe::new(&mesh.memory());
     let elements = [mesh.vertex_count(), mesh.edge_count(), mesh.face_count()];
-    let watched = mesh.probed(ledger.clone());
-    let counting = Counting {
-        mesh: &watched,
-        ledger: &ledger,
+    let probed = mesh.probed(probe.clone());
+    let counter = ReadCounter {
+        mesh: &probed,
+        probe: &probe,
         stop,
     };
     for &relation in relations {
-        counted.begins(relation);
+        observer.relation_started(relation);
         let elements = elements[relation as usize / 3];
-        let scans = M::COSTS[relation as usize] == QueryCost::Scan && elements > SAMPLE;
+        let scans = M::COSTS[relation as usize] == QueryCost::Scan && elements > SCAN_SAMPLE;
         let whole = if scans {
             None
         } else {
-            counting.ask(relation, elements, elements)
+            counter.count(relation, elements, elements)
         };
-        let found = whole.or_else(|| counting.ask(relation, elements, SAMPLE));
+        let found = whole.or_else(|| counter.count(relation, elements, SCAN_SAMPLE));
         if stop.load(Ordering::Relaxed) {
             return;
         }
         if let Some(reads) = found {
-            counted.ends(reads);
+            observer.relation_counted(reads);
         }
     }
 }
 
-/// A mesh with a probe, and the ledger of that probe.
-struct Counting<'a, M> {
+/// A mesh with a probe, and that probe.
+struct ReadCounter<'a, M> {
     mesh: &'a M,
-    ledger: &'a Ledger,
+    probe: &'a CountingProbe,
     stop: &'a AtomicBool,
 }
 
-impl<M: MeshQuery> Counting<'_, M> {
-    /// Queries `asked` of the `elements`. Returns `None` if `stop` is true, or if all elements are
-    /// queried and read too much.
-    fn ask(&self, relation: Relation, elements: usize, asked: usize) -> Option<Reads> {
+impl<M: MeshQuery> ReadCounter<'_, M> {
+    /// Queries `queried` of the `elements`. Returns `None` if `stop` is true, or if all elements are
+    /// queried and their queries read too much.
+    fn count(&self, relation: Relation, elements: usize, queried: usize) -> Option<Reads> {
         let mesh = self.mesh;
         let sweep = Sweep {
             relation,
             elements,
-            asked: asked.min(elements),
+            queried: queried.min(elements),
         };
         let (v, e, f) = (|| mesh.vertices(), || mesh.edges(), || mesh.faces());
         match relation {
-            Relation::VertexVertices => self.go(sweep, v, |v| number(mesh.vertex_vertices(v))),
-            Relation::VertexEdges => self.go(sweep, v, |v| number(mesh.vertex_edges(v))),
-            Relation::VertexFaces => self.go(sweep, v, |v| number(mesh.vertex_faces(v))),
-            Relation::EdgeVertices => self.go(sweep, e, |e| number(mesh.edge_vertices(e))),
-            Relation::EdgeEdges => self.go(sweep, e, |e| number(mesh.edge_edges(e))),
-            Relation::EdgeFaces => self.go(sweep, e, |e| number(mesh.edge_faces(e))),
-            Relation::FaceVertices => self.go(sweep, f, |f| number(mesh.face_vertices(f))),
-            Relation::FaceEdges => self.go(sweep, f, |f| number(mesh.face_edges(f))),
-            Relation::FaceFaces => self.go(sweep, f, |f| number(mesh.face_faces(f))),
+            Relation::VertexVertices => {
+                self.count_sweep(sweep, v, |v| count_results(mesh.vertex_vertices(v)))
+            }
+            Relation::VertexEdges => {
+                self.count_sweep(sweep, v, |v| count_results(mesh.vertex_edges(v)))
+            }
+            Relation::VertexFaces => {
+                self.count_sweep(sweep, v, |v| count_results(mesh.vertex_faces(v)))
+            }
+            Relation::EdgeVertices => {
+                self.count_sweep(sweep, e, |e| count_results(mesh.edge_vertices(e)))
+            }
+            Relation::EdgeEdges => {
+                self.count_sweep(sweep, e, |e| count_results(mesh.edge_edges(e)))
+            }
+            Relation::EdgeFaces => {
+                self.count_sweep(sweep, e, |e| count_results(mesh.edge_faces(e)))
+            }
+            Relation::FaceVertices => {
+                self.count_sweep(sweep, f, |f| count_results(mesh.face_vertices(f)))
+            }
+            Relation::FaceEdges => {
+                self.count_sweep(sweep, f, |f| count_results(mesh.face_edges(f)))
+            }
+            Relation::FaceFaces => {
+                self.count_sweep(sweep, f, |f| count_results(mesh.face_faces(f)))
+            }
         }
     }
 
     /// Lists the elements one by one, as the timed sweep does, and queries the selected ones.
-    fn go<I: Iterator>(
+    fn count_sweep<I: Iterator>(
         &self,
         sweep: Sweep,
         list: impl FnOnce() -> I,
-        mut ask: impl FnMut(I::Item) -> u64,
+        mut query: impl FnMut(I::Item) -> u64,
     ) -> Option<Reads> {
-        let ledger = self.ledger;
-        ledger.clear();
-        ledger.begin(Step::Listing);
+        let probe = self.probe;
+        probe.clear();
+        probe.begin(Step::Listing);
         let mut elements = list();
-        let (mut answers, mut asked) = (0, 0);
+        let (mut answers, mut queried) = (0, 0);
         for i in 0.. {
-            ledger.begin(Step::Listing);
+            probe.begin(Step::Listing);
             let Some(element) = elements.next() else {
                 break;
             };
-            if i == sweep.next(asked) {
-                ledger.begin(Step::Asking);
-                answers += ask(element);
-                asked += 1;
+            if i == sweep.nth_index(queried) {
+                probe.begin(Step::Querying);
+                answers += query(element);
+                queried += 1;
             }
-            if self.stop.load(Ordering::Relaxed) || sweep.reads_too_much(ledger) {
+            if self.stop.load(Ordering::Relaxed) || sweep.reads_too_much(probe) {
                 return None;
             }
         }
-        Some(sweep.reads(asked, answers, ledger))
+        Some(sweep.reads(queried, answers, probe))
     }
 }
 
@@ -177,52 +196,56 @@ impl<M: MeshQuery> Counting<'_, M> {
 struct Sweep {
     relation: Relation,
     elements: usize,
-    asked: usize,
+    queried: usize,
 }
 
 impl Sweep {
-    /// Returns the list index of the next element to query after `asked` queries.
-    fn next(self, asked: usize) -> usize {
+    /// Returns the list index of the next element to query after `queried` queries.
+    fn nth_index(self, queried: usize) -> usize {
         // `u128` cannot overflow here.
-        (asked as u128 * self.elements as u128 / self.asked.max(1) as u128) as usize
+        (queried as u128 * self.elements as u128 / self.queried.max(1) as u128) as usize
     }
 
-    fn sampled(self) -> bool {
-        self.asked < self.elements
+    fn is_sampled(self) -> bool {
+        self.queried < self.elements
     }
 
-    fn reads_too_much(self, ledger: &Ledger) -> bool {
-        let most = MOST_READS.saturating_mul(self.elements as u64);
-        !self.sampled() && self.elements > SAMPLE && ledger.sum(Step::Asking).reads > most
+    fn reads_too_much(self, probe: &CountingProbe) -> bool {
+        let limit = MAX_READS.saturating_mul(self.elements as u64);
+        !self.is_sampled()
+            && self.elements > SCAN_SAMPLE
+            && probe.counts(Step::Querying).reads > limit
     }
 
-    fn reads(self, asked: usize, answers: u64, ledger: &Ledger) -> Reads {
-        let (listing, asking) = (ledger.sum(Step::Listing), ledger.sum(Step::Asking));
-        let a_query = |number: u64| number as f64 / asked.max(1) as f64;
-        let an_element = |number: u64| number as f64 / self.elements.max(1) as f64;
-        let both = |of: fn(Sum) -> u64| an_element(of(listing)) + a_query(of(asking));
-        let moved_lines = match self.sampled() {
-            true => a_query(asking.lines),
-            false => an_element(ledger.touched()),
+    fn reads(self, queried: usize, answers: u64, probe: &CountingProbe) -> Reads {
+        let (listing, querying) = (probe.counts(Step::Listing), probe.counts(Step::Querying));
+        let per_query = |number: u64| number as f64 / queried.max(1) as f64;
+        let per_element = |number: u64| number as f64 / self.elements.max(1) as f64;
+        let both = |number: fn(ReadCounts) -> u64| {
+            per_element(number(listing)) + per_query(number(querying))
         };
-        let tables = ledger.tables().map(|(table, row_bytes, reads)| TableReads {
+        let moved_lines = match self.is_sampled() {
+            true => per_query(querying.lines),
+            false => per_element(probe.touched()),
+        };
+        let tables = probe.tables().map(|(table, row_bytes, reads)| TableReads {
             table: table.into(),
             row_bytes,
-            reads: a_query(reads),
+            reads: per_query(reads),
         });
         Reads {
             relation: self.relation,
             elements: self.elements as u64,
-            asked: asked as u64,
-            sampled: self.sampled(),
-            answers: a_query(answers),
-            reads: a_query(asking.reads),
-            bytes: a_query(asking.bytes),
-            lines: a_query(asking.lines),
-            listing_reads: an_element(listing.reads),
+            queried: queried as u64,
+            sampled: self.is_sampled(),
+            answers: per_query(answers),
+            reads: per_query(querying.reads),
+            bytes: per_query(querying.bytes),
+            lines: per_query(querying.lines),
+            listing_reads: per_element(listing.reads),
             fetched: both(|sum| sum.fetched),
             jumps: both(|sum| sum.jumps),
-            sweep_lines: ledger.touched(),
+            sweep_lines: probe.touched(),
             moved_bytes: moved_lines * LINE_BYTES as f64,
             tables: tables.collect(),
         }
@@ -230,7 +253,7 @@ impl Sweep {
 }
 
 /// Counts the results with `fold`, as the timed sweep does: calling `next` may read other rows.
-fn number(answers: impl IntoIterator) -> u64 {
+fn count_results(answers: impl IntoIterator) -> u64 {
     answers.into_iter().fold(0, |number, _| number + 1)
 }
 

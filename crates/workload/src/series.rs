@@ -3,13 +3,13 @@
 use std::hint::black_box;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
-use crate::caches::{caches, last_level, level_bytes};
+use crate::caches::{caches, last_level_bytes, level_bytes};
 use crate::clock::{Clock, Time, timed};
 use crate::pages;
 
 /// Target for the minimum length of timed work, in nanoseconds. Short runs are timed together up to
 /// about this length, if their copies fit the cache.
-pub const LONG_ENOUGH_NS: f64 = 60_000.0;
+pub const MIN_TIMED_NS: f64 = 60_000.0;
 /// Assumed size of the second-level cache in bytes, if the platform does not report it.
 const USUAL_SECOND_LEVEL: usize = 512 << 10;
 /// Assumed size of the last-level cache in bytes, if the platform does not report it.
@@ -22,22 +22,22 @@ pub enum Start<'c> {
     #[default]
     Warm,
     /// Caches that hold other data.
-    Cold(&'c Scrubber),
+    Cold(&'c CacheFlusher),
     /// A heap whose freed pages were returned to the kernel.
     FreshPages,
 }
 
-/// Data that fills the caches.
-pub struct Scrubber {
+/// A buffer that is written to fill the caches with other data.
+pub struct CacheFlusher {
     words: Mutex<Vec<u64>>,
     level: Option<u8>,
 }
 
-impl Scrubber {
+impl CacheFlusher {
     /// Allocates data of twice the size of the last-level cache.
     pub fn new() -> Self {
         let caches = caches();
-        let bytes = last_level(&caches).unwrap_or(USUAL_LAST_LEVEL);
+        let bytes = last_level_bytes(&caches).unwrap_or(USUAL_LAST_LEVEL);
         let data = caches.iter().filter(|cache| cache.holds_data());
         Self {
             words: vec![1; 2 * bytes as usize / size_of::<u64>()].into(),
@@ -61,7 +61,7 @@ impl Scrubber {
     }
 
     /// Writes to all words, so that the caches hold only them.
-    fn scrub(&self) {
+    fn flush(&self) {
         let words = &mut *self.words();
         words
             .iter_mut()
@@ -70,7 +70,7 @@ impl Scrubber {
     }
 }
 
-impl Default for Scrubber {
+impl Default for CacheFlusher {
     fn default() -> Self {
         Self::new()
     }
@@ -105,7 +105,7 @@ impl<'c> Series<'c> {
     }
 
     /// Makes a series of `runs` timed runs, without untimed runs.
-    pub fn of_runs(runs: u32, clock: &'c dyn Clock) -> Self {
+    pub fn with_runs(runs: u32, clock: &'c dyn Clock) -> Self {
         Self {
             runs,
             ..Self::once(clock)
@@ -113,7 +113,7 @@ impl<'c> Series<'c> {
     }
 
     /// Returns the same series, with the result computed.
-    pub fn checked(self) -> Self {
+    pub fn with_result(self) -> Self {
         Self {
             check: true,
             ..self
@@ -121,7 +121,7 @@ impl<'c> Series<'c> {
     }
 
     /// Returns the same series with `untimed` untimed runs.
-    pub fn after(self, untimed: u32) -> Self {
+    pub fn with_untimed(self, untimed: u32) -> Self {
         Self { untimed, ..self }
     }
 
@@ -129,8 +129,8 @@ impl<'c> Series<'c> {
     pub fn begin(&self) {
         match self.start {
             Start::Warm => {}
-            Start::Cold(scrubber) => scrubber.scrub(),
-            Start::FreshPages => pages::give_back(),
+            Start::Cold(flusher) => flusher.flush(),
+            Start::FreshPages => pages::release_pages(),
         }
     }
 
@@ -161,13 +161,13 @@ impl<'c> Series<'c> {
 /// copy is as warm in the cache as a single one would be. The copies, with the grown capacity of
 /// their tables, are kept from one series to the next.
 #[derive(Debug)]
-pub(crate) struct KeptCopies<T> {
+pub(crate) struct ReusedCopies<T> {
     copies: Vec<T>,
     /// The time of the last run, in nanoseconds; 0 before the first.
     last_ns: f64,
 }
 
-impl<T> Default for KeptCopies<T> {
+impl<T> Default for ReusedCopies<T> {
     fn default() -> Self {
         Self {
             copies: Vec::new(),
@@ -176,8 +176,8 @@ impl<T> Default for KeptCopies<T> {
     }
 }
 
-impl<T> KeptCopies<T> {
-    /// Runs `run` as often as `series` describes, each time on a copy that `put_back` has reset
+impl<T> ReusedCopies<T> {
+    /// Runs `run` as often as `series` describes, each time on a copy that `reset` has restored
     /// outside the timing. `new` makes a copy if one is missing; `bytes` is the size of a copy.
     /// Returns the total time of the timed runs.
     pub(crate) fn time(
@@ -185,7 +185,7 @@ impl<T> KeptCopies<T> {
         series: &Series<'_>,
         bytes: usize,
         new: impl Fn() -> T,
-        mut put_back: impl FnMut(&mut T),
+        mut reset: impl FnMut(&mut T),
         mut run: impl FnMut(&mut T),
     ) -> Time {
         let untimed = Series {
@@ -193,33 +193,33 @@ impl<T> KeptCopies<T> {
             runs: series.untimed,
             ..*series
         };
-        self.run_all(&untimed, bytes, &new, &mut put_back, &mut run);
-        self.run_all(series, bytes, &new, &mut put_back, &mut run)
+        self.run_all(&untimed, bytes, &new, &mut reset, &mut run);
+        self.run_all(series, bytes, &new, &mut reset, &mut run)
     }
 
-    /// Returns the time of the timed runs of `series`, on as many copies as [`in_turn`] allows.
+    /// Returns the time of the timed runs of `series`, on as many copies as [`copy_count`] allows.
     fn run_all(
         &mut self,
         series: &Series<'_>,
         bytes: usize,
         new: &impl Fn() -> T,
-        put_back: &mut impl FnMut(&mut T),
+        reset: &mut impl FnMut(&mut T),
         run: &mut impl FnMut(&mut T),
     ) -> Time {
         let fresh = matches!(series.start, Start::FreshPages);
-        let mut total = Time::none_like(series.clock.now());
+        let mut total = Time::zero_like(series.clock.now());
         let mut left = series.runs as usize;
         while left > 0 {
-            let count = in_turn(self.last_ns, bytes).min(left);
+            let count = copy_count(self.last_ns, bytes).min(left);
             // Copies that are made below need no reset.
             let used = self.copies.len().min(count);
-            self.copies[..used].iter_mut().for_each(&mut *put_back);
+            self.copies[..used].iter_mut().for_each(&mut *reset);
             while self.copies.len() < count {
                 let mut copy = new();
                 if !self.copies.is_empty() && !fresh {
                     // An untimed run, so that its tables have grown like those of the first copy.
                     run(&mut copy);
-                    put_back(&mut copy);
+                    reset(&mut copy);
                 }
                 self.copies.push(copy);
             }
@@ -237,7 +237,7 @@ impl<T> KeptCopies<T> {
     }
 
     /// Returns a copy in its state after a run, if there was a run. All runs do the same.
-    pub(crate) fn changed(&self) -> Option<&T> {
+    pub(crate) fn used_copy(&self) -> Option<&T> {
         self.copies.first()
     }
 }
@@ -249,24 +249,24 @@ pub(crate) fn time_making<T>(
     bytes: usize,
     make: impl Fn() -> T,
 ) -> (Time, Option<T>) {
-    let mut places = KeptCopies::default();
-    let time = places.time(
+    let mut slots = ReusedCopies::default();
+    let time = slots.time(
         series,
         bytes,
         || None,
         |made| *made = None,
         |made| *made = Some(black_box(make())),
     );
-    (time, places.copies.pop().flatten())
+    (time, slots.copies.pop().flatten())
 }
 
 /// Returns the number of copies of `bytes` each to use in turn, for runs of `ns` nanoseconds.
-fn in_turn(ns: f64, bytes: usize) -> usize {
-    if ns <= 0.0 || ns >= LONG_ENOUGH_NS {
+fn copy_count(ns: f64, bytes: usize) -> usize {
+    if ns <= 0.0 || ns >= MIN_TIMED_NS {
         return 1;
     }
     let fit = (second_level_bytes() / 2 / bytes.max(64)).max(1);
-    ((LONG_ENOUGH_NS / ns).ceil() as usize).min(fit)
+    ((MIN_TIMED_NS / ns).ceil() as usize).min(fit)
 }
 
 /// Returns the size of the second-level cache in bytes.
@@ -286,73 +286,73 @@ mod tests {
 
     /// A clock that the test advances.
     #[derive(Default)]
-    struct Told(Mutex<f64>);
+    struct ManualClock(Mutex<f64>);
 
-    impl Told {
-        fn work(&self, ns: f64) {
+    impl ManualClock {
+        fn advance(&self, ns: f64) {
             *self.0.lock().expect("no panics") += ns;
         }
     }
 
-    impl Clock for Told {
+    impl Clock for ManualClock {
         fn now(&self) -> Time {
-            Time::of_wall(*self.0.lock().expect("no panics"))
+            Time::from_wall_ns(*self.0.lock().expect("no panics"))
         }
     }
 
     #[test]
     fn each_run_gets_a_reset_copy_and_only_runs_are_timed() {
         for ns in [100_000.0, 20_000.0, 1_000.0] {
-            let clock = Told::default();
-            let mut copies = KeptCopies::default();
+            let clock = ManualClock::default();
+            let mut copies = ReusedCopies::default();
             let bytes = USUAL_SECOND_LEVEL / 16;
             for runs in [1, 50] {
-                let series = Series::of_runs(runs, &clock).after(2);
+                let series = Series::with_runs(runs, &clock).with_untimed(2);
                 let time = copies.time(
                     &series,
                     bytes,
                     || 0, // the initial state
                     |copy| {
-                        clock.work(1e9); // the reset takes long and must not be counted
+                        clock.advance(1e9); // the reset takes long and must not be counted
                         *copy = 0;
                     },
                     |copy| {
                         assert_eq!(*copy, 0, "reset");
                         *copy = 1;
-                        clock.work(ns);
+                        clock.advance(ns);
                     },
                 );
                 assert_eq!(time.wall_ns, ns * f64::from(runs));
             }
-            assert_eq!(copies.copies.len(), in_turn(ns, bytes));
-            assert_eq!(copies.changed(), Some(&1));
+            assert_eq!(copies.copies.len(), copy_count(ns, bytes));
+            assert_eq!(copies.used_copy(), Some(&1));
         }
     }
 
     #[test]
     fn short_runs_are_timed_together_if_copies_fit_the_cache() {
-        assert_eq!(in_turn(0.0, 100), 1, "no time is known yet");
-        assert_eq!(in_turn(70_000.0, 100), 1);
-        assert_eq!(in_turn(20_000.0, 100), 3);
-        assert_eq!(in_turn(20_000.0, 1 << 30), 1, "at least one");
+        assert_eq!(copy_count(0.0, 100), 1, "no time is known yet");
+        assert_eq!(copy_count(70_000.0, 100), 1);
+        assert_eq!(copy_count(20_000.0, 100), 3);
+        assert_eq!(copy_count(20_000.0, 1 << 30), 1, "at least one");
     }
 
     #[test]
-    fn scrubbing_writes_twice_the_last_level_cache_once() {
-        let scrubber = Scrubber::new();
-        let known = last_level(&caches());
+    fn flushing_writes_twice_the_last_level_cache_once() {
+        let flusher = CacheFlusher::new();
+        let known = last_level_bytes(&caches());
         assert_eq!(
-            scrubber.bytes() as u64,
+            flusher.bytes() as u64,
             2 * known.unwrap_or(USUAL_LAST_LEVEL)
         );
-        let clock = Told::default();
+        let clock = ManualClock::default();
         let series = Series {
-            start: Start::Cold(&scrubber),
-            ..Series::of_runs(3, &clock).after(1)
+            start: Start::Cold(&flusher),
+            ..Series::with_runs(3, &clock).with_untimed(1)
         };
         let mut runs = 0;
-        let before = scrubber.words()[0];
+        let before = flusher.words()[0];
         series.time_together(|| runs += 1);
-        assert_eq!((runs, scrubber.words()[0]), (4, before + 1));
+        assert_eq!((runs, flusher.words()[0]), (4, before + 1));
     }
 }

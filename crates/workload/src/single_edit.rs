@@ -3,9 +3,9 @@
 use sixfold::{Edit, EditVisitor, MeshEdit, PolygonMesh, Representation, visit_editable};
 
 use crate::clock::Time;
-use crate::editing::{Editor, Edits};
-use crate::place::{Place, perform, places, prepare};
-use crate::series::{KeptCopies, Series};
+use crate::edit_pass::{Editor, Edits};
+use crate::edit_place::{EditPlace, apply_edit, independent_faces, prepare_place};
+use crate::series::{ReusedCopies, Series};
 
 /// An edit to be done at some places of a closed triangle mesh.
 ///
@@ -26,63 +26,64 @@ impl SingleEdit {
     /// # Errors
     ///
     /// Returns the reason if the structure cannot hold `polygons`, or the edit is refused there.
-    pub fn on(
+    pub fn prepare(
         self,
         backend: &str,
         polygons: &PolygonMesh,
     ) -> Option<Result<Box<dyn Editor>, String>> {
-        struct Start<'a>(SingleEdit, &'a PolygonMesh);
+        struct Builder<'a>(SingleEdit, &'a PolygonMesh);
 
-        impl EditVisitor for Start<'_> {
+        impl EditVisitor for Builder<'_> {
             type Output = Option<Result<Box<dyn Editor>, String>>;
 
             fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output {
                 let &mut Self(job, polygons) = self;
-                let edits = || AtPlaces::<M>::of(job, polygons).map(|edits| Box::new(edits) as _);
-                M::offers(job.edit).then(edits)
+                let edits =
+                    || SingleEditRun::<M>::new(job, polygons).map(|edits| Box::new(edits) as _);
+                M::supports(job.edit).then(edits)
             }
         }
 
-        visit_editable(backend, &mut Start(self, polygons)).flatten()
+        visit_editable(backend, &mut Builder(self, polygons)).flatten()
     }
 
     /// Returns whether it is one pass over the whole mesh, independent of places.
-    pub const fn is_a_pass(self) -> bool {
+    pub const fn is_pass(self) -> bool {
         matches!(self.edit, Edit::Compact | Edit::RemoveIsolatedVertices)
     }
 }
 
 /// An edit at places of a mesh that is prepared for it.
-struct AtPlaces<M: MeshEdit> {
+struct SingleEditRun<M: MeshEdit> {
     edit: Edit,
     mesh: M,
-    places: Vec<Place<M>>,
-    copies: KeptCopies<(M, Edits)>,
+    places: Vec<EditPlace<M>>,
+    copies: ReusedCopies<(M, Edits)>,
 }
 
-impl<M: Representation + MeshEdit + 'static> AtPlaces<M> {
-    fn of(job: SingleEdit, polygons: &PolygonMesh) -> Result<Self, String> {
+impl<M: Representation + MeshEdit + 'static> SingleEditRun<M> {
+    fn new(job: SingleEdit, polygons: &PolygonMesh) -> Result<Self, String> {
         let mut mesh = M::from_polygons(polygons).map_err(|refusal| refusal.to_string())?;
         if let Some((f, _)) = polygons.first_polygon() {
             return Err(format!("face {f} is not a triangle"));
         }
-        let places = places(polygons, job.places)?;
-        let look_up = |f| Place::of(&mesh, polygons, job.edit, f);
-        let mut ready: Vec<Place<M>> = places.into_iter().map(look_up).collect();
-        for place in &mut ready {
-            let prepared = prepare(&mut mesh, job.edit, place);
+        let faces = independent_faces(polygons, job.places)?;
+        let look_up = |f| EditPlace::new(&mesh, polygons, job.edit, f);
+        let mut places: Vec<EditPlace<M>> = faces.into_iter().map(look_up).collect();
+        for place in &mut places {
+            let prepared = prepare_place(&mut mesh, job.edit, place);
             prepared.map_err(|refusal| refusal.to_string())?;
         }
         Ok(Self {
             edit: job.edit,
             mesh,
-            places: ready,
-            copies: KeptCopies::default(),
+            places,
+            copies: ReusedCopies::default(),
         })
     }
 }
 
-impl<M: Representation + MeshEdit + 'static> Editor for AtPlaces<M> {
+impl<M: Representation + MeshEdit + 'static> Editor for SingleEditRun<M> {
     fn time(&mut self, series: &Series<'_>) -> Time {
         let Self {
             edit,
@@ -95,12 +96,12 @@ impl<M: Representation + MeshEdit + 'static> Editor for AtPlaces<M> {
             mesh.memory().total(),
             || (mesh.clone(), Edits::default()),
             |(copy, _)| copy.clone_from(mesh),
-            |(copy, edits)| *edits = everywhere(*edit, copy, places),
+            |(copy, edits)| *edits = apply_at_all_places(*edit, copy, places),
         )
     }
 
     fn result(&self) -> Edits {
-        let Some((mesh, edits)) = self.copies.changed() else {
+        let Some((mesh, edits)) = self.copies.used_copy() else {
             return Edits::default();
         };
         Edits {
@@ -110,11 +111,11 @@ impl<M: Representation + MeshEdit + 'static> Editor for AtPlaces<M> {
     }
 }
 
-/// Does the edit at all places, or once if it is a pass over the whole mesh.
-fn everywhere<M: MeshEdit + Representation>(
+/// Applies the edit at all places, or once if it is a pass over the whole mesh.
+fn apply_at_all_places<M: MeshEdit + Representation>(
     edit: Edit,
     mesh: &mut M,
-    places: &[Place<M>],
+    places: &[EditPlace<M>],
 ) -> Edits {
     let mut edits = Edits::default();
     match edit {
@@ -128,7 +129,7 @@ fn everywhere<M: MeshEdit + Representation>(
         }
         edit => {
             for place in places {
-                match perform(mesh, edit, place) {
+                match apply_edit(mesh, edit, place) {
                     Ok(()) => edits.done += 1,
                     Err(_) => edits.refused += 1,
                 }
@@ -153,15 +154,15 @@ mod tests {
             let job = SingleEdit { edit, places: 20 };
             let mut results = Vec::new();
             for backend in roster() {
-                let offers = backend.edits[edit as usize].is_some();
-                let Some(editor) = job.on(backend.name, &torus) else {
-                    assert!(!offers, "{edit} on {}", backend.name);
+                let is_supported = backend.edits[edit as usize].is_some();
+                let Some(editor) = job.prepare(backend.name, &torus) else {
+                    assert!(!is_supported, "{edit} on {}", backend.name);
                     continue;
                 };
                 let mut editor = editor.expect("a closed triangle mesh");
-                editor.time(&Series::of_runs(2, &MachineClock::start()).after(1));
+                editor.time(&Series::with_runs(2, &MachineClock::start()).with_untimed(1));
                 let edits = editor.result();
-                let places = if job.is_a_pass() { 1 } else { 20 };
+                let places = if job.is_pass() { 1 } else { 20 };
                 assert_eq!(
                     (edits.done, edits.refused),
                     (places, 0),

@@ -12,7 +12,7 @@ use std::hint::black_box;
 
 use sixfold::{FaceMap, Handle, MeshQuery, Point, Relation, VertexMap};
 
-use crate::operation::{Kind, Operation};
+use crate::operation::{ElementKind, Operation};
 
 /// The elements that an operation visits.
 pub(crate) trait Elements<M: MeshQuery> {
@@ -66,7 +66,7 @@ impl<M: MeshQuery> Outputs<M> {
 
 /// The counts and sums of a loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Tally {
+pub(crate) struct SweepResult {
     /// Visited elements.
     pub(crate) elements: u64,
     /// Handles that relations yielded, or the count that the operation defines.
@@ -75,7 +75,7 @@ pub(crate) struct Tally {
     pub(crate) sum: f64,
 }
 
-impl Tally {
+impl SweepResult {
     pub(crate) fn add(&mut self, other: Self) {
         self.elements += other.elements;
         self.count += other.count;
@@ -85,26 +85,30 @@ impl Tally {
 
 /// Returns the checksum of a field of vectors: Σ |x| + 2|y| + 3|z|.
 pub fn field_sum(points: impl Iterator<Item = Point>) -> f64 {
-    let weigh =
+    let weighted_sum =
         |p: Point| f64::from(p.x).abs() + 2.0 * f64::from(p.y).abs() + 3.0 * f64::from(p.z).abs();
-    points.map(weigh).sum()
+    points.map(weighted_sum).sum()
 }
 
 /// Runs the part of `operation` that visits elements of `kind`.
 #[inline]
-pub(crate) fn share<M: MeshQuery, E: Elements<M>>(
+pub(crate) fn sweep_kind<M: MeshQuery, E: Elements<M>>(
     operation: Operation,
-    kind: Kind,
+    kind: ElementKind,
     mesh: &M,
     elements: &E,
     outputs: &mut Outputs<M>,
-) -> Tally {
+) -> SweepResult {
     match (operation, kind) {
-        (Operation::Relation(relation), _) => ask(relation, mesh, elements),
-        (Operation::Circulate, Kind::Vertex) => ask(Relation::VertexFaces, mesh, elements),
-        (Operation::Circulate, _) => ask(Relation::FaceVertices, mesh, elements),
+        (Operation::Relation(relation), _) => query_relation(relation, mesh, elements),
+        (Operation::Circulate, ElementKind::Vertex) => {
+            query_relation(Relation::VertexFaces, mesh, elements)
+        }
+        (Operation::Circulate, _) => query_relation(Relation::FaceVertices, mesh, elements),
         (Operation::FaceBarycenter, _) => face_barycenters(mesh, elements, &mut outputs.faces),
-        (Operation::VertexNormal, Kind::Face) => face_normals(mesh, elements, &mut outputs.faces),
+        (Operation::VertexNormal, ElementKind::Face) => {
+            face_normals(mesh, elements, &mut outputs.faces)
+        }
         (Operation::VertexNormal, _) => {
             vertex_normals(mesh, elements, &outputs.faces, &mut outputs.vertices)
         }
@@ -112,13 +116,13 @@ pub(crate) fn share<M: MeshQuery, E: Elements<M>>(
         (Operation::EdgeLength, _) => edge_lengths(mesh, elements),
         (Operation::Boundary, _) => boundary_edges(mesh, elements),
         (Operation::FfBfs, _) => breadth_first(mesh),
-        (Operation::AllQueries, Kind::Vertex) => ask_vertices(mesh, elements),
-        (Operation::AllQueries, Kind::Edge) => ask_edges(mesh, elements),
-        (Operation::AllQueries, Kind::Face) => ask_faces(mesh, elements),
-        // `Candidate` runs these; they need more than queries.
-        (Operation::Build, _) => Tally::default(),
-        (Operation::CatmullClark(_) | Operation::Loop(_) | Operation::Editing(_), _) => {
-            Tally::default()
+        (Operation::AllQueries, ElementKind::Vertex) => query_vertices(mesh, elements),
+        (Operation::AllQueries, ElementKind::Edge) => query_edges(mesh, elements),
+        (Operation::AllQueries, ElementKind::Face) => query_faces(mesh, elements),
+        // `TimedStructure` runs these; they need more than queries.
+        (Operation::Build, _) => SweepResult::default(),
+        (Operation::CatmullClark(_) | Operation::Loop(_) | Operation::EditPass(_), _) => {
+            SweepResult::default()
         }
     }
 }
@@ -171,7 +175,7 @@ pub(crate) struct Sink {
 
 impl Sink {
     #[inline(always)]
-    pub(crate) fn take<H: Handle>(&mut self, handles: impl IntoIterator<Item = H>) {
+    pub(crate) fn consume<H: Handle>(&mut self, handles: impl IntoIterator<Item = H>) {
         // Added in registers: a sum behind a reference would be stored for every handle.
         let add = |(count, tokens): (u64, u64), handle: H| {
             (count + 1, tokens.wrapping_add(token(handle)))
@@ -184,7 +188,7 @@ impl Sink {
     /// Returns the number of handles. `black_box` makes the compiler compute the handles
     /// themselves.
     #[inline(always)]
-    pub(crate) fn swallow(self) -> u64 {
+    pub(crate) fn finish_count(self) -> u64 {
         black_box(self.tokens);
         self.count
     }
@@ -192,76 +196,82 @@ impl Sink {
 
 /// Queries every element, and passes all results to the sink.
 #[inline(always)]
-fn sweep<I: Iterator>(elements: I, mut ask: impl FnMut(&mut Sink, I::Item)) -> Tally {
-    let (mut sink, mut asked) = (Sink::default(), 0);
+fn sweep<I: Iterator>(elements: I, mut query: impl FnMut(&mut Sink, I::Item)) -> SweepResult {
+    let (mut sink, mut queried) = (Sink::default(), 0);
     elements.for_each(|element| {
-        asked += 1;
-        ask(&mut sink, element);
+        queried += 1;
+        query(&mut sink, element);
     });
     black_box(sink.tokens);
-    Tally {
-        elements: asked,
+    SweepResult {
+        elements: queried,
         count: sink.count,
         sum: 0.0,
     }
 }
 
 #[inline(never)]
-fn ask<M: MeshQuery, E: Elements<M>>(relation: Relation, mesh: &M, elements: &E) -> Tally {
+fn query_relation<M: MeshQuery, E: Elements<M>>(
+    relation: Relation,
+    mesh: &M,
+    elements: &E,
+) -> SweepResult {
     let (vertices, edges, faces) = (
         || elements.vertices(mesh),
         || elements.edges(mesh),
         || elements.faces(mesh),
     );
     match relation {
-        Relation::VertexVertices => sweep(vertices(), |sink, v| sink.take(mesh.vertex_vertices(v))),
-        Relation::VertexEdges => sweep(vertices(), |sink, v| sink.take(mesh.vertex_edges(v))),
-        Relation::VertexFaces => sweep(vertices(), |sink, v| sink.take(mesh.vertex_faces(v))),
-        Relation::EdgeVertices => sweep(edges(), |sink, e| sink.take(mesh.edge_vertices(e))),
-        Relation::EdgeEdges => sweep(edges(), |sink, e| sink.take(mesh.edge_edges(e))),
-        Relation::EdgeFaces => sweep(edges(), |sink, e| sink.take(mesh.edge_faces(e))),
-        Relation::FaceVertices => sweep(faces(), |sink, f| sink.take(mesh.face_vertices(f))),
-        Relation::FaceEdges => sweep(faces(), |sink, f| sink.take(mesh.face_edges(f))),
-        Relation::FaceFaces => sweep(faces(), |sink, f| sink.take(mesh.face_faces(f))),
+        Relation::VertexVertices => {
+            sweep(vertices(), |sink, v| sink.consume(mesh.vertex_vertices(v)))
+        }
+        Relation::VertexEdges => sweep(vertices(), |sink, v| sink.consume(mesh.vertex_edges(v))),
+        Relation::VertexFaces => sweep(vertices(), |sink, v| sink.consume(mesh.vertex_faces(v))),
+        Relation::EdgeVertices => sweep(edges(), |sink, e| sink.consume(mesh.edge_vertices(e))),
+        Relation::EdgeEdges => sweep(edges(), |sink, e| sink.consume(mesh.edge_edges(e))),
+        Relation::EdgeFaces => sweep(edges(), |sink, e| sink.consume(mesh.edge_faces(e))),
+        Relation::FaceVertices => sweep(faces(), |sink, f| sink.consume(mesh.face_vertices(f))),
+        Relation::FaceEdges => sweep(faces(), |sink, f| sink.consume(mesh.face_edges(f))),
+        Relation::FaceFaces => sweep(faces(), |sink, f| sink.consume(mesh.face_faces(f))),
     }
 }
 
 #[inline(never)]
-fn ask_vertices<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> Tally {
+fn query_vertices<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
     sweep(elements.vertices(mesh), |sink, v| {
-        sink.take(mesh.vertex_vertices(v));
-        sink.take(mesh.vertex_edges(v));
-        sink.take(mesh.vertex_faces(v));
+        sink.consume(mesh.vertex_vertices(v));
+        sink.consume(mesh.vertex_edges(v));
+        sink.consume(mesh.vertex_faces(v));
     })
 }
 
 #[inline(never)]
-fn ask_edges<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> Tally {
+fn query_edges<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
     sweep(elements.edges(mesh), |sink, e| {
-        sink.take(mesh.edge_vertices(e));
-        sink.take(mesh.edge_edges(e));
-        sink.take(mesh.edge_faces(e));
+        sink.consume(mesh.edge_vertices(e));
+        sink.consume(mesh.edge_edges(e));
+        sink.consume(mesh.edge_faces(e));
     })
 }
 
 #[inline(never)]
-fn ask_faces<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> Tally {
+fn query_faces<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
     sweep(elements.faces(mesh), |sink, f| {
-        sink.take(mesh.face_vertices(f));
-        sink.take(mesh.face_edges(f));
-        sink.take(mesh.face_faces(f));
+        sink.consume(mesh.face_vertices(f));
+        sink.consume(mesh.face_edges(f));
+        sink.consume(mesh.face_faces(f));
     })
 }
 
 /// Calls `work` for each element and counts the elements.
 #[inline(always)]
-fn each<I: Iterator>(elements: I, mut work: impl FnMut(I::Item)) -> Tally {
+fn count_each<I: Iterator>(elements: I, mut work: impl FnMut(I::Item)) -> SweepResult {
     let mut count = 0;
     elements.for_each(|element| {
         count += 1;
         work(element);
     });
-    Tally {
+    SweepResult {
         elements: count,
         count,
         sum: 0.0,
@@ -273,8 +283,8 @@ fn face_barycenters<M: MeshQuery, E: Elements<M>>(
     mesh: &M,
     elements: &E,
     barycenters: &mut FaceMap<M, Point>,
-) -> Tally {
-    each(elements.faces(mesh), |f| {
+) -> SweepResult {
+    count_each(elements.faces(mesh), |f| {
         let (mut sum, mut corners) = (Point::ZERO, 0_u32);
         mesh.face_vertices(f).for_each(|v| {
             sum += mesh.position(v);
@@ -309,8 +319,8 @@ fn face_normals<M: MeshQuery, E: Elements<M>>(
     mesh: &M,
     elements: &E,
     normals: &mut FaceMap<M, Point>,
-) -> Tally {
-    each(elements.faces(mesh), |f| normals[f] = face_normal(mesh, f))
+) -> SweepResult {
+    count_each(elements.faces(mesh), |f| normals[f] = face_normal(mesh, f))
 }
 
 #[inline(never)]
@@ -319,8 +329,8 @@ fn vertex_normals<M: MeshQuery, E: Elements<M>>(
     elements: &E,
     face_normals: &FaceMap<M, Point>,
     normals: &mut VertexMap<M, Point>,
-) -> Tally {
-    each(elements.vertices(mesh), |v| {
+) -> SweepResult {
+    count_each(elements.vertices(mesh), |v| {
         let mut sum = Point::ZERO;
         mesh.vertex_faces(v).for_each(|f| sum += face_normals[f]);
         let length = sum.length();
@@ -338,8 +348,8 @@ fn neighbour_means<M: MeshQuery, E: Elements<M>>(
     mesh: &M,
     elements: &E,
     means: &mut VertexMap<M, Point>,
-) -> Tally {
-    each(elements.vertices(mesh), |v| {
+) -> SweepResult {
+    count_each(elements.vertices(mesh), |v| {
         let (mut sum, mut valence) = (Point::ZERO, 0_u32);
         mesh.vertex_vertices(v).for_each(|neighbour| {
             sum += mesh.position(neighbour);
@@ -354,22 +364,22 @@ fn neighbour_means<M: MeshQuery, E: Elements<M>>(
 }
 
 #[inline(never)]
-fn edge_lengths<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> Tally {
+fn edge_lengths<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
     let mut sum = 0.0;
-    let tally = each(elements.edges(mesh), |e| {
+    let result = count_each(elements.edges(mesh), |e| {
         let [a, b] = mesh.edge_vertices(e);
         sum += f64::from(mesh.position(a).distance(mesh.position(b)));
     });
-    Tally { sum, ..tally }
+    SweepResult { sum, ..result }
 }
 
 #[inline(never)]
-fn boundary_edges<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> Tally {
+fn boundary_edges<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
     let mut count = 0;
-    let tally = each(elements.edges(mesh), |e| {
+    let result = count_each(elements.edges(mesh), |e| {
         count += u64::from(mesh.edge_faces(e).count() == 1);
     });
-    Tally { count, ..tally }
+    SweepResult { count, ..result }
 }
 
 /// Returns the sum of all depths. The queue and the depths are allocated here, once.
@@ -380,16 +390,16 @@ fn boundary_edges<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> Tally
 /// without it and with `for_each`: icosphere6 23 / 24 / 19, bunny 21 / 18 / 11, nefertiti 30 / 28 /
 /// 20.
 #[inline(never)]
-fn breadth_first<M: MeshQuery>(mesh: &M) -> Tally {
-    const UNSEEN: u32 = u32::MAX;
+fn breadth_first<M: MeshQuery>(mesh: &M) -> SweepResult {
+    const UNVISITED: u32 = u32::MAX;
     let Some(first) = mesh.faces().next() else {
-        return Tally::default();
+        return SweepResult::default();
     };
-    let mut depths = mesh.face_map(UNSEEN);
+    let mut depths = mesh.face_map(UNVISITED);
     let mut queue = vec![first; mesh.face_count() + 1];
     let (mut head, mut tail, mut sum) = (0, 0, 0_u64);
     for seed in mesh.faces() {
-        if depths[seed] != UNSEEN {
+        if depths[seed] != UNVISITED {
             continue;
         }
         depths[seed] = 0;
@@ -402,14 +412,14 @@ fn breadth_first<M: MeshQuery>(mesh: &M) -> Tally {
             sum += u64::from(depth);
             mesh.face_faces(face).for_each(|neighbour| {
                 let seen = &mut depths[neighbour];
-                let new = *seen == UNSEEN;
+                let new = *seen == UNVISITED;
                 *seen = if new { depth + 1 } else { *seen };
                 queue[tail] = neighbour;
                 tail += usize::from(new);
             });
         }
     }
-    Tally {
+    SweepResult {
         elements: tail as u64,
         count: sum,
         sum: 0.0,

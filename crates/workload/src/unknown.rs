@@ -3,14 +3,14 @@
 use strsim::jaro_winkler;
 
 /// Minimum Jaro–Winkler similarity of a known name to be suggested.
-const ALIKE: f64 = 0.8;
+const MIN_SIMILARITY: f64 = 0.8;
 
 /// Builds a message such as: no operation is called `boundry` (did you mean `boundary`?): choose
 /// from …
 pub fn unknown(kind: &str, name: &str, known: &[&str]) -> String {
     let alike = |other: &&&str| jaro_winkler(name, other);
     let nearest = known.iter().max_by(|a, b| alike(a).total_cmp(&alike(b)));
-    let meant = match nearest.filter(|other| alike(other) > ALIKE) {
+    let meant = match nearest.filter(|other| alike(other) > MIN_SIMILARITY) {
         Some(other) => format!(" (did you mean `{other}`?)"),
         None => String::new(),
     };
@@ -25,13 +25,13 @@ mod tests {
     #[test]
     fn similar_names_are_suggested_and_other_names_are_not() {
         let known = ["vertex_faces", "boundary", "build"];
-        let said = |name: &str| unknown("operation", name, &known);
+        let message = |name: &str| unknown("operation", name, &known);
         assert_eq!(
-            said("boundry"),
+            message("boundry"),
             "no operation is called `boundry` (did you mean `boundary`?): choose from \
              vertex_faces, boundary, build"
         );
-        assert!(said("vertex-faces").contains("did you mean `vertex_faces`?"));
-        assert!(said("zebra").starts_with("no operation is called `zebra`: choose from"));
+        assert!(message("vertex-faces").contains("did you mean `vertex_faces`?"));
+        assert!(message("zebra").starts_with("no operation is called `zebra`: choose from"));
     }
 }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize, Serializer};
 use serde_with::{DeserializeFromStr, SerializeDisplay};
 use sixfold::{Counts, Edit, Relation};
 
-use crate::operation::{Kind, Operation};
+use crate::operation::{ElementKind, Operation};
 use crate::unknown::unknown;
 
 /// The operations that a program does on a mesh.
@@ -84,17 +84,17 @@ pub enum Amount {
     /// A fixed number.
     Number(f64),
     /// A number for each element of this kind in the mesh.
-    Per(f64, Kind),
+    Per(f64, ElementKind),
 }
 
 impl Amount {
     /// Returns the amount on a mesh with these counts.
-    pub fn on(self, counts: &Counts) -> f64 {
+    pub fn value_on(self, counts: &Counts) -> f64 {
         match self {
             Self::Number(number) => number,
-            Self::Per(number, Kind::Vertex) => number * counts.vertices as f64,
-            Self::Per(number, Kind::Edge) => number * counts.edges as f64,
-            Self::Per(number, Kind::Face) => number * counts.faces as f64,
+            Self::Per(number, ElementKind::Vertex) => number * counts.vertices as f64,
+            Self::Per(number, ElementKind::Edge) => number * counts.edges as f64,
+            Self::Per(number, ElementKind::Face) => number * counts.faces as f64,
         }
     }
 
@@ -128,14 +128,14 @@ impl<'de> Deserialize<'de> for Amount {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         #[derive(Deserialize)]
         #[serde(untagged)]
-        enum Written {
+        enum NumberOrText {
             Number(f64),
             Text(String),
         }
 
-        match Written::deserialize(deserializer)? {
-            Written::Number(number) => Ok(Self::Number(number)),
-            Written::Text(text) => text.parse().map_err(D::Error::custom),
+        match NumberOrText::deserialize(deserializer)? {
+            NumberOrText::Number(number) => Ok(Self::Number(number)),
+            NumberOrText::Text(text) => text.parse().map_err(D::Error::custom),
         }
     }
 }
@@ -143,21 +143,23 @@ impl<'de> Deserialize<'de> for Amount {
 /// The error for a text that is not an amount.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{text}` is not an amount: write a number, or as in `2 per face` (vertex, edge, face)")]
-pub struct NoAmount {
+pub struct ParseAmountError {
     /// The text.
     pub text: String,
 }
 
 impl FromStr for Amount {
-    type Err = NoAmount;
+    type Err = ParseAmountError;
 
-    fn from_str(text: &str) -> Result<Self, NoAmount> {
-        let wrong = || NoAmount { text: text.into() };
+    fn from_str(text: &str) -> Result<Self, ParseAmountError> {
+        let wrong = || ParseAmountError { text: text.into() };
         let number = |text: &str| text.trim().replace('_', "").parse().map_err(|_| wrong());
         let Some((amount, per)) = text.split_once(" per ") else {
             return Ok(Self::Number(number(text)?));
         };
-        let kind = Kind::ALL.into_iter().find(|kind| kind.name() == per.trim());
+        let kind = ElementKind::ALL
+            .into_iter()
+            .find(|kind| kind.name() == per.trim());
         Ok(Self::Per(number(amount)?, kind.ok_or_else(wrong)?))
     }
 }
@@ -234,12 +236,14 @@ impl Action {
 
     /// Returns the kind of element that it works on; `None` for passes and for edits, which have
     /// places.
-    pub const fn kind(self) -> Option<Kind> {
+    pub const fn kind(self) -> Option<ElementKind> {
         match self {
-            Self::Relation(relation) => Some(Kind::asked(relation)),
-            Self::Position | Self::NeighbourPositions | Self::SetPosition => Some(Kind::Vertex),
-            Self::CornerPositions => Some(Kind::Face),
-            Self::EndPositions => Some(Kind::Edge),
+            Self::Relation(relation) => Some(ElementKind::queried_by(relation)),
+            Self::Position | Self::NeighbourPositions | Self::SetPosition => {
+                Some(ElementKind::Vertex)
+            }
+            Self::CornerPositions => Some(ElementKind::Face),
+            Self::EndPositions => Some(ElementKind::Edge),
             Self::Edit(_) | Self::Pass(_) | Self::Subdivide => None,
         }
     }
@@ -252,15 +256,15 @@ impl Action {
             Self::CornerPositions => vec![Relation::FaceVertices],
             Self::EndPositions => vec![Relation::EdgeVertices],
             Self::Pass(operation) => {
-                let asked = Kind::ALL.map(|kind| operation.relations(kind));
-                asked.concat()
+                let queried = ElementKind::ALL.map(|kind| operation.relations(kind));
+                queried.concat()
             }
             Self::Position | Self::SetPosition | Self::Edit(_) | Self::Subdivide => Vec::new(),
         }
     }
 
     /// Returns whether it visits the whole mesh.
-    pub const fn is_a_pass(self) -> bool {
+    pub const fn is_pass(self) -> bool {
         matches!(self, Self::Pass(_) | Self::Subdivide)
     }
 
@@ -268,16 +272,16 @@ impl Action {
     pub const fn changes_connectivity(self) -> bool {
         match self {
             Self::Edit(_) | Self::Subdivide => true,
-            Self::Pass(operation) => operation.makes_a_mesh(),
+            Self::Pass(operation) => operation.creates_mesh(),
             _ => false,
         }
     }
 
     /// Returns whether it needs an editable mesh.
-    pub const fn edits(self) -> bool {
+    pub const fn needs_editable_mesh(self) -> bool {
         matches!(
             self,
-            Self::Edit(_) | Self::SetPosition | Self::Pass(Operation::Editing(_))
+            Self::Edit(_) | Self::SetPosition | Self::Pass(Operation::EditPass(_))
         )
     }
 }
@@ -309,14 +313,16 @@ impl fmt::Display for Action {
 impl Workload {
     /// Returns the number of operations in one use of a mesh with these counts; at least 1.
     pub fn operations_on(&self, counts: &Counts) -> f64 {
-        self.operations.on(counts).max(1.0)
+        self.operations.value_on(counts).max(1.0)
     }
 
     /// Returns the share of each part of the mix in all operations, on a mesh with these counts.
     /// The shares add up to 1. They are equal if the mesh has no elements of the kinds in the
     /// weights.
     pub fn shares(&self, counts: &Counts) -> Vec<f64> {
-        let weights: Vec<f64> = { self.mix.iter() }.map(|p| p.weight.on(counts)).collect();
+        let weights: Vec<f64> = { self.mix.iter() }
+            .map(|p| p.weight.value_on(counts))
+            .collect();
         let sum: f64 = weights.iter().sum();
         match sum > 0.0 {
             true => weights.iter().map(|weight| weight / sum).collect(),
@@ -339,10 +345,10 @@ impl Workload {
 
     /// Returns the relations that its operations query, each once.
     pub fn relations(&self) -> Vec<Relation> {
-        let asked = self.mix.iter().flat_map(|part| part.action.relations());
-        let mut asked: Vec<Relation> = asked.collect();
-        asked.sort_unstable();
-        asked.dedup();
-        asked
+        let queried = self.mix.iter().flat_map(|part| part.action.relations());
+        let mut queried: Vec<Relation> = queried.collect();
+        queried.sort_unstable();
+        queried.dedup();
+        queried
     }
 }

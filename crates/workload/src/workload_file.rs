@@ -25,10 +25,10 @@ pub struct WorkloadError {
 /// The content of the file, before checks.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct WorkloadFile {
     summary: Option<String>,
     access: Option<Spanned<String>>,
-    operations: Spanned<Loose>,
+    operations: Spanned<NumberOrText>,
     rebuilds: Option<Spanned<i64>>,
     mix: Spanned<Mix>,
 }
@@ -36,14 +36,14 @@ struct File {
 /// A number or a text.
 #[derive(serde::Deserialize)]
 #[serde(untagged)]
-enum Loose {
-    Whole(i64),
+enum NumberOrText {
+    Integer(i64),
     Number(f64),
     Text(String),
 }
 
 /// The table of the mix, in file order.
-struct Mix(Vec<(Spanned<String>, Spanned<Loose>)>);
+struct Mix(Vec<(Spanned<String>, Spanned<NumberOrText>)>);
 
 impl<'de> Deserialize<'de> for Mix {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -91,8 +91,12 @@ impl Workload {
             line: 1 + text[..span.start.min(text.len())].matches('\n').count(),
             message,
         };
-        let parsed: File = toml::from_str(text)
-            .map_err(|error| at(error.span().unwrap_or(0..0), explained(error.message())))?;
+        let parsed: WorkloadFile = toml::from_str(text).map_err(|error| {
+            at(
+                error.span().unwrap_or(0..0),
+                readable_message(error.message()),
+            )
+        })?;
 
         let access = match &parsed.access {
             None => Access::Sequential,
@@ -104,12 +108,12 @@ impl Workload {
                     at(parsed.access.as_ref().map_or(0..0, Spanned::span), message)
                 })?,
         };
-        let positive = |amount: Amount| amount.number() > 0.0 && amount.number() <= MOST;
+        let positive = |amount: Amount| amount.number() > 0.0 && amount.number() <= MAX_AMOUNT;
         let operations = amount(parsed.operations.get_ref());
         let operations = operations.and_then(|amount| match positive(amount) {
             true => Ok(amount),
             false => Err(format!(
-                "operations must be more than 0 and at most {MOST:e}, not {amount}"
+                "operations must be more than 0 and at most {MAX_AMOUNT:e}, not {amount}"
             )),
         });
         let operations = operations.map_err(|message| at(parsed.operations.span(), message))?;
@@ -127,7 +131,7 @@ impl Workload {
             let action = action.map_err(|error| at(key.span(), error.to_string()))?;
             let weight = amount(value.get_ref()).and_then(|weight| {
                 let fine = weight.number() == 0.0 || positive(weight);
-                let wrong = || format!("a weight must be from 0 to {MOST:e}, not {weight}");
+                let wrong = || format!("a weight must be from 0 to {MAX_AMOUNT:e}, not {weight}");
                 fine.then_some(weight).ok_or_else(wrong)
             });
             let weight = weight.map_err(|message| at(value.span(), message))?;
@@ -150,18 +154,18 @@ impl Workload {
 }
 
 /// Maximum amount: more than any program needs, and small enough that `f64` arithmetic stays exact.
-const MOST: f64 = 1e15;
+const MAX_AMOUNT: f64 = 1e15;
 
-fn amount(loose: &Loose) -> Result<Amount, String> {
+fn amount(loose: &NumberOrText) -> Result<Amount, String> {
     match loose {
-        Loose::Whole(number) => Ok(Amount::Number(*number as f64)),
-        Loose::Number(number) => Ok(Amount::Number(*number)),
-        Loose::Text(text) => text.parse().map_err(|error| format!("{error}")),
+        NumberOrText::Integer(number) => Ok(Amount::Number(*number as f64)),
+        NumberOrText::Number(number) => Ok(Amount::Number(*number)),
+        NumberOrText::Text(text) => text.parse().map_err(|error| format!("{error}")),
     }
 }
 
 /// Returns the parser's message, reworded if it mentions Rust types.
-fn explained(message: &str) -> String {
+fn readable_message(message: &str) -> String {
     let message = message.lines().collect::<Vec<_>>().join("; ");
     match message.contains("untagged enum") {
         true => "an amount is a number, or a text as in `\"2 per face\"`".into(),
@@ -175,7 +179,7 @@ mod tests {
 
     use super::*;
     use crate::built_in::{built_in, built_ins};
-    use crate::operation::Kind;
+    use crate::operation::ElementKind;
 
     fn parse(text: &str) -> Result<Workload, WorkloadError> {
         Workload::parse("mine", "mine.toml", text)
@@ -191,13 +195,13 @@ mod tests {
             name: "mine".into(),
             summary: "who".into(),
             access: Access::Patches,
-            operations: Amount::Per(20.0, Kind::Face),
+            operations: Amount::Per(20.0, ElementKind::Face),
             rebuilds: 3,
             mix: vec![
                 part(Action::Edit(Edit::FlipEdge), Amount::Number(1.0)),
                 part(
                     Action::Relation(Relation::VertexFaces),
-                    Amount::Per(2.0, Kind::Edge),
+                    Amount::Per(2.0, ElementKind::Edge),
                 ),
                 part(
                     Action::Pass(crate::Operation::Boundary),
@@ -276,10 +280,10 @@ mod tests {
             ("operations = 5", 1, "missing field `mix`"),
             ("operations = \n[mix]\nposition = 1", 1, ""),
         ];
-        for (text, line, says) in cases {
+        for (text, line, expected) in cases {
             let error = parse(text).expect_err(text);
             assert_eq!(error.line, line, "{text}: {error}");
-            assert!(error.to_string().contains(says), "{text}: {error}");
+            assert!(error.to_string().contains(expected), "{text}: {error}");
             assert!(error.to_string().starts_with("mine.toml:"), "{error}");
         }
     }

@@ -2,50 +2,60 @@
 
 use sixfold::{PolygonMesh, roster, shapes};
 use sixfold_workload::{
-    Access, Action, Draw, MachineClock, MixRefusal, MixRun, Mixer, Operation, Route, Script,
-    Series, Workload, built_in, built_ins, set_up, tabulate,
+    Access, Action, Draw, MachineClock, MixBackend, MixRefusal, MixRun, Operation, Route, Schedule,
+    Series, Workload, built_in, built_ins, prepare_mix, tabulate,
 };
 
 /// A mesh with the inputs of a mix on it.
-struct Setting {
+struct Fixture {
     polygons: PolygonMesh,
     draw: Draw,
-    script: Script,
+    schedule: Schedule,
     route: Route,
 }
 
-impl Setting {
-    fn of(workload: &Workload, polygons: PolygonMesh) -> Self {
-        let edges = sixfold::Facts::of(&polygons).edges;
+impl Fixture {
+    fn new(workload: &Workload, polygons: PolygonMesh) -> Self {
+        let edges = sixfold::Facts::from_polygons(&polygons).edges;
         Self {
-            draw: Draw::of(&polygons, 3),
-            script: Script::of(workload, &polygons.counts(edges)),
-            route: Route::of(workload.access, &polygons, 3),
+            draw: Draw::new(&polygons, 3),
+            schedule: Schedule::new(workload, &polygons.counts(edges)),
+            route: Route::new(workload.access, &polygons, 3),
             polygons,
         }
     }
 
     /// Returns all backends that can run the mix, with only the places that all of them accept.
-    fn mixers(&self) -> Vec<Box<dyn Mixer + '_>> {
-        let start =
-            |name: &str| set_up(name, &self.polygons, &self.draw, &self.script, &self.route);
-        let started = roster().into_iter().filter_map(|row| start(row.name));
-        let mut mixers: Vec<Box<dyn Mixer + '_>> = started.filter_map(Result::ok).collect();
-        let accepted: Vec<Vec<Vec<bool>>> = mixers.iter_mut().map(|m| m.accepted()).collect();
+    fn backends(&self) -> Vec<Box<dyn MixBackend + '_>> {
+        let prepare = |name: &str| {
+            prepare_mix(
+                name,
+                &self.polygons,
+                &self.draw,
+                &self.schedule,
+                &self.route,
+            )
+        };
+        let prepared = roster().into_iter().filter_map(|row| prepare(row.name));
+        let mut backends: Vec<Box<dyn MixBackend + '_>> = prepared.filter_map(Result::ok).collect();
+        let accepted: Vec<Vec<Vec<bool>>> =
+            backends.iter_mut().map(|m| m.accepted_places()).collect();
         let mut common = accepted[0].clone();
         for other in &accepted[1..] {
             for (ours, theirs) in common.iter_mut().zip(other) {
                 ours.iter_mut().zip(theirs).for_each(|(a, b)| *a &= b);
             }
         }
-        mixers.iter_mut().for_each(|mixer| mixer.keep(&common));
-        mixers.extend(tabulate(
+        backends
+            .iter_mut()
+            .for_each(|backend| backend.keep_places(&common));
+        backends.extend(tabulate(
             "half-edge",
             &self.polygons,
-            &self.script,
+            &self.schedule,
             &self.route,
         ));
-        mixers
+        backends
     }
 }
 
@@ -54,11 +64,11 @@ fn parsed(text: &str) -> Workload {
 }
 
 /// Returns the counts of a run, without its time.
-fn found(run: MixRun) -> [u64; 3] {
+fn counts(run: MixRun) -> [u64; 3] {
     [run.operations, run.yielded, run.refused]
 }
 
-const ASKING: &str = "operations = 5\naccess = 'random'\n[mix]\nvertex_vertices = 3\n\
+const QUERIES: &str = "operations = 5\naccess = 'random'\n[mix]\nvertex_vertices = 3\n\
     vertex_edges = 1\nvertex_faces = 2\nedge_vertices = 1\nedge_edges = 0.5\nedge_faces = 2\n\
     face_vertices = 1\nface_edges = 1\nface_faces = 1\nposition = 4\nneighbour_positions = 1\n\
     corner_positions = 2\nend_positions = 1\n";
@@ -69,19 +79,19 @@ fn all_structures_yield_the_same_along_a_route() {
     for access in [Access::Random, Access::Patches] {
         let workload = Workload {
             access,
-            ..parsed(ASKING)
+            ..parsed(QUERIES)
         };
         for polygons in [
             shapes::triangle_torus(12, 9).expect("small"),
             shapes::mixed_grid(9, 7).expect("small"),
             shapes::icosahedron(),
         ] {
-            let setting = Setting::of(&workload, polygons);
-            let mut mixers = setting.mixers();
-            assert!(mixers.len() >= 6, "{}", mixers.len());
+            let fixture = Fixture::new(&workload, polygons);
+            let mut backends = fixture.backends();
+            assert!(backends.len() >= 6, "{}", backends.len());
             for turn in [0, 1, 17] {
-                let runs: Vec<_> = { mixers.iter_mut() }
-                    .map(|mixer| (mixer.name(), found(mixer.run(turn, 2, 1, &clock))))
+                let runs: Vec<_> = { backends.iter_mut() }
+                    .map(|backend| (backend.name(), counts(backend.run(turn, 2, 1, &clock))))
                     .collect();
                 let [operations, yielded, _] = runs[0].1;
                 assert!(operations.abs_diff(512) <= 16 && yielded > 512, "{runs:?}");
@@ -97,18 +107,21 @@ fn all_structures_yield_the_same_on_all_elements_in_their_own_order() {
     let clock = MachineClock::start();
     let workload = Workload {
         access: Access::Sequential,
-        ..parsed(ASKING)
+        ..parsed(QUERIES)
     };
-    let setting = Setting::of(&workload, shapes::mixed_grid(9, 7).expect("small"));
-    let mut mixers = setting.mixers();
-    for part in setting.script.elements() {
-        let runs: Vec<_> = { mixers.iter_mut() }
-            .map(|mixer| {
-                let cycle = mixer.cycle(part);
-                (mixer.name(), found(mixer.run_part(part, 5, cycle, &clock)))
+    let fixture = Fixture::new(&workload, shapes::mixed_grid(9, 7).expect("small"));
+    let mut backends = fixture.backends();
+    for part in fixture.schedule.elements() {
+        let runs: Vec<_> = { backends.iter_mut() }
+            .map(|backend| {
+                let cycle = backend.cycle_length(part);
+                (
+                    backend.name(),
+                    counts(backend.run_part(part, 5, cycle, &clock)),
+                )
             })
             .collect();
-        let action = setting.script.parts[part].action;
+        let action = fixture.schedule.parts[part].action;
         let same = |(_, run): &(&str, [u64; 3])| *run == runs[0].1;
         assert!(runs.iter().all(same), "{action} {runs:?}");
     }
@@ -123,24 +136,24 @@ fn edits_are_accepted_repeatedly_at_the_places_that_all_accept() {
          vertex_faces = 40\nedge_faces = 40\nface_faces = 40",
     );
     let torus = shapes::triangle_torus(80, 60).expect("small");
-    let setting = Setting::of(&workload, torus);
-    let mut mixers = setting.mixers();
-    let names: Vec<&str> = mixers.iter().map(|mixer| mixer.name()).collect();
+    let fixture = Fixture::new(&workload, torus);
+    let mut backends = fixture.backends();
+    let names: Vec<&str> = backends.iter().map(|backend| backend.name()).collect();
     assert_eq!(names.len(), 6, "{names:?}");
     for turn in [0, 1, 7, 7] {
-        let runs: Vec<_> = { mixers.iter_mut() }
-            .map(|mixer| (mixer.name(), found(mixer.run(turn, 4, 2, &clock))))
+        let runs: Vec<_> = { backends.iter_mut() }
+            .map(|backend| (backend.name(), counts(backend.run(turn, 4, 2, &clock))))
             .collect();
         let same = |(_, run): &(&str, [u64; 3])| *run == runs[0].1;
         assert!(runs.iter().all(same), "{runs:?}");
         assert_eq!(runs[0].1[2], 0, "refused");
     }
-    for part in setting.script.edits() {
-        let cycle = mixers[0].cycle(part);
+    for part in fixture.schedule.edits() {
+        let cycle = backends[0].cycle_length(part);
         assert!(cycle >= 1);
-        for mixer in &mut mixers {
-            let run = mixer.run_part(part, 0, cycle, &clock);
-            assert_eq!(found(run), [cycle, cycle, 0], "{}", mixer.name());
+        for backend in &mut backends {
+            let run = backend.run_part(part, 0, cycle, &clock);
+            assert_eq!(counts(run), [cycle, cycle, 0], "{}", backend.name());
         }
     }
 }
@@ -152,22 +165,24 @@ fn passes_over_tables_give_the_results_of_structures() {
         "operations = 5\n[mix]\ncirculate = 1\nface_barycenter = 1\nvertex_normal = 1\n\
          vv_smooth = 1\nedge_length = 1\nboundary = 1\nff_bfs = 1\nall_queries = 1",
     );
-    let setting = Setting::of(&workload, shapes::mixed_grid(9, 7).expect("small"));
-    let mut mixers = setting.mixers();
-    let names: Vec<&str> = mixers.iter().map(|mixer| mixer.name()).collect();
+    let fixture = Fixture::new(&workload, shapes::mixed_grid(9, 7).expect("small"));
+    let mut backends = fixture.backends();
+    let names: Vec<&str> = backends.iter().map(|backend| backend.name()).collect();
     assert_eq!(names.last(), Some(&"relation-tables"));
-    for part in setting.script.passes() {
-        let Action::Pass(operation) = setting.script.parts[part].action else {
+    for part in fixture.schedule.passes() {
+        let Action::Pass(operation) = fixture.schedule.parts[part].action else {
             panic!("only passes");
         };
-        let outcomes: Vec<_> = { mixers.iter_mut() }
-            .map(|mixer| mixer.run_pass(operation, None, &Series::of_runs(2, &clock).checked()))
+        let outcomes: Vec<_> = { backends.iter_mut() }
+            .map(|backend| {
+                backend.run_pass(operation, None, &Series::with_runs(2, &clock).with_result())
+            })
             .map(|run| run.outcome.expect("checked"))
             .collect();
         for (outcome, name) in outcomes.iter().zip(&names) {
-            let off = (outcome.checksum - outcomes[0].checksum).abs();
-            let most = 1e-4 * outcomes[0].checksum.abs();
-            assert!(off <= most, "{operation} on {name}: {outcomes:?}");
+            let difference = (outcome.checksum - outcomes[0].checksum).abs();
+            let limit = 1e-4 * outcomes[0].checksum.abs();
+            assert!(difference <= limit, "{operation} on {name}: {outcomes:?}");
             let elements = outcomes[0].elements;
             assert_eq!(outcome.elements, elements, "{operation} on {name}");
         }
@@ -184,12 +199,12 @@ fn workloads_that_change_connectivity_have_no_tables() {
     ] {
         let workload = built_in(name).expect("it is built in");
         let torus = shapes::triangle_torus(30, 20).expect("small");
-        let setting = Setting::of(&workload, torus);
+        let fixture = Fixture::new(&workload, torus);
         let tables = tabulate(
             "half-edge",
-            &setting.polygons,
-            &setting.script,
-            &setting.route,
+            &fixture.polygons,
+            &fixture.schedule,
+            &fixture.route,
         );
         assert_eq!(tables.is_none(), changes, "{name}");
     }
@@ -201,20 +216,20 @@ fn every_built_in_runs() {
     for (name, _) in built_ins() {
         let workload = built_in(name).expect("it is built in");
         let torus = shapes::triangle_torus(30, 20).expect("small");
-        let setting = Setting::of(&workload, torus);
-        let mut mixers = setting.mixers();
-        assert!(mixers.len() >= 6, "{name}");
-        let half_edge = { mixers.iter_mut() }.find(|mixer| mixer.name() == "half-edge");
+        let fixture = Fixture::new(&workload, torus);
+        let mut backends = fixture.backends();
+        assert!(backends.len() >= 6, "{name}");
+        let half_edge = { backends.iter_mut() }.find(|backend| backend.name() == "half-edge");
         let half_edge = half_edge.expect("it holds tori");
         let run = half_edge.run(0, 1, 1, &clock);
-        let on_elements = setting.script.on_elements > 0.0;
+        let on_elements = fixture.schedule.on_elements > 0.0;
         assert_eq!(run.operations > 0, on_elements, "{name}");
-        for part in setting.script.passes() {
-            let operation = match setting.script.parts[part].action {
+        for part in fixture.schedule.passes() {
+            let operation = match fixture.schedule.parts[part].action {
                 Action::Pass(operation) => operation,
                 _ => Operation::Loop(sixfold::subdivision::Method::Native),
             };
-            let run = half_edge.run_pass(operation, None, &Series::once(&clock).checked());
+            let run = half_edge.run_pass(operation, None, &Series::once(&clock).with_result());
             assert!(run.outcome.is_some(), "{name}: {:?}", run.refusal);
         }
     }
@@ -224,24 +239,24 @@ fn every_built_in_runs() {
 fn backends_that_cannot_run_the_mix_give_the_reason() {
     let splits = parsed("operations = 5\n[mix]\nsplit_edge = 1\nvertex_faces = 9");
     let torus = shapes::triangle_torus(30, 20).expect("small");
-    let setting = Setting::of(&splits, torus);
-    let start = |setting: &'_ Setting, name: &str| {
-        let Setting {
+    let fixture = Fixture::new(&splits, torus);
+    let refusal_of = |fixture: &'_ Fixture, name: &str| {
+        let Fixture {
             polygons,
             draw,
-            script,
+            schedule,
             route,
-        } = setting;
-        set_up(name, polygons, draw, script, route).map(|mixer| mixer.err())
+        } = fixture;
+        prepare_mix(name, polygons, draw, schedule, route).map(|backend| backend.err())
     };
-    let refusal = start(&setting, "corner-table").expect("it is in the roster");
+    let refusal = refusal_of(&fixture, "corner-table").expect("it is in the roster");
     assert!(
-        matches!(refusal, Some(MixRefusal::NoEdit(_))),
+        matches!(refusal, Some(MixRefusal::UnsupportedEdit(_))),
         "{refusal:?}"
     );
-    assert!(start(&setting, "abacus").is_none());
+    assert!(refusal_of(&fixture, "abacus").is_none());
     let smoothing = built_in("smoothing").expect("it is built in");
-    let quads = Setting::of(&smoothing, shapes::grid(4, 4).expect("small"));
-    let refusal = start(&quads, "corner-table").expect("it is in the roster");
+    let quads = Fixture::new(&smoothing, shapes::grid(4, 4).expect("small"));
+    let refusal = refusal_of(&quads, "corner-table").expect("it is in the roster");
     assert!(matches!(refusal, Some(MixRefusal::Build(_))), "{refusal:?}");
 }

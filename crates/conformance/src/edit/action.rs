@@ -86,7 +86,7 @@ impl Action {
     }
 
     /// Returns the position at which the edit puts a vertex.
-    pub(crate) fn place(&self) -> Option<Point> {
+    pub(crate) fn position(&self) -> Option<Point> {
         match self {
             Self::SetPosition { to: at, .. }
             | Self::CollapseEdge { to: at, .. }

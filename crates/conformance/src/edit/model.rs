@@ -5,23 +5,23 @@ use std::collections::{BTreeMap, BTreeSet};
 use sixfold_core::{Capabilities, Edit, MeshEdit, Point, PolygonMesh, Representation};
 
 use super::action::Action;
-use crate::weld::place;
+use crate::weld::position_key;
 
-/// The meshes that a structure can hold, and the edits that it offers.
+/// The meshes that a structure can hold, and the edits that it supports.
 #[derive(Clone, Copy, Debug)]
 pub struct Rules {
     /// Meshes that the structure can hold.
     pub capabilities: Capabilities,
-    /// Whether it offers each edit, in the order of [`Edit::ALL`].
-    pub offers: [bool; Edit::ALL.len()],
+    /// Whether it supports each edit, in the order of [`Edit::ALL`].
+    pub supported: [bool; Edit::ALL.len()],
 }
 
 impl Rules {
     /// Returns the rules of `M`.
-    pub fn of<M: Representation + MeshEdit>() -> Self {
+    pub fn new<M: Representation + MeshEdit>() -> Self {
         Self {
             capabilities: M::CAPABILITIES,
-            offers: M::EDITS.map(|cost| cost.is_some()),
+            supported: M::EDITS.map(|cost| cost.is_some()),
         }
     }
 }
@@ -35,7 +35,7 @@ pub struct Model {
 
 impl Model {
     /// Builds the model of `polygons`.
-    pub fn of(polygons: &PolygonMesh) -> Self {
+    pub fn from_polygons(polygons: &PolygonMesh) -> Self {
         let faces = polygons.faces().iter();
         let faces = faces.map(|(_, face)| Some(face.iter().map(|v| v.index()).collect()));
         Self {
@@ -89,7 +89,7 @@ impl Model {
     }
 
     /// Returns χ = V − E + F.
-    pub fn euler(&self) -> isize {
+    pub fn euler_characteristic(&self) -> isize {
         let count = |n: usize| n as isize;
         count(self.vertices().count()) - count(self.edges().len()) + count(self.faces().count())
     }
@@ -112,35 +112,35 @@ impl Model {
 
     /// Returns the model after `action`, or `None` if the action is illegal.
     pub fn after(&self, action: &Action, rules: &Rules) -> Option<Self> {
-        if !rules.offers[action.edit() as usize] {
+        if !rules.supported[action.edit() as usize] {
             return None;
         }
-        if !rules.capabilities.coincident_vertices && self.is_taken(action) {
+        if !rules.capabilities.coincident_vertices && self.is_occupied(action) {
             return None;
         }
         let mut after = self.clone();
-        after.act(action, rules)?;
+        after.apply(action, rules)?;
         if !rules.capabilities.isolated_vertices {
-            after.drop_isolated();
+            after.remove_isolated();
         }
         rules.capabilities.check(&after.to_polygons()).ok()?;
         Some(after)
     }
 
     /// Returns whether another vertex is at the position where `action` puts a vertex.
-    fn is_taken(&self, action: &Action) -> bool {
+    fn is_occupied(&self, action: &Action) -> bool {
         let own = match action {
             Action::SetPosition { v, .. } => [*v; 2],
             Action::CollapseEdge { ends, .. } => *ends,
             _ => [usize::MAX; 2],
         };
         let mut others = self.vertices().filter(|v| !own.contains(v));
-        action
-            .place()
-            .is_some_and(|at| others.any(|v| self.positions[v].map(place) == Some(place(at))))
+        action.position().is_some_and(|at| {
+            others.any(|v| self.positions[v].map(position_key) == Some(position_key(at)))
+        })
     }
 
-    fn drop_isolated(&mut self) {
+    fn remove_isolated(&mut self) {
         let used: BTreeSet<usize> = self.faces().flat_map(|(_, face)| face.to_vec()).collect();
         for (v, position) in self.positions.iter_mut().enumerate() {
             if !used.contains(&v) {
@@ -156,7 +156,7 @@ impl Model {
 
     /// Returns the two faces of an edge if they run along it in opposite directions; the one from
     /// `a` to `b` is first.
-    fn opposed(&self, [a, b]: [usize; 2]) -> Option<[usize; 2]> {
+    fn opposite_faces(&self, [a, b]: [usize; 2]) -> Option<[usize; 2]> {
         let edges = self.edges();
         match *edges.get(&[a.min(b), a.max(b)])?.as_slice() {
             [(f, up), (g, down)] if up != down => Some(if up == (a < b) { [f, g] } else { [g, f] }),
@@ -164,7 +164,7 @@ impl Model {
         }
     }
 
-    fn act(&mut self, action: &Action, rules: &Rules) -> Option<()> {
+    fn apply(&mut self, action: &Action, rules: &Rules) -> Option<()> {
         match action {
             Action::SetPosition { v, to } => {
                 self.position(*v)?;
@@ -196,7 +196,7 @@ impl Model {
                     }
                 }
             }
-            Action::RemoveIsolatedVertices => self.drop_isolated(),
+            Action::RemoveIsolatedVertices => self.remove_isolated(),
             Action::SplitEdge { ends, at } => {
                 let faces = self.edges().remove(&sorted(*ends))?;
                 let m = self.add_vertex(*at);
@@ -237,23 +237,24 @@ impl Model {
                 self.faces.push(Some([&face[j..], &face[..=i]].concat()));
             }
             Action::DissolveEdge { ends } => {
-                let [f, g] = self.opposed(*ends)?;
-                let [one, other] = [f, g].map(|f| self.faces[f].clone());
-                let (mut one, mut other) = (one?, other?);
-                let common = one.iter().filter(|v| other.contains(v)).count();
+                let [f, g] = self.opposite_faces(*ends)?;
+                let [first, second] = [f, g].map(|f| self.faces[f].clone());
+                let (mut first, mut second) = (first?, second?);
+                let common = first.iter().filter(|v| second.contains(v)).count();
                 if common != 2 {
                     return None;
                 }
-                // Rotates `one` so that it ends with a, b, and `other` so that it starts with b, a.
-                let i = position_of_side(&one, *ends)?;
-                let degree = one.len();
-                one.rotate_left((i + 2) % degree);
-                let j = position_of_side(&other, *ends)?;
-                other.rotate_left(j);
-                let between = &other[2..];
-                let mut merged = one[..one.len() - 1].to_vec();
+                // Rotates `first` so that it ends with a, b, and `second` so that it starts with
+                // b, a.
+                let i = position_of_side(&first, *ends)?;
+                let degree = first.len();
+                first.rotate_left((i + 2) % degree);
+                let j = position_of_side(&second, *ends)?;
+                second.rotate_left(j);
+                let between = &second[2..];
+                let mut merged = first[..first.len() - 1].to_vec();
                 merged.extend(between);
-                merged.push(*one.last()?);
+                merged.push(*first.last()?);
                 self.faces[f] = Some(merged);
                 self.faces[g] = None;
             }
@@ -268,7 +269,7 @@ impl Model {
     }
 
     fn flip(&mut self, [a, b]: [usize; 2]) -> Option<()> {
-        let [f, g] = self.opposed([a, b])?;
+        let [f, g] = self.opposite_faces([a, b])?;
         let apex = |f: usize| match self.face(f)? {
             [x, y, z] => [*x, *y, *z].into_iter().find(|v| ![a, b].contains(v)),
             _ => None,
@@ -294,43 +295,43 @@ impl Model {
             .any(|(ends, faces)| ends.contains(&v) && faces.len() == 1)
     }
 
-    fn collapse(&mut self, [keep, gone]: [usize; 2], to: Point, rules: &Rules) -> Option<()> {
-        let along = self.edges().remove(&sorted([keep, gone]))?;
+    fn collapse(&mut self, [keep, removed]: [usize; 2], to: Point, rules: &Rules) -> Option<()> {
+        let along = self.edges().remove(&sorted([keep, removed]))?;
         let triangles = along
             .iter()
             .filter(|(f, _)| self.face(*f).is_some_and(|f| f.len() == 3));
         let apexes = triangles.map(|(f, _)| {
             let corners = self.face(*f).into_iter().flatten();
-            corners.copied().find(|v| ![keep, gone].contains(v))
+            corners.copied().find(|v| ![keep, removed].contains(v))
         });
         let apexes: Vec<usize> = apexes.collect::<Option<_>>()?;
         let manifold = !rules.capabilities.non_manifold_edges;
         if manifold {
-            let common = &self.neighbours(keep) & &self.neighbours(gone);
+            let common = &self.neighbours(keep) & &self.neighbours(removed);
             if common.len() != apexes.len() || apexes.iter().any(|c| !common.contains(c)) {
                 return None;
             }
-            if along.len() == 2 && self.is_boundary(keep) && self.is_boundary(gone) {
+            if along.len() == 2 && self.is_boundary(keep) && self.is_boundary(removed) {
                 return None;
             }
         }
         for face in &mut self.faces {
-            let Some(corners) = face.as_mut().filter(|face| face.contains(&gone)) else {
+            let Some(corners) = face.as_mut().filter(|face| face.contains(&removed)) else {
                 continue;
             };
             if corners.contains(&keep) {
-                position_of_side(corners, [keep, gone])?;
-                corners.retain(|&v| v != gone);
+                position_of_side(corners, [keep, removed])?;
+                corners.retain(|&v| v != removed);
                 if corners.len() < 3 {
                     *face = None;
                 }
             } else {
-                for v in corners.iter_mut().filter(|v| **v == gone) {
+                for v in corners.iter_mut().filter(|v| **v == removed) {
                     *v = keep;
                 }
             }
         }
-        self.positions[gone] = None;
+        self.positions[removed] = None;
         self.positions[keep] = Some(to);
         let has_face = |v: usize| self.faces().any(|(_, face)| face.contains(&v));
         if !apexes.iter().copied().chain([keep]).all(has_face) {
@@ -366,15 +367,18 @@ impl Model {
                 return None;
             }
         }
-        let befores: BTreeSet<usize> = left.values().map(|&(_, before)| before).collect();
-        let start = left.keys().copied().find(|after| !befores.contains(after));
+        let all_before: BTreeSet<usize> = left.values().map(|&(_, before)| before).collect();
+        let start = left
+            .keys()
+            .copied()
+            .find(|after| !all_before.contains(after));
         let mut at = start.or_else(|| left.keys().next().copied())?;
         let mut fan = Vec::new();
         while let Some((f, before)) = left.remove(&at) {
             fan.push((at, f, before));
             at = before;
         }
-        (left.is_empty() && befores.len() == fan.len()).then_some(fan)
+        (left.is_empty() && all_before.len() == fan.len()).then_some(fan)
     }
 
     fn split_vertex(
@@ -395,13 +399,13 @@ impl Model {
             ring.push(last);
             sectors.push(None);
         }
-        let place_of = |u: usize| ring.iter().position(|&w| w == u);
+        let index_in_ring = |u: usize| ring.iter().position(|&w| w == u);
         // Without `left`, the part ends at the start of the gap. Without `right`, it starts at the
         // end of the gap.
         let (from, to) = match (left, right) {
-            (Some(l), Some(r)) if l != r => (place_of(r)?, place_of(l)?),
-            (None, Some(r)) if !closed => (place_of(r)?, ring.len() - 1),
-            (Some(l), None) if !closed => (0, place_of(l)?),
+            (Some(l), Some(r)) if l != r => (index_in_ring(r)?, index_in_ring(l)?),
+            (None, Some(r)) if !closed => (index_in_ring(r)?, ring.len() - 1),
+            (Some(l), None) if !closed => (0, index_in_ring(l)?),
             _ => return None,
         };
         let n = self.add_vertex(at);

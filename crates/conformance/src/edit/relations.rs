@@ -10,7 +10,7 @@ use sixfold_core::{IteratorExt, MeshQuery};
 /// # Panics
 ///
 /// Panics if an answer differs, if an item occurs twice, or if a count differs from the list.
-pub(crate) fn relations_hold<M: MeshQuery>(mesh: &M, name: &str) {
+pub(crate) fn check_relations<M: MeshQuery>(mesh: &M, name: &str) {
     let faces: Vec<M::Face> = mesh.faces().collect();
     let vertices: Vec<M::Vertex> = mesh.vertices().collect();
     let edges: Vec<M::Edge> = mesh.edges().collect();
@@ -25,7 +25,7 @@ pub(crate) fn relations_hold<M: MeshQuery>(mesh: &M, name: &str) {
         .iter()
         .map(|&f| (f, mesh.face_vertices(f).collect()))
         .collect();
-    let by_ends: BTreeMap<[M::Vertex; 2], M::Edge> = edges
+    let edge_by_ends: BTreeMap<[M::Vertex; 2], M::Edge> = edges
         .iter()
         .map(|&e| {
             let [a, b] = mesh.edge_vertices(e);
@@ -33,22 +33,22 @@ pub(crate) fn relations_hold<M: MeshQuery>(mesh: &M, name: &str) {
         })
         .collect();
     assert_eq!(
-        by_ends.len(),
+        edge_by_ends.len(),
         edges.len(),
         "{name}: two edges have the same ends"
     );
 
     let mut sides: BTreeMap<[M::Vertex; 2], Vec<M::Face>> = BTreeMap::new();
-    let mut at: BTreeMap<M::Vertex, BTreeSet<M::Face>> = BTreeMap::new();
+    let mut faces_at: BTreeMap<M::Vertex, BTreeSet<M::Face>> = BTreeMap::new();
     for (&f, face) in &corners {
         for (i, &a) in face.iter().enumerate() {
             let b = face[(i + 1) % face.len()];
             sides.entry([a.min(b), a.max(b)]).or_default().push(f);
-            at.entry(a).or_default().insert(f);
+            faces_at.entry(a).or_default().insert(f);
         }
     }
     let all: Vec<_> = sides.keys().copied().collect();
-    let listed: Vec<_> = by_ends.keys().copied().collect();
+    let listed: Vec<_> = edge_by_ends.keys().copied().collect();
     assert_eq!(listed, all, "{name}: edges");
 
     for &v in &vertices {
@@ -57,16 +57,16 @@ pub(crate) fn relations_hold<M: MeshQuery>(mesh: &M, name: &str) {
             .clone()
             .map(|&[a, b]| if a == v { b } else { a })
             .collect();
-        same(name, "VV", v, mesh.vertex_vertices(v), others);
-        same(
+        assert_same_items(name, "VV", v, mesh.vertex_vertices(v), others);
+        assert_same_items(
             name,
             "VE",
             v,
             mesh.vertex_edges(v),
-            ends.map(|e| by_ends[e]).collect(),
+            ends.map(|e| edge_by_ends[e]).collect(),
         );
-        let faces = at.get(&v).cloned().unwrap_or_default();
-        same(
+        let faces = faces_at.get(&v).cloned().unwrap_or_default();
+        assert_same_items(
             name,
             "VF",
             v,
@@ -74,13 +74,17 @@ pub(crate) fn relations_hold<M: MeshQuery>(mesh: &M, name: &str) {
             faces.into_iter().collect(),
         );
     }
-    for (ends, &e) in &by_ends {
-        same(name, "EF", e, mesh.edge_faces(e), sides[ends].clone());
-        let beside = |other: &&[M::Vertex; 2]| {
+    for (ends, &e) in &edge_by_ends {
+        assert_same_items(name, "EF", e, mesh.edge_faces(e), sides[ends].clone());
+        let neighbours = |other: &&[M::Vertex; 2]| {
             *other != ends && (other.contains(&ends[0]) || other.contains(&ends[1]))
         };
-        let beside = sides.keys().filter(beside).map(|e| by_ends[e]).collect();
-        same(name, "EE", e, mesh.edge_edges(e), beside);
+        let neighbours = sides
+            .keys()
+            .filter(neighbours)
+            .map(|e| edge_by_ends[e])
+            .collect();
+        assert_same_items(name, "EE", e, mesh.edge_edges(e), neighbours);
         assert_eq!(
             mesh.edge_between(ends[0], ends[1]),
             Some(e),
@@ -93,20 +97,20 @@ pub(crate) fn relations_hold<M: MeshQuery>(mesh: &M, name: &str) {
             [a.min(b), a.max(b)]
         });
         let ends: Vec<_> = ends.collect();
-        same(
+        assert_same_items(
             name,
             "FE",
             f,
             mesh.face_edges(f),
-            ends.iter().map(|e| by_ends[e]).collect(),
+            ends.iter().map(|e| edge_by_ends[e]).collect(),
         );
-        let across = ends.iter().flat_map(|e| sides[e].clone());
-        let across = across.filter(|&g| g != f).distinct().collect();
-        same(name, "FF", f, mesh.face_faces(f), across);
+        let adjacent = ends.iter().flat_map(|e| sides[e].clone());
+        let adjacent = adjacent.filter(|&g| g != f).distinct().collect();
+        assert_same_items(name, "FF", f, mesh.face_faces(f), adjacent);
     }
 }
 
-fn same<A: Debug, H: Ord + Debug>(
+fn assert_same_items<A: Debug, H: Ord + Debug>(
     name: &str,
     relation: &str,
     of: A,

@@ -19,10 +19,10 @@ pub struct Step {
     pub picks: [u16; 4],
 }
 
-/// Generates up to `most` steps with kinds from `edits`. Removals and compaction are rarer, because
-/// they leave few elements to edit; `AddVertex` and `SetPosition` are rarer too. The other edits
-/// are equally likely.
-pub fn script(edits: &[Edit], most: usize) -> impl Strategy<Value = Vec<Step>> + use<> {
+/// Generates up to `max_steps` steps with kinds from `edits`. Removals and compaction are rarer,
+/// because they leave few elements to edit; `AddVertex` and `SetPosition` are rarer too. The other
+/// edits are equally likely.
+pub fn script(edits: &[Edit], max_steps: usize) -> impl Strategy<Value = Vec<Step>> + use<> {
     let weight = |edit: &Edit| match edit {
         Edit::RemoveVertex | Edit::RemoveIsolatedVertices | Edit::Compact => 1,
         Edit::RemoveFace | Edit::AddVertex | Edit::SetPosition => 2,
@@ -35,7 +35,7 @@ pub fn script(edits: &[Edit], most: usize) -> impl Strategy<Value = Vec<Step>> +
     let step = (sample::select(edits), any::<[u16; 4]>());
     collection::vec(
         step.prop_map(|(edit, picks)| Step { edit, picks }),
-        0..=most,
+        0..=max_steps,
     )
 }
 
@@ -176,6 +176,6 @@ impl Step {
     }
 }
 
-fn pick<T: Copy>(items: &[T], by: usize) -> Option<T> {
-    items.get(by.checked_rem(items.len())?).copied()
+fn pick<T: Copy>(items: &[T], number: usize) -> Option<T> {
+    items.get(number.checked_rem(items.len())?).copied()
 }

@@ -83,10 +83,10 @@ const HALF_EDGES: [(u32, usize); 24] = [
 /// Returns the faces of the half-edge table; each starts at its first half-edge.
 fn half_edge_cube() -> [[u32; 4]; 6] {
     [0, 8, 4, 16, 12, 20].map(|first| {
-        let mut at = first;
+        let mut half_edge = first;
         [(); 4].map(|()| {
-            let (start, next) = HALF_EDGES[at];
-            at = next;
+            let (start, next) = HALF_EDGES[half_edge];
+            half_edge = next;
             start
         })
     })

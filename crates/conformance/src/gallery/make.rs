@@ -4,9 +4,9 @@ use sixfold_core::{Point, PolygonMesh};
 
 /// Builds two tetrahedra that share vertex 0.
 pub(super) fn closed_bow_tie() -> PolygonMesh {
-    let one = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
-    let other = one.map(|face| face.map(|v| if v == 0 { 0 } else { v + 3 }));
-    mesh(7, &[one, other].concat())
+    let first = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    let second = first.map(|face| face.map(|v| if v == 0 { 0 } else { v + 3 }));
+    mesh(7, &[first, second].concat())
 }
 
 /// Builds a quad grid whose left and right columns are joined in opposite directions.
@@ -50,9 +50,9 @@ pub(super) fn voxels(rows: &[&str]) -> PolygonMesh {
     for (y, row) in (0..).zip(rows) {
         for x in (0..).take(row.len()).filter(|&x| filled(x, y, 0)) {
             for (axis, step) in [(0, 1), (0, -1), (1, 1), (1, -1), (2, 1), (2, -1)] {
-                let mut beside = [x, y, 0];
-                beside[axis] += step;
-                if filled(beside[0], beside[1], beside[2]) {
+                let mut neighbour = [x, y, 0];
+                neighbour[axis] += step;
+                if filled(neighbour[0], neighbour[1], neighbour[2]) {
                     continue;
                 }
                 let mut face = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[u, v]| {
@@ -80,7 +80,7 @@ pub(super) fn voxels(rows: &[&str]) -> PolygonMesh {
 }
 
 /// Separates the faces: each face gets its own vertices, with unchanged positions.
-pub(super) fn loose(polygons: &PolygonMesh) -> PolygonMesh {
+pub(super) fn separate_faces(polygons: &PolygonMesh) -> PolygonMesh {
     let mut points = Vec::new();
     let mut faces = Vec::new();
     for (_, corners) in polygons.faces().iter() {
@@ -92,7 +92,7 @@ pub(super) fn loose(polygons: &PolygonMesh) -> PolygonMesh {
 }
 
 /// Builds two triangles that share an edge if −0 equals 0.
-pub(super) fn minus_nought() -> PolygonMesh {
+pub(super) fn negative_zero() -> PolygonMesh {
     let points = [
         Point::new(0.0, 0.0, 0.0),
         Point::new(1.0, -0.0, 0.0),
@@ -105,28 +105,28 @@ pub(super) fn minus_nought() -> PolygonMesh {
 }
 
 pub(super) fn coincident_corners() -> PolygonMesh {
-    place_at(
+    with_positions(
         &mesh(5, &[[0, 1, 2], [0, 2, 3], [0, 3, 4]]),
         &[0, 1, 2, 2, 3],
     )
 }
 
-/// Returns the mesh with vertex `v` at the position `spot(places[v])`.
-pub(super) fn place_at(polygons: &PolygonMesh, places: &[u32]) -> PolygonMesh {
-    let points: Vec<Point> = places.iter().map(|&place| spot(place)).collect();
+/// Returns the mesh with vertex `v` at the position `distinct_position(numbers[v])`.
+pub(super) fn with_positions(polygons: &PolygonMesh, numbers: &[u32]) -> PolygonMesh {
+    let points: Vec<Point> = numbers.iter().map(|&n| distinct_position(n)).collect();
     let faces = polygons.faces().clone();
     PolygonMesh::from_faces(points, faces).expect("the number of vertices is unchanged")
 }
 
 /// Places the meshes side by side, as components of one mesh.
-pub(super) fn union(parts: &[PolygonMesh]) -> PolygonMesh {
+pub(super) fn disjoint_union(parts: &[PolygonMesh]) -> PolygonMesh {
     let mut points: Vec<Point> = Vec::new();
     let mut faces: Vec<Vec<u32>> = Vec::new();
     for (part, shift) in parts.iter().zip(0_u8..) {
         let first = points.len() as u32;
-        let away = Point::X * 16.0 * f32::from(shift);
-        points.extend(part.positions().iter().map(|&p| p + away));
-        let corners = part.faces().iter().map(|(_, face)| numbers(face));
+        let offset = Point::X * 16.0 * f32::from(shift);
+        points.extend(part.positions().iter().map(|&p| p + offset));
+        let corners = part.faces().iter().map(|(_, face)| corner_numbers(face));
         faces.extend(corners.map(|face| face.iter().map(|v| v + first).collect()));
     }
     PolygonMesh::new(points, faces).expect("the parts are meshes")
@@ -134,20 +134,20 @@ pub(super) fn union(parts: &[PolygonMesh]) -> PolygonMesh {
 
 /// Builds a mesh of `faces` and `vertices` vertices with distinct positions.
 pub(super) fn mesh<F: AsRef<[u32]>>(vertices: u32, faces: &[F]) -> PolygonMesh {
-    let points: Vec<Point> = (0..vertices).map(spot).collect();
+    let points: Vec<Point> = (0..vertices).map(distinct_position).collect();
     PolygonMesh::new(points, faces).expect("a mesh made by hand is valid")
 }
 
 /// Returns a position for each number: all positions differ, and long collinear runs do not occur.
-pub(crate) fn spot(number: u32) -> Point {
+pub(crate) fn distinct_position(number: u32) -> Point {
     let x = number as f32;
     Point::new(x, (number * number % 7) as f32, (number % 3) as f32)
 }
 
-pub(super) fn numbers(corners: &[sixfold_core::VertexId]) -> Vec<u32> {
+pub(super) fn corner_numbers(corners: &[sixfold_core::VertexId]) -> Vec<u32> {
     corners.iter().map(|v| v.index() as u32).collect()
 }
 
-pub(super) fn sized(shape: Result<PolygonMesh, sixfold_shapes::ShapeError>) -> PolygonMesh {
+pub(super) fn expect_shape(shape: Result<PolygonMesh, sixfold_shapes::ShapeError>) -> PolygonMesh {
     shape.expect("a shape of this size can be built")
 }

@@ -5,7 +5,7 @@ use sixfold_core::Representation;
 use crate::answers::answers;
 use crate::element::Element;
 use crate::gallery::gallery;
-use crate::print::compact;
+use crate::print::one_line;
 use crate::weld::welded;
 
 /// Expected [`answers`] for a mesh of the gallery; "none" means that the vertex has no ring.
@@ -148,10 +148,10 @@ const CASES: &[Case] = &[
 /// The answers in the corner cases of the contract are those of a table made by hand.
 pub fn corner_cases<M: Representation>() {
     let gallery = gallery();
-    let mut held = 0;
+    let mut compared = 0;
     for case in CASES {
-        let specimen = gallery.iter().find(|specimen| specimen.name == case.mesh);
-        let polygons = &specimen.expect("the gallery has it").polygons;
+        let entry = gallery.iter().find(|entry| entry.name == case.mesh);
+        let polygons = &entry.expect("the gallery has it").polygons;
         // If a vertex is identified by its coordinates, only meshes that keep their numbering under
         // welding can be compared.
         if !M::CAPABILITIES.coincident_vertices && welded(polygons).as_ref() != Ok(polygons) {
@@ -160,29 +160,29 @@ pub fn corner_cases<M: Representation>() {
         let Some(got) = answers::<M>(polygons) else {
             continue;
         };
-        held += 1;
-        for &(question, expected) in case.answers {
+        compared += 1;
+        for &(query, expected) in case.answers {
             let got = got
-                .get(question)
-                .map_or("none".to_owned(), |items| words(items));
+                .get(query)
+                .map_or("none".to_owned(), |items| joined(items));
             assert_eq!(
                 got,
                 expected,
-                "{}: {question} on “{}” ({})",
+                "{}: {query} on “{}” ({})",
                 M::NAME,
                 case.mesh,
-                compact(polygons)
+                one_line(polygons)
             );
         }
     }
     assert!(
-        held > 0,
+        compared > 0,
         "{}: can hold no mesh of the corner cases",
         M::NAME
     );
 }
 
-fn words(items: &[Element]) -> String {
-    let words: Vec<String> = items.iter().map(ToString::to_string).collect();
-    words.join(" ")
+fn joined(items: &[Element]) -> String {
+    let joined: Vec<String> = items.iter().map(ToString::to_string).collect();
+    joined.join(" ")
 }

@@ -20,7 +20,7 @@ pub fn costs<M: Measured>() {
     let low = reads::<M>(&double_cone(24));
     let high = reads::<M>(&double_cone(240));
     for (i, relation) in Relation::ALL.into_iter().enumerate() {
-        let (few, many) = (small[i].most, large[i].most);
+        let (few, many) = (small[i].max, large[i].max);
         let grows = many > 4 * few;
         let bounded = 2 * many <= 3 * few;
         let cost = M::COSTS[i];
@@ -33,7 +33,7 @@ pub fn costs<M: Measured>() {
             "{}: {relation} is declared {cost:?}; its maximum reads are {few} on 72 faces and {many} on 648",
             M::NAME
         );
-        let (few, many) = (low[i].most_per_item, high[i].most_per_item);
+        let (few, many) = (low[i].max_per_item, high[i].max_per_item);
         assert!(
             cost != QueryCost::Constant || many <= few + 2,
             "{}: {relation} is declared {cost:?}; its reads per item are {few} at valence 24 and {many} at 240",
@@ -45,15 +45,15 @@ pub fn costs<M: Measured>() {
 /// `memory()` equals `layout_bytes` within 2 %, for uniform and for mixed degrees.
 pub fn memory<M: Measured>() {
     let mixed = sixfold_shapes::mixed_grid(40, 40).expect("a grid of this size can be built");
-    let mut held = 0;
+    let mut measured = 0;
     for polygons in [torus(40), double_cone(1500), mixed] {
         let Ok(mesh) = M::from_polygons(&polygons) else {
             continue;
         };
-        held += 1;
+        measured += 1;
         let counts = Counts {
             vertices: polygons.vertex_count(),
-            edges: Oracle::of(&polygons).edges().count(),
+            edges: Oracle::new(&polygons).edges().count(),
             faces: polygons.face_count(),
             corners: polygons.corner_count(),
             uniform: polygons.faces().uniform_degree().is_some(),
@@ -65,7 +65,7 @@ pub fn memory<M: Measured>() {
             M::NAME
         );
     }
-    assert!(held >= 2, "{}: refuses a closed triangle mesh", M::NAME);
+    assert!(measured >= 2, "{}: refuses a closed triangle mesh", M::NAME);
 }
 
 fn torus(side: usize) -> PolygonMesh {
@@ -75,15 +75,15 @@ fn torus(side: usize) -> PolygonMesh {
 /// Maximum numbers of reads of one relation, over the elements tested.
 #[derive(Clone, Copy, Default)]
 struct Reads {
-    most: usize,
+    max: usize,
     /// Reads per item, rounded up; finding the list counts as one more item.
-    most_per_item: usize,
+    max_per_item: usize,
 }
 
 impl Reads {
-    fn note(&mut self, items: usize, reads: usize) {
-        self.most = self.most.max(reads);
-        self.most_per_item = self.most_per_item.max(reads.div_ceil(items + 1));
+    fn record(&mut self, items: usize, reads: usize) {
+        self.max = self.max.max(reads);
+        self.max_per_item = self.max_per_item.max(reads.div_ceil(items + 1));
     }
 }
 
@@ -92,34 +92,34 @@ fn reads<M: Measured>(polygons: &PolygonMesh) -> [Reads; 9] {
     let mesh = M::from_polygons(polygons);
     let mesh = mesh.unwrap_or_else(|e| panic!("{} refuses a closed triangle mesh: {e}", M::NAME));
     let probe = Traced::default();
-    let watched = mesh.clone().probed(probe.clone());
-    let mut worst = [Reads::default(); 9];
-    let mut note = |relation: Relation, items: usize| {
-        worst[relation as usize].note(items, probe.take().len());
+    let probed = mesh.clone().probed(probe.clone());
+    let mut maxima = [Reads::default(); 9];
+    let mut record = |relation: Relation, items: usize| {
+        maxima[relation as usize].record(items, probe.take().len());
     };
     // A few elements are enough, because the shapes are regular. The first and the last are among
     // them, because these are the apexes.
     probe.take();
-    for v in few(mesh.vertices().collect()) {
-        note(Relation::VertexVertices, watched.vertex_vertices(v).count());
-        note(Relation::VertexEdges, watched.vertex_edges(v).count());
-        note(Relation::VertexFaces, watched.vertex_faces(v).count());
+    for v in sample(mesh.vertices().collect()) {
+        record(Relation::VertexVertices, probed.vertex_vertices(v).count());
+        record(Relation::VertexEdges, probed.vertex_edges(v).count());
+        record(Relation::VertexFaces, probed.vertex_faces(v).count());
     }
-    for e in few(mesh.edges().collect()) {
-        note(Relation::EdgeVertices, watched.edge_vertices(e).len());
-        note(Relation::EdgeEdges, watched.edge_edges(e).count());
-        note(Relation::EdgeFaces, watched.edge_faces(e).count());
+    for e in sample(mesh.edges().collect()) {
+        record(Relation::EdgeVertices, probed.edge_vertices(e).len());
+        record(Relation::EdgeEdges, probed.edge_edges(e).count());
+        record(Relation::EdgeFaces, probed.edge_faces(e).count());
     }
-    for f in few(mesh.faces().collect()) {
-        note(Relation::FaceVertices, watched.face_vertices(f).count());
-        note(Relation::FaceEdges, watched.face_edges(f).count());
-        note(Relation::FaceFaces, watched.face_faces(f).count());
+    for f in sample(mesh.faces().collect()) {
+        record(Relation::FaceVertices, probed.face_vertices(f).count());
+        record(Relation::FaceEdges, probed.face_edges(f).count());
+        record(Relation::FaceFaces, probed.face_faces(f).count());
     }
-    worst
+    maxima
 }
 
 /// Returns about forty of `handles`, including the first and the last.
-fn few<H: Copy>(handles: Vec<H>) -> Vec<H> {
+fn sample<H: Copy>(handles: Vec<H>) -> Vec<H> {
     let step = handles.len().div_ceil(40).max(1);
     let last = handles.last().copied();
     handles.into_iter().step_by(step).chain(last).collect()

@@ -9,18 +9,18 @@ use sixfold_core::{
     Edit, Measured, MeshEdit, Point, PolygonMesh, QueryCost, Representation, Traced,
 };
 
-use crate::caught::caught;
-use crate::edit::{Action, Step, Trial, script};
-use crate::print::compact;
+use crate::catch_panic::catch_panic;
+use crate::edit::{Action, ModelTest, Step, script};
+use crate::print::one_line;
 use crate::strategy::{any_mesh, manifold_mesh};
 
 /// Number of scripts if `PROPTEST_CASES` is not set, and maximum number of steps of a script.
 const SCRIPTS: u32 = 64;
-const STEPS: usize = 160;
+const MAX_STEPS: usize = 160;
 
-/// At least one in this number of steps of each edit must be accepted, because scripts of refused
-/// steps do not test much.
-const ONE_IN: usize = 12;
+/// At least one step of each edit in this number must be accepted, because scripts of refused steps
+/// do not test much.
+const MAX_STEPS_PER_ACCEPTED: usize = 12;
 
 /// Random scripts: after every step, mesh and model are equal, handles and records agree, and the
 /// invariants hold. A refused edit changes nothing. After every 16 steps, all relations are
@@ -36,7 +36,7 @@ pub fn edits<M: Representation + MeshEdit + Debug>() {
     if std::env::var_os("PROPTEST_CASES").is_none() {
         config.cases = SCRIPTS;
     }
-    let shares = Cell::new([[0_usize; 2]; Edit::ALL.len()]);
+    let counts_by_edit = Cell::new([[0_usize; 2]; Edit::ALL.len()]);
     let start = if M::CAPABILITIES.non_manifold_edges {
         prop_oneof![manifold_mesh(), any_mesh()].boxed()
     } else {
@@ -49,19 +49,21 @@ pub fn edits<M: Representation + MeshEdit + Debug>() {
             polygons.fan_triangulated().expect("small")
         }
     });
-    let cases = (start, script(&Edit::ALL, STEPS)).prop_map(|(start, steps)| Case { start, steps });
+    let cases =
+        (start, script(&Edit::ALL, MAX_STEPS)).prop_map(|(start, steps)| Case { start, steps });
     let outcome = TestRunner::new(config).run(&cases, |Case { start, steps }| {
-        let done = RefCell::new(Vec::new());
-        caught(|| run::<M>(&start, &steps, &shares, &done))
+        let executed = RefCell::new(Vec::new());
+        catch_panic(|| run_script::<M>(&start, &steps, &counts_by_edit, &executed))
             .map_err(|fault| TestCaseError::fail(fault.to_string()))
     });
     match outcome {
-        Ok(()) => accepted_enough::<M>(&shares.get()),
+        Ok(()) => check_acceptance::<M>(&counts_by_edit.get()),
         Err(TestError::Fail(_, Case { start, steps })) => {
-            let done = RefCell::new(Vec::new());
-            let fault = caught(|| run::<M>(&start, &steps, &shares, &done)).err();
+            let executed = RefCell::new(Vec::new());
+            let fault =
+                catch_panic(|| run_script::<M>(&start, &steps, &counts_by_edit, &executed)).err();
             let mut script = String::new();
-            for (action, accepted) in done.take() {
+            for (action, accepted) in executed.take() {
                 let _ = write!(
                     script,
                     "\n  {}{action:?}",
@@ -72,56 +74,56 @@ pub fn edits<M: Representation + MeshEdit + Debug>() {
             panic!(
                 "{} differs from the model on {}{script}\n{fault}",
                 M::NAME,
-                compact(&start)
+                one_line(&start)
             )
         }
         Err(TestError::Abort(reason)) => panic!("{}: the test was aborted: {reason}", M::NAME),
     }
 }
 
-fn run<M: Representation + MeshEdit + Debug>(
+fn run_script<M: Representation + MeshEdit + Debug>(
     start: &PolygonMesh,
     steps: &[Step],
-    shares: &Cell<[[usize; 2]; Edit::ALL.len()]>,
-    done: &RefCell<Vec<(Action, bool)>>,
+    counts_by_edit: &Cell<[[usize; 2]; Edit::ALL.len()]>,
+    executed: &RefCell<Vec<(Action, bool)>>,
 ) {
-    let Some(mut trial) = Trial::<M>::of(start) else {
+    let Some(mut test) = ModelTest::<M>::from_polygons(start) else {
         return;
     };
-    let mut counts = shares.get();
+    let mut counts = counts_by_edit.get();
     for (number, step) in steps.iter().enumerate() {
-        let Some(action) = step.action(&trial.model, number) else {
+        let Some(action) = step.action(&test.model, number) else {
             continue;
         };
-        done.borrow_mut().push((action.clone(), false));
-        let accepted = trial.take(&action);
-        if let Some(last) = done.borrow_mut().last_mut() {
+        executed.borrow_mut().push((action.clone(), false));
+        let accepted = test.apply(&action);
+        if let Some(last) = executed.borrow_mut().last_mut() {
             last.1 = accepted;
         }
         counts[action.edit() as usize][usize::from(!accepted)] += 1;
         if number % 16 == 15 {
-            trial.inspect();
+            test.check_all();
         }
     }
-    trial.inspect();
-    trial.take(&Action::Compact);
-    trial.inspect();
-    shares.set(counts);
+    test.check_all();
+    test.apply(&Action::Compact);
+    test.check_all();
+    counts_by_edit.set(counts);
 }
 
 /// Minimum number of steps on meshes that the structure can hold. There are about 1,800 to 3,400
 /// steps on a polygon soup, and more on the other structures.
-const FEWEST_STEPS: usize = 1000;
+const MIN_STEPS: usize = 1000;
 
-fn accepted_enough<M: MeshEdit + Representation>(shares: &[[usize; 2]; Edit::ALL.len()]) {
-    let tried: usize = shares.iter().flatten().sum();
-    let by_default = std::env::var_os("PROPTEST_CASES").is_none();
+fn check_acceptance<M: MeshEdit + Representation>(counts_by_edit: &[[usize; 2]; Edit::ALL.len()]) {
+    let tried: usize = counts_by_edit.iter().flatten().sum();
+    let default_cases = std::env::var_os("PROPTEST_CASES").is_none();
     assert!(
-        tried > FEWEST_STEPS || !by_default,
+        tried > MIN_STEPS || !default_cases,
         "{}: only {tried} steps on meshes that it can hold",
         M::NAME
     );
-    for (edit, [accepted, refused]) in Edit::ALL.into_iter().zip(shares) {
+    for (edit, [accepted, refused]) in Edit::ALL.into_iter().zip(counts_by_edit) {
         let share = 100.0 * *accepted as f64 / (accepted + refused).max(1) as f64;
         println!(
             "{}: {edit} accepted {accepted} of {} ({share:.0} %)",
@@ -129,18 +131,18 @@ fn accepted_enough<M: MeshEdit + Representation>(shares: &[[usize; 2]; Edit::ALL
             accepted + refused
         );
         // A small number of scripts may not contain every edit.
-        if M::offers(edit) && tried > 2000 {
+        if M::supports(edit) && tried > 2000 {
             assert!(
-                accepted * ONE_IN >= accepted + refused && *accepted > 0,
+                accepted * MAX_STEPS_PER_ACCEPTED >= accepted + refused && *accepted > 0,
                 "{}: {edit} is accepted only {accepted} times, and refused {refused} times",
                 M::NAME
             );
         }
-        if !M::offers(edit) {
+        if !M::supports(edit) {
             assert_eq!(
                 *accepted,
                 0,
-                "{} does not offer {edit}, but accepts it",
+                "{} does not support {edit}, but accepts it",
                 M::NAME
             );
         }
@@ -149,98 +151,98 @@ fn accepted_enough<M: MeshEdit + Representation>(shares: &[[usize; 2]; Edit::ALL
 
 /// Edits that undo each other give the same mesh again.
 pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
-    let sized = "a shape of this size can be built";
+    let message = "a shape of this size can be built";
     let starts = [
         sixfold_shapes::icosahedron(),
-        sixfold_shapes::triangle_torus(5, 4).expect(sized),
-        sixfold_shapes::triangle_grid(4, 4).expect(sized),
-        sixfold_shapes::mixed_grid(4, 4).expect(sized),
+        sixfold_shapes::triangle_torus(5, 4).expect(message),
+        sixfold_shapes::triangle_grid(4, 4).expect(message),
+        sixfold_shapes::mixed_grid(4, 4).expect(message),
         sixfold_shapes::dodecahedron(),
     ];
-    let mut undone = [0_usize; 6];
+    let mut undo_counts = [0_usize; 6];
     for start in starts {
-        let Some(trial) = Trial::<M>::of(&start) else {
+        let Some(test) = ModelTest::<M>::from_polygons(&start) else {
             continue;
         };
         let at = Point::new(50.0, 60.0, 70.0);
-        for (ends, _) in trial.model.edges() {
-            let fresh = trial.model.vertices().last().map_or(0, |v| v + 1);
-            let keep = trial.model.position(ends[0]).expect("the end exists");
-            let back = Action::CollapseEdge {
-                ends: [ends[0], fresh],
+        for (ends, _) in test.model.edges() {
+            let new_vertex = test.model.vertices().last().map_or(0, |v| v + 1);
+            let keep = test.model.position(ends[0]).expect("the end exists");
+            let inverse = Action::CollapseEdge {
+                ends: [ends[0], new_vertex],
                 to: keep,
             };
-            for (i, there) in [
+            for (i, edit) in [
                 Action::SplitEdge { ends, at },
                 Action::BisectEdge { ends, at },
             ]
             .into_iter()
             .enumerate()
             {
-                undone[i] += usize::from(there_and_back(&trial, &[there, back.clone()]));
+                undo_counts[i] += usize::from(is_undone(&test, &[edit, inverse.clone()]));
             }
-            let mut flipped = trial.clone();
-            if flipped.take(&Action::FlipEdge { ends }) {
-                let along = trial.model.edges().remove(&ends).expect("the edge exists");
+            let mut flipped = test.clone();
+            if flipped.apply(&Action::FlipEdge { ends }) {
+                let along = test.model.edges().remove(&ends).expect("the edge exists");
                 let apexes = along.iter().map(|&(f, _)| {
-                    let face = trial.model.face(f).into_iter().flatten();
+                    let face = test.model.face(f).into_iter().flatten();
                     let mut apex = face.copied().filter(|v| !ends.contains(v));
                     apex.next().expect("a triangle")
                 });
                 let apexes: Vec<usize> = apexes.collect();
-                flipped.take(&Action::FlipEdge {
+                flipped.apply(&Action::FlipEdge {
                     ends: [apexes[0], apexes[1]],
                 });
-                assert_same(&flipped, &trial, "flip_edge twice");
-                undone[2] += 1;
+                assert_same(&flipped, &test, "flip_edge twice");
+                undo_counts[2] += 1;
             }
             // `split_vertex` needs the vertices that are adjacent to both ends.
-            let [one, other] = ends.map(|v| trial.model.neighbours(v));
-            let common: Vec<usize> = (&one & &other).into_iter().collect();
+            let [first, second] = ends.map(|v| test.model.neighbours(v));
+            let common: Vec<usize> = (&first & &second).into_iter().collect();
             if let [left, right] = common[..] {
                 let collapse = Action::CollapseEdge { ends, to: keep };
-                let gone = trial.model.position(ends[1]).expect("the end exists");
-                let back = |left, right| Action::SplitVertex {
+                let removed = test.model.position(ends[1]).expect("the end exists");
+                let split = |left, right| Action::SplitVertex {
                     v: ends[0],
                     left: Some(left),
                     right: Some(right),
-                    at: gone,
+                    at: removed,
                 };
-                let mut collapsed = trial.clone();
-                if collapsed.take(&collapse) {
-                    let ways = [back(left, right), back(right, left)];
-                    let same = ways.iter().any(|back| {
+                let mut collapsed = test.clone();
+                if collapsed.apply(&collapse) {
+                    let splits = [split(left, right), split(right, left)];
+                    let same = splits.iter().any(|split| {
                         let mut again = collapsed.clone();
-                        again.take(back) && again.is_same_mesh(&trial)
+                        again.apply(split) && again.is_same_mesh(&test)
                     });
                     assert!(same, "{}: split_vertex does not undo {collapse:?}", M::NAME);
-                    undone[3] += 1;
+                    undo_counts[3] += 1;
                 }
             }
         }
-        for (f, face) in trial.model.faces() {
-            let fresh = trial.model.vertices().last().map_or(0, |v| v + 1);
-            let mut poked = trial.clone();
-            if poked.take(&Action::PokeFace { f, at })
-                && poked.take(&Action::RemoveVertex { v: fresh })
+        for (f, face) in test.model.faces() {
+            let new_vertex = test.model.vertices().last().map_or(0, |v| v + 1);
+            let mut poked = test.clone();
+            if poked.apply(&Action::PokeFace { f, at })
+                && poked.apply(&Action::RemoveVertex { v: new_vertex })
                 // If a vertex is identified by its coordinates, corners without another face are
                 // removed.
                 && face.iter().all(|&v| poked.model.position(v).is_some())
-                && poked.take(&Action::AddFace {
+                && poked.apply(&Action::AddFace {
                     corners: face.to_vec(),
                 })
             {
-                assert_same(&poked, &trial, "poke_face, remove_vertex, add_face");
-                undone[4] += 1;
+                assert_same(&poked, &test, "poke_face, remove_vertex, add_face");
+                undo_counts[4] += 1;
             }
             if face.len() > 3 {
                 let ends = [face[0], face[2]];
-                let there = [Action::SplitFace { f, ends }, Action::DissolveEdge { ends }];
-                undone[5] += usize::from(there_and_back(&trial, &there));
+                let actions = [Action::SplitFace { f, ends }, Action::DissolveEdge { ends }];
+                undo_counts[5] += usize::from(is_undone(&test, &actions));
             }
         }
     }
-    let needs = [
+    let edits_by_test = [
         &[Edit::SplitEdge][..],
         &[Edit::BisectEdge],
         &[Edit::FlipEdge],
@@ -248,8 +250,8 @@ pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
         &[Edit::PokeFace],
         &[Edit::SplitFace, Edit::DissolveEdge],
     ];
-    for (count, edits) in undone.into_iter().zip(needs) {
-        let offered = edits.iter().all(|&edit| M::offers(edit));
+    for (count, edits) in undo_counts.into_iter().zip(edits_by_test) {
+        let offered = edits.iter().all(|&edit| M::supports(edit));
         assert!(
             !offered || count >= 10,
             "{}: {edits:?} undone only {count} times",
@@ -260,19 +262,23 @@ pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
 
 /// Executes `actions` and returns whether all are accepted. If so, checks that the mesh is
 /// unchanged.
-fn there_and_back<M: Representation + MeshEdit + Debug>(
-    trial: &Trial<M>,
+fn is_undone<M: Representation + MeshEdit + Debug>(
+    test: &ModelTest<M>,
     actions: &[Action],
 ) -> bool {
-    let mut turned = trial.clone();
-    if !actions.iter().all(|action| turned.take(action)) {
+    let mut edited = test.clone();
+    if !actions.iter().all(|action| edited.apply(action)) {
         return false;
     }
-    assert_same(&turned, trial, &format!("{actions:?}"));
+    assert_same(&edited, test, &format!("{actions:?}"));
     true
 }
 
-fn assert_same<M: Representation + MeshEdit + Debug>(got: &Trial<M>, from: &Trial<M>, did: &str) {
+fn assert_same<M: Representation + MeshEdit + Debug>(
+    got: &ModelTest<M>,
+    from: &ModelTest<M>,
+    did: &str,
+) {
     assert!(
         got.is_same_mesh(from),
         "{}: {did} do not restore the mesh",
@@ -314,7 +320,7 @@ where
     }
 }
 
-/// Returns the maximum number of rows that `edit` accesses, over a few places of the mesh.
+/// Returns the maximum number of rows that `edit` accesses, over a few faces of the mesh.
 fn accesses<M>(polygons: &PolygonMesh, edit: Edit) -> usize
 where
     M: Measured + MeshEdit,
@@ -334,68 +340,68 @@ where
     let [a, b] = mesh.edge_vertices(spoke);
     let keep = if a == n { b } else { a };
     let at = mesh.position(keep);
-    let undone = mesh.collapse_edge(spoke, keep, at, &mut ());
-    undone.expect("an inner vertex of valence three can be collapsed");
+    let collapsed = mesh.collapse_edge(spoke, keep, at, &mut ());
+    collapsed.expect("an inner vertex of valence three can be collapsed");
     let at = Point::new(300.0, 301.0, 302.0);
-    let mut most = 0;
-    for place in [0, 1, 2, 3] {
+    let mut max = 0;
+    for quarter in [0, 1, 2, 3] {
         let mut mesh = mesh.clone();
         let count = mesh.face_count();
         let f = mesh
             .faces()
-            .nth((place * count / 4).max(2))
+            .nth((quarter * count / 4).max(2))
             .expect("a face");
-        let [a, b, c] = three(mesh.face_vertices(f));
+        let [a, b, c] = triangle_corners(mesh.face_vertices(f));
         let e = mesh.edge_between(a, b).expect("a side");
         let quad = (edit == Edit::SplitFace)
             .then(|| mesh.dissolve_edge(e, &mut ()).expect("two triangles"));
         if edit == Edit::AddFace {
             mesh.remove_face(f, &mut ()).expect("an inner face");
         }
-        let beyond: Vec<M::Vertex> = mesh.vertex_vertices(a).collect();
+        let neighbours: Vec<M::Vertex> = mesh.vertex_vertices(a).collect();
         let ends = quad.map(|quad| {
             let corners: Vec<M::Vertex> = mesh.face_vertices(quad).collect();
             [corners[0], corners[2]]
         });
         let probe = Traced::default();
-        let mut watched = mesh.probed(probe.clone());
+        let mut probed = mesh.probed(probe.clone());
         probe.take();
         let log = &mut ();
         let refusal = match edit {
-            Edit::SetPosition => watched.set_position(a, at, log).err(),
-            Edit::AddVertex => watched.add_vertex(at, log).err(),
-            Edit::AddFace => watched.add_face(&[a, b, c], log).err(),
-            Edit::RemoveFace => watched.remove_face(f, log).err(),
-            Edit::RemoveVertex => watched.remove_vertex(a, log).err(),
+            Edit::SetPosition => probed.set_position(a, at, log).err(),
+            Edit::AddVertex => probed.add_vertex(at, log).err(),
+            Edit::AddFace => probed.add_face(&[a, b, c], log).err(),
+            Edit::RemoveFace => probed.remove_face(f, log).err(),
+            Edit::RemoveVertex => probed.remove_vertex(a, log).err(),
             Edit::RemoveIsolatedVertices => {
-                watched.remove_isolated_vertices(log);
+                probed.remove_isolated_vertices(log);
                 None
             }
-            Edit::SplitEdge => watched.split_edge(e, at, log).err(),
-            Edit::BisectEdge => watched.bisect_edge(e, at, log).err(),
-            Edit::PokeFace => watched.poke_face(f, at, log).err(),
+            Edit::SplitEdge => probed.split_edge(e, at, log).err(),
+            Edit::BisectEdge => probed.bisect_edge(e, at, log).err(),
+            Edit::PokeFace => probed.poke_face(f, at, log).err(),
             Edit::SplitFace => {
                 let quad = quad.expect("made above");
-                watched.split_face(quad, ends.expect("a quad"), log).err()
+                probed.split_face(quad, ends.expect("a quad"), log).err()
             }
-            Edit::DissolveEdge => watched.dissolve_edge(e, log).err(),
-            Edit::FlipEdge => watched.flip_edge(e, log).err(),
-            Edit::CollapseEdge => watched.collapse_edge(e, a, at, log).err(),
+            Edit::DissolveEdge => probed.dissolve_edge(e, log).err(),
+            Edit::FlipEdge => probed.flip_edge(e, log).err(),
+            Edit::CollapseEdge => probed.collapse_edge(e, a, at, log).err(),
             Edit::SplitVertex => {
-                let other = beyond.iter().copied().find(|&v| v != b);
-                watched.split_vertex(a, Some(b), other, at, log).err()
+                let other = neighbours.iter().copied().find(|&v| v != b);
+                probed.split_vertex(a, Some(b), other, at, log).err()
             }
             Edit::Compact => None,
         };
         if let Some(refusal) = refusal {
             panic!("{}: {edit} refused on a torus: {refusal}", M::NAME);
         }
-        most = most.max(probe.take().len());
+        max = max.max(probe.take().len());
     }
-    most
+    max
 }
 
-fn three<V: Copy>(corners: impl Iterator<Item = V>) -> [V; 3] {
+fn triangle_corners<V: Copy>(corners: impl Iterator<Item = V>) -> [V; 3] {
     let corners: Vec<V> = corners.collect();
     <[V; 3]>::try_from(corners.as_slice()).expect("a triangle")
 }
@@ -408,6 +414,11 @@ struct Case {
 
 impl Debug for Case {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} and {} steps", compact(&self.start), self.steps.len())
+        write!(
+            f,
+            "{} and {} steps",
+            one_line(&self.start),
+            self.steps.len()
+        )
     }
 }

@@ -7,25 +7,25 @@ use std::ops::{Index, IndexMut};
 use sixfold_core::{PolygonMesh, Representation};
 
 use super::relations::is_rotation;
-use crate::caught::caught;
+use crate::catch_panic::catch_panic;
 use crate::element::Element;
-use crate::subject::{Subject, held};
-use crate::weld::place;
+use crate::subject::{Subject, stored_mesh};
+use crate::weld::position_key;
 
 /// Each element is iterated once, faces and vertices in the order of the contract, and counts
 /// agree.
 pub fn elements<M: Representation>(polygons: &PolygonMesh) {
-    let Some(subject) = Subject::<M>::of(polygons) else {
+    let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
     };
     let Subject {
         mesh,
         oracle,
-        names,
+        handles,
         ..
     } = &subject;
-    let vertices: Vec<_> = oracle.vertices().map(|v| names.vertex(v)).collect();
-    let faces: Vec<_> = oracle.faces().map(|f| names.face(f)).collect();
+    let vertices: Vec<_> = oracle.vertices().map(|v| handles.vertex(v)).collect();
+    let faces: Vec<_> = oracle.faces().map(|f| handles.face(f)).collect();
     assert!(
         mesh.vertices().eq(vertices.iter().copied()),
         "{}: vertices() is {:?}, expected {vertices:?}",
@@ -40,7 +40,7 @@ pub fn elements<M: Representation>(polygons: &PolygonMesh) {
     );
     let mut ends = BTreeSet::new();
     for e in mesh.edges() {
-        let edge = names.edge_id(e);
+        let edge = handles.edge_id(e);
         assert!(ends.insert(edge), "{}: edges() has {edge} twice", M::NAME);
     }
     let expected: BTreeSet<Element> = oracle.edges().collect();
@@ -54,40 +54,40 @@ pub fn elements<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// `vertex_name` and `face_name` return the handles that the mesh itself uses, one for each
+/// `vertex_handle` and `face_handle` return the handles that the mesh itself uses, one for each
 /// element.
 pub fn names<M: Representation>(polygons: &PolygonMesh) {
-    let Some(subject) = Subject::<M>::of(polygons) else {
+    let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
     };
     let mesh = &subject.mesh;
     for ((_, corners), f) in polygons.faces().iter().zip(mesh.faces()) {
         let named: Vec<_> = corners
             .iter()
-            .map(|&v| M::vertex_name(polygons, v))
+            .map(|&v| M::vertex_handle(polygons, v))
             .collect();
         let got: Vec<_> = mesh.face_vertices(f).collect();
         assert!(
             is_rotation(&got, &named),
-            "{}: face_vertices of {f:?} is {got:?}, but vertex_name gives {named:?}",
+            "{}: face_vertices of {f:?} is {got:?}, but vertex_handle gives {named:?}",
             M::NAME
         );
     }
     let vertices: BTreeSet<_> = polygons
         .vertices()
-        .map(|v| M::vertex_name(polygons, v))
+        .map(|v| M::vertex_handle(polygons, v))
         .collect();
     assert_eq!(
         vertices.len(),
-        held::<M>(polygons).vertex_count(),
-        "{}: number of different vertex_names (left) and of vertices (right)",
+        stored_mesh::<M>(polygons).vertex_count(),
+        "{}: number of different vertex_handles (left) and of vertices (right)",
         M::NAME
     );
     for (f, name) in polygons.faces().iter().map(|(f, _)| f).zip(mesh.faces()) {
         assert_eq!(
-            M::face_name(polygons, f),
+            M::face_handle(polygons, f),
             name,
-            "{}: face_name of {f}",
+            "{}: face_handle of {f}",
             M::NAME
         );
     }
@@ -95,27 +95,32 @@ pub fn names<M: Representation>(polygons: &PolygonMesh) {
 
 /// `position` is the position in the input, bit for bit, except that −0 may be 0.
 pub fn positions<M: Representation>(polygons: &PolygonMesh) {
-    let Some(subject) = Subject::<M>::of(polygons) else {
+    let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
     };
     for v in subject.oracle.vertices() {
-        let got = subject.mesh.position(subject.names.vertex(v));
+        let got = subject.mesh.position(subject.handles.vertex(v));
         let expected = subject.input.position(v);
-        assert_eq!(place(got), place(expected), "{}: position of {v}", M::NAME);
+        assert_eq!(
+            position_key(got),
+            position_key(expected),
+            "{}: position of {v}",
+            M::NAME
+        );
     }
 }
 
 /// Maps contain the initial value for every handle, and after a write the value written.
 pub fn maps<M: Representation>(polygons: &PolygonMesh) {
-    let Some(Subject { mesh, .. }) = Subject::<M>::of(polygons) else {
+    let Some(Subject { mesh, .. }) = Subject::<M>::from_polygons(polygons) else {
         return;
     };
-    keeps::<M, _, _>(mesh.vertices().collect(), mesh.vertex_map(usize::MAX));
-    keeps::<M, _, _>(mesh.edges().collect(), mesh.edge_map(usize::MAX));
-    keeps::<M, _, _>(mesh.faces().collect(), mesh.face_map(usize::MAX));
+    check_map::<M, _, _>(mesh.vertices().collect(), mesh.vertex_map(usize::MAX));
+    check_map::<M, _, _>(mesh.edges().collect(), mesh.edge_map(usize::MAX));
+    check_map::<M, _, _>(mesh.faces().collect(), mesh.face_map(usize::MAX));
 }
 
-fn keeps<M: Representation, H, Map>(handles: Vec<H>, mut map: Map)
+fn check_map<M: Representation, H, Map>(handles: Vec<H>, mut map: Map)
 where
     H: Copy + Debug,
     Map: Index<H, Output = usize> + IndexMut<H>,
@@ -137,10 +142,11 @@ where
 ///
 /// The missing handles are those of a strip of triangles that is larger than the mesh and far away.
 pub fn missing_handles<M: Representation>(polygons: &PolygonMesh) {
-    let Some(Subject { mesh, .. }) = Subject::<M>::of(polygons) else {
+    let Some(Subject { mesh, .. }) = Subject::<M>::from_polygons(polygons) else {
         return;
     };
-    let larger = M::from_polygons(&far_away(polygons)).expect("an oriented manifold of triangles");
+    let larger =
+        M::from_polygons(&distant_strip(polygons)).expect("an oriented manifold of triangles");
     let (v, e, f) = (
         larger
             .vertices()
@@ -150,54 +156,54 @@ pub fn missing_handles<M: Representation>(polygons: &PolygonMesh) {
         larger.faces().max().expect("the larger mesh has faces"),
     );
     let rows = Rows {
-        vertex: caught(|| mesh.vertex_map(0)[v]).is_err(),
-        edge: caught(|| mesh.edge_map(0)[e]).is_err(),
-        face: caught(|| mesh.face_map(0)[f]).is_err(),
+        vertex: catch_panic(|| mesh.vertex_map(0)[v]).is_err(),
+        edge: catch_panic(|| mesh.edge_map(0)[e]).is_err(),
+        face: catch_panic(|| mesh.face_map(0)[f]).is_err(),
     };
-    let asked: [(&str, Missing, String); 9] = [
+    let queries: [(&str, Missing, String); 9] = [
         (
             "vertex_vertices",
-            rows.of_vertex(),
+            rows.for_vertex(),
             items(|| mesh.vertex_vertices(v).count()),
         ),
         (
             "vertex_edges",
-            rows.of_vertex(),
+            rows.for_vertex(),
             items(|| mesh.vertex_edges(v).count()),
         ),
         (
             "vertex_faces",
-            rows.of_vertex(),
+            rows.for_vertex(),
             items(|| mesh.vertex_faces(v).count()),
         ),
         (
             "one_ring",
-            rows.of_vertex(),
+            rows.for_vertex(),
             items(|| mesh.one_ring(v).map_or(0, Iterator::count)),
         ),
         (
             "edge_edges",
-            rows.of_edge(),
+            rows.for_edge(),
             items(|| mesh.edge_edges(e).count()),
         ),
         (
             "edge_faces",
-            rows.of_edge(),
+            rows.for_edge(),
             items(|| mesh.edge_faces(e).count()),
         ),
         (
             "face_vertices",
-            rows.of_face(),
+            rows.for_face(),
             items(|| mesh.face_vertices(f).count()),
         ),
         (
             "face_edges",
-            rows.of_face(),
+            rows.for_face(),
             items(|| mesh.face_edges(f).count()),
         ),
         (
             "face_faces",
-            rows.of_face(),
+            rows.for_face(),
             items(|| mesh.face_faces(f).count()),
         ),
     ];
@@ -216,16 +222,16 @@ pub fn missing_handles<M: Representation>(polygons: &PolygonMesh) {
         "{}: contains_face of {f:?}",
         M::NAME
     );
-    for (query, missing, answer) in asked {
-        missing.judge(M::NAME, query, &answer);
+    for (query, missing, answer) in queries {
+        missing.check(M::NAME, query, &answer);
     }
     if rows.vertex {
         let answer = items(|| mesh.position(v).to_array().len());
-        Missing::Panics.judge(M::NAME, "position", &answer);
+        Missing::Panics.check(M::NAME, "position", &answer);
     }
     if rows.edge {
         let answer = items(|| mesh.edge_vertices(e).len());
-        Missing::Panics.judge(M::NAME, "edge_vertices", &answer);
+        Missing::Panics.check(M::NAME, "edge_vertices", &answer);
     }
 }
 
@@ -237,7 +243,7 @@ struct Rows {
 }
 
 impl Rows {
-    fn of_vertex(&self) -> Missing {
+    fn for_vertex(&self) -> Missing {
         if self.vertex {
             Missing::Panics
         } else {
@@ -245,7 +251,7 @@ impl Rows {
         }
     }
 
-    fn of_edge(&self) -> Missing {
+    fn for_edge(&self) -> Missing {
         match (self.edge, self.vertex) {
             (true, _) => Missing::Panics,
             // A pair of rows: its ends are out of range, and the mesh does not have the pair.
@@ -254,7 +260,7 @@ impl Rows {
         }
     }
 
-    fn of_face(&self) -> Missing {
+    fn for_face(&self) -> Missing {
         if self.face {
             Missing::Panics
         } else {
@@ -272,25 +278,26 @@ enum Missing {
 }
 
 impl Missing {
-    fn judge(self, structure: &str, query: &str, answer: &str) {
-        let named = answer.starts_with("no ") && answer.contains(|c: char| c.is_ascii_digit());
-        let right = match self {
-            Self::Panics => named,
-            Self::Empty => answer == EMPTY,
-            Self::Either => named || answer == EMPTY,
+    fn check(self, structure: &str, query: &str, answer: &str) {
+        let names_handle =
+            answer.starts_with("no ") && answer.contains(|c: char| c.is_ascii_digit());
+        let is_correct = match self {
+            Self::Panics => names_handle,
+            Self::Empty => answer == NO_ITEMS,
+            Self::Either => names_handle || answer == NO_ITEMS,
         };
         assert!(
-            right,
+            is_correct,
             "{structure}: {query} of a missing element must be {self:?}, but is “{answer}”"
         );
     }
 }
 
-const EMPTY: &str = "0 items";
+const NO_ITEMS: &str = "0 items";
 
 /// Formats the number of items, or returns the message of the panic.
 fn items(query: impl FnOnce() -> usize) -> String {
-    match caught(query) {
+    match catch_panic(query) {
         Ok(count) => format!("{count} items"),
         Err(panic) => panic.message,
     }
@@ -298,9 +305,9 @@ fn items(query: impl FnOnce() -> usize) -> String {
 
 /// Builds a strip of triangles with more elements of every kind than `polygons`, at other
 /// positions.
-fn far_away(polygons: &PolygonMesh) -> PolygonMesh {
-    let far = polygons.positions().iter().filter(|p| p.is_finite());
-    let x = far.map(|p| p.x.abs()).fold(1.0, f32::max) * 4.0;
+fn distant_strip(polygons: &PolygonMesh) -> PolygonMesh {
+    let finite = polygons.positions().iter().filter(|p| p.is_finite());
+    let x = finite.map(|p| p.x.abs()).fold(1.0, f32::max) * 4.0;
     let size = polygons.vertex_count() + polygons.corner_count() + 3;
     crate::gallery::strip(size as u32, x)
 }

@@ -23,79 +23,82 @@ fn splits<M: Refine>() -> Vec<Split> {
 /// The child of every split is valid, and has the expected faces, edges and parents. If a child is
 /// impossible, the split returns the matching error. Edges are numbered in the order of `edges()`.
 pub fn refine<M: Refine>(polygons: &PolygonMesh) {
-    let Some(Subject { mesh, input, .. }) = Subject::<M>::of(polygons) else {
+    let Some(Subject { mesh, input, .. }) = Subject::<M>::from_polygons(polygons) else {
         return;
     };
     let mut numbers = M::EdgeNumbers::default();
     mesh.number_edges(&mut numbers);
-    edges_are_numbered(&mesh, &numbers);
+    check_edge_numbers(&mesh, &numbers);
     // This mesh is reused for all splits, so that a split also overwrites tables that are not
     // empty.
     let mut used = M::empty();
     assert_eq!(used.to_polygons(), PolygonMesh::default());
     for split in splits::<M>() {
-        let before = format!("{used:?}", used = Shown(&used));
-        let done = mesh.split_into(split, &numbers, &mut used);
-        let odd = input.faces().iter().find(|(_, face)| face.len() != 3);
-        if let (true, Some((face, corners))) = (split.needs_triangles(), odd) {
+        let before = format!("{used:?}", used = FullDebug(&used));
+        let result = mesh.split_into(split, &numbers, &mut used);
+        let polygon = input.faces().iter().find(|(_, face)| face.len() != 3);
+        if let (true, Some((face, corners))) = (split.needs_triangles(), polygon) {
             let degree = corners.len();
-            assert_eq!(done, Err(RefineError::NotATriangle { face, degree }));
+            assert_eq!(result, Err(RefineError::NotATriangle { face, degree }));
             assert_eq!(
                 before,
-                format!("{:?}", Shown(&used)),
+                format!("{:?}", FullDebug(&used)),
                 "mesh after a refused {split}"
             );
             continue;
         }
-        let expected = Child::of(&mesh, &input, split);
+        let expected = ExpectedChild::new(&mesh, &input, split);
         if expected.double_edge && !M::CAPABILITIES.non_manifold_edges {
-            let Err(RefineError::DoubleEdge { first, second }) = done else {
-                panic!("{}: expected DoubleEdge from {split}: {done:?}", M::NAME);
+            let Err(RefineError::DoubleEdge { first, second }) = result else {
+                panic!("{}: expected DoubleEdge from {split}: {result:?}", M::NAME);
             };
-            let [one, other] = [first, second].map(|f| {
+            let [first_corners, second_corners] = [first, second].map(|f| {
                 let mut corners = input.faces().face(f).to_vec();
                 corners.sort_unstable();
                 corners
             });
-            assert!(first != second && one == other, "{first} and {second}");
+            assert!(
+                first != second && first_corners == second_corners,
+                "{first} and {second}"
+            );
             assert_eq!(
                 before,
-                format!("{:?}", Shown(&used)),
+                format!("{:?}", FullDebug(&used)),
                 "mesh after a refused {split}"
             );
             continue;
         }
-        done.unwrap_or_else(|e| panic!("{}: {split} refused: {e}", M::NAME));
+        result.unwrap_or_else(|e| panic!("{}: {split} refused: {e}", M::NAME));
         expected.check(&mesh, &numbers, &mut used, split);
         let mut fresh = M::empty();
-        let done = mesh.split_into(split, &numbers, &mut fresh);
-        done.expect("the same split succeeded before");
+        let result = mesh.split_into(split, &numbers, &mut fresh);
+        result.expect("the same split succeeded before");
         expected.check(&mesh, &numbers, &mut fresh, split);
         assert_eq!(
-            format!("{:?}", Shown(&fresh)),
-            format!("{:?}", Shown(&used)),
+            format!("{:?}", FullDebug(&fresh)),
+            format!("{:?}", FullDebug(&used)),
             "{}: {split} into an empty mesh (left) and into a used one (right)",
             M::NAME
         );
     }
 }
 
-/// Refined meshes of many parts are equal on one thread and on three.
+/// Refined meshes of many chunks are equal on one thread and on three.
 pub fn refine_in_parallel<M: Refine>() {
     let pool = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.expect("threads can be started")
     };
-    let small = "shapes of this size can be built";
-    let mut specimens = vec![
-        sixfold_shapes::geodesic(24).expect(small),
-        sixfold_shapes::triangle_grid(70, 81).expect(small),
+    let message = "shapes of this size can be built";
+    let mut meshes = vec![
+        sixfold_shapes::geodesic(24).expect(message),
+        sixfold_shapes::triangle_grid(70, 81).expect(message),
     ];
     if M::CAPABILITIES.polygons {
-        specimens.push(sixfold_shapes::mixed_grid(60, 77).expect(small));
+        meshes.push(sixfold_shapes::mixed_grid(60, 77).expect(message));
     }
-    for polygons in &specimens {
-        let Some(Subject { mesh, input, .. }) = Subject::<M>::of(polygons) else {
+    for polygons in &meshes {
+        let Some(Subject { mesh, input, .. }) = Subject::<M>::from_polygons(polygons) else {
             panic!("{} refuses a manifold", M::NAME);
         };
         let mut numbers = M::EdgeNumbers::default();
@@ -105,10 +108,10 @@ pub fn refine_in_parallel<M: Refine>() {
                 pool(threads).install(|| {
                     let mut numbers = M::EdgeNumbers::default();
                     mesh.number_edges(&mut numbers);
-                    edges_are_numbered(&mesh, &numbers);
+                    check_edge_numbers(&mesh, &numbers);
                     let mut child = M::empty();
-                    let done = mesh.split_into(split, &numbers, &mut child);
-                    done.ok()?;
+                    let result = mesh.split_into(split, &numbers, &mut child);
+                    result.ok()?;
                     child.positions_mut().fill(Point::ZERO);
                     Some(child)
                 })
@@ -117,22 +120,23 @@ pub fn refine_in_parallel<M: Refine>() {
                 assert!(split.needs_triangles(), "{}: {split} refused", M::NAME);
                 continue;
             };
-            let same = format!("{one:?}", one = Shown(&one)) == format!("{:?}", Shown(&three));
+            let same =
+                format!("{one:?}", one = FullDebug(&one)) == format!("{:?}", FullDebug(&three));
             assert!(
                 same,
                 "{}: {split} differs on one thread and on three",
                 M::NAME
             );
-            let expected = Child::of(&mesh, &input, split);
+            let expected = ExpectedChild::new(&mesh, &input, split);
             expected.check(&mesh, &numbers, &mut one, split);
         }
     }
 }
 
 /// A mesh whose debug output is its polygons, positions and edges.
-struct Shown<'a, M>(&'a M);
+struct FullDebug<'a, M>(&'a M);
 
-impl<M: Refine> std::fmt::Debug for Shown<'_, M> {
+impl<M: Refine> std::fmt::Debug for FullDebug<'_, M> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let polygons = self.0.to_polygons();
         let edges: Vec<_> = self.0.edges().collect();
@@ -147,27 +151,27 @@ impl<M: Refine> std::fmt::Debug for Shown<'_, M> {
     }
 }
 
-fn edges_are_numbered<M: Refine>(mesh: &M, numbers: &M::EdgeNumbers) {
+fn check_edge_numbers<M: Refine>(mesh: &M, numbers: &M::EdgeNumbers) {
     let edges: Vec<M::Edge> = mesh.edges().collect();
-    let parts = mesh.edge_parts(numbers);
+    let chunks = mesh.edge_chunks(numbers);
     assert_eq!(
-        parts.first(),
+        chunks.first(),
         Some(&0),
-        "{}: start of the first part",
+        "{}: start of the first chunk",
         M::NAME
     );
     assert_eq!(
-        parts.last(),
+        chunks.last(),
         Some(&edges.len()),
-        "{}: end of the parts",
+        "{}: end of the chunks",
         M::NAME
     );
     let mut again = Vec::with_capacity(edges.len());
-    for (part, &start) in parts.iter().enumerate().take(parts.len() - 1) {
-        assert_eq!(start, again.len(), "{}: start of part {part}", M::NAME);
-        again.extend(mesh.edges_of_part(numbers, part));
+    for (chunk, &start) in chunks.iter().enumerate().take(chunks.len() - 1) {
+        assert_eq!(start, again.len(), "{}: start of chunk {chunk}", M::NAME);
+        again.extend(mesh.edges_of_chunk(numbers, chunk));
     }
-    assert_eq!(again, edges, "{}: the edges of all parts", M::NAME);
+    assert_eq!(again, edges, "{}: the edges of all chunks", M::NAME);
     for (number, &e) in edges.iter().enumerate() {
         assert_eq!(
             mesh.edge_number(numbers, e),
@@ -179,7 +183,7 @@ fn edges_are_numbered<M: Refine>(mesh: &M, numbers: &M::EdgeNumbers) {
 }
 
 /// The expected result of a split, computed from the faces of the input.
-struct Child {
+struct ExpectedChild {
     /// Faces of the child, each from its lowest vertex on, with the parent face; sorted.
     faces: Vec<(Vec<usize>, FaceId)>,
     vertices: usize,
@@ -188,8 +192,8 @@ struct Child {
     double_edge: bool,
 }
 
-impl Child {
-    fn of<M: Refine>(mesh: &M, input: &PolygonMesh, split: Split) -> Self {
+impl ExpectedChild {
+    fn new<M: Refine>(mesh: &M, input: &PolygonMesh, split: Split) -> Self {
         let vertices = input.vertex_count();
         let faces = input.face_count();
         let mut edges: BTreeMap<[VertexId; 2], (usize, Vec<FaceId>)> = BTreeMap::new();
@@ -206,11 +210,11 @@ impl Child {
             }
         }
         let mut boundary: Vec<usize> = Vec::new();
-        let alone = edges.values().filter(|(_, faces)| faces.len() == 1);
-        boundary.extend(alone.map(|&(number, _)| number));
+        let with_one_face = edges.values().filter(|(_, faces)| faces.len() == 1);
+        boundary.extend(with_one_face.map(|&(number, _)| number));
         boundary.sort_unstable();
         let face_point = |f: FaceId| vertices + f.index();
-        let mut made = Vec::new();
+        let mut child_faces = Vec::new();
         for (f, face) in input.faces().iter() {
             let degree = face.len();
             let side = |i: usize| &edges[&pair(face[i % degree], face[(i + 1) % degree])];
@@ -225,10 +229,10 @@ impl Child {
                 match split {
                     Split::Quads => {
                         let quad = [corner(i), middle(i), face_point(f), middle(before)];
-                        made.push((quad.to_vec(), f));
+                        child_faces.push((quad.to_vec(), f));
                     }
                     Split::Triangles => {
-                        made.push((vec![corner(i), middle(i), middle(before)], f));
+                        child_faces.push((vec![corner(i), middle(i), middle(before)], f));
                     }
                     Split::Sqrt3 { trisect } => {
                         let (number, along) = side(i);
@@ -236,14 +240,14 @@ impl Child {
                         let (a, b) = (corner(i), corner(i + 1));
                         match (other, trisect) {
                             (Some(&g), _) => {
-                                made.push((vec![a, face_point(g), face_point(f)], f));
+                                child_faces.push((vec![a, face_point(g), face_point(f)], f));
                             }
-                            (None, false) => made.push((vec![a, b, face_point(f)], f)),
+                            (None, false) => child_faces.push((vec![a, b, face_point(f)], f)),
                             (None, true) => {
                                 let rank = boundary.binary_search(number).expect("a boundary edge");
                                 let near = vertices + faces + 2 * rank;
                                 for side in [[a, near], [near, near + 1], [near + 1, b]] {
-                                    made.push((vec![side[0], side[1], face_point(f)], f));
+                                    child_faces.push((vec![side[0], side[1], face_point(f)], f));
                                 }
                             }
                         }
@@ -251,7 +255,7 @@ impl Child {
                 }
             }
             if split == Split::Triangles {
-                made.push(((0..3).map(middle).collect(), f));
+                child_faces.push(((0..3).map(middle).collect(), f));
             }
         }
         let counts = Counts {
@@ -261,25 +265,25 @@ impl Child {
             corners: input.corner_count(),
             uniform: true,
         };
-        let grown = split.grown(&counts, boundary.len());
+        let grown = split.refined_counts(&counts, boundary.len());
         assert_eq!(
             grown.faces,
-            made.len(),
+            child_faces.len(),
             "faces by the closed form of {split}"
         );
         let mut ends = BTreeSet::new();
-        for (face, _) in &mut made {
-            from_the_lowest(face);
+        for (face, _) in &mut child_faces {
+            rotate_to_lowest(face);
             let after = face.iter().cycle().skip(1);
             ends.extend(face.iter().zip(after).map(|(&a, &b)| [a.min(b), a.max(b)]));
         }
-        made.sort();
+        child_faces.sort();
         assert!(
             ends.len() <= grown.edges,
             "edges by the closed form of {split}"
         );
         Self {
-            faces: made,
+            faces: child_faces,
             vertices: grown.vertices,
             edges: ends.len(),
             double_edge: ends.len() < grown.edges,
@@ -307,7 +311,7 @@ impl Child {
         let mut faces: Vec<(Vec<usize>, FaceId)> = Vec::new();
         for (f, face) in polygons.faces().iter() {
             let mut corners: Vec<usize> = face.iter().map(|v| v.index()).collect();
-            from_the_lowest(&mut corners);
+            rotate_to_lowest(&mut corners);
             faces.push((corners, mesh.parent(numbers, split, f)));
         }
         faces.sort();
@@ -321,7 +325,7 @@ impl Child {
     }
 }
 
-fn from_the_lowest(face: &mut [usize]) {
+fn rotate_to_lowest(face: &mut [usize]) {
     let lowest = (0..face.len()).min_by_key(|&i| face[i]).unwrap_or(0);
     face.rotate_left(lowest);
 }

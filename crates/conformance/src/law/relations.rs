@@ -9,46 +9,46 @@ use crate::subject::Subject;
 
 /// VV(v) contains the other end of each edge at `v` once, and not `v` itself.
 pub fn vertex_vertices<M: Representation>(polygons: &PolygonMesh) {
-    is_the_set::<M>(polygons, Relation::VertexVertices);
+    check_sets::<M>(polygons, Relation::VertexVertices);
 }
 
 /// VE(v) contains each edge that ends at `v` once.
 pub fn vertex_edges<M: Representation>(polygons: &PolygonMesh) {
-    is_the_set::<M>(polygons, Relation::VertexEdges);
+    check_sets::<M>(polygons, Relation::VertexEdges);
 }
 
 /// VF(v) contains each face with a corner at `v` once.
 pub fn vertex_faces<M: Representation>(polygons: &PolygonMesh) {
-    is_the_set::<M>(polygons, Relation::VertexFaces);
+    check_sets::<M>(polygons, Relation::VertexFaces);
 }
 
 /// EV(e) contains the two ends of `e`.
 pub fn edge_vertices<M: Representation>(polygons: &PolygonMesh) {
-    is_the_set::<M>(polygons, Relation::EdgeVertices);
+    check_sets::<M>(polygons, Relation::EdgeVertices);
 }
 
 /// EE(e) contains each edge that shares an end with `e` once, and not `e` itself.
 pub fn edge_edges<M: Representation>(polygons: &PolygonMesh) {
-    is_the_set::<M>(polygons, Relation::EdgeEdges);
+    check_sets::<M>(polygons, Relation::EdgeEdges);
 }
 
 /// EF(e) contains each face on `e` once.
 pub fn edge_faces<M: Representation>(polygons: &PolygonMesh) {
-    is_the_set::<M>(polygons, Relation::EdgeFaces);
+    check_sets::<M>(polygons, Relation::EdgeFaces);
 }
 
 /// FF(f) contains each face that shares an edge with `f` once, and not `f` itself.
 pub fn face_faces<M: Representation>(polygons: &PolygonMesh) {
-    is_the_set::<M>(polygons, Relation::FaceFaces);
+    check_sets::<M>(polygons, Relation::FaceFaces);
 }
 
 /// FV(f) contains the corners of `f` in the cyclic order of the input, from any start.
 pub fn face_vertices<M: Representation>(polygons: &PolygonMesh) {
-    let Some(subject) = Subject::<M>::of(polygons) else {
+    let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
     };
     for f in subject.oracle.domain(Relation::FaceVertices) {
-        let got = subject.ask(Relation::FaceVertices, f);
+        let got = subject.query(Relation::FaceVertices, f);
         let expected = subject.oracle.answer(Relation::FaceVertices, f);
         assert!(
             is_rotation(&got, expected),
@@ -60,18 +60,18 @@ pub fn face_vertices<M: Representation>(polygons: &PolygonMesh) {
 
 /// FE(f) has the order of FV(f): side `i` joins corners `i` and `i + 1`.
 pub fn face_edges<M: Representation>(polygons: &PolygonMesh) {
-    let Some(subject) = Subject::<M>::of(polygons) else {
+    let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
     };
     for f in subject.oracle.domain(Relation::FaceEdges) {
-        let corners = subject.ask(Relation::FaceVertices, f);
+        let corners = subject.query(Relation::FaceVertices, f);
         let next = corners.iter().cycle().skip(1);
         let expected: Vec<Element> = corners
             .iter()
             .zip(next)
-            .map(|(&a, &b)| joining(a, b))
+            .map(|(&a, &b)| edge_between(a, b))
             .collect();
-        let got = subject.ask(Relation::FaceEdges, f);
+        let got = subject.query(Relation::FaceEdges, f);
         assert_eq!(
             got,
             expected,
@@ -84,18 +84,18 @@ pub fn face_edges<M: Representation>(polygons: &PolygonMesh) {
 /// Incidence and adjacency are symmetric: `f ∈ VF(v)` if and only if `v ∈ FV(f)`, and so on.
 pub fn symmetry<M: Representation>(polygons: &PolygonMesh) {
     use Relation::*;
-    let Some(subject) = Subject::<M>::of(polygons) else {
+    let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
     };
     let pairs = |relation| -> BTreeSet<(Element, Element)> {
-        let asked = subject.oracle.domain(relation).into_iter();
-        let paired = asked.flat_map(|of| {
-            let answer = subject.ask(relation, of).into_iter();
+        let elements = subject.oracle.domain(relation).into_iter();
+        let paired = elements.flat_map(|of| {
+            let answer = subject.query(relation, of).into_iter();
             answer.map(move |item| (of, item))
         });
         paired.collect()
     };
-    for (there, back) in [
+    for (relation, inverse) in [
         (VertexFaces, FaceVertices),
         (VertexEdges, EdgeVertices),
         (EdgeFaces, FaceEdges),
@@ -103,18 +103,18 @@ pub fn symmetry<M: Representation>(polygons: &PolygonMesh) {
         (EdgeEdges, EdgeEdges),
         (FaceFaces, FaceFaces),
     ] {
-        let (there_pairs, back_pairs) = (pairs(there), pairs(back));
-        for &(of, item) in &there_pairs {
+        let (related, inverse_related) = (pairs(relation), pairs(inverse));
+        for &(of, item) in &related {
             assert!(
-                back_pairs.contains(&(item, of)),
-                "{}: {there} of {of} has {item}, but {back} of {item} does not have {of}",
+                inverse_related.contains(&(item, of)),
+                "{}: {relation} of {of} has {item}, but {inverse} of {item} does not have {of}",
                 M::NAME
             );
         }
-        for &(of, item) in &back_pairs {
+        for &(of, item) in &inverse_related {
             assert!(
-                there_pairs.contains(&(item, of)),
-                "{}: {back} of {of} has {item}, but {there} of {item} does not have {of}",
+                related.contains(&(item, of)),
+                "{}: {inverse} of {of} has {item}, but {relation} of {item} does not have {of}",
                 M::NAME
             );
         }
@@ -124,11 +124,11 @@ pub fn symmetry<M: Representation>(polygons: &PolygonMesh) {
 /// `one_ring` runs counter-clockwise, and from boundary to boundary at a boundary vertex. It exists
 /// if and only if the faces form one consistently oriented fan.
 pub fn one_ring<M: Representation>(polygons: &PolygonMesh) {
-    let Some(subject) = Subject::<M>::of(polygons) else {
+    let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
     };
     for v in subject.oracle.vertices() {
-        let got = subject.names.ring(&subject.mesh, v);
+        let got = subject.handles.ring(&subject.mesh, v);
         let expected = subject.oracle.one_ring(v);
         let agree = match (&got, &expected) {
             (Some(got), Some((ring, true))) => is_rotation(got, ring),
@@ -148,9 +148,9 @@ pub fn predicates<M: Representation>(polygons: &PolygonMesh) {
     let Some(Subject {
         mesh,
         oracle,
-        names,
+        handles,
         ..
-    }) = Subject::<M>::of(polygons)
+    }) = Subject::<M>::from_polygons(polygons)
     else {
         return;
     };
@@ -158,7 +158,7 @@ pub fn predicates<M: Representation>(polygons: &PolygonMesh) {
     let size = |relation, element| oracle.answer(relation, element).len();
     let is_boundary = |edge: &Element| size(Relation::EdgeFaces, *edge) == 1;
     for v in oracle.vertices() {
-        let (handle, element) = (names.vertex(v), Element::Vertex(v));
+        let (handle, element) = (handles.vertex(v), Element::Vertex(v));
         let edges = oracle.answer(Relation::VertexEdges, element);
         assert_eq!(mesh.valence(handle), edges.len(), "{name}: valence of {v}");
         let expected = edges.iter().any(is_boundary);
@@ -170,7 +170,7 @@ pub fn predicates<M: Representation>(polygons: &PolygonMesh) {
         );
     }
     for edge in oracle.edges() {
-        let handle = names.edge(edge);
+        let handle = handles.edge(edge);
         let got = mesh.is_boundary_edge(handle);
         assert_eq!(
             got,
@@ -183,25 +183,25 @@ pub fn predicates<M: Representation>(polygons: &PolygonMesh) {
         );
     }
     for f in oracle.faces() {
-        let (handle, corners) = (names.face(f), oracle.corners(f));
+        let (handle, corners) = (handles.face(f), oracle.corners(f));
         assert_eq!(mesh.degree(handle), corners.len(), "{name}: degree of {f}");
         assert!(mesh.contains_face(handle), "{name}: contains_face of {f}");
         for (i, &a) in corners.iter().enumerate() {
             let [b, c] = [1, 2].map(|step| corners[(i + step) % corners.len()]);
-            let [va, vb, vc] = [a, b, c].map(|v| names.vertex(v));
-            let shared = mesh.common_face(va, vc).map(|face| names.face_id(face));
+            let [va, vb, vc] = [a, b, c].map(|v| handles.vertex(v));
+            let shared = mesh.common_face(va, vc).map(|face| handles.face_id(face));
             let holds = |face: FaceId| [a, c].iter().all(|v| oracle.corners(face).contains(v));
             assert!(
                 shared.is_some_and(holds),
                 "{name}: common_face of {a} and {c} is {shared:?}"
             );
-            let side = mesh.edge_between(va, vb).map(|e| names.edge_id(e));
+            let side = mesh.edge_between(va, vb).map(|e| handles.edge_id(e));
             assert_eq!(
                 side,
                 Some(Element::edge(a, b)),
                 "{name}: edge_between of {a} and {b}"
             );
-            let opposite = mesh.opposite_vertex(handle, names.edge(Element::edge(a, b)));
+            let opposite = mesh.opposite_vertex(handle, handles.edge(Element::edge(a, b)));
             let expected = (corners.len() == 3).then_some(vc);
             assert_eq!(
                 opposite, expected,
@@ -211,19 +211,23 @@ pub fn predicates<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-fn is_the_set<M: Representation>(polygons: &PolygonMesh, relation: Relation) {
-    let Some(subject) = Subject::<M>::of(polygons) else {
+fn check_sets<M: Representation>(polygons: &PolygonMesh, relation: Relation) {
+    let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
     };
     for element in subject.oracle.domain(relation) {
-        agree(&subject, relation, element);
+        check_relation(&subject, relation, element);
     }
 }
 
 /// Checks that `relation` of `element` is the set of the oracle, each item once.
-pub(crate) fn agree<M: Representation>(subject: &Subject<M>, relation: Relation, element: Element) {
+pub(crate) fn check_relation<M: Representation>(
+    subject: &Subject<M>,
+    relation: Relation,
+    element: Element,
+) {
     let name = M::NAME;
-    let mut got = subject.ask(relation, element);
+    let mut got = subject.query(relation, element);
     let expected = subject.oracle.answer(relation, element);
     got.sort();
     if let Some(twice) = got.windows(2).find(|pair| pair[0] == pair[1]) {
@@ -237,7 +241,7 @@ pub(crate) fn agree<M: Representation>(subject: &Subject<M>, relation: Relation,
 }
 
 /// Returns the edge between two vertices.
-fn joining(a: Element, b: Element) -> Element {
+fn edge_between(a: Element, b: Element) -> Element {
     match (a, b) {
         (Element::Vertex(a), Element::Vertex(b)) => Element::edge(a, b),
         _ => unreachable!("corners are vertices"),
@@ -246,8 +250,8 @@ fn joining(a: Element, b: Element) -> Element {
 
 /// Returns whether `a` is a rotation of `b`.
 pub(crate) fn is_rotation<T: PartialEq>(a: &[T], b: &[T]) -> bool {
-    let turned = |start: usize| b[start..].iter().chain(&b[..start]);
-    a.len() == b.len() && (a.is_empty() || (0..b.len()).any(|start| turned(start).eq(a)))
+    let rotated = |start: usize| b[start..].iter().chain(&b[..start]);
+    a.len() == b.len() && (a.is_empty() || (0..b.len()).any(|start| rotated(start).eq(a)))
 }
 
 #[cfg(test)]

@@ -4,9 +4,9 @@ use sixfold_core::{
     FaceId, Measured, MeshQuery, Point, PolygonMesh, Relation, Representation, Traced, VertexId,
 };
 
-use super::relations::{agree, is_rotation};
-use crate::subject::{Subject, held};
-use crate::weld::place;
+use super::relations::{check_relation, is_rotation};
+use crate::subject::{Subject, stored_mesh};
+use crate::weld::position_key;
 
 /// `from_polygons` accepts exactly the meshes that `CAPABILITIES` include. For all others, it
 /// returns the error of `CAPABILITIES.check`, which is also the error found by brute force.
@@ -19,7 +19,7 @@ pub fn verdict<M: Representation>(polygons: &PolygonMesh) {
         "{}: from_polygons (left) and CAPABILITIES.check (right)",
         M::NAME
     );
-    let expected = crate::verdict(&M::CAPABILITIES, polygons);
+    let expected = crate::expected_check(&M::CAPABILITIES, polygons);
     assert_eq!(
         declared,
         expected,
@@ -31,13 +31,13 @@ pub fn verdict<M: Representation>(polygons: &PolygonMesh) {
 /// `to_polygons` returns the mesh from which the structure was built, up to the start of each face.
 /// The result can be used to build the structure again.
 pub fn round_trip<M: Representation>(polygons: &PolygonMesh) {
-    let Some(Subject { mesh, input, .. }) = Subject::<M>::of(polygons) else {
+    let Some(Subject { mesh, input, .. }) = Subject::<M>::from_polygons(polygons) else {
         return;
     };
     let out = mesh.to_polygons();
-    is_same::<M>("to_polygons", &out, &input);
+    assert_same::<M>("to_polygons", &out, &input);
     match M::from_polygons(&out) {
-        Ok(again) => is_same::<M>("a second to_polygons", &again.to_polygons(), &input),
+        Ok(again) => assert_same::<M>("a second to_polygons", &again.to_polygons(), &input),
         Err(e) => panic!("{}: from_polygons of its own to_polygons: {e}", M::NAME),
     }
 }
@@ -46,83 +46,83 @@ pub fn round_trip<M: Representation>(polygons: &PolygonMesh) {
 ///
 /// If vertices are identified by their coordinates, vertices with equal new positions are merged.
 pub fn set_positions<M: Representation>(polygons: &PolygonMesh) {
-    let Some(mut subject) = Subject::<M>::of(polygons) else {
+    let Some(mut subject) = Subject::<M>::from_polygons(polygons) else {
         return;
     };
     let input = subject.input.clone();
-    let apart = input.vertices().map(elsewhere).collect();
-    subject = moved(subject, apart);
-    subject = moved(subject, input.positions().to_vec());
+    let separate = input.vertices().map(distant_position).collect();
+    subject = move_and_check(subject, separate);
+    subject = move_and_check(subject, input.positions().to_vec());
     if !M::CAPABILITIES.coincident_vertices
-        && let Some([a, b]) = strangers(&subject)
+        && let Some([a, b]) = pair_without_common_face(&subject)
     {
-        let mut together: Vec<Point> = input.vertices().map(elsewhere).collect();
-        together[b.index()] = together[a.index()];
-        moved(subject, together);
+        let mut merged: Vec<Point> = input.vertices().map(distant_position).collect();
+        merged[b.index()] = merged[a.index()];
+        move_and_check(subject, merged);
     }
 }
 
 /// Moves the vertices of `subject` to `places`, and checks every answer.
-fn moved<M: Representation>(subject: Subject<M>, places: Vec<Point>) -> Subject<M> {
+fn move_and_check<M: Representation>(subject: Subject<M>, places: Vec<Point>) -> Subject<M> {
     let Subject {
         mut mesh,
         input,
-        names,
+        handles,
         ..
     } = subject;
     let mut positions = mesh.vertex_map(Point::ZERO);
-    for (v, &place) in input.vertices().zip(&places) {
-        positions[names.vertex(v)] = place;
+    for (v, &position) in input.vertices().zip(&places) {
+        positions[handles.vertex(v)] = position;
     }
     if let Err(refusal) = mesh.set_positions(&positions) {
         panic!("{}: set_positions: {refusal}", M::NAME);
     }
     let faces = input.faces().clone();
     let input = PolygonMesh::from_faces(places, faces).expect("the faces are those of a mesh");
-    is_same::<M>(
+    assert_same::<M>(
         "to_polygons after set_positions",
         &mesh.to_polygons(),
-        &held::<M>(&input),
+        &stored_mesh::<M>(&input),
     );
-    let subject = Subject::built(mesh, &input);
+    let subject = Subject::from_mesh(mesh, &input);
     for v in subject.oracle.vertices() {
-        let got = subject.mesh.position(subject.names.vertex(v));
+        let got = subject.mesh.position(subject.handles.vertex(v));
         assert_eq!(
-            place(got),
-            place(subject.input.position(v)),
+            position_key(got),
+            position_key(subject.input.position(v)),
             "{}: position of {v} after set_positions",
             M::NAME
         );
     }
-    all_relations(&subject);
-    valid(&subject.mesh);
+    check_relations(&subject);
+    check_invariants(&subject.mesh);
     subject
 }
 
 /// Returns a different position for each vertex, far from the positions of the shapes.
-fn elsewhere(v: VertexId) -> Point {
+fn distant_position(v: VertexId) -> Point {
     let i = v.index() as f32;
     Point::new(1000.0 + i, -i, (v.index() % 7) as f32)
 }
 
 /// Returns two vertices with no face in common.
-fn strangers<M: Representation>(subject: &Subject<M>) -> Option<[VertexId; 2]> {
+fn pair_without_common_face<M: Representation>(subject: &Subject<M>) -> Option<[VertexId; 2]> {
     let oracle = &subject.oracle;
-    let meet = |a, b| {
+    let share_face = |a, b| {
         let mut faces = oracle.faces();
         faces.any(|f| [a, b].iter().all(|v| oracle.corners(f).contains(v)))
     };
     let a = oracle.vertices().next()?;
-    let b = oracle.vertices().find(|&b| !meet(a, b))?;
+    let b = oracle.vertices().find(|&b| !share_face(a, b))?;
     Some([a, b])
 }
 
-fn all_relations<M: Representation>(subject: &Subject<M>) {
+fn check_relations<M: Representation>(subject: &Subject<M>) {
     for relation in Relation::ALL {
         for element in subject.oracle.domain(relation) {
             match relation {
                 Relation::FaceVertices | Relation::FaceEdges => {
-                    let got = subject.ask(relation, element);
+                    let got = subject.query(relation, element);
                     let expected = subject.oracle.answer(relation, element);
                     assert!(
                         is_rotation(&got, expected),
@@ -130,7 +130,7 @@ fn all_relations<M: Representation>(subject: &Subject<M>) {
                         M::NAME
                     );
                 }
-                _ => agree(subject, relation, element),
+                _ => check_relation(subject, relation, element),
             }
         }
     }
@@ -138,12 +138,12 @@ fn all_relations<M: Representation>(subject: &Subject<M>) {
 
 /// `validate()` returns no error.
 pub fn invariants<M: Representation>(polygons: &PolygonMesh) {
-    if let Some(subject) = Subject::<M>::of(polygons) {
-        valid(&subject.mesh);
+    if let Some(subject) = Subject::<M>::from_polygons(polygons) {
+        check_invariants(&subject.mesh);
     }
 }
 
-fn valid<M: Representation>(mesh: &M) {
+fn check_invariants<M: Representation>(mesh: &M) {
     if let Err(fault) = mesh.validate() {
         panic!("{}: validate: {fault}", M::NAME);
     }
@@ -155,21 +155,21 @@ pub fn probed<M: Measured>(polygons: &PolygonMesh) {
         mesh,
         input,
         oracle,
-        names,
-    }) = Subject::<M>::of(polygons)
+        handles,
+    }) = Subject::<M>::from_polygons(polygons)
     else {
         return;
     };
     let probe = Traced::default();
-    let watched = mesh.clone().probed(probe.clone());
+    let probed = mesh.clone().probed(probe.clone());
     for relation in Relation::ALL {
         for element in oracle.domain(relation) {
-            let [plain, watched] = [
-                names.ask(&mesh, relation, element),
-                names.ask(&watched, relation, element),
+            let [plain, probed] = [
+                handles.query(&mesh, relation, element),
+                handles.query(&probed, relation, element),
             ];
             assert_eq!(
-                watched,
+                probed,
                 plain,
                 "{}: {relation} of {element}, probed (left) and not probed (right)",
                 M::NAME
@@ -177,26 +177,26 @@ pub fn probed<M: Measured>(polygons: &PolygonMesh) {
         }
     }
     for v in oracle.vertices() {
-        let [plain, watched] = [names.ring(&mesh, v), names.ring(&watched, v)];
+        let [plain, probed] = [handles.ring(&mesh, v), handles.ring(&probed, v)];
         assert_eq!(
-            watched,
+            probed,
             plain,
             "{}: one_ring of {v}, probed (left) and not probed (right)",
             M::NAME
         );
     }
     assert!(
-        watched.vertices().eq(mesh.vertices()),
+        probed.vertices().eq(mesh.vertices()),
         "{}: vertices() of the probed copy",
         M::NAME
     );
     assert!(
-        watched.edges().eq(mesh.edges()),
+        probed.edges().eq(mesh.edges()),
         "{}: edges() of the probed copy",
         M::NAME
     );
     assert!(
-        watched.faces().eq(mesh.faces()),
+        probed.faces().eq(mesh.faces()),
         "{}: faces() of the probed copy",
         M::NAME
     );
@@ -209,16 +209,16 @@ pub fn probed<M: Measured>(polygons: &PolygonMesh) {
 }
 
 /// Checks that positions are equal bit for bit (−0 equals 0), and faces up to their start.
-fn is_same<M: Representation>(what: &str, got: &PolygonMesh, expected: &PolygonMesh) {
-    let places = |mesh: &PolygonMesh| {
+fn assert_same<M: Representation>(what: &str, got: &PolygonMesh, expected: &PolygonMesh) {
+    let keys = |mesh: &PolygonMesh| {
         mesh.positions()
             .iter()
-            .map(|&p| place(p))
+            .map(|&p| position_key(p))
             .collect::<Vec<_>>()
     };
     assert_eq!(
-        places(got),
-        places(expected),
+        keys(got),
+        keys(expected),
         "{}: positions of {what}",
         M::NAME
     );

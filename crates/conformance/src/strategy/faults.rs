@@ -1,6 +1,6 @@
 //! Faults that are added to a mesh on purpose.
 
-use super::draft::Draft;
+use super::builder::MeshBuilder;
 
 /// A fault of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,33 +30,33 @@ impl Fault {
         Self::CoincidentVertices,
     ];
 
-    /// Adds the fault to `draft`; `at` selects the place.
-    pub(super) fn put_into(self, draft: &mut Draft, at: usize) {
-        let sides = draft.sides();
+    /// Adds the fault to `builder`; `at` selects the place.
+    pub(super) fn add_to(self, builder: &mut MeshBuilder, at: usize) {
+        let sides = builder.sides();
         let (a, b, f) = sides[at % sides.len()];
         match self {
             Self::TurnedFace => {
                 // The fault needs an adjacent face across that side.
                 if !sides.iter().any(|side| (side.0, side.1) == (b, a)) {
-                    let tip = draft.vertex();
-                    draft.faces.push(vec![b, a, tip]);
+                    let apex = builder.add_vertex();
+                    builder.faces.push(vec![b, a, apex]);
                 }
-                draft.faces[f].reverse();
+                builder.faces[f].reverse();
             }
             Self::ThirdFace => {
                 let along = sides
                     .iter()
                     .filter(|s| (s.0, s.1) == (a, b) || (s.0, s.1) == (b, a));
                 for _ in along.count()..3 {
-                    let tip = draft.vertex();
-                    draft.faces.push(vec![a, b, tip]);
+                    let apex = builder.add_vertex();
+                    builder.faces.push(vec![a, b, apex]);
                 }
             }
-            Self::BowTie => bow_tie(draft, a),
-            Self::DuplicateFace => draft.faces.push(draft.faces[f].clone()),
-            Self::IsolatedVertex => draft.isolated += 1,
+            Self::BowTie => bow_tie(builder, a),
+            Self::DuplicateFace => builder.faces.push(builder.faces[f].clone()),
+            Self::IsolatedVertex => builder.isolated += 1,
             Self::CoincidentVertices => {
-                draft.coincident = Some([a, stranger(draft, a).unwrap_or(b)])
+                builder.coincident = Some([a, first_without_common_face(builder, a).unwrap_or(b)])
             }
         }
     }
@@ -64,12 +64,15 @@ impl Fault {
 
 /// Merges `v` with a vertex that has no adjacent vertex in common with it, or attaches a triangle
 /// to `v`.
-fn bow_tie(draft: &mut Draft, v: u32) {
-    let ring = draft.ring(v);
-    let apart = |&u: &u32| draft.ring(u).is_disjoint(&ring);
-    match strangers(draft, v).into_iter().find(apart) {
+fn bow_tie(builder: &mut MeshBuilder, v: u32) {
+    let neighbours = builder.neighbours(v);
+    let is_separate = |&u: &u32| builder.neighbours(u).is_disjoint(&neighbours);
+    match without_common_face(builder, v)
+        .into_iter()
+        .find(is_separate)
+    {
         Some(u) => {
-            for corner in draft
+            for corner in builder
                 .faces
                 .iter_mut()
                 .flatten()
@@ -79,23 +82,27 @@ fn bow_tie(draft: &mut Draft, v: u32) {
             }
         }
         None => {
-            let tips = [draft.vertex(), draft.vertex()];
-            draft.faces.push(vec![v, tips[0], tips[1]]);
+            let apexes = [builder.add_vertex(), builder.add_vertex()];
+            builder.faces.push(vec![v, apexes[0], apexes[1]]);
         }
     }
 }
 
 /// Returns the vertices that have no face in common with `v`.
-fn strangers(draft: &Draft, v: u32) -> Vec<u32> {
-    let meet = |u: u32| {
-        draft
+fn without_common_face(builder: &MeshBuilder, v: u32) -> Vec<u32> {
+    let share_face = |u: u32| {
+        builder
             .faces
             .iter()
             .any(|face| face.contains(&u) && face.contains(&v))
     };
-    draft.used().into_iter().filter(|&u| !meet(u)).collect()
+    builder
+        .used_vertices()
+        .into_iter()
+        .filter(|&u| !share_face(u))
+        .collect()
 }
 
-fn stranger(draft: &Draft, v: u32) -> Option<u32> {
-    strangers(draft, v).first().copied()
+fn first_without_common_face(builder: &MeshBuilder, v: u32) -> Option<u32> {
+    without_common_face(builder, v).first().copied()
 }

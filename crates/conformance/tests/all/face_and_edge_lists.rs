@@ -23,14 +23,16 @@ impl<P: Probe> FaceAndEdgeLists<P> {
         self.corners.read_range(self.spans.range(f)).to_vec()
     }
 
-    fn edges_where(&self, wanted: impl Fn([VertexId; 2]) -> bool) -> Vec<EdgeId> {
+    fn edges_where(&self, predicate: impl Fn([VertexId; 2]) -> bool) -> Vec<EdgeId> {
         self.edges()
-            .filter(|e| wanted(*self.ends.read(e.index())))
+            .filter(|e| predicate(*self.ends.read(e.index())))
             .collect()
     }
 
-    fn faces_where(&self, wanted: impl Fn(&[VertexId]) -> bool) -> Vec<FaceId> {
-        self.faces().filter(|&f| wanted(&self.corners(f))).collect()
+    fn faces_where(&self, predicate: impl Fn(&[VertexId]) -> bool) -> Vec<FaceId> {
+        self.faces()
+            .filter(|&f| predicate(&self.corners(f)))
+            .collect()
     }
 }
 
@@ -91,8 +93,8 @@ impl<P: Probe> MeshQuery for FaceAndEdgeLists<P> {
 
     fn edge_edges(&self, e: EdgeId) -> impl Iterator<Item = EdgeId> {
         let [a, b] = self.edge_vertices(e);
-        let near = self.edges_where(|ends| ends.contains(&a) || ends.contains(&b));
-        near.into_iter().filter(move |&other| other != e)
+        let neighbours = self.edges_where(|ends| ends.contains(&a) || ends.contains(&b));
+        neighbours.into_iter().filter(move |&other| other != e)
     }
 
     fn edge_faces(&self, e: EdgeId) -> impl Iterator<Item = FaceId> {
@@ -113,9 +115,10 @@ impl<P: Probe> MeshQuery for FaceAndEdgeLists<P> {
     }
 
     fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
-        let here: Vec<_> = sides(&self.corners(f)).collect();
-        let near = self.faces_where(|corners| sides(corners).any(|side| here.contains(&side)));
-        near.into_iter().filter(move |&other| other != f)
+        let own_sides: Vec<_> = sides(&self.corners(f)).collect();
+        let neighbours =
+            self.faces_where(|corners| sides(corners).any(|side| own_sides.contains(&side)));
+        neighbours.into_iter().filter(move |&other| other != f)
     }
 
     fn vertex_rows(&self) -> usize {
@@ -164,11 +167,11 @@ impl Representation for FaceAndEdgeLists {
         PolygonMesh::from_faces(self.positions.rows().to_vec(), faces).expect("I1")
     }
 
-    fn vertex_name(_: &PolygonMesh, v: VertexId) -> VertexId {
+    fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
         v
     }
 
-    fn face_name(_: &PolygonMesh, f: FaceId) -> FaceId {
+    fn face_handle(_: &PolygonMesh, f: FaceId) -> FaceId {
         f
     }
 

@@ -14,11 +14,11 @@ use crate::face_and_edge_lists::FaceAndEdgeLists;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     NeighbourTwice,
-    OwnNeighbour,
+    VertexAdjacentToItself,
     EdgeLeftOut,
     FaceLeftOut,
     EndTwice,
-    EdgeOfItself,
+    EdgeAdjacentToItself,
     ThirdFaceLeftOut,
     CornersReversed,
     SidesShifted,
@@ -49,19 +49,19 @@ pub(crate) enum Kind {
     PositionOff,
     TooFewRows,
     EmptyForMissingRow,
-    BareIndex,
-    NeverRefuses,
-    RefusesIsolated,
-    AnotherError,
-    FaceTurnedOnTheWayOut,
-    LastVertexNeverMoves,
-    LaterPositionsForgotten,
-    NeverValid,
-    OtherWhenWatched,
+    MessageWithoutHandle,
+    AcceptsEverything,
+    RejectsIsolated,
+    WrongError,
+    FaceReversedOnExport,
+    LastVertexNotMoved,
+    SecondMoveIgnored,
+    ValidateFails,
+    DifferentWhenProbed,
     AllConstant,
-    NothingScans,
+    AllLocal,
     AllScan,
-    RowsToSpare,
+    MemoryTooLarge,
 }
 
 /// A type for each [`Kind`].
@@ -73,7 +73,7 @@ pub(crate) trait Flaw: Copy + std::fmt::Debug + Send + Sync + 'static {
 #[derive(Clone, Debug)]
 pub(crate) struct Flawed<F: Flaw, P: Probe = Untraced> {
     inner: FaceAndEdgeLists<P>,
-    watched: bool,
+    is_probed: bool,
     moves: u32,
     flaw: PhantomData<F>,
 }
@@ -84,7 +84,7 @@ impl<F: Flaw, P: Probe> Flawed<F, P> {
     }
 
     /// Returns `items`, with a second copy of the first one if the flaw is `kind`.
-    fn twice<T: Copy>(&self, kind: Kind, mut items: Vec<T>) -> std::vec::IntoIter<T> {
+    fn with_duplicate<T: Copy>(&self, kind: Kind, mut items: Vec<T>) -> std::vec::IntoIter<T> {
         if self.is(kind) {
             items.extend(items.first().copied());
         }
@@ -92,7 +92,7 @@ impl<F: Flaw, P: Probe> Flawed<F, P> {
     }
 
     /// Returns `items`, without the last one if the flaw is `kind`.
-    fn fewer<T>(&self, kind: Kind, mut items: Vec<T>) -> Vec<T> {
+    fn without_last<T>(&self, kind: Kind, mut items: Vec<T>) -> Vec<T> {
         if self.is(kind) {
             items.pop();
         }
@@ -110,7 +110,7 @@ impl<F: Flaw, P: Probe> MeshQuery for Flawed<F, P> {
     }
 
     fn edges(&self) -> impl Iterator<Item = EdgeId> {
-        self.twice(Kind::EdgeIteratedTwice, self.inner.edges().collect())
+        self.with_duplicate(Kind::EdgeIteratedTwice, self.inner.edges().collect())
     }
 
     fn faces(&self) -> impl Iterator<Item = FaceId> {
@@ -142,28 +142,30 @@ impl<F: Flaw, P: Probe> MeshQuery for Flawed<F, P> {
         if v.index() >= self.inner.vertex_rows() {
             match F::KIND {
                 Kind::EmptyForMissingRow => return Vec::new().into_iter(),
-                Kind::BareIndex => panic!("index out of bounds: the index is {}", v.index()),
+                Kind::MessageWithoutHandle => {
+                    panic!("index out of bounds: the index is {}", v.index())
+                }
                 _ => {}
             }
         }
         let mut ring: Vec<_> = self.inner.vertex_vertices(v).collect();
-        if self.is(Kind::OwnNeighbour) {
+        if self.is(Kind::VertexAdjacentToItself) {
             ring.push(v);
         }
-        if self.watched {
-            ring = self.fewer(Kind::OtherWhenWatched, ring);
+        if self.is_probed {
+            ring = self.without_last(Kind::DifferentWhenProbed, ring);
         }
-        self.twice(Kind::NeighbourTwice, ring)
+        self.with_duplicate(Kind::NeighbourTwice, ring)
     }
 
     fn vertex_edges(&self, v: VertexId) -> impl Iterator<Item = EdgeId> {
         let edges = self.inner.vertex_edges(v).collect();
-        self.fewer(Kind::EdgeLeftOut, edges).into_iter()
+        self.without_last(Kind::EdgeLeftOut, edges).into_iter()
     }
 
     fn vertex_faces(&self, v: VertexId) -> impl Iterator<Item = FaceId> {
         let faces = self.inner.vertex_faces(v).collect();
-        self.fewer(Kind::FaceLeftOut, faces).into_iter()
+        self.without_last(Kind::FaceLeftOut, faces).into_iter()
     }
 
     fn edge_vertices(&self, e: EdgeId) -> [VertexId; 2] {
@@ -177,7 +179,7 @@ impl<F: Flaw, P: Probe> MeshQuery for Flawed<F, P> {
 
     fn edge_edges(&self, e: EdgeId) -> impl Iterator<Item = EdgeId> {
         let mut edges: Vec<_> = self.inner.edge_edges(e).collect();
-        if self.is(Kind::EdgeOfItself) {
+        if self.is(Kind::EdgeAdjacentToItself) {
             edges.push(e);
         }
         if self.is(Kind::HigherEdgesOnly) {
@@ -280,8 +282,8 @@ impl<F: Flaw, P: Probe> MeshQuery for Flawed<F, P> {
     }
 
     fn common_face(&self, a: VertexId, b: VertexId) -> Option<FaceId> {
-        let sound = self.inner.common_face(a, b);
-        sound.filter(|_| !self.is(Kind::NoCommonFace))
+        let correct = self.inner.common_face(a, b);
+        correct.filter(|_| !self.is(Kind::NoCommonFace))
     }
 
     fn opposite_vertex(&self, f: FaceId, e: EdgeId) -> Option<VertexId> {
@@ -312,17 +314,19 @@ impl<F: Flaw, P: Probe> MeshQuery for Flawed<F, P> {
     }
 
     fn one_ring(&self, v: VertexId) -> Option<impl Iterator<Item = VertexId>> {
-        let sound = self.inner.one_ring(v).map(Iterator::collect::<Vec<_>>);
+        let correct = self.inner.one_ring(v).map(Iterator::collect::<Vec<_>>);
         let ring = match F::KIND {
-            Kind::RingReversed => sound.map(|ring| ring.into_iter().rev().collect()),
-            Kind::RingFromTheMiddle => sound.map(|mut ring| {
+            Kind::RingReversed => correct.map(|ring| ring.into_iter().rev().collect()),
+            Kind::RingFromTheMiddle => correct.map(|mut ring| {
                 let middle = ring.len() / 2;
                 ring.rotate_left(middle);
                 ring
             }),
-            Kind::RingOfABowTie => sound.or_else(|| Some(self.inner.vertex_vertices(v).collect())),
-            Kind::NoRingOfAnIsolatedVertex => sound.filter(|ring| !ring.is_empty()),
-            _ => sound,
+            Kind::RingOfABowTie => {
+                correct.or_else(|| Some(self.inner.vertex_vertices(v).collect()))
+            }
+            Kind::NoRingOfAnIsolatedVertex => correct.filter(|ring| !ring.is_empty()),
+            _ => correct,
         };
         ring.map(Vec::into_iter)
     }
@@ -332,21 +336,21 @@ impl<F: Flaw> Representation for Flawed<F> {
     const NAME: &'static str = "flawed";
 
     const CAPABILITIES: Capabilities = match F::KIND {
-        Kind::NeverRefuses | Kind::AnotherError => Capabilities::ORIENTED_MANIFOLDS,
+        Kind::AcceptsEverything | Kind::WrongError => Capabilities::ORIENTED_MANIFOLDS,
         _ => Capabilities::ALL,
     };
 
     const COSTS: [QueryCost; 9] = match F::KIND {
         Kind::AllConstant => [QueryCost::Constant; 9],
-        Kind::NothingScans => [QueryCost::Local; 9],
+        Kind::AllLocal => [QueryCost::Local; 9],
         Kind::AllScan => [QueryCost::Scan; 9],
         _ => FaceAndEdgeLists::COSTS,
     };
 
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         match F::KIND {
-            Kind::NeverRefuses => {}
-            Kind::RefusesIsolated => {
+            Kind::AcceptsEverything => {}
+            Kind::RejectsIsolated => {
                 let strict = Capabilities {
                     isolated_vertices: false,
                     ..Capabilities::ALL
@@ -354,7 +358,7 @@ impl<F: Flaw> Representation for Flawed<F> {
                 strict.check(polygons)?;
             }
             // Checks vertices before edges.
-            Kind::AnotherError => {
+            Kind::WrongError => {
                 let vertices = Capabilities {
                     non_manifold_vertices: false,
                     ..Capabilities::ALL
@@ -366,7 +370,7 @@ impl<F: Flaw> Representation for Flawed<F> {
         }
         Ok(Self {
             inner: FaceAndEdgeLists::from_polygons(polygons)?,
-            watched: false,
+            is_probed: false,
             moves: 0,
             flaw: PhantomData,
         })
@@ -374,7 +378,7 @@ impl<F: Flaw> Representation for Flawed<F> {
 
     fn to_polygons(&self) -> PolygonMesh {
         let polygons = self.inner.to_polygons();
-        if !self.is(Kind::FaceTurnedOnTheWayOut) {
+        if !self.is(Kind::FaceReversedOnExport) {
             return polygons;
         }
         let mut faces: Vec<Vec<u32>> = Vec::new();
@@ -387,7 +391,7 @@ impl<F: Flaw> Representation for Flawed<F> {
         PolygonMesh::new(polygons.positions(), faces).expect("the corners are the same")
     }
 
-    fn vertex_name(polygons: &PolygonMesh, v: VertexId) -> VertexId {
+    fn vertex_handle(polygons: &PolygonMesh, v: VertexId) -> VertexId {
         let last = polygons.vertex_count() as u32 - 1;
         match F::KIND {
             Kind::VertexNameOff => VertexId::new(last - v.index() as u32),
@@ -395,7 +399,7 @@ impl<F: Flaw> Representation for Flawed<F> {
         }
     }
 
-    fn face_name(polygons: &PolygonMesh, f: FaceId) -> FaceId {
+    fn face_handle(polygons: &PolygonMesh, f: FaceId) -> FaceId {
         let last = polygons.face_count() as u32 - 1;
         match F::KIND {
             Kind::FaceNameOff => FaceId::new(last - f.index() as u32),
@@ -406,11 +410,11 @@ impl<F: Flaw> Representation for Flawed<F> {
     fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
         self.moves += 1;
         let mut positions = positions.clone();
-        if self.is(Kind::LaterPositionsForgotten) && self.moves > 1 {
+        if self.is(Kind::SecondMoveIgnored) && self.moves > 1 {
             return Ok(());
         }
         if let Some(last) = self.inner.vertices().last()
-            && self.is(Kind::LastVertexNeverMoves)
+            && self.is(Kind::LastVertexNotMoved)
         {
             positions[last] = self.inner.position(last);
         }
@@ -419,14 +423,14 @@ impl<F: Flaw> Representation for Flawed<F> {
 
     fn memory(&self) -> MemoryFootprint {
         let mut memory = self.inner.memory();
-        if self.is(Kind::RowsToSpare) {
+        if self.is(Kind::MemoryTooLarge) {
             memory.tables[0].bytes += memory.tables[0].bytes / 4;
         }
         memory
     }
 
     fn validate(&self) -> Result<(), InvariantError> {
-        if self.is(Kind::NeverValid) {
+        if self.is(Kind::ValidateFails) {
             return Err(InvariantError::new("I9", "always fails"));
         }
         self.inner.validate()
@@ -443,7 +447,7 @@ impl<F: Flaw> Measured for Flawed<F> {
     fn probed<P: Probe>(self, probe: P) -> Flawed<F, P> {
         Flawed {
             inner: self.inner.probed(probe),
-            watched: true,
+            is_probed: true,
             moves: self.moves,
             flaw: PhantomData,
         }

@@ -1,12 +1,12 @@
 //! Tests of the suite itself: it passes for a correct structure and fails for every flawed one, and
 //! its random meshes have the documented properties.
 
-mod bites;
+mod detection;
 mod face_and_edge_lists;
 mod flawed;
 mod strategies;
 
 /// The suite for a correct and slow structure.
-mod sound {
+mod correct {
     sixfold_conformance::suite!(crate::face_and_edge_lists::FaceAndEdgeLists);
 }

@@ -2,7 +2,7 @@
 
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use sixfold_conformance::compact;
+use sixfold_conformance::one_line;
 use sixfold_conformance::strategy::{Fault, any_mesh, faulty_mesh, manifold_mesh};
 use sixfold_core::{BuildError, Capabilities, Facts, PolygonMesh};
 
@@ -21,37 +21,37 @@ fn samples<S: Strategy>(strategy: S) -> Vec<S::Value> {
     (0..SAMPLES).map(sample).collect()
 }
 
-/// Returns the percentage of `items` for which `question` is true.
-fn share<T>(items: &[T], question: impl Fn(&T) -> bool) -> usize {
-    100 * items.iter().filter(|item| question(item)).count() / items.len()
+/// Returns the percentage of `items` for which `predicate` is true.
+fn share<T>(items: &[T], predicate: impl Fn(&T) -> bool) -> usize {
+    100 * items.iter().filter(|item| predicate(item)).count() / items.len()
 }
 
 /// Checks that each kind of mesh is frequent enough: `(kind, floor, share)` in percent.
-fn above(floors: &[(&str, usize, usize)]) {
+fn assert_shares(floors: &[(&str, usize, usize)]) {
     let below = floors.iter().filter(|(_, floor, share)| share < floor);
     let below: Vec<_> = below.collect();
     assert!(below.is_empty(), "too few (kind, floor, share): {below:?}");
 }
 
-fn distinct_places(polygons: &PolygonMesh) -> bool {
-    let mut places: Vec<[u32; 3]> = polygons
+fn has_distinct_positions(polygons: &PolygonMesh) -> bool {
+    let mut positions: Vec<[u32; 3]> = polygons
         .positions()
         .iter()
         .map(|p| p.to_array().map(f32::to_bits))
         .collect();
-    places.sort_unstable();
-    places.windows(2).all(|pair| pair[0] != pair[1])
+    positions.sort_unstable();
+    positions.windows(2).all(|pair| pair[0] != pair[1])
 }
 
 #[test]
 fn random_manifolds_are_manifolds_of_every_kind() {
     let meshes = samples(manifold_mesh());
     for mesh in &meshes {
-        let verdict = sixfold_conformance::verdict(&Capabilities::ORIENTED_MANIFOLDS, mesh);
-        assert_eq!(verdict, Ok(()), "{}", compact(mesh));
-        assert!(distinct_places(mesh), "{}", compact(mesh));
+        let result = sixfold_conformance::expected_check(&Capabilities::ORIENTED_MANIFOLDS, mesh);
+        assert_eq!(result, Ok(()), "{}", one_line(mesh));
+        assert!(has_distinct_positions(mesh), "{}", one_line(mesh));
     }
-    let facts: Vec<Facts> = meshes.iter().map(Facts::of).collect();
+    let facts: Vec<Facts> = meshes.iter().map(Facts::from_polygons).collect();
     let floors = [
         ("open", 30, share(&facts, |f| !f.closed)),
         ("closed", 15, share(&facts, |f| f.closed)),
@@ -109,7 +109,7 @@ fn random_manifolds_are_manifolds_of_every_kind() {
             share(&facts, |f| f.faces >= 30),
         ),
     ];
-    above(&floors);
+    assert_shares(&floors);
 }
 
 fn degree(facts: &Facts) -> usize {
@@ -125,7 +125,7 @@ fn spread(facts: &Facts) -> usize {
 
 /// Returns whether two faces share two edges at a vertex of valence 2.
 fn has_digon_neighbours(mesh: &PolygonMesh) -> bool {
-    let oracle = sixfold_conformance::Oracle::of(mesh);
+    let oracle = sixfold_conformance::Oracle::new(mesh);
     oracle.vertices().any(|v| {
         let ring = oracle.one_ring(v);
         ring.is_some_and(|(ring, closed)| closed && ring.len() == 2)
@@ -136,22 +136,24 @@ fn has_digon_neighbours(mesh: &PolygonMesh) -> bool {
 fn faulty_meshes_have_exactly_their_faults() {
     let meshes = samples(faulty_mesh());
     for faulty in &meshes {
-        let shown = || format!("{:?}: {}", faulty.faults, compact(&faulty.polygons));
-        let verdict =
-            sixfold_conformance::verdict(&Capabilities::ORIENTED_MANIFOLDS, &faulty.polygons);
+        let shown = || format!("{:?}: {}", faulty.faults, one_line(&faulty.polygons));
+        let result = sixfold_conformance::expected_check(
+            &Capabilities::ORIENTED_MANIFOLDS,
+            &faulty.polygons,
+        );
         let harmless = [Fault::IsolatedVertex, Fault::CoincidentVertices];
         let harmful = faulty.faults.iter().any(|fault| !harmless.contains(fault));
-        assert_eq!(verdict.is_err(), harmful, "{}", shown());
+        assert_eq!(result.is_err(), harmful, "{}", shown());
         let coincident = faulty.faults.contains(&Fault::CoincidentVertices);
         assert_eq!(
-            !distinct_places(&faulty.polygons),
+            !has_distinct_positions(&faulty.polygons),
             coincident,
             "{}",
             shown()
         );
         if let [fault] = faulty.faults[..] {
-            let facts = Facts::of(&faulty.polygons);
-            let fits = match (fault, verdict) {
+            let facts = Facts::from_polygons(&faulty.polygons);
+            let fits = match (fault, result) {
                 (Fault::TurnedFace, Err(BuildError::RepeatedSide { .. }))
                 | (Fault::ThirdFace, Err(BuildError::NonManifoldEdge { .. }))
                 | (Fault::BowTie, Err(BuildError::NonManifoldVertex { .. })) => true,
@@ -197,9 +199,13 @@ fn random_faces_have_faults_of_every_kind() {
                 matches!(refusal(m), Some(BuildError::NonManifoldVertex { .. }))
             }),
         ),
-        ("shared places", 10, share(&meshes, |m| !distinct_places(m))),
+        (
+            "shared places",
+            10,
+            share(&meshes, |m| !has_distinct_positions(m)),
+        ),
         ("no faces", 5, share(&meshes, |m| m.face_count() == 0)),
         ("manifolds", 10, share(&meshes, |m| refusal(m).is_none())),
     ];
-    above(&floors);
+    assert_shares(&floors);
 }

@@ -1,44 +1,44 @@
 //! Collapsing an edge, and moving a vertex in structures where a vertex is its coordinates.
 
-use super::{Refusal, ScannedMesh, listens, sorted_once};
+use super::{Refusal, ScannedMesh, sorted_once, uses_reports};
 use crate::distinct::IteratorExt;
 use crate::edit_error::EditError;
 use crate::edit_log::EditLog;
 use crate::editing::Editable;
-use crate::few::Few;
 use crate::handle::Pair;
 use crate::probe::Probe;
 use crate::row_id::FaceId;
-use crate::scanned::{Hit, ScannedFaces, ScannedVertex, Sought};
+use crate::scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
+use crate::short_vec::ShortVec;
 
 /// The corners at the two ends of an edge to be collapsed.
 struct Star<V> {
     keep: V,
-    gone: V,
-    hits: Few<Hit<V>>,
+    removed: V,
+    hits: ShortVec<Hit<V>>,
     /// The faces that have both ends, and whether each is a triangle.
-    along: Few<(FaceId, bool)>,
+    along: ShortVec<(FaceId, bool)>,
 }
 
 impl<V: ScannedVertex> Star<V> {
     /// Returns the end of the edge that the corner is not at.
     fn other(&self, hit: &Hit<V>) -> V {
         if hit.at == self.keep {
-            self.gone
+            self.removed
         } else {
             self.keep
         }
     }
 
     /// Returns whether `f` is a triangle, if it has both ends; otherwise `None`.
-    fn runs_along(&self, f: FaceId) -> Option<bool> {
+    fn is_triangle_along(&self, f: FaceId) -> Option<bool> {
         let found = self.along.binary_search_by_key(&f, |&(face, _)| face);
         found.ok().map(|i| self.along[i].1)
     }
 
     /// Returns whether a face remains after the collapse.
-    fn stays(&self, f: FaceId) -> bool {
-        self.runs_along(f) != Some(true)
+    fn remains(&self, f: FaceId) -> bool {
+        self.is_triangle_along(f) != Some(true)
     }
 
     /// Returns the vertices adjacent to `end` in the faces that `which` selects, except the other
@@ -47,34 +47,35 @@ impl<V: ScannedVertex> Star<V> {
         let hits = self.hits.iter();
         let hits = hits.filter(move |hit| hit.at == end && which(hit.face));
         let beside = hits.flat_map(|hit| [hit.before, hit.after]);
-        beside.filter(|&v| v != self.keep && v != self.gone)
+        beside.filter(|&v| v != self.keep && v != self.removed)
     }
 
     /// Returns the vertices adjacent to either end in faces that remain.
-    fn ring_left(&self) -> impl Iterator<Item = V> {
-        let ends = [self.keep, self.gone].into_iter();
-        ends.flat_map(|end| self.ring(end, |f| self.stays(f)))
+    fn remaining_ring(&self) -> impl Iterator<Item = V> {
+        let ends = [self.keep, self.removed].into_iter();
+        ends.flat_map(|end| self.ring(end, |f| self.remains(f)))
     }
 
     /// Reports the changes of the edges at both ends, one of which is `to` from now on.
-    fn tell<M: ScannedMesh<V>>(&self, to: V, log: &mut impl EditLog<M>) {
-        let (keep, gone) = (self.keep, self.gone);
-        log.removed_edge(Pair::new(keep, gone));
-        let left = sorted_once(self.ring_left());
-        let [at_keep, at_gone] = [keep, gone].map(|end| sorted_once(self.ring(end, |_| true)));
-        let mut tell = |end: V, v: V, stays: bool| {
-            if !stays {
+    fn report_edges<M: ScannedMesh<V>>(&self, to: V, log: &mut impl EditLog<M>) {
+        let (keep, removed) = (self.keep, self.removed);
+        log.removed_edge(Pair::new(keep, removed));
+        let remaining = sorted_once(self.remaining_ring());
+        let [at_keep, at_removed] =
+            [keep, removed].map(|end| sorted_once(self.ring(end, |_| true)));
+        let mut report = |end: V, v: V, remains: bool| {
+            if !remains {
                 log.removed_edge(Pair::new(end, v));
             } else if end != to {
                 log.renamed_edge(Pair::new(end, v), Pair::new(to, v));
             }
         };
         for &v in &at_keep {
-            tell(keep, v, left.binary_search(&v).is_ok());
+            report(keep, v, remaining.binary_search(&v).is_ok());
         }
-        for &v in &at_gone {
-            let alone = at_keep.binary_search(&v).is_err();
-            tell(gone, v, alone && left.binary_search(&v).is_ok());
+        for &v in &at_removed {
+            let only_here = at_keep.binary_search(&v).is_err();
+            report(removed, v, only_here && remaining.binary_search(&v).is_ok());
         }
     }
 }
@@ -95,10 +96,10 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         log: &mut impl EditLog<M>,
     ) -> Result<(), Refusal<V>> {
         let star = self.star(e, keep, to)?;
-        self.check_faces_left(&star)?;
-        let gone = star.gone;
+        self.check_remaining_faces(&star)?;
+        let removed = star.removed;
         for hit in star.hits.iter() {
-            if hit.at != to && star.runs_along(hit.face).is_none() {
+            if hit.at != to && star.is_triangle_along(hit.face).is_none() {
                 self.retarget(hit.corner, to);
             }
         }
@@ -108,17 +109,17 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
                 log.removed_face(f);
                 continue;
             }
-            let corners = self.face_vertices(f).filter(|&v| v != gone);
+            let corners = self.face_vertices(f).filter(|&v| v != removed);
             let corners = corners.map(|v| if v == keep { to } else { v });
-            let face: Few<V::Corner> = corners.map(V::corner).collect();
+            let face: ShortVec<V::Corner> = corners.map(V::corner).collect();
             self.rewrite(f, &face);
         }
-        if listens(log) {
-            log.removed_vertex(gone);
+        if uses_reports(log) {
+            log.removed_vertex(removed);
             if to != keep {
                 log.renamed_vertex(keep, to);
             }
-            star.tell(to, log);
+            star.report_edges(to, log);
         }
         Ok(())
     }
@@ -138,17 +139,17 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         }
         let mut star = Star {
             keep,
-            gone: if a == keep { b } else { a },
-            hits: Few::new(),
-            along: Few::new(),
+            removed: if a == keep { b } else { a },
+            hits: ShortVec::new(),
+            along: ShortVec::new(),
         };
-        let sought = if V::IS_PLACE {
-            Sought::Four([a, b, to, to])
+        let set = if V::IS_POSITION {
+            SearchSet::Four([a, b, to, to])
         } else {
-            Sought::Two([a, b])
+            SearchSet::Two([a, b])
         };
         let (mut occupied, mut apart) = (false, false);
-        for hit in self.hits(sought) {
+        for hit in self.hits(set) {
             if !e.has(hit.at) {
                 occupied = true;
                 continue;
@@ -178,26 +179,26 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
 
     /// Checks that `keep` and the third corners of the removed triangles still have faces
     /// afterwards.
-    fn check_faces_left(&self, star: &Star<V>) -> Result<(), Refusal<V>> {
-        if star.hits.iter().all(|hit| !star.stays(hit.face)) {
+    fn check_remaining_faces(&self, star: &Star<V>) -> Result<(), Refusal<V>> {
+        if star.hits.iter().all(|hit| !star.remains(hit.face)) {
             return Err(EditError::LastFace { vertex: star.keep });
         }
         for hit in star.hits.iter() {
-            if hit.at != star.keep || star.stays(hit.face) {
+            if hit.at != star.keep || star.remains(hit.face) {
                 continue;
             }
-            let apex = if hit.after == star.gone {
+            let apex = if hit.after == star.removed {
                 hit.before
             } else {
                 hit.after
             };
-            if star.ring_left().any(|v| v == apex) {
+            if star.remaining_ring().any(|v| v == apex) {
                 continue;
             }
             // Rare: `apex` has no remaining face at the ends of the edge, but may have one
             // elsewhere.
             let mut faces = self.vertex_faces(apex);
-            if faces.all(|f| !star.stays(f)) {
+            if faces.all(|f| !star.remains(f)) {
                 return Err(EditError::LastFace { vertex: apex });
             }
         }
@@ -216,16 +217,16 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         log: &mut impl EditLog<M>,
     ) -> Result<(), Refusal<V>> {
         if v == to {
-            let there = self.has_vertex(v);
-            return there
+            let exists = self.has_vertex(v);
+            return exists
                 .then_some(())
                 .ok_or(EditError::NoSuchVertex { vertex: v });
         }
-        let hits = self.around(v, to)?;
+        let hits = self.hits_at(v, to)?;
         for hit in hits.iter() {
             self.retarget(hit.corner, to);
         }
-        if listens(log) {
+        if uses_reports(log) {
             log.renamed_vertex(v, to);
             let ring = hits.iter().flat_map(|hit| [hit.before, hit.after]);
             for other in ring.distinct() {

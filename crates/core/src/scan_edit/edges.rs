@@ -1,19 +1,19 @@
 //! Edits of an edge and its faces.
 
-use super::{Refusal, ScannedMesh, listens, repeated};
+use super::{Refusal, ScannedMesh, repeated, uses_reports};
 use crate::distinct::IteratorExt;
 use crate::edit_error::EditError;
 use crate::edit_log::EditLog;
 use crate::editing::Editable;
-use crate::few::Few;
 use crate::handle::Pair;
 use crate::probe::Probe;
 use crate::row_id::FaceId;
-use crate::scanned::{Hit, ScannedFaces, ScannedVertex, Sought};
+use crate::scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
+use crate::short_vec::ShortVec;
 
 /// A side: an edge as one face runs along it.
 #[derive(Clone, Copy)]
-struct Run<V> {
+struct FaceSide<V> {
     face: FaceId,
     /// The corners where the side starts and ends.
     corners: [usize; 2],
@@ -25,21 +25,21 @@ struct Run<V> {
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     /// Returns the side of the hit's face between the hit corner and `b`, if there is one.
-    fn run(&self, hit: &Hit<V>, b: V) -> Option<Run<V>> {
+    fn side_to(&self, hit: &Hit<V>, b: V) -> Option<FaceSide<V>> {
         let leaves = hit.after == b;
         if !leaves && hit.before != b {
             return None;
         }
         let (face, [before, at, after]) = self.spans.around(hit.corner);
         Some(if leaves {
-            Run {
+            FaceSide {
                 face,
                 corners: [at, after],
                 ends: [hit.at, b],
                 apex: hit.before,
             }
         } else {
-            Run {
+            FaceSide {
                 face,
                 corners: [before, at],
                 ends: [b, hit.at],
@@ -50,20 +50,20 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
 
     /// Returns the side along `e` of each of its faces; one scan, which also checks that `m` is
     /// free if a vertex is its coordinates.
-    fn along(&self, e: Pair<V>, m: Option<V>) -> Result<Few<Run<V>>, Refusal<V>> {
-        let (mut along, mut occupied) = (Few::new(), false);
+    fn along(&self, e: Pair<V>, m: Option<V>) -> Result<ShortVec<FaceSide<V>>, Refusal<V>> {
+        let (mut along, mut occupied) = (ShortVec::new(), false);
         let [a, b] = e.ends();
         if e.has(V::BLANK) {
             return Err(EditError::NoSuchEdge { edge: e });
         }
-        let m = m.filter(|_| V::IS_PLACE);
-        let sought = m.map_or(Sought::One(a), |m| Sought::Two([a, m]));
-        for hit in self.hits(sought) {
+        let m = m.filter(|_| V::IS_POSITION);
+        let set = m.map_or(SearchSet::One(a), |m| SearchSet::Two([a, m]));
+        for hit in self.hits(set) {
             occupied |= Some(hit.at) == m;
             if hit.at == a
-                && let Some(run) = self.run(&hit, b)
+                && let Some(side) = self.side_to(&hit, b)
             {
-                along.push(run);
+                along.push(side);
             }
         }
         if along.is_empty() {
@@ -76,7 +76,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     }
 
     /// Returns the sides of the two faces of `e`, which must run in opposite directions.
-    fn opposed(e: Pair<V>, along: &[Run<V>]) -> Result<[Run<V>; 2], Refusal<V>> {
+    fn opposed(e: Pair<V>, along: &[FaceSide<V>]) -> Result<[FaceSide<V>; 2], Refusal<V>> {
         match *along {
             [] => Err(EditError::NoSuchEdge { edge: e }),
             [f, g] if f.ends == g.ends => Err(EditError::SameDirection { edge: e }),
@@ -107,13 +107,14 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         log: &mut impl EditLog<M>,
     ) -> Result<(), Refusal<V>> {
         let along = self.along(e, Some(m))?;
-        let grown = along.iter().map(|run| self.degree(run.face) + 1);
-        self.room(0, grown.sum())?;
-        for run in along.iter() {
+        let grown = along.iter().map(|side| self.degree(side.face) + 1);
+        self.check_capacity(0, grown.sum())?;
+        for side in along.iter() {
             // All corners from the end of the side around to its start, then m.
-            let mut face: Few<V::Corner> = self.corners_from(run.face, run.corners[1]).collect();
+            let mut face: ShortVec<V::Corner> =
+                self.corners_from(side.face, side.corners[1]).collect();
             face.push(m.corner());
-            self.rewrite(run.face, &face);
+            self.rewrite(side.face, &face);
         }
         log.created_vertex(m);
         let [a, b] = e.ends();
@@ -134,19 +135,19 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         log: &mut impl EditLog<M>,
     ) -> Result<(), Refusal<V>> {
         let along = self.along(e, Some(m))?;
-        for run in along.iter() {
-            self.check_triangle(run.face)?;
+        for side in along.iter() {
+            self.check_triangle(side.face)?;
         }
-        self.room(along.len(), 3 * along.len())?;
-        for run in along.iter() {
-            self.retarget(run.corners[1], m);
-            log.created_face(self.push_triangle([m, run.ends[1], run.apex]));
+        self.check_capacity(along.len(), 3 * along.len())?;
+        for side in along.iter() {
+            self.retarget(side.corners[1], m);
+            log.created_face(self.push_triangle([m, side.ends[1], side.apex]));
         }
-        if listens(log) {
+        if uses_reports(log) {
             log.created_vertex(m);
             let [a, b] = e.ends();
             log.renamed_edge(e, Pair::new(a, m));
-            let ends = along.iter().map(|run| run.apex).distinct();
+            let ends = along.iter().map(|side| side.apex).distinct();
             for end in ends.chain([b]) {
                 log.created_edge(Pair::new(m, end));
             }
@@ -165,26 +166,26 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         e: Pair<V>,
         log: &mut impl EditLog<M>,
     ) -> Result<FaceId, Refusal<V>> {
-        let [one, other] = Self::opposed(e, &self.along(e, None)?)?;
+        let [first, second] = Self::opposed(e, &self.along(e, None)?)?;
         // All corners of the first face from the end of its side around to its start, then those of
         // the second face without the two ends.
-        let mut merged: Few<V> = self
-            .corners_from(one.face, one.corners[1])
-            .map(V::of)
+        let mut merged: ShortVec<V> = self
+            .corners_from(first.face, first.corners[1])
+            .map(V::from_corner)
             .collect();
-        let beyond = self.corners_from(other.face, other.corners[1]);
-        let between = self.degree(other.face) - 2;
-        merged.extend(beyond.map(V::of).skip(1).take(between));
+        let beyond = self.corners_from(second.face, second.corners[1]);
+        let between = self.degree(second.face) - 2;
+        merged.extend(beyond.map(V::from_corner).skip(1).take(between));
         if let Some(vertex) = repeated(&merged) {
             return Err(EditError::RepeatedVertex { vertex });
         }
-        self.room(0, merged.len())?;
-        let merged: Few<V::Corner> = merged.iter().map(|v| v.corner()).collect();
-        self.rewrite(one.face, &merged);
-        self.delete(other.face);
+        self.check_capacity(0, merged.len())?;
+        let merged: ShortVec<V::Corner> = merged.iter().map(|v| v.corner()).collect();
+        self.rewrite(first.face, &merged);
+        self.delete(second.face);
         log.removed_edge(e);
-        log.removed_face(other.face);
-        Ok(one.face)
+        log.removed_face(second.face);
+        Ok(first.face)
     }
 
     /// Flips `e` within the quad of its two triangles; two scans.
@@ -210,8 +211,9 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         if e.has(V::BLANK) {
             return Err(EditError::NoSuchEdge { edge: e });
         }
-        let at_a: Few<Hit<V>> = self.hits(Sought::One(a)).collect();
-        let along: Few<Run<V>> = at_a.iter().filter_map(|hit| self.run(hit, b)).collect();
+        let at_a: ShortVec<Hit<V>> = self.hits(SearchSet::One(a)).collect();
+        let along: ShortVec<FaceSide<V>> =
+            at_a.iter().filter_map(|hit| self.side_to(hit, b)).collect();
         let [f, g] = Self::opposed(e, &along)?;
         self.check_triangle(f.face)?;
         self.check_triangle(g.face)?;
@@ -220,8 +222,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
             return Err(EditError::SameApex { edge: e, vertex: c });
         }
         // The second scan: whether edge c–d exists, and the corners at b.
-        let mut at_b = Few::new();
-        for hit in self.hits(Sought::Two([b, c])) {
+        let mut at_b = ShortVec::new();
+        for hit in self.hits(SearchSet::Two([b, c])) {
             if hit.at == b {
                 at_b.push(hit);
             } else if hit.is_beside(d) {

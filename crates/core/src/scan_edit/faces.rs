@@ -1,14 +1,14 @@
 //! Edits of whole faces.
 
-use super::{Refusal, ScannedMesh, listens, repeated, sorted_once};
+use super::{Refusal, ScannedMesh, repeated, sorted_once, uses_reports};
 use crate::edit_error::EditError;
 use crate::edit_log::EditLog;
 use crate::editing::Editable;
-use crate::few::Few;
 use crate::handle::Pair;
 use crate::probe::Probe;
 use crate::row_id::FaceId;
-use crate::scanned::{ScannedFaces, ScannedVertex, Sought};
+use crate::scanned::{ScannedFaces, ScannedVertex, SearchSet};
+use crate::short_vec::ShortVec;
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     /// Adds a face with these `corners`, which are vertices already or positions of new ones:
@@ -29,16 +29,16 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         if let Some(vertex) = repeated(corners) {
             return Err(EditError::RepeatedVertex { vertex });
         }
-        self.room(1, corners.len())?;
-        if listens(log) {
+        self.check_capacity(1, corners.len())?;
+        if uses_reports(log) {
             let sides = Pair::sides(corners.len(), |i| corners[i]);
-            let (vertices, edges) = self.strangers(corners.iter().copied(), sides, &[]);
-            if V::IS_PLACE {
+            let (vertices, edges) = self.unused_elsewhere(corners.iter().copied(), sides, &[]);
+            if V::IS_POSITION {
                 vertices.into_iter().for_each(|v| log.created_vertex(v));
             }
             edges.into_iter().for_each(|e| log.created_edge(e));
         }
-        let face: Few<V::Corner> = corners.iter().map(|v| v.corner()).collect();
+        let face: ShortVec<V::Corner> = corners.iter().map(|v| v.corner()).collect();
         let f = self.push(&face);
         log.created_face(f);
         Ok(f)
@@ -55,7 +55,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         f: FaceId,
         log: &mut impl EditLog<M>,
     ) -> Result<(), Refusal<V>> {
-        self.existing(f)?;
+        self.check_face(f)?;
         self.remove_faces(&[f], log);
         Ok(())
     }
@@ -71,8 +71,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         v: V,
         log: &mut impl EditLog<M>,
     ) -> Result<(), Refusal<V>> {
-        let mut faces: Few<FaceId> = self.vertex_faces(v).collect();
-        if V::IS_PLACE && faces.is_empty() {
+        let mut faces: ShortVec<FaceId> = self.vertex_faces(v).collect();
+        if V::IS_POSITION && faces.is_empty() {
             return Err(EditError::NoSuchVertex { vertex: v });
         }
         faces.sort_unstable();
@@ -82,11 +82,11 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
 
     /// Removes `faces`, which must be sorted.
     fn remove_faces<M: ScannedMesh<V>>(&mut self, faces: &[FaceId], log: &mut impl EditLog<M>) {
-        if listens(log) {
+        if uses_reports(log) {
             let corners = faces.iter().flat_map(|&f| self.face_vertices(f));
             let sides = faces.iter().flat_map(|&f| self.face_edges(f));
-            let (vertices, edges) = self.strangers(corners, sides, faces);
-            if V::IS_PLACE {
+            let (vertices, edges) = self.unused_elsewhere(corners, sides, faces);
+            if V::IS_POSITION {
                 vertices.into_iter().for_each(|v| log.removed_vertex(v));
             }
             edges.into_iter().for_each(|e| log.removed_edge(e));
@@ -99,7 +99,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
 
     /// Returns the given vertices and sides that no face has, apart from the faces in the sorted
     /// list `except`; one scan.
-    fn strangers(
+    fn unused_elsewhere(
         &self,
         vertices: impl Iterator<Item = V>,
         sides: impl Iterator<Item = Pair<V>>,
@@ -109,19 +109,19 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         if vertices.is_empty() {
             return (vertices, sides);
         }
-        let mut known = (vec![false; vertices.len()], vec![false; sides.len()]);
-        let hits = self.hits(Sought::all(&vertices));
+        let mut used = (vec![false; vertices.len()], vec![false; sides.len()]);
+        let hits = self.hits(SearchSet::from_vertices(&vertices));
         for hit in hits.filter(|hit| except.binary_search(&hit.face).is_err()) {
             if let Ok(i) = vertices.binary_search(&hit.at) {
-                known.0[i] = true;
+                used.0[i] = true;
             }
             for side in hit.sides() {
                 if let Ok(i) = sides.binary_search(&side) {
-                    known.1[i] = true;
+                    used.1[i] = true;
                 }
             }
         }
-        let (mut vertex, mut side) = (known.0.into_iter(), known.1.into_iter());
+        let (mut vertex, mut side) = (used.0.into_iter(), used.1.into_iter());
         vertices.retain(|_| vertex.next() == Some(false));
         sides.retain(|_| side.next() == Some(false));
         (vertices, sides)
@@ -139,19 +139,20 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         m: V,
         log: &mut impl EditLog<M>,
     ) -> Result<(), Refusal<V>> {
-        let corners = self.spans.range(self.existing(f)?);
-        if V::IS_PLACE && self.has_vertex(m) {
+        let corners = self.spans.range(self.check_face(f)?);
+        if V::IS_POSITION && self.has_vertex(m) {
             return Err(EditError::Occupied { vertex: m });
         }
-        self.room(corners.len() - 1, 3 * corners.len())?;
+        self.check_capacity(corners.len() - 1, 3 * corners.len())?;
         log.created_vertex(m);
         // The corners of `f` stay in place until it is rewritten at the end, whatever is pushed
         // before.
         let start = corners.start;
-        let [first, second] = [start, start + 1].map(|corner| V::of(*self.corners.read(corner)));
+        let [first, second] =
+            [start, start + 1].map(|corner| V::from_corner(*self.corners.read(corner)));
         let mut a = second;
         for corner in corners.skip(2) {
-            let b = V::of(*self.corners.read(corner));
+            let b = V::from_corner(*self.corners.read(corner));
             log.created_face(self.push_triangle([a, b, m]));
             log.created_edge(Pair::new(a, m));
             a = b;
@@ -176,8 +177,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         ends: [V; 2],
         log: &mut impl EditLog<M>,
     ) -> Result<Pair<V>, Refusal<V>> {
-        self.existing(f)?;
-        let face: Few<V::Corner> = self.face(f).iter().copied().collect();
+        self.check_face(f)?;
+        let face: ShortVec<V::Corner> = self.face(f).iter().copied().collect();
         let mut at = [0; 2];
         for (at, vertex) in at.iter_mut().zip(ends) {
             let found = face.iter().position(|corner| vertex.is_at(corner));
@@ -185,14 +186,14 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         }
         let (i, j) = (at[0].min(at[1]), at[0].max(at[1]));
         if j - i < 2 || j - i + 2 > face.len() {
-            return Err(EditError::NothingBetween { face: f, ends });
+            return Err(EditError::AdjacentCorners { face: f, ends });
         }
-        self.room(1, face.len() + 2)?;
+        self.check_capacity(1, face.len() + 2)?;
         let edge = Pair::new(ends[0], ends[1]);
-        if listens(log) && self.edge_faces(edge).next().is_none() {
+        if uses_reports(log) && self.edge_faces(edge).next().is_none() {
             log.created_edge(edge);
         }
-        let beyond: Few<V::Corner> = face[j..].iter().chain(&face[..=i]).copied().collect();
+        let beyond: ShortVec<V::Corner> = face[j..].iter().chain(&face[..=i]).copied().collect();
         self.rewrite(f, &face[i..=j]);
         log.created_face(self.push(&beyond));
         Ok(edge)

@@ -33,12 +33,12 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         n: V,
         log: &mut impl EditLog<M>,
     ) -> Result<(), Refusal<V>> {
-        let mut hits = self.around(v, n)?;
+        let mut hits = self.hits_at(v, n)?;
         let spokes = hits.iter().map(|hit| [hit.after, hit.before]);
         let ring = ring(spokes.collect()).filter(|ring| !ring.is_empty());
         let ring = ring.ok_or(EditError::NoFan { vertex: v })?;
         if left == right {
-            return Err(EditError::NoSides { vertex: v });
+            return Err(EditError::BadNeighbours { vertex: v });
         }
         let is_open = ring.len() > hits.len();
         if !is_open && (left.is_none() || right.is_none()) {
@@ -51,7 +51,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         let from = right.map_or(Ok(0), place_of)?;
         let to = left.map_or(Ok(ring.len() - 1), place_of)?;
         let sides = [left, right].into_iter().flatten().count();
-        self.room(sides, 3 * sides)?;
+        self.check_capacity(sides, 3 * sides)?;
         hits.sort_unstable_by_key(|hit| hit.after);
         let mut i = from;
         loop {

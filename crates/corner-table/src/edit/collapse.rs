@@ -1,13 +1,13 @@
 //! Collapse of an edge: its two ends become one vertex.
 
-use sixfold_core::{EditError, EditLog, Few, Lookup, Point, Probe, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, Lookup, Point, Probe, ShortVec, Slot, VertexId};
 
-use super::{Refusal, faced_by, tell_renamed};
-use crate::mesh::{CornerId, EdgeCorner, EditableCornerTable, NOWHERE, edge_between};
+use super::{Refusal, faced_by, report_renamed};
+use crate::mesh::{CornerId, EdgeCorner, EditableCornerTable, NO_VERTEX, edge_between};
 
 /// The fan of one end of the edge, without the triangles at the edge.
 #[derive(Clone, Copy)]
-struct Rest {
+struct RemainingFan {
     /// The corner across the last triangle at the edge, counter-clockwise around this end.
     after: Slot<CornerId>,
     /// The corner across the first of these triangles.
@@ -16,7 +16,7 @@ struct Rest {
     stop: Slot<CornerId>,
 }
 
-impl Rest {
+impl RemainingFan {
     /// Returns whether the fan is closed and a single triangle remains.
     #[inline]
     fn is_one_triangle(self) -> bool {
@@ -59,7 +59,7 @@ impl<P: Probe> EditableCornerTable<P> {
         }
         let [on, op] = [n, p].map(|c| *self.opposite.read(c.index()));
         // For a boundary edge, the values of the other side stay empty.
-        let (mut q, mut r, mut vd) = (c, c, NOWHERE);
+        let (mut q, mut r, mut vd) = (c, c, NO_VERTEX);
         let (mut oq, mut or) = (Slot::NONE, Slot::NONE);
         if let Some(o) = across {
             [q, r] = [o.next(), o.prev()];
@@ -75,37 +75,37 @@ impl<P: Probe> EditableCornerTable<P> {
         if on == Slot::NONE && op == Slot::NONE {
             return Err(EditError::LastFace { vertex: vc });
         }
-        let of_a = Rest {
+        let fan_a = RemainingFan {
             after: op,
             before: oq,
             stop: across.map_or(Slot::NONE, |_| Slot::some(q)),
         };
-        let of_b = Rest {
+        let fan_b = RemainingFan {
             after: or,
             before: on,
             stop: Slot::some(n),
         };
         let keeps_a = keep == va;
-        let (gone, of_gone, of_keep) = if keeps_a {
-            (vb, of_b, of_a)
+        let (gone, gone_fan, kept_fan) = if keeps_a {
+            (vb, fan_b, fan_a)
         } else {
-            (va, of_a, of_b)
+            (va, fan_a, fan_b)
         };
 
-        let (mut moved, mut beyond) = (Few::new(), Few::new());
-        let closed = self.visit(of_gone, |corner, v| {
+        let (mut moved, mut others) = (ShortVec::new(), ShortVec::new());
+        let closed = self.visit(gone_fan, |corner, v| {
             moved.push(corner);
             if v != vc && v != vd {
-                beyond.push(v);
+                others.push(v);
             }
             true
         });
-        if beyond.as_slice().is_empty() {
+        if others.as_slice().is_empty() {
             // Only C and D: the fan is open, or closed with one remaining triangle C–D.
-            if closed && of_keep.is_one_triangle() {
+            if closed && kept_fan.is_one_triangle() {
                 return Err(EditError::Pillow { edge: e });
             }
-        } else if let Some(vertex) = self.common(of_keep, beyond) {
+        } else if let Some(vertex) = self.common_vertex(kept_fan, others) {
             return Err(EditError::CommonNeighbour { edge: e, vertex });
         }
         if !closed && across.is_some() && self.is_on_boundary(keep) {
@@ -113,15 +113,15 @@ impl<P: Probe> EditableCornerTable<P> {
         }
 
         // If one of the two fans is at a boundary, the boundary is where the merged fan begins.
-        let entered = match across {
+        let start_vertex = match across {
             None => vb,
             Some(_) if !closed => gone,
             Some(_) => keep,
         };
-        let mut first = self.corner.read(entered.index()).get().expect("I4");
+        let mut first = self.corner.read(start_vertex.index()).get().expect("I4");
         if first == n || first == p || (across.is_some() && (first == q || first == r)) {
-            let beside = if entered == vb { op } else { or };
-            first = beside
+            let across_side = if start_vertex == vb { op } else { or };
+            first = across_side
                 .get()
                 .expect("a fan with no further triangle was refused")
                 .next();
@@ -134,28 +134,34 @@ impl<P: Probe> EditableCornerTable<P> {
         self.delete_vertex(gone);
         log.removed_vertex(gone);
         log.removed_edge(e);
-        let seam = [(p, op), (n, on)];
-        self.close_seam(c, vc, if keeps_a { seam } else { [seam[1], seam[0]] }, log);
+        let sides = [(p, op), (n, on)];
+        let sides = if keeps_a { sides } else { [sides[1], sides[0]] };
+        self.collapse_triangle(c, vc, sides, log);
         if let Some(o) = across {
-            let seam = [(q, oq), (r, or)];
-            self.close_seam(o, vd, if keeps_a { seam } else { [seam[1], seam[0]] }, log);
+            let sides = [(q, oq), (r, or)];
+            let sides = if keeps_a { sides } else { [sides[1], sides[0]] };
+            self.collapse_triangle(o, vd, sides, log);
         }
         Ok(keep)
     }
 
-    /// Calls `visitor` with each corner of `rest` and a neighbour in its triangle: the vertex
+    /// Calls `visitor` with each corner of `fan` and a neighbour in its triangle: the vertex
     /// before the corner while walking counter-clockwise, the vertex after it while walking
     /// clockwise. Returns true if the fan is closed or `visitor` returned false.
     #[inline]
-    fn visit(&self, rest: Rest, mut visitor: impl FnMut(CornerId, VertexId) -> bool) -> bool {
-        let mut at = rest.after;
+    fn visit(
+        &self,
+        fan: RemainingFan,
+        mut visitor: impl FnMut(CornerId, VertexId) -> bool,
+    ) -> bool {
+        let mut at = fan.after;
         while let Some(x) = at.get() {
-            if at == rest.stop || !visitor(x.next(), *self.vertex.read(x.index())) {
+            if at == fan.stop || !visitor(x.next(), *self.vertex.read(x.index())) {
                 return true;
             }
             at = *self.opposite.read(x.prev().index());
         }
-        at = rest.before;
+        at = fan.before;
         while let Some(y) = at.get() {
             if !visitor(y.prev(), *self.vertex.read(y.index())) {
                 return true;
@@ -165,13 +171,13 @@ impl<P: Probe> EditableCornerTable<P> {
         false
     }
 
-    /// Returns a vertex of the fan `rest` that is in `beyond`, the neighbours of the other end.
+    /// Returns a vertex of `fan` that is in `others`, the neighbours of the other end.
     #[inline]
-    fn common(&self, rest: Rest, mut beyond: Few<VertexId>) -> Option<VertexId> {
-        beyond.order();
+    fn common_vertex(&self, fan: RemainingFan, mut others: ShortVec<VertexId>) -> Option<VertexId> {
+        others.sort_for_lookup();
         let mut common = None;
-        self.visit(rest, |_, v| {
-            if beyond.has(v) {
+        self.visit(fan, |_, v| {
+            if others.has(v) {
                 common = Some(v);
             }
             common.is_none()
@@ -182,7 +188,7 @@ impl<P: Probe> EditableCornerTable<P> {
     /// Deletes the triangle of `apex`, which is at `v`, and links the corners across its two other
     /// sides: the side at the end that stays, and the side at the removed end.
     #[inline]
-    fn close_seam(
+    fn collapse_triangle(
         &mut self,
         apex: CornerId,
         v: VertexId,
@@ -195,15 +201,15 @@ impl<P: Probe> EditableCornerTable<P> {
             over_gone
         };
         if let Some(swung) = swung.get() {
-            self.reenter(v, apex, swung.next());
+            self.replace_corner(v, apex, swung.next());
         }
-        self.answer(over_kept, over_gone);
-        self.answer(over_gone, over_kept);
+        self.set_opposite(over_kept, over_gone);
+        self.set_opposite(over_gone, over_kept);
         self.delete_triangle(apex.triangle());
         log.removed_face(apex.triangle());
         log.removed_edge(edge_between(gone, over_gone));
         if let Some(lower) = over_kept.min(over_gone).get() {
-            tell_renamed(log, edge_between(kept, over_kept), faced_by(lower));
+            report_renamed(log, edge_between(kept, over_kept), faced_by(lower));
         }
     }
 }

@@ -8,24 +8,24 @@ use crate::mesh::{CornerId, EditableCornerTable};
 impl<P: Probe> EditableCornerTable<P> {
     /// Moves all rows down over the holes, in one pass over each table. Triangles keep their order,
     /// so the lower of two corners that face an edge stays the lower.
-    pub(super) fn close_holes(&mut self, log: &mut impl EditLog<Self>) {
+    pub(super) fn compact_tables(&mut self, log: &mut impl EditLog<Self>) {
         if !self.vertex_holes.is_empty() || !self.face_holes.is_empty() {
             let new_vertices = self.vertex_holes.new_rows(self.positions.len());
             let new_faces = self.face_holes.new_rows(self.vertex.len() / 3);
-            if listens(log) {
-                self.tell_rows(&new_vertices, &new_faces, log);
+            if uses_reports(log) {
+                self.report_new_rows(&new_vertices, &new_faces, log);
             }
             self.move_corners(&new_vertices, &new_faces);
         }
-        self.vertex_holes.close(&mut self.positions);
-        self.vertex_holes.close(&mut self.corner);
-        self.vertex.give_back();
-        self.opposite.give_back();
-        self.vertex_holes.fill();
-        self.face_holes.fill();
+        self.vertex_holes.compact_table(&mut self.positions);
+        self.vertex_holes.compact_table(&mut self.corner);
+        self.vertex.shrink_if_half_empty();
+        self.opposite.shrink_if_half_empty();
+        self.vertex_holes.clear();
+        self.face_holes.clear();
     }
 
-    fn tell_rows(&self, vertices: &[u32], faces: &[u32], log: &mut impl EditLog<Self>) {
+    fn report_new_rows(&self, vertices: &[u32], faces: &[u32], log: &mut impl EditLog<Self>) {
         for v in self.vertices() {
             let new = VertexId::new(vertices[v.index()]);
             if new != v {
@@ -33,7 +33,7 @@ impl<P: Probe> EditableCornerTable<P> {
             }
         }
         for e in self.edges() {
-            let new = faced_by(moved(e.corner(), faces));
+            let new = faced_by(new_corner(e.corner(), faces));
             if new != e {
                 log.renamed_edge(e, new);
             }
@@ -53,32 +53,33 @@ impl<P: Probe> EditableCornerTable<P> {
         for from in self.face_holes.rows(faces.len()) {
             let from = from as usize;
             vertex[kept] = vertex[from].map(|v| VertexId::new(vertices[v.index()]));
-            opposite[kept] = opposite[from].map(|o| moved_slot(o, faces));
+            opposite[kept] = opposite[from].map(|o| new_slot(o, faces));
             kept += 1;
         }
         self.vertex.truncate(3 * kept);
         self.opposite.truncate(3 * kept);
         for corner in self.corner.rows_mut() {
-            *corner = moved_slot(*corner, faces);
+            *corner = new_slot(*corner, faces);
         }
     }
 }
 
 /// Returns the handle of corner `c` after its triangle moved to its new row.
 #[inline]
-fn moved(c: CornerId, faces: &[u32]) -> CornerId {
+fn new_corner(c: CornerId, faces: &[u32]) -> CornerId {
     let t = c.triangle();
     CornerId::new(c.row() - 3 * (t.row() - faces[t.index()]))
 }
 
 #[inline]
-fn moved_slot(c: Slot<CornerId>, faces: &[u32]) -> Slot<CornerId> {
-    c.get().map_or(Slot::NONE, |c| Slot::some(moved(c, faces)))
+fn new_slot(c: Slot<CornerId>, faces: &[u32]) -> Slot<CornerId> {
+    c.get()
+        .map_or(Slot::NONE, |c| Slot::some(new_corner(c, faces)))
 }
 
 /// Returns whether the log records events.
-fn listens<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
-    L::LISTENS
+fn uses_reports<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
+    L::USES_REPORTS
 }
 
 #[cfg(test)]
@@ -103,7 +104,7 @@ mod tests {
             let undone = mesh.collapse_edge(e, keep, Point::ONE, &mut ());
             undone.expect("an inner vertex of valence three");
         }
-        let names = mesh.compact_with_names();
+        let names = mesh.compact_with_map();
         assert_eq!(mesh.validate(), Ok(()));
         assert!(mesh.memory().total() < grown / 4);
         assert_eq!(names.vertices[VertexId::new(200)], None);

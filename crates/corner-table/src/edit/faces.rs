@@ -1,8 +1,8 @@
 //! Adding and removing triangles.
 
-use sixfold_core::{EditError, EditLog, FaceId, Few, Probe, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, FaceId, Probe, ShortVec, Slot, VertexId};
 
-use super::{Refusal, faced_by, tell_renamed};
+use super::{Refusal, faced_by, report_renamed};
 use crate::mesh::{CornerId, EditableCornerTable, edge_between};
 
 impl<P: Probe> EditableCornerTable<P> {
@@ -34,20 +34,24 @@ impl<P: Probe> EditableCornerTable<P> {
             }
         }
         self.check_room(0, 1)?;
-        let places = [self.gap(a, b, c)?, self.gap(b, c, a)?, self.gap(c, a, b)?];
+        let gaps = [
+            self.find_gap(a, b, c)?,
+            self.find_gap(b, c, a)?,
+            self.find_gap(c, a, b)?,
+        ];
 
         // The corner across a side is opposite to the corner of the third vertex.
         let new = self.new_corners(0);
-        let [ab, bc, ca] = places.map(|gap| gap.across);
+        let [ab, bc, ca] = gaps.map(|gap| gap.across);
         self.push_triangle([a, b, c], [bc, ca, ab]);
         let [at_a, at_b, at_c] = new;
         for (across, corner) in [(bc, at_a), (ca, at_b), (ab, at_c)] {
-            self.answer(across, Slot::some(corner));
+            self.set_opposite(across, Slot::some(corner));
             if across == Slot::NONE {
                 log.created_edge(faced_by(corner));
             }
         }
-        for ((v, corner), gap) in [a, b, c].into_iter().zip(new).zip(places) {
+        for ((v, corner), gap) in [a, b, c].into_iter().zip(new).zip(gaps) {
             if gap.is_first {
                 *self.corner.write(v.index()) = Slot::some(corner);
             }
@@ -57,7 +61,7 @@ impl<P: Probe> EditableCornerTable<P> {
     }
 
     /// Finds where a triangle with the sides w–v and v–u fits into the fan of `v`.
-    fn gap(&self, v: VertexId, u: VertexId, w: VertexId) -> Result<Gap, Refusal> {
+    fn find_gap(&self, v: VertexId, u: VertexId, w: VertexId) -> Result<Gap, Refusal> {
         let Some(first) = self.corner.read(v.index()).get() else {
             return Ok(Gap {
                 across: Slot::NONE,
@@ -84,16 +88,16 @@ impl<P: Probe> EditableCornerTable<P> {
         // edge is full.
         if let Some(at_u) = at_u {
             return Err(if open && at_u == first.next() {
-                self.runs(v, u, at_u)
+                self.repeated_side_error(v, u, at_u)
             } else {
-                self.full(at_u)
+                self.full_edge_error(at_u)
             });
         }
         if open && beyond_last == w {
-            return Err(self.runs(w, v, last));
+            return Err(self.repeated_side_error(w, v, last));
         }
         if let Some(at_w) = at_w.filter(|_| !joins_first) {
-            return Err(self.full(at_w));
+            return Err(self.full_edge_error(at_w));
         }
         if !joins_last && !joins_first {
             return Err(EditError::SeveralFans { vertex: v });
@@ -109,7 +113,7 @@ impl<P: Probe> EditableCornerTable<P> {
     }
 
     /// Returns the error that `corner`'s triangle already runs the side `from`–`to`.
-    fn runs(&self, from: VertexId, to: VertexId, corner: CornerId) -> Refusal {
+    fn repeated_side_error(&self, from: VertexId, to: VertexId, corner: CornerId) -> Refusal {
         EditError::RepeatedSide {
             from,
             to,
@@ -119,7 +123,7 @@ impl<P: Probe> EditableCornerTable<P> {
 
     /// Returns the error for an edge with two faces: from the vertex before `after` to that of
     /// `after`.
-    fn full(&self, after: CornerId) -> Refusal {
+    fn full_edge_error(&self, after: CornerId) -> Refusal {
         EditError::FullEdge {
             edge: self.edge(after.next()),
         }
@@ -133,15 +137,15 @@ impl<P: Probe> EditableCornerTable<P> {
     ) -> Result<(), Refusal> {
         let [a, b, c] = self.check_face(f)?;
         let [(x, ox), (y, oy), (z, oz)] = self.opposites_of(f);
-        let blocks = [(a, oz, oy), (b, ox, oz), (c, oy, ox)];
-        for (v, before, after) in blocks {
-            self.check_block(v, before, after)?;
+        let removals = [(a, oz, oy), (b, ox, oz), (c, oy, ox)];
+        for (v, before, after) in removals {
+            self.check_removal(v, before, after)?;
         }
-        for (v, before, after) in blocks {
-            self.cut_block(v, before, after);
+        for (v, before, after) in removals {
+            self.remove_from_fan(v, before, after);
         }
         for (corner, across) in [(x, ox), (y, oy), (z, oz)] {
-            self.open_side(corner, across, log);
+            self.unlink_side(corner, across, log);
         }
         self.delete_triangle(f);
         log.removed_face(f);
@@ -169,11 +173,11 @@ impl<P: Probe> EditableCornerTable<P> {
             });
             for [before, next] in gaps.clone() {
                 let (u, outer) = self.rim(v, before, next);
-                self.check_block(u, outer[0], outer[1])?;
+                self.check_removal(u, outer[0], outer[1])?;
             }
             for [before, next] in gaps {
                 let (u, outer) = self.rim(v, before, next);
-                self.cut_block(u, outer[0], outer[1]);
+                self.remove_from_fan(u, outer[0], outer[1]);
             }
             self.delete_star(star, closed, log);
         }
@@ -183,8 +187,8 @@ impl<P: Probe> EditableCornerTable<P> {
     }
 
     /// Returns the corners at `v`, counter-clockwise, and whether its fan is closed.
-    pub(super) fn star(&self, v: VertexId) -> (Few<CornerId>, bool) {
-        let mut star = Few::new();
+    pub(super) fn star(&self, v: VertexId) -> (ShortVec<CornerId>, bool) {
+        let mut star = ShortVec::new();
         let mut closed = false;
         for (after, across) in self.fan(v) {
             star.push(after.prev());
@@ -224,7 +228,7 @@ impl<P: Probe> EditableCornerTable<P> {
                         log.removed_edge(faced_by(c));
                     }
                 }
-                _ => self.open_side(c, across, log),
+                _ => self.unlink_side(c, across, log),
             }
             if !closed && c == star[0] {
                 log.removed_edge(faced_by(prev));
@@ -249,7 +253,7 @@ struct Gap {
 /// Removal of adjacent triangles from the fan of a vertex. `before` is the corner across the first
 /// of them, `after` the corner across the last, counter-clockwise.
 impl<P: Probe> EditableCornerTable<P> {
-    fn check_block(
+    fn check_removal(
         &self,
         v: VertexId,
         before: Slot<CornerId>,
@@ -263,7 +267,7 @@ impl<P: Probe> EditableCornerTable<P> {
 
     /// Updates `corner(v)`: the fan begins after the removed triangles; if nothing follows, as
     /// before.
-    fn cut_block(&mut self, v: VertexId, before: Slot<CornerId>, after: Slot<CornerId>) {
+    fn remove_from_fan(&mut self, v: VertexId, before: Slot<CornerId>, after: Slot<CornerId>) {
         match after.get() {
             Some(after) => *self.corner.write(v.index()) = Slot::some(after.next()),
             None if before == Slot::NONE => *self.corner.write(v.index()) = Slot::NONE,
@@ -272,11 +276,11 @@ impl<P: Probe> EditableCornerTable<P> {
     }
 
     /// Makes the edge that `c` faces a boundary edge of the triangle across, or removes it.
-    fn open_side(&mut self, c: CornerId, across: Slot<CornerId>, log: &mut impl EditLog<Self>) {
+    fn unlink_side(&mut self, c: CornerId, across: Slot<CornerId>, log: &mut impl EditLog<Self>) {
         match across.get() {
             Some(o) => {
                 *self.opposite.write(o.index()) = Slot::NONE;
-                tell_renamed(log, edge_between(c, across), faced_by(o));
+                report_renamed(log, edge_between(c, across), faced_by(o));
             }
             None => log.removed_edge(faced_by(c)),
         }

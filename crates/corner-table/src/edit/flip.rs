@@ -2,7 +2,7 @@
 
 use sixfold_core::{EditError, EditLog, Probe, Slot, VertexId};
 
-use super::{Refusal, tell_renamed};
+use super::{Refusal, report_renamed};
 use crate::mesh::{CornerId, EdgeCorner, EditableCornerTable, edge_between};
 
 impl<P: Probe> EditableCornerTable<P> {
@@ -36,8 +36,8 @@ impl<P: Probe> EditableCornerTable<P> {
                 vertex: vc,
             });
         }
-        let met = self.walk_around_both([vc, vd], [va, vb], [on, oq]);
-        if met.unwrap_or_else(|| self.are_neighbours([on, op], va, vd)) {
+        let adjacent = self.walk_around_both([vc, vd], [va, vb], [on, oq]);
+        if adjacent.unwrap_or_else(|| self.are_neighbours([on, op], va, vd)) {
             // This check covers ends of valence three as well: C and D are adjacent there.
             return Err(EditError::EdgeExists { ends: [vc, vd] });
         }
@@ -46,18 +46,18 @@ impl<P: Probe> EditableCornerTable<P> {
         *self.vertex.write(r.index()) = vc;
         for (c, across) in [(c, oq), (o, on)] {
             *self.opposite.write(c.index()) = across;
-            self.answer(across, Slot::some(c));
+            self.set_opposite(across, Slot::some(c));
         }
         *self.opposite.write(n.index()) = Slot::some(q);
         *self.opposite.write(q.index()) = Slot::some(n);
         // n is the corner at A in place of two, and q the corner at B.
-        self.reenter(va, r, n);
-        self.reenter(vb, p, q);
+        self.replace_corner(va, r, n);
+        self.replace_corner(vb, p, q);
 
         let turned = edge_between(n, Slot::some(q));
-        tell_renamed(log, e, turned);
-        tell_renamed(log, edge_between(q, oq), edge_between(c, oq));
-        tell_renamed(log, edge_between(n, on), edge_between(o, on));
+        report_renamed(log, e, turned);
+        report_renamed(log, edge_between(q, oq), edge_between(c, oq));
+        report_renamed(log, edge_between(n, on), edge_between(o, on));
         Ok(turned)
     }
 

@@ -2,7 +2,7 @@
 
 use sixfold_core::{EditError, EditLog, FaceId, Point, Probe, Slot, VertexId};
 
-use super::{Refusal, faced_by, tell_renamed};
+use super::{Refusal, faced_by, report_renamed};
 use crate::mesh::{CornerId, EdgeCorner, EditableCornerTable, edge_between};
 
 impl<P: Probe> EditableCornerTable<P> {
@@ -46,12 +46,12 @@ impl<P: Probe> EditableCornerTable<P> {
         self.push_triangle([vc, m, vb], [below, on, Slot::some(n)]);
         *self.vertex.write(p.index()) = m;
         *self.opposite.write(n.index()) = Slot::some(w);
-        self.answer(on, Slot::some(u));
-        self.reenter(vb, p, w);
+        self.set_opposite(on, Slot::some(u));
+        self.replace_corner(vb, p, w);
         log.created_vertex(m);
         log.created_face(t.triangle());
         log.created_edge(faced_by(t));
-        tell_cut(log, n, on, u);
+        report_cut(log, n, on, u);
 
         if let (Some(o), Some(vd)) = (across, vd) {
             let [q, r] = [o.next(), o.prev()];
@@ -59,11 +59,11 @@ impl<P: Probe> EditableCornerTable<P> {
             self.push_triangle([vd, vb, m], [Slot::some(t), Slot::some(r), or]);
             *self.vertex.write(q.index()) = m;
             *self.opposite.write(r.index()) = Slot::some(y);
-            self.answer(or, Slot::some(z));
-            self.reenter(vb, q, y);
-            self.reenter(vd, o, x);
+            self.set_opposite(or, Slot::some(z));
+            self.replace_corner(vb, q, y);
+            self.replace_corner(vd, o, x);
             log.created_face(x.triangle());
-            tell_cut(log, r, or, z);
+            report_cut(log, r, or, z);
         }
         Ok(m)
     }
@@ -97,18 +97,18 @@ impl<P: Probe> EditableCornerTable<P> {
         *self.vertex.write(k.index()) = m;
         *self.opposite.write(i.index()) = Slot::some(y);
         *self.opposite.write(j.index()) = Slot::some(u);
-        self.answer(bc, Slot::some(z));
-        self.answer(ca, Slot::some(w));
+        self.set_opposite(bc, Slot::some(z));
+        self.set_opposite(ca, Slot::some(w));
         // At B, the triangle (B, C, m) comes before the old one. C has only the two new triangles.
-        self.reenter(b, j, x);
-        self.reenter(c, k, u);
+        self.replace_corner(b, j, x);
+        self.replace_corner(c, k, u);
 
         log.created_vertex(m);
         log.created_face(x.triangle());
         log.created_face(u.triangle());
         log.created_edge(faced_by(x));
-        tell_cut(log, i, bc, z);
-        tell_cut(log, j, ca, w);
+        report_cut(log, i, bc, z);
+        report_cut(log, j, ca, w);
         Ok(m)
     }
 
@@ -140,7 +140,7 @@ impl<P: Probe> EditableCornerTable<P> {
             self.check_vertex(side)?;
         }
         if left == right {
-            return Err(EditError::NoSides { vertex: v });
+            return Err(EditError::BadNeighbours { vertex: v });
         }
         let (star, closed) = self.star(v);
         let star = star.as_slice();
@@ -161,9 +161,9 @@ impl<P: Probe> EditableCornerTable<P> {
         self.check_room(1, 2)?;
 
         // n gets the corners from `from` to `to`, past the end of the list if `from > to`.
-        let around = from > to;
-        let given = |i: usize| {
-            if around {
+        let wraps = from > to;
+        let moves = |i: usize| {
+            if wraps {
                 i >= from || i < to
             } else {
                 i >= from && i < to
@@ -175,41 +175,47 @@ impl<P: Probe> EditableCornerTable<P> {
             self.new_corners(u32::from(right.is_some())),
         ];
         let n = self.push_vertex(at, Slot::NONE);
-        for (_, &c) in star.iter().enumerate().filter(|&(i, _)| given(i)) {
+        for (_, &c) in star.iter().enumerate().filter(|&(i, _)| moves(i)) {
             *self.vertex.write(c.index()) = n;
         }
-        // The corners that face the edge to neighbour `i`: in the triangle before it, and in the
+        // The corners that face the edge to neighbour `i`: in the previous triangle, and in the
         // next.
-        let ends = |i: usize| match i {
+        let in_previous = |i: usize| match i {
             0 if closed => Slot::some(star[count - 1].next()),
             0 => Slot::NONE,
             _ => Slot::some(star[i - 1].next()),
         };
-        let begins = |i: usize| Slot::from(star.get(i).map(|c| c.prev()));
+        let in_next = |i: usize| Slot::from(star.get(i).map(|c| c.prev()));
         if let Some(right) = right {
             let [u, w, z] = lower;
-            let beside = if both {
+            let across_new_edge = if both {
                 Slot::some(upper[2])
             } else {
                 Slot::NONE
             };
-            self.push_triangle([v, right, n], [begins(from), beside, ends(from)]);
-            self.slit(begins(from), ends(from), u, z, log);
-            if begins(from) == Slot::NONE {
+            self.push_triangle(
+                [v, right, n],
+                [in_next(from), across_new_edge, in_previous(from)],
+            );
+            self.link_new_triangle(in_next(from), in_previous(from), u, z, log);
+            if in_next(from) == Slot::NONE {
                 *self.corner.write(right.index()) = Slot::some(w);
             }
             log.created_face(u.triangle());
         }
         if let Some(left) = left {
             let [x, x1, y] = upper;
-            let beside = if both {
+            let across_new_edge = if both {
                 Slot::some(lower[1])
             } else {
                 Slot::NONE
             };
-            self.push_triangle([v, n, left], [ends(to), begins(to), beside]);
-            self.slit(begins(to), ends(to), x1, x, log);
-            if begins(to) == Slot::NONE {
+            self.push_triangle(
+                [v, n, left],
+                [in_previous(to), in_next(to), across_new_edge],
+            );
+            self.link_new_triangle(in_next(to), in_previous(to), x1, x, log);
+            if in_next(to) == Slot::NONE {
                 *self.corner.write(left.index()) = Slot::some(y);
             }
             log.created_face(x.triangle());
@@ -217,7 +223,7 @@ impl<P: Probe> EditableCornerTable<P> {
         let (first_of_v, first_of_n) = match (left, right) {
             // An open fan has a gap: one of the two vertices keeps it, with the start of the fan.
             (Some(_), Some(_)) if closed => (upper[0], lower[2]),
-            (Some(_), Some(_)) if around => (upper[0], if to > 0 { star[0] } else { upper[1] }),
+            (Some(_), Some(_)) if wraps => (upper[0], if to > 0 { star[0] } else { upper[1] }),
             (_, Some(_)) => (if from > 0 { star[0] } else { lower[0] }, lower[2]),
             _ => (upper[0], if to > 0 { star[0] } else { upper[1] }),
         };
@@ -228,33 +234,34 @@ impl<P: Probe> EditableCornerTable<P> {
         Ok(n)
     }
 
-    /// Inserts a triangle between the two corners that faced an edge: `begins` and `ends` now face
-    /// two of its sides, whose corners in the triangle are `over_begins` and `over_ends`.
-    fn slit(
+    /// Links a new triangle between the two corners that faced an edge: `in_next` and `in_previous`
+    /// now face two of its sides, which the corners `across_next` and `across_previous` of the new
+    /// triangle face.
+    fn link_new_triangle(
         &mut self,
-        begins: Slot<CornerId>,
-        ends: Slot<CornerId>,
-        over_begins: CornerId,
-        over_ends: CornerId,
+        in_next: Slot<CornerId>,
+        in_previous: Slot<CornerId>,
+        across_next: CornerId,
+        across_previous: CornerId,
         log: &mut impl EditLog<Self>,
     ) {
-        self.answer(begins, Slot::some(over_begins));
-        self.answer(ends, Slot::some(over_ends));
+        self.set_opposite(in_next, Slot::some(across_next));
+        self.set_opposite(in_previous, Slot::some(across_previous));
         // The lower corner keeps its handle; the other edge is new.
-        let [one, other] =
-            [(begins, over_begins), (ends, over_ends)].map(|(old, new)| old.get().unwrap_or(new));
+        let pairs = [(in_next, across_next), (in_previous, across_previous)];
+        let [one, other] = pairs.map(|(old, new)| old.get().unwrap_or(new));
         log.created_edge(faced_by(one.max(other)));
     }
 }
 
 /// Reports that `old` faces a new edge, and that `new` faces the edge it faced with `across`.
 #[inline]
-fn tell_cut<P: Probe>(
+fn report_cut<P: Probe>(
     log: &mut impl EditLog<EditableCornerTable<P>>,
     old: CornerId,
     across: Slot<CornerId>,
     new: CornerId,
 ) {
-    tell_renamed(log, edge_between(old, across), edge_between(new, across));
+    report_renamed(log, edge_between(old, across), edge_between(new, across));
     log.created_edge(faced_by(old));
 }

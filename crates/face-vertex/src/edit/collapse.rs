@@ -1,10 +1,10 @@
 //! Collapse of an edge into one of its ends.
 
-use sixfold_core::{EditError, EditLog, FaceId, Few, Lookup, Pair, Point, Probe, VertexId};
+use sixfold_core::{EditError, EditLog, FaceId, Lookup, Pair, Point, Probe, ShortVec, VertexId};
 
-use super::corners::third;
+use super::corners::third_corner;
 use super::find::Refused;
-use super::{Edge, listens};
+use super::{Edge, uses_reports};
 use crate::mesh::{BLANK_CORNER, EditableFaceVertexMesh};
 
 impl<P: Probe> EditableFaceVertexMesh<P> {
@@ -17,8 +17,8 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         log: &mut impl EditLog<Self>,
     ) -> Result<VertexId, Refused> {
         let mut both = self.faces_at_both(e);
-        both.order();
-        if !both.iter().any(|&f| self.runs(f, e)) {
+        both.sort_for_lookup();
+        if !both.iter().any(|&f| self.has_side(f, e)) {
             return Err(EditError::NoSuchEdge { edge: e });
         }
         if !e.has(keep) {
@@ -27,73 +27,72 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
                 vertex: keep,
             });
         }
-        if !both.iter().all(|&f| self.runs(f, e)) {
+        if !both.iter().all(|&f| self.has_side(f, e)) {
             return Err(EditError::RepeatedVertex { vertex: keep });
         }
         let [low, high] = e.ends();
         let gone = if keep == low { high } else { low };
-        let dying = both
+        let removed = both
             .iter()
             .copied()
             .filter(|&f| self.known_face(f).len() == 3);
-        let dying = Few::from_iter(dying);
+        let removed = ShortVec::from_iter(removed);
         let moving = self.fan(gone).iter().copied();
-        let moving = Few::from_iter(moving.filter(|f| !both.has(*f)));
-        self.check_last_faces(e, keep, &moving, &dying)?;
+        let moving = ShortVec::from_iter(moving.filter(|f| !both.has(*f)));
+        self.check_last_faces(e, keep, &moving, &removed)?;
         self.check_room(0, 0, moving.len() + self.corners_of_polygons(&both))?;
-        let met = if listens(log) {
-            self.edges_met(gone, keep)
+        let neighbours = if uses_reports(log) {
+            self.other_neighbours(gone, keep)
         } else {
             Vec::new()
         };
 
         for &f in &*moving {
-            self.retarget(f, gone, keep);
+            self.replace_corner(f, gone, keep);
         }
-        for &f in &*dying {
-            let (_, apex) = third(self.triangle(f)?, e);
-            self.leave(apex, f);
+        for &f in &*removed {
+            let (_, apex) = third_corner(self.triangle(f)?, e);
+            self.remove_from_fan(apex, f);
             self.delete_face(f);
         }
-        if dying.len() < both.len() {
-            self.shorten(&both, gone);
+        if removed.len() < both.len() {
+            self.remove_corner(&both, gone);
         }
-        self.exchange(keep, &dying, &moving);
+        self.replace_faces(keep, &removed, &moving);
         self.delete_vertex(gone);
         *self.positions.write(keep.index()) = to;
 
-        if listens(log) {
+        if uses_reports(log) {
             log.removed_vertex(gone);
             log.removed_edge(e);
-            dying.iter().for_each(|&f| log.removed_face(f));
-            self.tell_met(&met, [gone, keep], log);
+            removed.iter().for_each(|&f| log.removed_face(f));
+            self.report_merged_edges(&neighbours, [gone, keep], log);
         }
         Ok(keep)
     }
 
-    /// Checks that the end `keep` and the third corners of the removed triangles `dying` keep a
-    /// face.
+    /// Checks that the end `keep` and the third corners of the triangles `removed` keep a face.
     fn check_last_faces(
         &self,
         e: Edge,
         keep: VertexId,
         moving: &[FaceId],
-        dying: &[FaceId],
+        removed: &[FaceId],
     ) -> Result<(), Refused> {
         let len = |v: VertexId| self.fans.read(v.index()).len as usize;
-        if moving.is_empty() && len(keep) == dying.len() {
+        if moving.is_empty() && len(keep) == removed.len() {
             return Err(EditError::LastFace { vertex: keep });
         }
-        let mut in_doubt = Few::new();
-        for &f in dying {
-            let (_, apex) = third(self.triangle(f)?, e);
-            if len(apex) <= dying.len() {
-                in_doubt.push(apex);
+        let mut candidates = ShortVec::new();
+        for &f in removed {
+            let (_, apex) = third_corner(self.triangle(f)?, e);
+            if len(apex) <= removed.len() {
+                candidates.push(apex);
             }
         }
         // Triangles with the same corners have the same third corner.
-        in_doubt.sort_unstable();
-        let mut runs = in_doubt.chunk_by(|one, other| one == other);
+        candidates.sort_unstable();
+        let mut runs = candidates.chunk_by(|one, other| one == other);
         match runs.find(|run| len(run[0]) == run.len()) {
             Some(run) => Err(EditError::LastFace { vertex: run[0] }),
             None => Ok(()),
@@ -107,20 +106,20 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
     }
 
     /// Removes the corner `gone` from those of `faces` that still exist.
-    fn shorten(&mut self, faces: &[FaceId], gone: VertexId) {
+    fn remove_corner(&mut self, faces: &[FaceId], gone: VertexId) {
         for &f in faces {
             let face = self.known_face(f);
             if face[0] != BLANK_CORNER {
-                let left = face.iter().copied().filter(|&v| v != gone);
-                let left = Few::from_iter(left);
+                let kept = face.iter().copied().filter(|&v| v != gone);
+                let kept = ShortVec::from_iter(kept);
                 self.spans
-                    .rewrite(&mut self.corners, f, &left, BLANK_CORNER);
+                    .rewrite(&mut self.corners, f, &kept, BLANK_CORNER);
             }
         }
     }
 
     /// Returns the neighbours of `gone` except `keep`, each with whether it is adjacent to `keep`.
-    fn edges_met(&self, gone: VertexId, keep: VertexId) -> Vec<(VertexId, bool)> {
+    fn other_neighbours(&self, gone: VertexId, keep: VertexId) -> Vec<(VertexId, bool)> {
         let ring = self.ring(gone).into_vertices();
         let others = ring.filter(|&v| v != keep);
         others
@@ -129,13 +128,13 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
     }
 
     /// Reports the changes of the edges at `gone`, and of those at `keep` with which they merge.
-    fn tell_met(
+    fn report_merged_edges(
         &self,
-        met: &[(VertexId, bool)],
+        neighbours: &[(VertexId, bool)],
         [gone, keep]: [VertexId; 2],
         log: &mut impl EditLog<Self>,
     ) {
-        for &(v, had_edge) in met {
+        for &(v, had_edge) in neighbours {
             let (old, new) = (Pair::new(gone, v), Pair::new(keep, v));
             if !had_edge {
                 log.renamed_edge(old, new);

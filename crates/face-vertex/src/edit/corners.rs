@@ -3,7 +3,7 @@
 use sixfold_core::{Pair, VertexId};
 
 use super::Edge;
-use crate::circulate::beside;
+use crate::circulate::neighbours_in;
 
 /// Returns the sides of a face.
 pub(super) fn sides(face: &[VertexId]) -> impl Iterator<Item = Edge> {
@@ -11,7 +11,7 @@ pub(super) fn sides(face: &[VertexId]) -> impl Iterator<Item = Edge> {
 }
 
 /// Returns the corners of a face that contains `v`, starting at `v`.
-pub(super) fn from_corner(face: &[VertexId], v: VertexId) -> impl Iterator<Item = VertexId> {
+pub(super) fn corners_from(face: &[VertexId], v: VertexId) -> impl Iterator<Item = VertexId> {
     let at = face.iter().position(|&corner| corner == v);
     let (before, after) = face.split_at(at.expect("I3: a face in the fan of a vertex contains it"));
     after.iter().chain(before).copied()
@@ -19,7 +19,7 @@ pub(super) fn from_corner(face: &[VertexId], v: VertexId) -> impl Iterator<Item 
 
 /// Returns the end of the side `e` in the direction of a triangle at `e`, and the third corner.
 #[inline]
-pub(super) fn third(face: [VertexId; 3], e: Edge) -> (VertexId, VertexId) {
+pub(super) fn third_corner(face: [VertexId; 3], e: Edge) -> (VertexId, VertexId) {
     let [a, b, c] = face;
     let apex = if !e.has(a) {
         a
@@ -28,11 +28,11 @@ pub(super) fn third(face: [VertexId; 3], e: Edge) -> (VertexId, VertexId) {
     } else {
         c
     };
-    (beside(&face, apex)[0], apex)
+    (neighbours_in(&face, apex)[0], apex)
 }
 
 /// Returns a vertex that occurs twice.
-pub(super) fn repeated(corners: &[VertexId]) -> Option<VertexId> {
+pub(super) fn repeated_vertex(corners: &[VertexId]) -> Option<VertexId> {
     const FEW: usize = 16;
     if corners.len() <= FEW {
         let mut earlier = corners.iter().enumerate();

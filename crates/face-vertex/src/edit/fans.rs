@@ -13,7 +13,7 @@
 
 use std::ops::Range;
 
-use sixfold_core::{FaceId, Few, Lookup, MAX_ROWS, Point, Probe, VertexId, row};
+use sixfold_core::{FaceId, Lookup, MAX_ROWS, Point, Probe, ShortVec, VertexId, row};
 
 use super::find::mask;
 use crate::mesh::{BLANK_PLACE, EditableFaceVertexMesh, Fan};
@@ -22,7 +22,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
     /// Returns the blanks that follow a fan of `len` faces, one of them new, after its move to the
     /// end of the pool. Returns no blanks if places are short, so that
     /// [`check_room`](Self::check_room) is sufficient.
-    fn spare(&self, len: u32) -> impl Iterator<Item = FaceId> + use<P> {
+    fn spare_places(&self, len: u32) -> impl Iterator<Item = FaceId> + use<P> {
         let room = if self.pool.len() < MAX_ROWS / 2 {
             (2 * (len - 1)).max(8)
         } else {
@@ -33,7 +33,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
 
     /// Adds `f` to the fan of `v`; O(1) amortised.
     #[inline]
-    pub(super) fn join(&mut self, v: VertexId, f: FaceId) {
+    pub(super) fn add_to_fan(&mut self, v: VertexId, f: FaceId) {
         let fan = *self.fans.read(v.index());
         let end = fan.range().end;
         if end == self.pool.len() {
@@ -41,7 +41,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         } else if *self.pool.read(end) == BLANK_PLACE {
             *self.pool.write(end) = f;
         } else {
-            self.move_and_join(v, fan, f);
+            self.move_and_add(v, fan, f);
             return;
         }
         self.fans.write(v.index()).len = fan.len + 1;
@@ -49,7 +49,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
 
     /// Moves the fan of `v` to the end of the pool, with `f` as its last face and room for more.
     #[inline(never)]
-    fn move_and_join(&mut self, v: VertexId, fan: Fan, f: FaceId) {
+    fn move_and_add(&mut self, v: VertexId, fan: Fan, f: FaceId) {
         let moved = Fan {
             start: row(self.pool.len()),
             len: fan.len + 1,
@@ -59,13 +59,13 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
             self.pool.push(face);
         }
         self.pool.push(f);
-        self.pool.extend(self.spare(moved.len));
+        self.pool.extend(self.spare_places(moved.len));
         *self.fans.write(v.index()) = moved;
     }
 
     /// Removes `f` from the fan of `v`; O(length).
     #[inline]
-    pub(super) fn leave(&mut self, v: VertexId, f: FaceId) {
+    pub(super) fn remove_from_fan(&mut self, v: VertexId, f: FaceId) {
         let fan = *self.fans.read(v.index());
         let (place, last) = (self.place_of(fan, f), fan.range().end - 1);
         let moved = std::mem::replace(self.pool.write(last), BLANK_PLACE);
@@ -77,7 +77,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
 
     /// Replaces `old` by `new` in the fan of `v`; O(length).
     #[inline]
-    pub(super) fn swap(&mut self, v: VertexId, old: FaceId, new: FaceId) {
+    pub(super) fn replace_in_fan(&mut self, v: VertexId, old: FaceId, new: FaceId) {
         let place = self.place_of(*self.fans.read(v.index()), old);
         *self.pool.write(place) = new;
     }
@@ -104,26 +104,26 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
     }
 
     /// Replaces the faces `old` in the fan of `v` by `new`; more than four old ones must be sorted.
-    pub(super) fn exchange(&mut self, v: VertexId, old: &[FaceId], new: &[FaceId]) {
+    pub(super) fn replace_faces(&mut self, v: VertexId, old: &[FaceId], new: &[FaceId]) {
         const FEW: usize = 4;
         if old.len() > FEW {
             let kept = self.fan(v).iter().copied().filter(|f| !old.has(*f));
-            let kept = Few::from_iter(kept.chain(new.iter().copied()));
-            self.refill(v, &kept);
+            let kept = ShortVec::from_iter(kept.chain(new.iter().copied()));
+            self.set_fan(v, &kept);
             return;
         }
         let mut new = new.iter();
         for &f in old {
             match new.next() {
-                Some(&g) => self.swap(v, f, g),
-                None => self.leave(v, f),
+                Some(&g) => self.replace_in_fan(v, f, g),
+                None => self.remove_from_fan(v, f),
             }
         }
-        new.for_each(|&g| self.join(v, g));
+        new.for_each(|&g| self.add_to_fan(v, g));
     }
 
     /// Sets the fan of `v` to `faces`; O(faces + length) amortised.
-    pub(super) fn refill(&mut self, v: VertexId, faces: &[FaceId]) {
+    pub(super) fn set_fan(&mut self, v: VertexId, faces: &[FaceId]) {
         let old = self.fans.read(v.index()).range();
         let end = old.start + faces.len();
         let is_free =
@@ -136,7 +136,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
                 len,
             };
             self.pool.extend(faces.iter().copied());
-            self.pool.extend(self.spare(len));
+            self.pool.extend(self.spare_places(len));
             return;
         }
         for (place, &f) in (old.start..).zip(faces) {

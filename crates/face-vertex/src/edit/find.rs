@@ -1,8 +1,8 @@
 //! Lookups before an edit changes anything: handles, faces at an edge, room for new elements.
 
-use sixfold_core::{EditError, FaceId, Few, IteratorExt, MAX_ROWS, Pair, Probe, VertexId};
+use sixfold_core::{EditError, FaceId, IteratorExt, MAX_ROWS, Pair, Probe, ShortVec, VertexId};
 
-use crate::circulate::{beside, runs_between};
+use crate::circulate::{has_side_between, neighbours_in};
 use crate::mesh::{BLANK_CORNER, BLANK_PLACE, EditableFaceVertexMesh, Fan};
 
 /// The error of an edit; the same type for every probe.
@@ -24,7 +24,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
     pub(super) fn fan_of(&self, v: VertexId) -> Result<Fan, Refused> {
         if v.index() < self.fans.len() {
             let fan = *self.fans.read(v.index());
-            if fan != Fan::GONE {
+            if fan != Fan::DELETED {
                 return Ok(fan);
             }
         }
@@ -48,16 +48,16 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
     ///
     /// Compares short fans with each other, which needs no jump to the corners of a face.
     #[inline]
-    fn visit_both(&self, e: Pair<VertexId>, mut visit: impl FnMut(FaceId)) {
+    fn visit_faces_at_both(&self, e: Pair<VertexId>, mut visit: impl FnMut(FaceId)) {
         let [a, b] = e.ends();
         let ([Ok(at_a), Ok(at_b)], true) = ([a, b].map(|v| self.fan_of(v)), a != b) else {
             return;
         };
         let longer = at_a.len.max(at_b.len);
-        let is_done = (longer <= 8 && self.compare::<8>([at_a, at_b], &mut visit))
-            || (longer <= 16 && self.compare::<16>([at_a, at_b], &mut visit));
+        let is_done = (longer <= 8 && self.compare_fans::<8>([at_a, at_b], &mut visit))
+            || (longer <= 16 && self.compare_fans::<16>([at_a, at_b], &mut visit));
         if !is_done {
-            self.search([(a, at_a), (b, at_b)], &mut visit);
+            self.search_shorter_fan([(a, at_a), (b, at_b)], &mut visit);
         }
     }
 
@@ -66,7 +66,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
     ///
     /// Compares all faces with all, without a branch, because the matches are unpredictable.
     #[inline]
-    fn compare<const N: usize>(&self, fans: [Fan; 2], visit: &mut impl FnMut(FaceId)) -> bool {
+    fn compare_fans<const N: usize>(&self, fans: [Fan; 2], visit: &mut impl FnMut(FaceId)) -> bool {
         let [Some(some), Some(others)] = fans.map(|fan| self.lanes::<N>(fan)) else {
             return false;
         };
@@ -90,7 +90,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
     /// Does the same for long fans: visits faces of the shorter fan that contain the other vertex.
     #[cold]
     #[inline(never)]
-    fn search(&self, ends: [(VertexId, Fan); 2], visit: &mut impl FnMut(FaceId)) {
+    fn search_shorter_fan(&self, ends: [(VertexId, Fan); 2], visit: &mut impl FnMut(FaceId)) {
         let [mut short, mut long] = ends;
         if long.1.len < short.1.len {
             (short, long) = (long, short);
@@ -104,9 +104,9 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
 
     /// Returns the faces with corners at both ends of `e`, adjacent or not.
     #[inline]
-    pub(super) fn faces_at_both(&self, e: Pair<VertexId>) -> Few<FaceId> {
-        let mut both = Few::new();
-        self.visit_both(e, |f| both.push(f));
+    pub(super) fn faces_at_both(&self, e: Pair<VertexId>) -> ShortVec<FaceId> {
+        let mut both = ShortVec::new();
+        self.visit_faces_at_both(e, |f| both.push(f));
         both
     }
 
@@ -124,17 +124,17 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
 
     /// Returns whether `f`, which has both ends of `e`, has them as adjacent corners.
     #[inline]
-    pub(super) fn runs(&self, f: FaceId, e: Pair<VertexId>) -> bool {
+    pub(super) fn has_side(&self, f: FaceId, e: Pair<VertexId>) -> bool {
         let [a, b] = e.ends();
-        runs_between(self.known_face(f), a, b)
+        has_side_between(self.known_face(f), a, b)
     }
 
     /// Returns the faces at `e`, at least one, or an error if `e` is not an edge.
     #[inline]
-    pub(super) fn faces_of_edge(&self, e: Pair<VertexId>) -> Result<Few<FaceId>, Refused> {
-        let mut along = Few::new();
-        self.visit_both(e, |f| {
-            if self.runs(f, e) {
+    pub(super) fn faces_of_edge(&self, e: Pair<VertexId>) -> Result<ShortVec<FaceId>, Refused> {
+        let mut along = ShortVec::new();
+        self.visit_faces_at_both(e, |f| {
+            if self.has_side(f, e) {
                 along.push(f);
             }
         });
@@ -148,7 +148,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
     #[inline]
     pub(super) fn has_edge(&self, e: Pair<VertexId>) -> bool {
         let mut has = false;
-        self.visit_both(e, |f| has |= self.runs(f, e));
+        self.visit_faces_at_both(e, |f| has |= self.has_side(f, e));
         has
     }
 
@@ -159,8 +159,8 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         let mut found = 0;
         // One face for each direction: the last that runs up, and the last that runs down.
         let mut along = [BLANK_PLACE; 2];
-        self.visit_both(e, |f| {
-            let [before, after] = beside(self.known_face(f), low);
+        self.visit_faces_at_both(e, |f| {
+            let [before, after] = neighbours_in(self.known_face(f), low);
             if (after == high) | (before == high) {
                 along[usize::from(after != high)] = f;
                 found += 1;
@@ -192,7 +192,7 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         let ends = self
             .fan(v)
             .iter()
-            .flat_map(|&f| beside(self.known_face(f), v));
+            .flat_map(|&f| neighbours_in(self.known_face(f), v));
         ends.distinct().count()
     }
 

@@ -1,49 +1,49 @@
 //! Splitting a vertex, with a triangle on each side of the new edge.
 
-use sixfold_core::{EditError, EditLog, FaceId, Few, Pair, Point, Probe, VertexId, row};
+use sixfold_core::{EditError, EditLog, FaceId, Pair, Point, Probe, ShortVec, VertexId, row};
 
 use super::find::Refused;
-use super::listens;
-use crate::circulate::beside;
+use super::uses_reports;
+use crate::circulate::neighbours_in;
 use crate::mesh::EditableFaceVertexMesh;
 
 /// A face at a vertex, with the vertices after and before that vertex in the face.
 #[derive(Clone, Copy)]
-struct Spoke {
+struct FanFace {
     after: VertexId,
     face: FaceId,
     before: VertexId,
 }
 
 /// The faces around a vertex, counter-clockwise; from the boundary if the vertex is on one.
-struct Umbrella {
-    spokes: Few<Spoke>,
+struct OrderedFan {
+    members: ShortVec<FanFace>,
     is_closed: bool,
 }
 
-impl Umbrella {
+impl OrderedFan {
     /// Returns the number of neighbours. Each has the face after it or, on a boundary, a gap.
     fn len(&self) -> usize {
-        self.spokes.len() + usize::from(!self.is_closed)
+        self.members.len() + usize::from(!self.is_closed)
     }
 
     /// Returns neighbour `i`.
     fn neighbour(&self, i: usize) -> VertexId {
-        match self.spokes.get(i) {
-            Some(spoke) => spoke.after,
-            None => self.spokes[i - 1].before,
+        match self.members.get(i) {
+            Some(member) => member.after,
+            None => self.members[i - 1].before,
         }
     }
 
     /// Returns the faces from neighbour `from` up to neighbour `to`.
-    fn faces(&self, from: usize, to: usize) -> Few<FaceId> {
-        let all = self.between(from, to);
-        let faces = all.filter_map(|i| self.spokes.get(i).map(|spoke| spoke.face));
-        Few::from_iter(faces)
+    fn faces_between(&self, from: usize, to: usize) -> ShortVec<FaceId> {
+        let all = self.indices_between(from, to);
+        let faces = all.filter_map(|i| self.members.get(i).map(|member| member.face));
+        ShortVec::from_iter(faces)
     }
 
-    /// Returns the numbers of the neighbours from `from` up to but excluding `to`.
-    fn between(&self, from: usize, to: usize) -> impl Iterator<Item = usize> + use<> {
+    /// Returns the indices of the neighbours from `from` up to but excluding `to`.
+    fn indices_between(&self, from: usize, to: usize) -> impl Iterator<Item = usize> + use<> {
         let len = self.len();
         let steps = (to + len - from) % len;
         (from..from + steps).map(move |i| if i < len { i } else { i - len })
@@ -60,19 +60,19 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         log: &mut impl EditLog<Self>,
     ) -> Result<VertexId, Refused> {
         self.fan_of(v)?;
-        let umbrella = self.umbrella(v).ok_or(EditError::NoFan { vertex: v })?;
-        let [to, from] = self.places_of_sides(v, &umbrella, sides)?;
-        let moving = umbrella.faces(from, to);
-        let mut staying = umbrella.faces(to, from);
+        let fan = self.ordered_fan(v).ok_or(EditError::NoFan { vertex: v })?;
+        let [to, from] = self.side_indices(v, &fan, sides)?;
+        let moving = fan.faces_between(from, to);
+        let mut staying = fan.faces_between(to, from);
         if from == to {
             // From the boundary all the way around to the boundary: no face moves.
-            staying = Few::from_iter(self.fan(v).iter().copied());
+            staying = ShortVec::from_iter(self.fan(v).iter().copied());
         }
         self.check_room(1, 2, 6 + moving.len())?;
 
         let n = VertexId::new(row(self.fans.len()));
         for &f in &*moving {
-            self.retarget(f, v, n);
+            self.replace_corner(f, v, n);
         }
         let mut moved = moving;
         let [left, right] = sides;
@@ -85,21 +85,21 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
                 continue;
             };
             let f = self.spans.push(&mut self.corners, &triangle);
-            self.join(side, f);
+            self.add_to_fan(side, f);
             moved.push(f);
             staying.push(f);
             log.created_face(f);
             log.created_edge(Pair::new(n, side));
         }
-        self.refill(v, &staying);
+        self.set_fan(v, &staying);
         self.push_vertex(at, &moved);
 
-        if listens(log) {
+        if uses_reports(log) {
             log.created_vertex(n);
             log.created_edge(Pair::new(v, n));
             // The neighbours between the sides, and the one on the boundary if a side is missing.
-            let passed = umbrella.between(from, to).map(|i| umbrella.neighbour(i));
-            let all = passed.chain([umbrella.neighbour(to)]);
+            let passed = fan.indices_between(from, to).map(|i| fan.neighbour(i));
+            let all = passed.chain([fan.neighbour(to)]);
             for other in all.filter(|&u| !sides.contains(&Some(u))) {
                 log.renamed_edge(Pair::new(v, other), Pair::new(n, other));
             }
@@ -107,53 +107,54 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
         Ok(n)
     }
 
-    /// Returns the numbers of left and right among the neighbours of `v`. The part between them
+    /// Returns the indices of left and right among the neighbours of `v`. The part between them
     /// moves, counter-clockwise from right to left.
-    fn places_of_sides(
+    fn side_indices(
         &self,
         v: VertexId,
-        umbrella: &Umbrella,
+        fan: &OrderedFan,
         sides: [Option<VertexId>; 2],
     ) -> Result<[usize; 2], Refused> {
-        let place = |side: VertexId| {
-            let place = (0..umbrella.len()).find(|&i| umbrella.neighbour(i) == side);
-            place.ok_or(EditError::NotANeighbour { vertex: v, side })
+        let index = |side: VertexId| {
+            let index = (0..fan.len()).find(|&i| fan.neighbour(i) == side);
+            index.ok_or(EditError::NotANeighbour { vertex: v, side })
         };
         match sides {
-            [Some(left), Some(right)] if left != right => Ok([place(left)?, place(right)?]),
-            [Some(_), Some(_)] | [None, None] => Err(EditError::NoSides { vertex: v }),
-            _ if umbrella.is_closed => Err(EditError::NotOnBoundary { vertex: v }),
-            [None, Some(right)] => Ok([umbrella.len() - 1, place(right)?]),
-            [Some(left), None] => Ok([place(left)?, 0]),
+            [Some(left), Some(right)] if left != right => Ok([index(left)?, index(right)?]),
+            [Some(_), Some(_)] | [None, None] => Err(EditError::BadNeighbours { vertex: v }),
+            _ if fan.is_closed => Err(EditError::NotOnBoundary { vertex: v }),
+            [None, Some(right)] => Ok([fan.len() - 1, index(right)?]),
+            [Some(left), None] => Ok([index(left)?, 0]),
         }
     }
 
     /// Returns the faces around `v` in order, or `None` if they are not a single oriented fan or
     /// `v` is isolated. O(length · log length + corners of polygons).
-    fn umbrella(&self, v: VertexId) -> Option<Umbrella> {
-        let spokes = self.fan(v).iter().map(|&face| {
-            let [before, after] = beside(self.known_face(face), v);
-            Spoke {
+    fn ordered_fan(&self, v: VertexId) -> Option<OrderedFan> {
+        let members = self.fan(v).iter().map(|&face| {
+            let [before, after] = neighbours_in(self.known_face(face), v);
+            FanFace {
                 after,
                 face,
                 before,
             }
         });
-        let mut sorted = Few::from_iter(spokes);
-        sorted.sort_unstable_by_key(|spoke| spoke.after);
+        let mut sorted = ShortVec::from_iter(members);
+        sorted.sort_unstable_by_key(|member| member.after);
         if sorted.is_empty() || sorted.windows(2).any(|pair| pair[0].after == pair[1].after) {
             return None;
         }
-        let next = |spoke: &Spoke| sorted.binary_search_by_key(&spoke.before, |other| other.after);
-        // The first spoke of an open fan follows no other.
-        let mut follow = Few::from_iter(sorted.iter().map(|_| false));
-        for i in sorted.iter().filter_map(|spoke| next(spoke).ok()) {
-            if std::mem::replace(&mut follow[i], true) {
+        let next =
+            |member: &FanFace| sorted.binary_search_by_key(&member.before, |other| other.after);
+        // The first member of an open fan has no previous one.
+        let mut has_previous = ShortVec::from_iter(sorted.iter().map(|_| false));
+        for i in sorted.iter().filter_map(|member| next(member).ok()) {
+            if std::mem::replace(&mut has_previous[i], true) {
                 return None;
             }
         }
-        let first = follow.iter().position(|&follows| !follows);
-        let mut ordered = Few::new();
+        let first = has_previous.iter().position(|&has| !has);
+        let mut ordered = ShortVec::new();
         let mut at = Ok(first.unwrap_or(0));
         while let Ok(i) = at
             && ordered.len() < sorted.len()
@@ -164,8 +165,8 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
                 break;
             }
         }
-        (ordered.len() == sorted.len()).then_some(Umbrella {
-            spokes: ordered,
+        (ordered.len() == sorted.len()).then_some(OrderedFan {
+            members: ordered,
             is_closed: first.is_none(),
         })
     }

@@ -107,11 +107,11 @@ fn compacting_gives_the_tables_of_a_new_build() {
         .expect("many faces remain");
     assert!(matches!(mesh.spans(), FaceSpans::Scattered(_)));
     let polygons = mesh.to_polygons();
-    let names = mesh.compact_with_names();
-    let anew = EditableFaceVertexMesh::from_polygons(&polygons).expect("holds every mesh");
-    assert_eq!(format!("{mesh:?}"), format!("{anew:?}"));
+    let names = mesh.compact_with_map();
+    let rebuilt = EditableFaceVertexMesh::from_polygons(&polygons).expect("holds every mesh");
+    assert_eq!(format!("{mesh:?}"), format!("{rebuilt:?}"));
     assert!(
-        mesh.memory().total() <= 2 * anew.memory().total(),
+        mesh.memory().total() <= 2 * rebuilt.memory().total(),
         "memory was released"
     );
     assert_eq!(mesh.vertex_rows(), mesh.vertex_count());

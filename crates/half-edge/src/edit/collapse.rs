@@ -3,7 +3,7 @@
 use sixfold_core::{EdgeId, EditError, EditLog, FaceId, Point, Probe, Slot, VertexId};
 
 use super::Refusal;
-use super::names::Names;
+use super::handle_set::HandleSet;
 use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
 /// The data of an edge collapse that the check has read.
@@ -16,16 +16,15 @@ struct Collapse {
     /// the third side is the third corner.
     left: Option<(HalfEdgeId, Half)>,
     right: Option<(HalfEdgeId, Half)>,
-    gone: Turn,
-    kept: Turn,
+    gone: End,
+    kept: End,
 }
 
-/// The result of a walk around one end, from the edge back to the edge.
-struct Turn {
-    /// The number of spokes. `glance` reports any valence other than 3 as 4.
+/// One end of the collapsed edge, as found by a walk around it from the edge back to the edge.
+struct End {
+    /// The number of spokes. `end_without_walk` reports any valence other than 3 as 4.
     valence: usize,
-    /// Whether the end is on a boundary.
-    open: bool,
+    on_boundary: bool,
     /// The last spoke before the edge, and the spoke before that.
     last: HalfEdgeId,
     last_but_one: HalfEdgeId,
@@ -62,7 +61,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// Checks the link condition (Dey et al. 1999), and that no face would contain `keep` twice.
     #[inline]
     fn check_collapse(&self, e: EdgeId, keep: VertexId) -> Result<Collapse, Refusal> {
-        let pair = self.existing_edge(e)?;
+        let pair = self.check_edge(e)?;
         let side = usize::from(pair[0].origin == keep);
         let (into, back) = (pair[side], pair[side ^ 1]);
         if back.origin != keep {
@@ -82,9 +81,9 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
             return Err(EditError::SameApex { edge: e, vertex });
         }
 
-        let mut neighbours = Names::none();
-        let mut faces = Names::none();
-        let gone = self.turn(h, &back, |arriving| {
+        let mut neighbours = HandleSet::new();
+        let mut faces = HandleSet::new();
+        let gone = self.walk_end(h, &back, |arriving| {
             if !apexes.contains(&arriving.origin) {
                 neighbours.push(arriving.origin);
             }
@@ -105,15 +104,15 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
                 if faces.iter().any(found) {
                     return Err(EditError::RepeatedVertex { vertex: keep });
                 }
-                self.glance(keep, into.next, last.twin())
+                self.end_without_walk(keep, into.next, last.twin())
             }
-            _ => self.turn(t, &into, |arriving| {
-                if neighbours.has(arriving.origin) {
+            _ => self.walk_end(t, &into, |arriving| {
+                if neighbours.contains(arriving.origin) {
                     let vertex = arriving.origin;
                     return Err(EditError::CommonNeighbour { edge: e, vertex });
                 }
                 match arriving.face.get() {
-                    Some(f) if faces.has(f) => Err(EditError::RepeatedVertex { vertex: keep }),
+                    Some(f) if faces.contains(f) => Err(EditError::RepeatedVertex { vertex: keep }),
                     _ => Ok(()),
                 }
             })?,
@@ -128,9 +127,9 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
             gone,
             kept,
         };
-        if checked.gone.open || checked.kept.open {
+        if checked.gone.on_boundary || checked.kept.on_boundary {
             self.check_at_boundary(e, &checked)?;
-        } else if checked.valence_after() == 2 && self.would_be_pillow(&checked) {
+        } else if checked.valence_after() == 2 && self.only_triangles_remain(&checked) {
             return Err(EditError::Pillow { edge: e });
         }
         Ok(checked)
@@ -139,43 +138,43 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// Walks clockwise around the origin of `h` once. `twin` is the record of the twin of `h`;
     /// `visit` gets the record of every other half-edge that arrives at the origin.
     #[inline]
-    fn turn(
+    fn walk_end(
         &self,
         h: HalfEdgeId,
         twin: &Half,
         mut visit: impl FnMut(&Half) -> Result<(), Refusal>,
-    ) -> Result<Turn, Refusal> {
-        let mut turn = Turn {
+    ) -> Result<End, Refusal> {
+        let mut end = End {
             valence: 1,
-            open: twin.face == Slot::NONE,
+            on_boundary: twin.face == Slot::NONE,
             last: h,
             last_but_one: h,
         };
         let mut spoke = twin.next;
         while spoke != h {
-            let arriving = self.row_of(spoke.twin());
+            let arriving = self.record(spoke.twin());
             visit(&arriving)?;
-            turn.valence += 1;
-            turn.open |= arriving.face == Slot::NONE;
-            turn.last_but_one = turn.last;
-            turn.last = spoke;
+            end.valence += 1;
+            end.on_boundary |= arriving.face == Slot::NONE;
+            end.last_but_one = end.last;
+            end.last = spoke;
             spoke = arriving.next;
         }
-        Ok(turn)
+        Ok(end)
     }
 
-    /// Describes `v` without a walk around it. The first spoke after the edge and the last one
-    /// before it show whether the valence is 3; any other valence is reported as 4.
+    /// Returns the data of the end `v` without a walk around it. The spokes after and before the
+    /// edge show whether the valence is 3. Any other valence is reported as 4.
     #[inline]
-    fn glance(&self, v: VertexId, first: HalfEdgeId, last: HalfEdgeId) -> Turn {
+    fn end_without_walk(&self, v: VertexId, first: HalfEdgeId, last: HalfEdgeId) -> End {
         let leaving = self.leaving.read(v.index()).get().expect("I5");
-        Turn {
+        End {
             valence: if self.follow(first.twin()) == last {
                 3
             } else {
                 4
             },
-            open: !self.has_face(leaving),
+            on_boundary: !self.has_face(leaving),
             last,
             last_but_one: last,
         }
@@ -193,7 +192,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
             ..
         } = checked;
         let inner = into.face != Slot::NONE && back.face != Slot::NONE;
-        if inner && checked.gone.open && checked.kept.open {
+        if inner && checked.gone.on_boundary && checked.kept.on_boundary {
             return Err(EditError::AcrossBoundary { edge: e });
         }
         for (second, third) in [(into.next, left), (back.next, right)] {
@@ -211,7 +210,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// Returns whether the two faces that remain at the merged vertex would both be triangles.
     #[cold]
     #[inline(never)]
-    fn would_be_pillow(&self, checked: &Collapse) -> bool {
+    fn only_triangles_remain(&self, checked: &Collapse) -> bool {
         let ends = [checked.into.origin, checked.back.origin];
         let mut faces = ends.into_iter().flat_map(|v| self.spokes(v));
         faces.all(|(_, arriving)| {
@@ -250,26 +249,30 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         // left side has written.
         if let Some((last, at_last)) = left {
             self.replace(gone.last_but_one.twin(), last.twin(), next);
-            self.pass_on_leaving(at_last.origin, last, next.twin());
+            self.replace_leaving(at_last.origin, last, next.twin());
         } else {
             self.link(gone.last.twin(), next);
-            self.pass_on_first(into.face, h, next);
+            self.replace_first(into.face, h, next);
         }
         let after = if let Some((last, at_last)) = right {
             let outer = back.next.twin();
             let before = self.prev(outer);
             self.replace(before, outer, last);
-            self.pass_on_leaving(at_last.origin, outer, last);
+            self.replace_leaving(at_last.origin, outer, last);
             next
         } else {
             let after = self.follow(t);
             self.link(kept.last.twin(), after);
-            self.pass_on_first(back.face, t, after);
+            self.replace_first(back.face, t, after);
             after
         };
 
         // The boundary half-edge of either end. On the left, a side has replaced a spoke.
-        let from = if gone.open && !kept.open { v } else { keep };
+        let from = if gone.on_boundary && !kept.on_boundary {
+            v
+        } else {
+            keep
+        };
         let leaving = self.leaving.read(from.index()).get().expect("I5");
         let leaving = match left {
             _ if leaving == t => after,
@@ -278,21 +281,21 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         };
         self.set_leaving(keep, leaving);
 
-        let mut bury = |mesh: &mut Self, triangle: Slot<FaceId>, spoke: HalfEdgeId| {
+        let mut delete_triangle = |mesh: &mut Self, triangle: Slot<FaceId>, spoke: HalfEdgeId| {
             let f = triangle.get().expect("a triangle is a face");
-            mesh.dig_face(f);
-            mesh.dig_edge(spoke.edge());
+            mesh.delete_face(f);
+            mesh.delete_edge(spoke.edge());
             log.removed_face(f);
             log.removed_edge(spoke.edge());
         };
         if let Some((last, _)) = left {
-            bury(self, into.face, last);
+            delete_triangle(self, into.face, last);
         }
         if right.is_some() {
-            bury(self, back.face, back.next);
+            delete_triangle(self, back.face, back.next);
         }
-        self.dig_edge(h.edge());
-        self.dig_vertex(v);
+        self.delete_edge(h.edge());
+        self.delete_vertex(v);
         log.removed_edge(h.edge());
         log.removed_vertex(v);
     }

@@ -6,17 +6,17 @@ use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
 impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// Moves all rows down over the holes, in order, and replaces the handles in them; O(mesh).
-    pub(super) fn close_holes<L: EditLog<Self>>(&mut self, log: &mut L) {
+    pub(super) fn compact_tables<L: EditLog<Self>>(&mut self, log: &mut L) {
         if self.hole_count() > 0 {
             self.rename_rows(log);
         }
-        self.vertex_holes.close(&mut self.positions);
-        self.vertex_holes.close(&mut self.leaving);
-        self.face_holes.close(&mut self.first);
-        self.halves.give_back();
-        self.vertex_holes.fill();
-        self.edge_holes.fill();
-        self.face_holes.fill();
+        self.vertex_holes.compact_table(&mut self.positions);
+        self.vertex_holes.compact_table(&mut self.leaving);
+        self.face_holes.compact_table(&mut self.first);
+        self.halves.shrink_if_half_empty();
+        self.vertex_holes.clear();
+        self.edge_holes.clear();
+        self.face_holes.clear();
     }
 
     /// Replaces every handle in the tables, and moves the half-edges, which have two rows per edge.
@@ -24,14 +24,14 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         let vertices = self.vertex_holes.new_rows(self.vertex_rows());
         let edges = self.edge_holes.new_rows(self.edge_rows());
         let faces = self.face_holes.new_rows(self.face_rows());
-        if L::LISTENS {
-            tell(&self.vertex_holes, &vertices, |old, new| {
+        if L::USES_REPORTS {
+            report_new_rows(&self.vertex_holes, &vertices, |old, new| {
                 log.renamed_vertex(old, new);
             });
-            tell(&self.edge_holes, &edges, |old, new| {
+            report_new_rows(&self.edge_holes, &edges, |old, new| {
                 log.renamed_edge(old, new);
             });
-            tell(&self.face_holes, &faces, |old, new| {
+            report_new_rows(&self.face_holes, &faces, |old, new| {
                 log.renamed_face(old, new);
             });
         }
@@ -59,12 +59,16 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     }
 }
 
-/// Calls `renamed` for each row that moves.
-fn tell<H: RowId, P: Probe>(holes: &Holes<P>, new_rows: &[u32], mut renamed: impl FnMut(H, H)) {
+/// Calls `report` with the old and the new handle of each row that moves.
+fn report_new_rows<H: RowId, P: Probe>(
+    holes: &Holes<P>,
+    new_rows: &[u32],
+    mut report: impl FnMut(H, H),
+) {
     for old in holes.rows(new_rows.len()) {
         let new = new_rows[old as usize];
         if new != old {
-            renamed(H::from_row(old), H::from_row(new));
+            report(H::from_row(old), H::from_row(new));
         }
     }
 }

@@ -3,7 +3,7 @@
 use sixfold_core::{EditError, EditLog, FaceId, IteratorExt, Probe, Slot, VertexId};
 
 use super::Refusal;
-use super::names::Names;
+use super::handle_set::HandleSet;
 use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
 impl<P: Probe> EditableHalfEdgeMesh<P> {
@@ -24,7 +24,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         let last = corners.len() - 1;
         let mut side = |mesh: &mut Self, i: usize| {
             let (from, to) = (corners[i], corners[if i == last { 0 } else { i + 1 }]);
-            let filled = mesh.gap_towards(from, to);
+            let filled = mesh.boundary_side(from, to);
             let side = filled.unwrap_or_else(|| {
                 let ends = [(from, Slot::some(f)), (to, Slot::NONE)];
                 let h = mesh.next_half();
@@ -43,7 +43,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         let mut arriving = closing;
         for (i, &v) in corners.iter().enumerate() {
             let leaving = if i == last { closing } else { side(self, i) };
-            self.join(v, arriving, leaving);
+            self.link_corner(v, arriving, leaving);
             arriving = leaving;
         }
         self.first.push(closing.0);
@@ -75,10 +75,12 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
             }
         }
         let mut new_edges = 0;
-        let mut filled_before = self.gap_towards(corners[degree - 1], corners[0]).is_some();
+        let mut filled_before = self
+            .boundary_side(corners[degree - 1], corners[0])
+            .is_some();
         for (i, &v) in corners.iter().enumerate() {
             let next = corners[if i + 1 == degree { 0 } else { i + 1 }];
-            let filled = self.gap_towards(v, next).is_some();
+            let filled = self.boundary_side(v, next).is_some();
             if !filled {
                 self.check_no_edge(v, next)?;
                 new_edges += 1;
@@ -92,9 +94,9 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     }
 
     /// Returns the boundary half-edge from one vertex to the other, if there is one.
-    fn gap_towards(&self, from: VertexId, to: VertexId) -> Option<HalfEdgeId> {
+    fn boundary_side(&self, from: VertexId, to: VertexId) -> Option<HalfEdgeId> {
         let h = self.leaving.read(from.index()).get()?;
-        let [half, twin] = self.both(h);
+        let [half, twin] = self.record_pair(h);
         (half.face == Slot::NONE && twin.origin == to).then_some(h)
     }
 
@@ -105,7 +107,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         let Some((h, arriving)) = spokes.find(|(_, arriving)| arriving.origin == to) else {
             return Ok(());
         };
-        match self.row_of(h).face.get() {
+        match self.record(h).face.get() {
             Some(face) if arriving.face == Slot::NONE => {
                 Err(EditError::RepeatedSide { from, to, face })
             }
@@ -113,8 +115,8 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         }
     }
 
-    /// Joins two sides of a new face at `v`, and the boundary beside them. The flag of a side is
-    /// true if its edge is new; otherwise the side has filled a boundary half-edge.
+    /// Links two sides of a new face at `v`, and the boundary beside them. The flag of a side is
+    /// true if its edge is new. Otherwise the side is a boundary half-edge that the face fills.
     ///
     /// ```text
     /// arriving  leaving     boundary
@@ -123,7 +125,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// new       filled      next(the half-edge before leaving) = twin(arriving)
     /// filled    filled      the gap at v is closed
     /// ```
-    fn join(
+    fn link_corner(
         &mut self,
         v: VertexId,
         (arriving, arriving_is_new): (HalfEdgeId, bool),
@@ -139,7 +141,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
                 self.link(leaving.twin(), beyond);
             }
             (true, false) => {
-                let before = self.before_in_turn(leaving);
+                let before = self.prev_around_origin(leaving);
                 self.link(before, arriving.twin());
                 self.set_leaving(v, arriving.twin());
             }
@@ -149,7 +151,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     }
 
     /// Returns the half-edge before `h`, found by a walk around its origin.
-    fn before_in_turn(&self, h: HalfEdgeId) -> HalfEdgeId {
+    fn prev_around_origin(&self, h: HalfEdgeId) -> HalfEdgeId {
         let mut spoke = h;
         loop {
             let next = self.follow(spoke.twin());
@@ -164,11 +166,11 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// a boundary, a side of the face must be on the boundary too.
     pub(super) fn check_removable(&self, first: HalfEdgeId) -> Result<(), Refusal> {
         let mut h = first;
-        let [mut half, mut twin] = self.both(h);
+        let [mut half, mut twin] = self.record_pair(h);
         loop {
             let next = half.next;
             let beside = twin.face;
-            [half, twin] = self.both(next);
+            [half, twin] = self.record_pair(next);
             if beside != Slot::NONE && twin.face != Slot::NONE {
                 let vertex = half.origin;
                 let leaving = self.leaving.read(vertex.index()).get().expect("I5");
@@ -187,15 +189,15 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// fan.
     ///
     /// O(valence) for each corner of each face of `v`.
-    pub(super) fn check_star_removable(&self, v: VertexId) -> Result<(), Refusal> {
-        let mut star = Names::none();
+    pub(super) fn check_fan_removable(&self, v: VertexId) -> Result<(), Refusal> {
+        let mut removed = HandleSet::new();
         for (_, arriving) in self.spokes(v) {
             if let Some(f) = arriving.face.get() {
-                star.push(f);
+                removed.push(f);
             }
         }
-        star.sort();
-        let stays = |half: &Half| half.face.get().is_some_and(|f| !star.has(f));
+        removed.sort();
+        let remains = |half: &Half| half.face.get().is_some_and(|f| !removed.contains(f));
         for f in self
             .spokes(v)
             .filter_map(|(_, arriving)| arriving.face.get())
@@ -207,9 +209,9 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
             {
                 // Each remaining fan ends once during the walk around the vertex.
                 let leaving = self.leaving.read(vertex.index()).get().expect("I5");
-                let (mut fans, mut before) = (0, stays(&self.row_of(leaving)));
+                let (mut fans, mut before) = (0, remains(&self.record(leaving)));
                 for (_, arriving) in self.spokes(vertex) {
-                    let after = stays(arriving);
+                    let after = remains(arriving);
                     fans += usize::from(before && !after);
                     before = after;
                 }
@@ -223,21 +225,21 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
 
     /// Unlinks the faces of `v` counter-clockwise, starting at the boundary if there is one. Each
     /// next face then has a side on the boundary that the face before it left.
-    pub(super) fn unlink_star(&mut self, v: VertexId, log: &mut impl EditLog<Self>) {
+    pub(super) fn unlink_fan(&mut self, v: VertexId, log: &mut impl EditLog<Self>) {
         let Some(mut out) = self.leaving.read(v.index()).get() else {
             return;
         };
         if !self.has_face(out) {
-            out = self.before_in_turn(out).twin();
+            out = self.prev_around_origin(out).twin();
         }
-        while let Some(f) = self.row_of(out).face.get() {
-            let turned = self.prev(out).twin();
-            let more = self.has_face(turned);
+        while let Some(f) = self.record(out).face.get() {
+            let next = self.prev(out).twin();
+            let next_has_face = self.has_face(next);
             self.unlink_face(f, out, log);
-            if !more {
+            if !next_has_face {
                 return;
             }
-            out = turned;
+            out = next;
         }
     }
 
@@ -246,31 +248,35 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     ///
     /// At each corner, the `next` of `before` becomes `after`. `before` is the arriving side or, if
     /// that side is removed, the half-edge before its twin. `after` is the leaving side or, if that
-    /// side is removed, the half-edge after its twin. While several faces are removed in turn, a
-    /// corner may have several fans. Each gap then has its own two half-edges, and the walk around
-    /// the vertex still visits all.
+    /// side is removed, the half-edge after its twin. While several faces are removed one by one, a
+    /// corner may have several fans. Each gap between them then has its own two half-edges, and the
+    /// walk around the vertex still visits all half-edges.
     pub(super) fn unlink_face(
         &mut self,
         f: FaceId,
         first: HalfEdgeId,
         log: &mut impl EditLog<Self>,
     ) {
-        let mut bury = |mesh: &mut Self, h: HalfEdgeId| {
-            mesh.dig_edge(h.edge());
+        let mut delete_side = |mesh: &mut Self, h: HalfEdgeId| {
+            mesh.delete_edge(h.edge());
             log.removed_edge(h.edge());
         };
-        let first_goes = !self.has_face(first.twin());
-        let (mut arriving, mut goes) = (first, first_goes);
+        let first_removed = !self.has_face(first.twin());
+        let (mut arriving, mut arriving_removed) = (first, first_removed);
         let mut leaving = self.follow(first);
         loop {
-            let [at_leaving, at_twin] = self.both(leaving);
-            let leaving_goes = at_twin.face == Slot::NONE;
-            let before = if goes {
-                self.before_in_turn(arriving.twin())
+            let [at_leaving, at_twin] = self.record_pair(leaving);
+            let leaving_removed = at_twin.face == Slot::NONE;
+            let before = if arriving_removed {
+                self.prev_around_origin(arriving.twin())
             } else {
                 arriving
             };
-            let after = if leaving_goes { at_twin.next } else { leaving };
+            let after = if leaving_removed {
+                at_twin.next
+            } else {
+                leaving
+            };
             let v = at_leaving.origin;
             if after == arriving.twin() {
                 *self.leaving.write(v.index()) = Slot::NONE;
@@ -279,21 +285,21 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
                 self.set_leaving(v, after);
             }
             // The first side is needed again, at the last corner.
-            if !goes {
+            if !arriving_removed {
                 self.halves.write(arriving.index()).face = Slot::NONE;
             } else if arriving != first {
-                bury(self, arriving);
+                delete_side(self, arriving);
             }
             if leaving == first {
                 break;
             }
-            (arriving, goes) = (leaving, leaving_goes);
+            (arriving, arriving_removed) = (leaving, leaving_removed);
             leaving = at_leaving.next;
         }
-        if first_goes {
-            bury(self, first);
+        if first_removed {
+            delete_side(self, first);
         }
-        self.dig_face(f);
+        self.delete_face(f);
         log.removed_face(f);
     }
 }

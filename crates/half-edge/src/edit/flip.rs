@@ -20,22 +20,22 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     /// ```
     #[inline]
     pub(super) fn flip(&mut self, e: EdgeId) -> Result<EdgeId, Refusal> {
-        let [one, other] = self.existing_edge(e)?;
+        let [one, other] = self.check_edge(e)?;
         let (Some(f), Some(g)) = (one.face.get(), other.face.get()) else {
             return Err(EditError::NotTwoFaces { edge: e, faces: 1 });
         };
         let [h, t] = self.halves_of(e);
         let (bc, ad) = (one.next, other.next);
-        let [at_bc, at_cb] = self.both(bc);
-        let [at_ad, at_da] = self.both(ad);
+        let [at_bc, at_cb] = self.record_pair(bc);
+        let [at_ad, at_da] = self.record_pair(ad);
         let (ca, db) = (at_bc.next, at_ad.next);
-        let [at_ca, at_ac] = self.both(ca);
-        let [at_db, at_bd] = self.both(db);
+        let [at_ca, at_ac] = self.record_pair(ca);
+        let [at_db, at_bd] = self.record_pair(db);
         if at_ca.next != h {
-            return Err(self.no_triangle(f));
+            return Err(self.not_a_triangle(f));
         }
         if at_db.next != t {
-            return Err(self.no_triangle(g));
+            return Err(self.not_a_triangle(g));
         }
         let (a, b, c, d) = (one.origin, other.origin, at_ca.origin, at_db.origin);
         if c == d {
@@ -54,7 +54,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         // walk that ends first has visited every edge that could join them.
         let (mut x, mut y) = (at_ac.next, at_bd.next);
         while x != bc.twin() && y != ad.twin() {
-            let [to_c, to_d] = [x, y].map(|spoke| self.row_of(spoke.twin()));
+            let [to_c, to_d] = [x, y].map(|spoke| self.record(spoke.twin()));
             if to_c.origin == d || to_d.origin == c {
                 return Err(EditError::EdgeExists { ends: [c, d] });
             }
@@ -85,14 +85,14 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         self.link(db, bc);
         *self.first.write(f.index()) = h;
         *self.first.write(g.index()) = t;
-        self.pass_on_leaving(a, h, ad);
-        self.pass_on_leaving(b, t, bc);
+        self.replace_leaving(a, h, ad);
+        self.replace_leaving(b, t, bc);
         Ok(e)
     }
 
     #[cold]
     #[inline(never)]
-    pub(super) fn no_triangle(&self, f: FaceId) -> Refusal {
+    pub(super) fn not_a_triangle(&self, f: FaceId) -> Refusal {
         EditError::NotATriangle {
             face: f,
             degree: self.around_face(f).count(),
@@ -105,7 +105,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     pub(super) fn third_side(&self, h: HalfEdgeId, half: &Half) -> Option<(HalfEdgeId, Half)> {
         half.face.get()?;
         let third = self.follow(half.next);
-        let at_third = self.row_of(third);
+        let at_third = self.record(third);
         (at_third.next == h).then_some((third, at_third))
     }
 }

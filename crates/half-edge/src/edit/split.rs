@@ -3,7 +3,7 @@
 use sixfold_core::{EdgeId, EditError, EditLog, FaceId, Point, Probe, Slot, VertexId, row};
 
 use super::Refusal;
-use super::names::Names;
+use super::handle_set::HandleSet;
 use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
 
 impl<P: Probe> EditableHalfEdgeMesh<P> {
@@ -18,7 +18,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         self.check_room(1, 1, 0)?;
         let before = self.prev(h.twin());
         let n = self.cut_edge(h, before, at, log);
-        Ok(self.row_of(n).origin)
+        Ok(self.record(n).origin)
     }
 
     /// Splits `e` and its triangles at a new vertex; O(1).
@@ -30,11 +30,11 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     ) -> Result<VertexId, Refusal> {
         let h = self.half_beside_a_face(e)?;
         let t = h.twin();
-        let [half, twin] = self.both(h);
+        let [half, twin] = self.record_pair(h);
         let third = |mesh: &Self, h, half: &Half| {
             let third = mesh.third_side(h, half);
             match half.face.get() {
-                Some(f) if third.is_none() => Err(mesh.no_triangle(f)),
+                Some(f) if third.is_none() => Err(mesh.not_a_triangle(f)),
                 _ => Ok(third),
             }
         };
@@ -53,13 +53,13 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         if left.is_some() {
             self.cut_face(h, half.next, log);
         }
-        Ok(self.row_of(n).origin)
+        Ok(self.record(n).origin)
     }
 
     /// Returns a half-edge of `e` whose twin has a face, so that the half-edge before the twin is
     /// near.
     fn half_beside_a_face(&self, e: EdgeId) -> Result<HalfEdgeId, Refusal> {
-        let [_, other] = self.existing_edge(e)?;
+        let [_, other] = self.check_edge(e)?;
         let [h, t] = self.halves_of(e);
         Ok(if other.face == Slot::NONE { t } else { h })
     }
@@ -81,7 +81,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         log: &mut impl EditLog<Self>,
     ) -> HalfEdgeId {
         let t = h.twin();
-        let [half, twin] = self.both(h);
+        let [half, twin] = self.record_pair(h);
         let n = self.next_half();
         // If the edge is on a boundary, `n` is the boundary half-edge at m.
         let m = self.push_vertex(at, Slot::some(n));
@@ -89,7 +89,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         self.link(h, n);
         self.halves.write(t.index()).origin = m;
         self.link(before, n.twin());
-        self.pass_on_leaving(twin.origin, t, n.twin());
+        self.replace_leaving(twin.origin, t, n.twin());
         log.created_vertex(m);
         log.created_edge(n.edge());
         n
@@ -111,8 +111,8 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         q: HalfEdgeId,
         log: &mut impl EditLog<Self>,
     ) -> HalfEdgeId {
-        let [at_p, from_p] = self.both(p);
-        let [at_q, from_q] = self.both(q);
+        let [at_p, from_p] = self.record_pair(p);
+        let [at_q, from_q] = self.record_pair(q);
         let old = at_p.face.get().expect("p has a face");
         let new = self.next_face();
         let x = self.push_edge([
@@ -154,7 +154,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         at: Point,
         log: &mut impl EditLog<Self>,
     ) -> Result<VertexId, Refusal> {
-        let first = self.existing_face(f)?;
+        let first = self.check_face(f)?;
         let degree = self.sides(f).count();
         self.check_room(1, degree, degree - 1)?;
 
@@ -203,16 +203,16 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     }
 
     /// Splits `f` by an edge between two of its corners; O(degree + valence).
-    pub(super) fn cut(
+    pub(super) fn split_between(
         &mut self,
         f: FaceId,
         ends: [VertexId; 2],
         log: &mut impl EditLog<Self>,
     ) -> Result<EdgeId, Refusal> {
-        self.existing_face(f)?;
+        self.check_face(f)?;
         let mut arriving = [None; 2];
         for (h, _) in self.sides(f) {
-            let target = self.row_of(h.twin()).origin;
+            let target = self.record(h.twin()).origin;
             for (end, arriving) in ends.into_iter().zip(&mut arriving) {
                 if target == end {
                     *arriving = Some(h);
@@ -227,7 +227,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         };
         let (p, q) = (corner(0)?, corner(1)?);
         if p == q || self.follow(p) == q || self.follow(q) == p {
-            return Err(EditError::NothingBetween { face: f, ends });
+            return Err(EditError::AdjacentCorners { face: f, ends });
         }
         let [u, w] = ends;
         if self.spokes(u).any(|(_, arriving)| arriving.origin == w) {
@@ -243,20 +243,20 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         e: EdgeId,
         log: &mut impl EditLog<Self>,
     ) -> Result<FaceId, Refusal> {
-        let [one, other] = self.existing_edge(e)?;
+        let [one, other] = self.check_edge(e)?;
         let (Some(f), Some(g)) = (one.face.get(), other.face.get()) else {
             return Err(EditError::NotTwoFaces { edge: e, faces: 1 });
         };
         let [h, t] = self.halves_of(e);
         // The corners of one face, except the ends of `e`, which both faces share.
-        let mut corners = Names::none();
+        let mut corners = HandleSet::new();
         let mut before_h = one.next;
         loop {
             let next = self.follow(before_h);
             if next == h {
                 break;
             }
-            corners.push(self.row_of(next).origin);
+            corners.push(self.record(next).origin);
             before_h = next;
         }
         corners.sort();
@@ -266,8 +266,8 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
             if next == t {
                 break;
             }
-            let vertex = self.row_of(next).origin;
-            if corners.has(vertex) {
+            let vertex = self.record(next).origin;
+            if corners.contains(vertex) {
                 return Err(EditError::RepeatedVertex { vertex });
             }
             before_t = next;
@@ -277,10 +277,10 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         self.link(before_h, other.next);
         self.link(before_t, one.next);
         *self.first.write(f.index()) = one.next;
-        self.pass_on_leaving(one.origin, h, other.next);
-        self.pass_on_leaving(other.origin, t, one.next);
-        self.dig_edge(e);
-        self.dig_face(g);
+        self.replace_leaving(one.origin, h, other.next);
+        self.replace_leaving(other.origin, t, one.next);
+        self.delete_edge(e);
+        self.delete_face(g);
         log.removed_edge(e);
         log.removed_face(g);
         Ok(f)

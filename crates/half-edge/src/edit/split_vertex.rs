@@ -27,7 +27,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
     ///      ╱  ▼  ╲              ╱     ▼  ╱ new ╲
     ///        right                   right
     /// ```
-    pub(super) fn open(
+    pub(super) fn split_fan(
         &mut self,
         v: VertexId,
         left: Option<VertexId>,
@@ -38,14 +38,14 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         self.check_vertex(v)?;
         let first = self.half_leaving(v).ok_or(EditError::NoFan { vertex: v })?;
         if left == right {
-            return Err(EditError::NoSides { vertex: v });
+            return Err(EditError::BadNeighbours { vertex: v });
         }
         let [mut to_left, mut to_right] = [None; 2];
         let mut h = first;
         // The half-edge before the first spoke is known after the walk.
         let mut before = first;
         loop {
-            let arriving = self.row_of(h.twin());
+            let arriving = self.record(h.twin());
             let spoke = Some(Spoke { h, before });
             if left == Some(arriving.origin) {
                 to_left = spoke;
@@ -144,7 +144,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
         log: &mut impl EditLog<Self>,
     ) -> HalfEdgeId {
         let f = self.next_face();
-        let [half, twin] = self.both(h);
+        let [half, twin] = self.record_pair(h);
         let new = self.push_edge([
             Half { origin, ..half },
             Half {
@@ -154,7 +154,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
             },
         ]);
         self.link(before, new);
-        self.pass_on_first(half.face, h, new);
+        self.replace_first(half.face, h, new);
         for (side, next) in [(h, new.twin()), (third, h)] {
             let half = self.halves.write(side.index());
             (half.next, half.face) = (next, Slot::some(f));

@@ -42,7 +42,7 @@ fn edge(mesh: &EditableHalfEdgeMesh, a: u32, b: u32) -> EdgeId {
 }
 
 #[test]
-fn a_flip_turns_six_halves() {
+fn a_flip_writes_the_expected_rows() {
     let mut mesh = mesh(4, [[0, 1, 2], [0, 2, 3]]);
     let before = "h6 v0 f0, h4 v1 ., h8 v0 f1, h0 v2 f0, h9 v0 ., \
                   h2 v3 f1, h3 v1 f0, h1 v2 ., h5 v2 f1, h7 v3 .";
@@ -171,10 +171,10 @@ fn compact_releases_memory() {
 }
 
 #[test]
-fn an_edited_mesh_can_be_refined_after_into_whole() {
+fn an_edited_mesh_can_be_refined_after_into_compact() {
     let mut mesh = mesh(4, [[0, 1, 2], [0, 2, 3]]);
     mesh.remove_face(FaceId::new(1), &mut ()).expect("legal");
-    let mesh = mesh.into_whole();
+    let mesh = mesh.into_compact();
     let (mut numbers, mut child) = (Ranks::default(), HalfEdgeMesh::empty());
     mesh.number_edges(&mut numbers);
     let done = mesh.split_into(Split::Quads, &numbers, &mut child);

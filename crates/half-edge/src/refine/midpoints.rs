@@ -36,11 +36,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use sixfold_core::{FaceId, MeshQuery, Slot};
 
-use super::{Corners, fill, for_parts, half};
+use super::{Corners, fill, for_each_edge_chunk, half};
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
 /// The number of steps after which [`previous`] stops: walks from all corners take O(degree²).
-const REACH: usize = 8;
+const MAX_STEPS: usize = 8;
 
 /// The row counts of the parent, from which the rows of the child are computed.
 #[derive(Clone, Copy)]
@@ -53,7 +53,7 @@ struct Sizes {
 }
 
 impl Sizes {
-    fn of(mesh: &HalfEdgeMesh, face_points: bool) -> Self {
+    fn new(mesh: &HalfEdgeMesh, face_points: bool) -> Self {
         let [vertices, faces, edges] =
             [mesh.vertex_count(), mesh.face_count(), mesh.edge_count()].map(|n| n as u32);
         let midpoints = if face_points {
@@ -76,15 +76,15 @@ pub(super) fn quads<const CLOSED: bool>(
     corners: &Corners<CLOSED>,
     child: &mut HalfEdgeMesh,
 ) {
-    let sizes = Sizes::of(mesh, true);
+    let sizes = Sizes::new(mesh, true);
     let rows = mesh.half_rows();
     let inner = |h: u32| 4 * sizes.edges + 2 * corners.number(h);
-    let far = AtomicBool::new(false);
+    let has_large_face = AtomicBool::new(false);
     split(mesh, corners, sizes, child, |h, record, n| {
         let (sizes, corners) = (sizes, *corners);
         let p = previous(rows, h, n).unwrap_or_else(|| {
             // A placeholder: large faces are linked after all rows are written.
-            far.store(true, Ordering::Relaxed);
+            has_large_face.store(true, Ordering::Relaxed);
             h
         });
         let face = record.face.get().map_or(0, |f| f.index() as u32);
@@ -93,7 +93,7 @@ pub(super) fn quads<const CLOSED: bool>(
             half(late(h), sizes.vertices + face, corners.face(n)),
         ]
     });
-    if far.into_inner() {
+    if has_large_face.into_inner() {
         link_large_faces(mesh, child, inner);
     }
     let first = mesh.first_rows();
@@ -109,7 +109,7 @@ pub(super) fn triangles<const CLOSED: bool>(
     corners: &Corners<CLOSED>,
     child: &mut HalfEdgeMesh,
 ) {
-    let sizes = Sizes::of(mesh, false);
+    let sizes = Sizes::new(mesh, false);
     let rows = mesh.half_rows();
     let inner = |h: u32| 4 * sizes.edges + 2 * corners.number(h);
     split(mesh, corners, sizes, child, |h, record, n| {
@@ -138,11 +138,11 @@ fn split<const CLOSED: bool>(
     inner_pair: impl Fn(u32, &Half, u32) -> [Half; 2] + Sync,
 ) {
     let edges = mesh.half_rows().as_chunks::<2>().0;
-    for_parts(edges.len(), corners, 4, child, |part| {
+    for_each_edge_chunk(edges.len(), corners, 4, child, |chunk| {
         // Copies, so that the compiler knows that writes to the tables do not change them.
         let (sizes, corners) = (sizes, *corners);
-        let pairs = &edges[part.edges.start as usize..part.edges.end as usize];
-        let along = part.along.as_chunks_mut::<4>().0;
+        let pairs = &edges[chunk.edges.start as usize..chunk.edges.end as usize];
+        let along = chunk.along.as_chunks_mut::<4>().0;
         let children = |h: u32, record: &Half| {
             let n = record.next.index() as u32;
             let point = sizes.midpoints + h / 2;
@@ -153,9 +153,9 @@ fn split<const CLOSED: bool>(
             ]
         };
         if CLOSED {
-            let inner = part.inner.as_chunks_mut::<4>().0;
+            let inner = chunk.inner.as_chunks_mut::<4>().0;
             let rows = pairs.iter().zip(along).zip(inner);
-            for (e, (([one, other], along), inner)) in part.edges.clone().zip(rows) {
+            for (e, (([one, other], along), inner)) in chunk.edges.clone().zip(rows) {
                 let (h, t) = (2 * e, 2 * e + 1);
                 let ([a, b], [c, d]) = (children(h, one), children(t, other));
                 *along = [a, d, c, b];
@@ -163,18 +163,18 @@ fn split<const CLOSED: bool>(
                 let [c, d] = inner_pair(t, other, other.next.index() as u32);
                 *inner = [a, b, c, d];
             }
-            for (h, first) in (2 * part.edges.start..).zip(part.first.iter_mut()) {
+            for (h, first) in (2 * chunk.edges.start..).zip(chunk.first.iter_mut()) {
                 *first = HalfEdgeId::new(2 * h);
             }
             return;
         }
-        let inner = part.inner.as_chunks_mut::<2>().0;
-        let mut inner = inner.iter_mut().zip(part.first.iter_mut());
-        for ((e, pair), along) in part.edges.clone().zip(pairs).zip(along) {
+        let inner = chunk.inner.as_chunks_mut::<2>().0;
+        let mut inner = inner.iter_mut().zip(chunk.first.iter_mut());
+        for ((e, pair), along) in chunk.edges.clone().zip(pairs).zip(along) {
             let [one, other] = [0, 1].map(|side| {
                 let (h, record) = (2 * e + side, &pair[side as usize]);
                 let (n, origin) = (record.next.index() as u32, record.origin.index() as u32);
-                if !corners.is_one(h) {
+                if !corners.has_face(h) {
                     let point = sizes.midpoints + e;
                     return [(late(h), origin), (2 * n, point)]
                         .map(|(next, origin)| half(next, origin, Slot::NONE));
@@ -203,7 +203,7 @@ fn split<const CLOSED: bool>(
     fill(points, |e| {
         // The boundary half-edge if there is one.
         let h = 2 * e as u32;
-        let outer = if corners.is_one(h + 1) { h } else { h + 1 };
+        let outer = if corners.has_face(h + 1) { h } else { h + 1 };
         Slot::some(HalfEdgeId::new(late(outer)))
     });
 }
@@ -219,7 +219,7 @@ fn late(h: u32) -> u32 {
 #[inline(always)]
 fn previous(rows: &[Half], h: u32, n: u32) -> Option<u32> {
     let mut at = n;
-    for _ in 0..REACH {
+    for _ in 0..MAX_STEPS {
         let after = rows[at as usize].next.index() as u32;
         if after == h {
             return Some(at);
@@ -234,7 +234,7 @@ fn previous(rows: &[Half], h: u32, n: u32) -> Option<u32> {
 fn link_large_faces(mesh: &HalfEdgeMesh, child: &mut HalfEdgeMesh, inner: impl Fn(u32) -> u32) {
     let rows = child.halves.rows_mut();
     for f in mesh.faces() {
-        if mesh.around_face(f).nth(REACH + 1).is_some() {
+        if mesh.around_face(f).nth(MAX_STEPS + 1).is_some() {
             for h in mesh.around_face(f) {
                 let [h, n] = [h, mesh.next(h)].map(|h| inner(h.index() as u32));
                 rows[n as usize].next = HalfEdgeId::new(h + 1);

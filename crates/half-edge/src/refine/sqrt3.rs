@@ -31,7 +31,7 @@
 
 use sixfold_core::{FaceId, MeshQuery, Slot};
 
-use super::{Corners, fill, for_parts, half};
+use super::{Corners, fill, for_each_edge_chunk, half};
 use crate::mesh::{HalfEdgeId, HalfEdgeMesh};
 
 /// Splits every triangle into three and flips the inner edges; cuts boundary edges in three if
@@ -47,47 +47,54 @@ pub(super) fn sqrt3<const CLOSED: bool, const TRISECT: bool>(
     let next = |h: u32| rows[h as usize].next.index() as u32;
     let spoke = |h: u32| 2 * (edges + corners.number(h));
     let face_point = |f: Slot<FaceId>| vertices + f.get().map_or(0, |f| f.index() as u32);
-    // For the boundary half-edge `b`: the number j of boundary half-edges before it; for j, the
-    // first new half-edge, the first new point and the first new triangle.
-    let gap = |b: u32| b - corners.number(b);
-    let cut = |j: u32| 2 * (edges + 3 * faces) + 8 * j;
-    let point = |j: u32| vertices + faces + 2 * j;
-    let more = |j: u32| 3 * faces + 2 * j;
-    let name = |f: u32| Slot::some(FaceId::new(f));
-    for_parts(edges as usize, corners, 2, child, |part| {
-        let pairs = &rows.as_chunks::<2>().0[part.edges.start as usize..part.edges.end as usize];
-        let inner = part.inner.as_chunks_mut::<2>().0;
-        let mut inner = inner.iter_mut().zip(part.first.iter_mut());
-        let along = part.along.as_chunks_mut::<2>().0;
-        for ((e, pair), along) in part.edges.clone().zip(pairs).zip(along) {
+    // The number j of boundary half-edges before the boundary half-edge `b`. Then, for j, the first
+    // new half-edge, the first new point and the first new triangle.
+    let boundary_rank = |b: u32| b - corners.number(b);
+    let new_half = |j: u32| 2 * (edges + 3 * faces) + 8 * j;
+    let new_point = |j: u32| vertices + faces + 2 * j;
+    let new_face = |j: u32| 3 * faces + 2 * j;
+    let face_slot = |f: u32| Slot::some(FaceId::new(f));
+    for_each_edge_chunk(edges as usize, corners, 2, child, |chunk| {
+        let pairs = &rows.as_chunks::<2>().0[chunk.edges.start as usize..chunk.edges.end as usize];
+        let inner = chunk.inner.as_chunks_mut::<2>().0;
+        let mut inner = inner.iter_mut().zip(chunk.first.iter_mut());
+        let along = chunk.along.as_chunks_mut::<2>().0;
+        for ((e, pair), along) in chunk.edges.clone().zip(pairs).zip(along) {
             *along = [0, 1].map(|side| {
                 let (h, t) = (2 * e + side, 2 * e + (side ^ 1));
                 let (record, twin) = (&pair[side as usize], &pair[side as usize ^ 1]);
                 let n = record.next.index() as u32;
                 let origin = record.origin.index() as u32;
-                if !corners.is_one(h) {
-                    let next = if TRISECT { cut(gap(h)) + 1 } else { n };
+                if !corners.has_face(h) {
+                    let next = if TRISECT {
+                        new_half(boundary_rank(h)) + 1
+                    } else {
+                        n
+                    };
                     return half(next, origin, Slot::NONE);
                 }
                 let face = corners.face(h);
                 let p = next(n);
-                let arriving = match (corners.is_one(p ^ 1), TRISECT) {
+                let arriving = match (corners.has_face(p ^ 1), TRISECT) {
                     (true, _) => half(p ^ 1, origin, corners.face(p ^ 1)),
                     (false, false) => half(spoke(p) + 1, origin, corners.face(p)),
-                    (false, true) => half(cut(gap(p ^ 1)) + 7, origin, corners.face(p)),
+                    (false, true) => {
+                        let next = new_half(boundary_rank(p ^ 1)) + 7;
+                        half(next, origin, corners.face(p))
+                    }
                 };
                 let centre = face_point(record.face);
-                let (flipped, leaving) = match (corners.is_one(t), TRISECT) {
+                let (flipped, leaving) = match (corners.has_face(t), TRISECT) {
                     (true, _) => (
                         half(spoke(h) + 1, face_point(twin.face), face),
                         half(spoke(twin.next.index() as u32), centre, face),
                     ),
                     (false, false) => (half(spoke(n), origin, face), half(h, centre, face)),
                     (false, true) => {
-                        let j = gap(t);
+                        let j = boundary_rank(t);
                         (
-                            half(spoke(n), point(j) + 1, face),
-                            half(cut(j) + 2, centre, name(more(j))),
+                            half(spoke(n), new_point(j) + 1, face),
+                            half(new_half(j) + 2, centre, face_slot(new_face(j))),
                         )
                     }
                 };
@@ -104,36 +111,37 @@ pub(super) fn sqrt3<const CLOSED: bool, const TRISECT: bool>(
     fill(old, |v| {
         let spoke = |h: HalfEdgeId| {
             let h = h.index() as u32;
-            HalfEdgeId::new(if corners.is_one(h) { spoke(h) } else { h })
+            HalfEdgeId::new(if corners.has_face(h) { spoke(h) } else { h })
         };
         leaving[v].get().map(spoke).into()
     });
     let first = mesh.first_rows();
-    let (face_points, cuts) = points.split_at_mut(first.len());
+    let (face_points, new_points) = points.split_at_mut(first.len());
     fill(face_points, |f| {
         Slot::some(HalfEdgeId::new(spoke(first[f].index() as u32) + 1))
     });
     if CLOSED || !TRISECT {
         return;
     }
-    fill(cuts.as_chunks_mut().0, |j| {
-        let y = cut(j as u32);
+    fill(new_points.as_chunks_mut().0, |j| {
+        let y = new_half(j as u32);
         [y + 3, y + 1].map(|h| Slot::some(HalfEdgeId::new(h)))
     });
-    let more_first = &mut child.first.rows_mut()[3 * faces as usize..];
-    fill(more_first.as_chunks_mut().0, |j| {
-        let y = cut(j as u32);
+    let new_first = &mut child.first.rows_mut()[3 * faces as usize..];
+    fill(new_first.as_chunks_mut().0, |j| {
+        let y = new_half(j as u32);
         [y + 2, y].map(HalfEdgeId::new)
     });
-    let more_halves = &mut child.halves.rows_mut()[cut(0) as usize..];
-    fill(more_halves.as_chunks_mut().0, |j| {
+    let new_halves = &mut child.halves.rows_mut()[new_half(0) as usize..];
+    fill(new_halves.as_chunks_mut().0, |j| {
         let b = corners.0.select_missing(j) as u32;
         let h = b ^ 1;
         let j = j as u32;
-        let (y, near, far) = (cut(j), point(j), point(j) + 1);
+        let (y, near, far) = (new_half(j), new_point(j), new_point(j) + 1);
         let centre = face_point(rows[h as usize].face);
         let a = rows[h as usize].origin.index() as u32;
-        let [first, second, third] = [name(more(j)), name(more(j) + 1), corners.face(h)];
+        let [first, second] = [0, 1].map(|i| face_slot(new_face(j) + i));
+        let third = corners.face(h);
         [
             half(y + 6, near, second),
             half(y + 3, far, Slot::NONE),

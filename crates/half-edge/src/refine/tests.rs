@@ -12,7 +12,7 @@ fn mesh(vertices: usize, halves: &[Row], leaving: &[u32], first: &[u32]) -> Half
     let halves = halves.iter().map(|&(next, v, f)| half(next, v, slot(f)));
     let leaving = leaving.iter().map(|&h| Slot::some(HalfEdgeId::new(h)));
     let first = first.iter().map(|&h| HalfEdgeId::new(h));
-    let mesh = HalfEdgeMesh::of_tables(
+    let mesh = HalfEdgeMesh::from_tables(
         vec![Point::ZERO; vertices],
         leaving.collect(),
         halves.collect(),

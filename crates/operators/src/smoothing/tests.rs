@@ -34,7 +34,7 @@ fn noise(i: usize) -> f32 {
 }
 
 /// Returns whether vertex `i` of an m × n grid is on its boundary.
-fn on_rim(i: usize, m: usize, n: usize) -> bool {
+fn is_on_boundary(i: usize, m: usize, n: usize) -> bool {
     let (x, y) = (i % (m + 1), i / (m + 1));
     x == 0 || x == m || y == 0 || y == n
 }
@@ -104,7 +104,7 @@ fn a_sphere_shrinks_towards_its_centre() {
 }
 
 #[test]
-fn the_inside_of_a_regular_grid_stays() {
+fn the_interior_of_a_regular_grid_does_not_move() {
     for grid in [
         sixfold_shapes::grid(5, 4),
         sixfold_shapes::triangle_grid(5, 4),
@@ -117,13 +117,13 @@ fn the_inside_of_a_regular_grid_stays() {
 #[test]
 fn a_plane_stays_a_plane() {
     let grid = sixfold_shapes::triangle_grid(6, 5).expect("small");
-    let shaken = with_positions(&grid, |i, p| {
+    let perturbed = with_positions(&grid, |i, p| {
         p + 0.3 * Point::new(noise(i), noise(3 * i + 1), 0.0)
     });
     for weights in BOTH {
         for boundary in [Boundary::Fixed, Boundary::Curve] {
             let moved = moved(
-                &shaken,
+                &perturbed,
                 &Smoothing {
                     weights,
                     boundary,
@@ -140,12 +140,12 @@ fn a_plane_stays_a_plane() {
 fn cotangents_leave_a_plane_unchanged() {
     let (m, n) = (7, 6);
     let grid = sixfold_shapes::triangle_grid(m, n).expect("small");
-    let shaken = with_positions(&grid, |i, p| {
+    let perturbed = with_positions(&grid, |i, p| {
         p + 0.3 * Point::new(noise(i), noise(3 * i + 1), 0.0)
     });
-    let go = |weights| {
+    let run = |weights| {
         moved(
-            &shaken,
+            &perturbed,
             &Smoothing {
                 weights,
                 step: 1.0,
@@ -153,12 +153,12 @@ fn cotangents_leave_a_plane_unchanged() {
             },
         )
     };
-    let far = |moved: &[Point]| {
-        let pairs = shaken.positions().iter().zip(moved);
+    let max_distance = |moved: &[Point]| {
+        let pairs = perturbed.positions().iter().zip(moved);
         pairs.map(|(p, q)| p.distance(*q)).fold(0.0, f32::max)
     };
-    assert!(far(&go(Weights::Cotangent)) < 1e-5);
-    assert!(far(&go(Weights::Uniform)) > 0.1);
+    assert!(max_distance(&run(Weights::Cotangent)) < 1e-5);
+    assert!(max_distance(&run(Weights::Uniform)) > 0.1);
 }
 
 #[test]
@@ -170,7 +170,7 @@ fn bumps_shrink_and_a_fixed_boundary_stays() {
         points
             .iter()
             .enumerate()
-            .filter(|&(i, _)| !on_rim(i, m, n))
+            .filter(|&(i, _)| !is_on_boundary(i, m, n))
             .map(|(_, p)| p.z.abs())
             .sum::<f32>()
     };
@@ -187,7 +187,7 @@ fn bumps_shrink_and_a_fixed_boundary_stays() {
             "{weights:?}"
         );
         for (i, (p, q)) in bumpy.positions().iter().zip(&moved).enumerate() {
-            assert!(!on_rim(i, m, n) || p == q, "{weights:?}");
+            assert!(!is_on_boundary(i, m, n) || p == q, "{weights:?}");
         }
     }
 }
@@ -196,13 +196,13 @@ fn bumps_shrink_and_a_fixed_boundary_stays() {
 #[test]
 fn a_boundary_curve_shrinks_by_itself() {
     let n = 7;
-    let round = std::f64::consts::TAU / f64::from(n);
+    let angle = std::f64::consts::TAU / f64::from(n);
     let corner = |i: u32| {
-        let (sin, cos) = (round * f64::from(i)).sin_cos();
+        let (sin, cos) = (angle * f64::from(i)).sin_cos();
         Point::new(cos as f32, sin as f32, 0.0)
     };
     let mut points: Vec<Point> = (0..n).map(corner).collect();
-    points.push(Point::Z); // above the middle: it pulls no corner
+    points.push(Point::Z); // above the middle: no corner depends on it
     let fan = (0..n).map(|i| [i, (i + 1) % n, n]);
     let cone = PolygonMesh::new(points, fan).expect("valid");
     for weights in BOTH {
@@ -214,7 +214,7 @@ fn a_boundary_curve_shrinks_by_itself() {
             ..Smoothing::default()
         };
         let moved = moved(&cone, &smoothing);
-        let factor = (1.0 - 0.5 * (1.0 - round.cos())) as f32;
+        let factor = (1.0 - 0.5 * (1.0 - angle.cos())) as f32;
         for i in 0..n {
             assert!(
                 moved[i as usize].distance(factor * corner(i)) < 1e-6,
@@ -354,7 +354,7 @@ fn each_invalid_input_returns_its_error() {
 /// Step 1 moves every vertex of the octahedron to the centre. Vertices may have equal positions
 /// there unless the structure identifies a vertex by its coordinates.
 #[test]
-fn the_structure_decides_whether_vertices_may_meet() {
+fn the_structure_decides_whether_vertices_may_coincide() {
     let whole = Smoothing {
         step: 1.0,
         iterations: 1,

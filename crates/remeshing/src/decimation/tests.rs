@@ -6,13 +6,13 @@ use sixfold_indexed_face_set::EditableIndexedFaceSet;
 
 use super::*;
 
-fn to(target: Target, boundary: Boundary) -> Decimation {
+fn decimation(target: Target, boundary: Boundary) -> Decimation {
     Decimation { target, boundary }
 }
 
-fn decimated(polygons: &PolygonMesh, how: &Decimation) -> (EditableHalfEdgeMesh, Decimated) {
+fn decimated(polygons: &PolygonMesh, options: &Decimation) -> (EditableHalfEdgeMesh, Decimated) {
     let mut mesh = EditableHalfEdgeMesh::from_polygons(polygons).expect("a manifold");
-    let report = decimate(&mut mesh, how).expect("triangles");
+    let report = decimate(&mut mesh, options).expect("triangles");
     assert_eq!(mesh.validate(), Ok(()));
     assert_eq!(mesh.face_count(), report.faces);
     (mesh, report)
@@ -34,7 +34,7 @@ fn euler(mesh: &EditableHalfEdgeMesh) -> isize {
 #[test]
 fn a_sphere_stays_a_sphere() {
     let sphere = sixfold_shapes::geodesic(8).expect("small");
-    let (mesh, report) = decimated(&sphere, &to(Target::Ratio(0.1), Boundary::Follow));
+    let (mesh, report) = decimated(&sphere, &decimation(Target::Ratio(0.1), Boundary::Follow));
     assert_eq!((report.faces, report.stop), (128, Stop::Done));
     assert_eq!(euler(&mesh), 2);
     for v in mesh.vertices() {
@@ -44,15 +44,19 @@ fn a_sphere_stays_a_sphere() {
             "{v} is {radius} from the centre"
         );
     }
-    assert!(report.worst > 0.0 && report.collapses == (1280 - 128) / 2);
+    assert!(report.max_error > 0.0 && report.collapses == (1280 - 128) / 2);
 }
 
 #[test]
 fn a_flat_square_is_decimated_to_two_triangles() {
     let grid = sixfold_shapes::triangle_grid(12, 12).expect("small");
-    let (mesh, report) = decimated(&grid, &to(Target::Faces(2), Boundary::Follow));
+    let (mesh, report) = decimated(&grid, &decimation(Target::Faces(2), Boundary::Follow));
     assert_eq!(report.faces, 2);
-    assert!(report.worst < 1e-6, "no error if flat: {}", report.worst);
+    assert!(
+        report.max_error < 1e-6,
+        "no error if flat: {}",
+        report.max_error
+    );
     let out = mesh.to_polygons();
     assert!(
         (area(&out) - area(&grid)).abs() < 1e-3 * area(&grid),
@@ -63,16 +67,16 @@ fn a_flat_square_is_decimated_to_two_triangles() {
 #[test]
 fn a_fixed_boundary_keeps_its_exact_positions() {
     let grid = sixfold_shapes::triangle_grid(8, 8).expect("small");
-    let fresh = EditableHalfEdgeMesh::from_polygons(&grid).expect("a manifold");
+    let original = EditableHalfEdgeMesh::from_polygons(&grid).expect("a manifold");
     let outline = |mesh: &EditableHalfEdgeMesh| -> BTreeSet<[u32; 3]> {
         let edges = mesh.edges().filter(|&e| mesh.edge_faces(e).count() == 1);
         let ends = edges.flat_map(|e| mesh.edge_vertices(e));
         ends.map(|v| mesh.position(v).to_array().map(f32::to_bits))
             .collect()
     };
-    let (mesh, report) = decimated(&grid, &to(Target::Faces(0), Boundary::Fixed));
-    assert_eq!(outline(&mesh), outline(&fresh));
-    assert_eq!(report.stop, Stop::NothingLeft);
+    let (mesh, report) = decimated(&grid, &decimation(Target::Faces(0), Boundary::Fixed));
+    assert_eq!(outline(&mesh), outline(&original));
+    assert_eq!(report.stop, Stop::NoLegalEdit);
     assert!(
         report.faces <= 40,
         "{} faces over 32 boundary edges",
@@ -84,9 +88,9 @@ fn a_fixed_boundary_keeps_its_exact_positions() {
 fn an_unreachable_target_is_reported() {
     let (mesh, report) = decimated(
         &sixfold_shapes::icosahedron(),
-        &to(Target::Faces(0), Boundary::Follow),
+        &decimation(Target::Faces(0), Boundary::Follow),
     );
-    assert_eq!(report.stop, Stop::NothingLeft);
+    assert_eq!(report.stop, Stop::NoLegalEdit);
     assert_eq!(
         (report.faces, euler(&mesh)),
         (4, 2),
@@ -94,7 +98,7 @@ fn an_unreachable_target_is_reported() {
     );
     let (_, report) = decimated(
         &sixfold_shapes::icosahedron(),
-        &to(Target::Faces(99), Boundary::Follow),
+        &decimation(Target::Faces(99), Boundary::Follow),
     );
     assert_eq!(
         (report.faces, report.collapses, report.stop),
@@ -105,26 +109,23 @@ fn an_unreachable_target_is_reported() {
 #[test]
 fn bad_input_is_refused() {
     let mut cube = EditableHalfEdgeMesh::from_polygons(&sixfold_shapes::cube()).expect("closed");
-    let refused = decimate(&mut cube, &Decimation::default()).expect_err("quads");
+    let error = decimate(&mut cube, &Decimation::default()).expect_err("quads");
     assert!(
-        matches!(refused, RemeshError::NotATriangle { degree: 4, .. }),
-        "{refused}"
+        matches!(error, RemeshError::NotATriangle { degree: 4, .. }),
+        "{error}"
     );
     let mut mesh =
         EditableHalfEdgeMesh::from_polygons(&sixfold_shapes::icosahedron()).expect("closed");
     for ratio in [f64::NAN, -0.1, 1.1, f64::INFINITY] {
-        let how = to(Target::Ratio(ratio), Boundary::Follow);
-        let refused = decimate(&mut mesh, &how).expect_err("invalid ratio");
-        assert!(matches!(refused, RemeshError::BadRatio { .. }), "{refused}");
+        let options = decimation(Target::Ratio(ratio), Boundary::Follow);
+        let error = decimate(&mut mesh, &options).expect_err("invalid ratio");
+        assert!(matches!(error, RemeshError::BadRatio { .. }), "{error}");
     }
-    let nowhere = Point::new(0.0, f32::NAN, 0.0);
-    let broken = PolygonMesh::new([Point::X, Point::Y, nowhere], [[0, 1, 2]]).expect("valid");
+    let nan_point = Point::new(0.0, f32::NAN, 0.0);
+    let broken = PolygonMesh::new([Point::X, Point::Y, nan_point], [[0, 1, 2]]).expect("valid");
     let mut broken = EditableHalfEdgeMesh::from_polygons(&broken).expect("a triangle");
-    let refused = decimate(&mut broken, &Decimation::default()).expect_err("NaN");
-    assert!(
-        matches!(refused, RemeshError::NotFinite { .. }),
-        "{refused}"
-    );
+    let error = decimate(&mut broken, &Decimation::default()).expect_err("NaN");
+    assert!(matches!(error, RemeshError::NotFinite { .. }), "{error}");
 }
 
 #[test]
@@ -134,10 +135,10 @@ fn a_structure_that_scans_makes_the_same_mesh() {
         sixfold_shapes::triangle_grid(9, 7).expect("small"),
         sixfold_shapes::triangle_torus(9, 8).expect("small"),
     ] {
-        let how = to(Target::Ratio(0.3), Boundary::Follow);
-        let (walked, report) = decimated(&polygons, &how);
+        let options = decimation(Target::Ratio(0.3), Boundary::Follow);
+        let (walked, report) = decimated(&polygons, &options);
         let mut scanned = EditableIndexedFaceSet::from_polygons(&polygons).expect("holds all");
-        assert_eq!(decimate(&mut scanned, &how), Ok(report));
+        assert_eq!(decimate(&mut scanned, &options), Ok(report));
         assert_eq!(
             walked.to_polygons().positions(),
             scanned.to_polygons().positions()
@@ -151,10 +152,10 @@ fn watch_can_end_the_decimation() {
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&sphere).expect("closed");
     let report = decimate_watched(
         &mut mesh,
-        &to(Target::Faces(4), Boundary::Follow),
+        &decimation(Target::Faces(4), Boundary::Follow),
         &mut |_| ControlFlow::Break(()),
     );
     let report = report.expect("triangles");
-    assert_eq!((report.stop, report.collapses), (Stop::Asked, 1024));
+    assert_eq!((report.stop, report.collapses), (Stop::Requested, 1024));
     assert_eq!(mesh.validate(), Ok(()));
 }

@@ -5,22 +5,19 @@ use sixfold_half_edge::EditableHalfEdgeMesh;
 use super::*;
 
 /// Builds a flat grid with displaced inner vertices, triangulated in the same direction everywhere.
-fn shaken(side: usize, by: &[[f32; 2]]) -> PolygonMesh {
+fn perturbed_grid(side: usize, offsets: &[[f32; 2]]) -> PolygonMesh {
     let grid = sixfold_shapes::triangle_grid(side, side).expect("small");
-    let edge = |x: f32, most: f32| x <= 0.0 || x >= most;
-    let most = grid
-        .positions()
-        .iter()
-        .fold(0.0_f32, |most, p| most.max(p.x));
+    let is_outer = |x: f32, max: f32| x <= 0.0 || x >= max;
+    let max = grid.positions().iter().fold(0.0_f32, |max, p| max.max(p.x));
     let positions = grid
         .positions()
         .iter()
-        .zip(by.iter().cycle())
+        .zip(offsets.iter().cycle())
         .map(|(p, [x, y])| {
-            if edge(p.x, most) || edge(p.y, most) {
+            if is_outer(p.x, max) || is_outer(p.y, max) {
                 *p
             } else {
-                *p + Point::new(*x, *y, 0.0) * 0.4 * most / side as f32
+                *p + Point::new(*x, *y, 0.0) * 0.4 * max / side as f32
             }
         });
     PolygonMesh::from_faces(positions.collect(), grid.faces().clone()).expect("the same faces")
@@ -28,8 +25,8 @@ fn shaken(side: usize, by: &[[f32; 2]]) -> PolygonMesh {
 
 proptest! {
     #[test]
-    fn a_plane_becomes_delaunay(by in prop::collection::vec([-1.0_f32..1.0, -1.0_f32..1.0], 36)) {
-        let polygons = shaken(5, &by);
+    fn a_plane_becomes_delaunay(offsets in prop::collection::vec([-1.0_f32..1.0, -1.0_f32..1.0], 36)) {
+        let polygons = perturbed_grid(5, &offsets);
         let mut mesh = EditableHalfEdgeMesh::from_polygons(&polygons).expect("a manifold");
         let report = flip_to_delaunay(&mut mesh).expect("triangles");
         prop_assert_eq!(mesh.validate(), Ok(()));

@@ -4,9 +4,9 @@ use sixfold_indexed_face_set::EditableIndexedFaceSet;
 
 use super::*;
 
-fn remeshed(polygons: &PolygonMesh, how: &Remeshing) -> (EditableHalfEdgeMesh, Remeshed) {
+fn remeshed(polygons: &PolygonMesh, options: &Remeshing) -> (EditableHalfEdgeMesh, Remeshed) {
     let mut mesh = EditableHalfEdgeMesh::from_polygons(polygons).expect("a manifold");
-    let report = remesh(&mut mesh, how).expect("triangles");
+    let report = remesh(&mut mesh, options).expect("triangles");
     assert_eq!(mesh.validate(), Ok(()));
     assert_eq!(mesh.face_count(), report.faces);
     (mesh, report)
@@ -27,7 +27,7 @@ fn edges_get_the_requested_length() {
         .fan_triangulated()
         .expect("small");
     for length in [0.15, 0.3] {
-        let (mesh, report) = remeshed(&sphere, &Remeshing::to(length));
+        let (mesh, report) = remeshed(&sphere, &Remeshing::with_edge_length(length));
         assert_eq!(report.stop, Stop::Done);
         let lengths = lengths(&mesh);
         let even = lengths
@@ -53,7 +53,7 @@ fn a_flat_square_keeps_its_outline() {
         |mesh: &EditableHalfEdgeMesh| -> f64 { mesh.faces().map(|f| cross(mesh, f).z / 2.0).sum() };
     let before = area(&EditableHalfEdgeMesh::from_polygons(&grid).expect("a manifold"));
     for factor in [0.4, 2.5] {
-        let (mesh, report) = remeshed(&grid, &Remeshing::to(factor * length));
+        let (mesh, report) = remeshed(&grid, &Remeshing::with_edge_length(factor * length));
         assert!((area(&mesh) - before).abs() < 1e-4 * before.abs());
         let edited = if factor < 1.0 {
             report.splits
@@ -69,25 +69,23 @@ fn any_length_is_refused_or_remeshing_ends() {
     let sphere = sixfold_shapes::geodesic(4).expect("small");
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&sphere).expect("closed");
     for length in [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        let refused = remesh(&mut mesh, &Remeshing::to(length)).expect_err("invalid length");
-        assert!(
-            matches!(refused, RemeshError::BadLength { .. }),
-            "{refused}"
-        );
+        let error =
+            remesh(&mut mesh, &Remeshing::with_edge_length(length)).expect_err("invalid length");
+        assert!(matches!(error, RemeshError::BadLength { .. }), "{error}");
     }
-    let refused = remesh(&mut mesh, &Remeshing::to(1e-9)).expect_err("too fine");
-    assert!(matches!(refused, RemeshError::TooFine { .. }), "{refused}");
-    let (mesh, _) = remeshed(&sphere, &Remeshing::to(1e30));
+    let error = remesh(&mut mesh, &Remeshing::with_edge_length(1e-9)).expect_err("too fine");
+    assert!(matches!(error, RemeshError::TooFine { .. }), "{error}");
+    let (mesh, _) = remeshed(&sphere, &Remeshing::with_edge_length(1e30));
     assert!(mesh.face_count() >= 4);
     // Faces without area also have edges to split.
     let line = [0.0, 1.0, 2.0].map(|x| sixfold_core::Point::new(x, 0.0, 0.0));
     let flat = PolygonMesh::new(line, [[0, 1, 2]]).expect("valid");
     let mut flat = EditableHalfEdgeMesh::from_polygons(&flat).expect("a triangle");
-    let refused = remesh(&mut flat, &Remeshing::to(1e-8)).expect_err("too fine");
-    assert!(matches!(refused, RemeshError::TooFine { .. }), "{refused}");
+    let error = remesh(&mut flat, &Remeshing::with_edge_length(1e-8)).expect_err("too fine");
+    assert!(matches!(error, RemeshError::TooFine { .. }), "{error}");
     let few = Remeshing {
-        most_faces: 400,
-        ..Remeshing::to(0.2)
+        max_faces: 400,
+        ..Remeshing::with_edge_length(0.2)
     };
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&sphere).expect("closed");
     let outcome = remesh(&mut mesh, &few);
@@ -103,13 +101,13 @@ fn a_structure_that_scans_makes_the_same_mesh() {
         sixfold_shapes::geodesic(4).expect("small"),
         sixfold_shapes::triangle_grid(6, 5).expect("small"),
     ] {
-        let how = Remeshing {
+        let options = Remeshing {
             iterations: 3,
-            ..Remeshing::to(0.25)
+            ..Remeshing::with_edge_length(0.25)
         };
-        let (walked, report) = remeshed(&polygons, &how);
+        let (walked, report) = remeshed(&polygons, &options);
         let mut scanned = EditableIndexedFaceSet::from_polygons(&polygons).expect("holds all");
-        assert_eq!(remesh(&mut scanned, &how), Ok(report));
+        assert_eq!(remesh(&mut scanned, &options), Ok(report));
         assert_eq!(
             walked.to_polygons().positions(),
             scanned.to_polygons().positions()
@@ -125,14 +123,14 @@ fn lengths_below_the_precision_are_refused_and_others_end() {
     let far: Vec<Point> = grid.positions().iter().map(far).collect();
     let far = PolygonMesh::from_faces(far, grid.faces().clone()).expect("the same faces");
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&far).expect("a manifold");
-    let refused = remesh(&mut mesh, &Remeshing::to(0.3)).expect_err("too short");
+    let error = remesh(&mut mesh, &Remeshing::with_edge_length(0.3)).expect_err("too short");
     assert!(
-        matches!(refused, RemeshError::TooFar { step: 0.5, .. }),
-        "{refused}"
+        matches!(error, RemeshError::BelowPrecision { step: 0.5, .. }),
+        "{error}"
     );
     for length in [2.0, 3.0] {
         let mut mesh = mesh.clone();
-        let report = remesh(&mut mesh, &Remeshing::to(length)).expect("triangles");
+        let report = remesh(&mut mesh, &Remeshing::with_edge_length(length)).expect("triangles");
         assert!(report.faces < 2 * grid.face_count(), "{report:?}");
         assert_eq!(mesh.validate(), Ok(()));
     }
@@ -141,26 +139,26 @@ fn lengths_below_the_precision_are_refused_and_others_end() {
     let huge: Vec<Point> = grid.positions().iter().map(huge).collect();
     let huge = PolygonMesh::from_faces(huge, grid.faces().clone()).expect("the same faces");
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&huge).expect("a manifold");
-    let to = Remeshing {
-        most_faces: 5000,
-        ..Remeshing::to(2.5e37)
+    let options = Remeshing {
+        max_faces: 5000,
+        ..Remeshing::with_edge_length(2.5e37)
     };
-    let report = remesh(&mut mesh, &to).expect("triangles");
+    let report = remesh(&mut mesh, &options).expect("triangles");
     assert!(report.faces <= 5000, "{report:?}");
     assert!(mesh.vertices().all(|v| mesh.position(v).is_finite()));
 }
 
 #[test]
-fn remeshing_ends_when_settled_and_collapses_make_room() {
+fn remeshing_ends_when_converged_and_collapses_make_room() {
     let ball = sixfold_shapes::geodesic(10).expect("small");
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&ball).expect("closed");
-    let to = Remeshing {
+    let options = Remeshing {
         iterations: usize::MAX,
         // Fewer than the mesh has, and more than the length needs.
-        most_faces: 1000,
-        ..Remeshing::to(0.3)
+        max_faces: 1000,
+        ..Remeshing::with_edge_length(0.3)
     };
-    let report = remesh(&mut mesh, &to).expect("triangles");
+    let report = remesh(&mut mesh, &options).expect("triangles");
     assert_eq!(report.stop, Stop::Done);
     assert!((200..500).contains(&report.faces), "{report:?}");
     assert!(report.iterations < 1000, "{report:?}");

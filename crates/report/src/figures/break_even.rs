@@ -3,33 +3,33 @@
 use kuva::plot::LinePlot;
 use kuva::render::plots::Plot;
 use sixfold_study::numbers::{counted, duration};
-use sixfold_study::{Answer, Operation, Report, ResultRow};
+use sixfold_study::{Operation, PickReport, Report, ResultRow};
 
-use crate::colours::of_column;
-use crate::figure::{Figure, Table, drawn, laid_out};
+use crate::colours::column_colour;
+use crate::figure::{Figure, Table, base_layout, render_svg};
 
-/// Structure that the mesh is given in; it need not be built.
-const GIVEN: &str = "indexed-face-set";
+/// The structure in which the mesh is given; it need not be built.
+const INPUT_BACKEND: &str = "indexed-face-set";
 
 /// Draws the time to build once and then repeat one operation, over the number of runs.
-pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure> {
+pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Option<Figure> {
     // The operation with the most queries among those measured.
-    let asked = [
+    let candidates = [
         Operation::AllQueries,
         Operation::VertexNormal,
         Operation::VvSmooth,
         Operation::Circulate,
     ];
-    let many = |operation: &Operation| {
+    let is_comparable = |operation: &Operation| {
         study
             .rows(*operation)
             .filter(|row| row.median_ns.is_some())
             .count()
             > 1
     };
-    let operation = asked.into_iter().find(many)?;
+    let operation = candidates.into_iter().find(is_comparable)?;
     let build = |row: &ResultRow| -> Option<f64> {
-        if row.backend == GIVEN {
+        if row.backend == INPUT_BACKEND {
             return Some(0.0);
         }
         let mut builds = study.rows(Operation::Build);
@@ -40,10 +40,10 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
     let lines: Vec<(&str, f64, f64)> = rows
         .filter_map(|row| Some((row.backend.as_str(), build(row)?, row.median_ns?)))
         .collect();
-    let given = lines.iter().find(|(name, ..)| *name == GIVEN);
-    let pays = |(name, build, run): (&str, f64, f64)| match given {
-        _ if name == GIVEN => "given".into(),
-        Some((_, _, slow)) if *slow > run => after(build / (slow - run), "run", "runs"),
+    let input = lines.iter().find(|(name, ..)| *name == INPUT_BACKEND);
+    let pays_after = |(name, build, run): (&str, f64, f64)| match input {
+        _ if name == INPUT_BACKEND => "given".into(),
+        Some((_, _, slow)) if *slow > run => break_even_text(build / (slow - run), "run", "runs"),
         Some(_) => "never".into(),
         None => "–".into(),
     };
@@ -52,7 +52,7 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
             name,
             build,
             run,
-            pays: pays((name, build, run)),
+            pays_after: pays_after((name, build, run)),
         })
         .collect();
     let title = format!(
@@ -60,48 +60,48 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
         study.mesh.name
     );
     let caption = format!(
-        "The mesh is given as an {GIVEN}. Every other structure is built first, on fresh pages; this has paid off where its line \
-         falls below that of the {GIVEN}. `sixfold pick` measures this for the mix of a workload."
+        "The mesh is given as an {INPUT_BACKEND}. Every other structure is built first, on fresh pages; this has paid off where its line \
+         falls below that of the {INPUT_BACKEND}. `sixfold pick` measures this for the mix of a workload."
     );
     let curves = Curves {
         title,
-        id: format!("{of}break-even"),
+        id: format!("{id_prefix}break-even"),
         caption,
         axis: &format!("runs of {operation}"),
-        once: "one run",
-        most: 1e4,
+        unit: "one run",
+        max_count: 1e4,
     };
-    curves.drawn(&lines, command)
+    curves.draw(&lines, command)
 }
 
 /// Draws the time to build once and then run the mix of a workload, over the number of operations.
-pub(super) fn of_workload(answer: &Answer, id: &str, command: &str) -> Option<Figure> {
-    let pays = |name: &str| {
-        let row = answer.break_even.iter().find(|row| row.backend == name);
+pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Option<Figure> {
+    let pays_after = |name: &str| {
+        let row = report.break_even.iter().find(|row| row.backend == name);
         match row.map(|row| row.operations) {
-            _ if name == GIVEN => "given".into(),
+            _ if name == INPUT_BACKEND => "given".into(),
             None => "–".into(),
             Some(None) => "never".into(),
-            Some(Some(operations)) => after(operations, "operation", "operations"),
+            Some(Some(operations)) => break_even_text(operations, "operation", "operations"),
         }
     };
-    let lines = answer.ranking.iter().map(|ranked| Line {
+    let lines = report.ranking.iter().map(|ranked| Line {
         name: &ranked.backend,
         build: match ranked.backend.as_str() {
-            GIVEN => 0.0,
+            INPUT_BACKEND => 0.0,
             _ => ranked.first_build_ns(),
         },
         run: ranked.ns_per_operation,
-        pays: pays(&ranked.backend),
+        pays_after: pays_after(&ranked.backend),
     });
     let lines: Vec<Line<'_>> = lines.collect();
-    let name = &answer.workload.name;
+    let name = &report.workload.name;
     let title = format!("Building once, then running {name}");
     let caption = format!(
-        "The mesh is given as an {GIVEN}. Every other structure is built first, on fresh pages; this has paid off where its line \
-         falls below that of the {GIVEN}. One use of the mesh consists of {}.",
+        "The mesh is given as an {INPUT_BACKEND}. Every other structure is built first, on fresh pages; this has paid off where its line \
+         falls below that of the {INPUT_BACKEND}. One use of the mesh consists of {}.",
         counted(
-            answer.operations.round() as usize,
+            report.operations.round() as usize,
             "operation",
             "operations"
         )
@@ -111,10 +111,10 @@ pub(super) fn of_workload(answer: &Answer, id: &str, command: &str) -> Option<Fi
         id: id.into(),
         caption,
         axis: "operations",
-        once: "one operation",
-        most: (100.0 * answer.operations).max(1e4),
+        unit: "one operation",
+        max_count: (100.0 * report.operations).max(1e4),
     };
-    curves.drawn(&lines, command)
+    curves.draw(&lines, command)
 }
 
 /// The line of one structure, with times in nanoseconds.
@@ -122,12 +122,12 @@ struct Line<'a> {
     name: &'a str,
     build: f64,
     run: f64,
-    pays: String,
+    pays_after: String,
 }
 
-fn after(count: f64, one: &str, many: &str) -> String {
+fn break_even_text(count: f64, singular: &str, plural: &str) -> String {
     match count.ceil().max(1.0) {
-        count if count < 1e15 => counted(count as usize, one, many),
+        count if count < 1e15 => counted(count as usize, singular, plural),
         _ => "never".into(),
     }
 }
@@ -139,24 +139,24 @@ struct Curves<'a> {
     caption: String,
     axis: &'a str,
     /// Column title of the repeated work.
-    once: &'a str,
+    unit: &'a str,
     /// Largest number of repetitions.
-    most: f64,
+    max_count: f64,
 }
 
 impl Curves<'_> {
-    fn drawn(self, lines: &[Line<'_>], command: &str) -> Option<Figure> {
+    fn draw(self, lines: &[Line<'_>], command: &str) -> Option<Figure> {
         if lines.len() < 2 {
             return None;
         }
-        let mut table = Table::new(["", "to build", self.once, "pays after"]);
+        let mut table = Table::new(["", "to build", self.unit, "pays after"]);
         let mut plots = Vec::new();
-        let quarters = (4.0 * self.most.log10()).ceil() as i32;
+        let quarters = (4.0 * self.max_count.log10()).ceil() as i32;
         for Line {
             name,
             build,
             run,
-            pays,
+            pays_after,
         } in lines
         {
             let counts = (0..=quarters).map(|quarter| 10_f64.powf(f64::from(quarter) / 4.0));
@@ -164,7 +164,7 @@ impl Curves<'_> {
             plots.push(Plot::Line(
                 LinePlot::new()
                     .with_data(points.collect::<Vec<(f64, f64)>>())
-                    .with_color(of_column(name))
+                    .with_color(column_colour(name))
                     .with_stroke_width(2.0)
                     .with_legend(*name),
             ));
@@ -172,17 +172,17 @@ impl Curves<'_> {
                 (*name).into(),
                 duration(*build),
                 duration(*run),
-                pays.clone(),
+                pays_after.clone(),
             ];
             table.row(cells.into());
         }
-        let layout = laid_out(&plots, 820.0, 440.0)
+        let layout = base_layout(&plots, 820.0, 440.0)
             .with_log_scale()
             .with_x_label(self.axis)
             .with_y_label("total time, ms");
         Some(Figure {
             id: self.id,
-            svg: drawn(&self.title, plots, layout),
+            svg: render_svg(&self.title, plots, layout),
             title: self.title,
             caption: self.caption,
             table,

@@ -5,12 +5,12 @@ use kuva::render::plots::Plot;
 use sixfold_study::numbers::{duration, grouped};
 use sixfold_study::{Fit, GrowthReport, Operation, ResultRow, SizeReport, Slope};
 
-use super::one;
-use crate::colours::of_column;
-use crate::figure::{Figure, Table, drawn, laid_out};
+use super::per_unit;
+use crate::colours::column_colour;
+use crate::figure::{Figure, Table, base_layout, render_svg};
 
 /// Draws one figure for each operation.
-pub(super) fn of_growth(report: &GrowthReport, id: &str, command: &str) -> Vec<Figure> {
+pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Vec<Figure> {
     let operations: Vec<Operation> = { Operation::ALL.into_iter() }
         .filter(|&operation| report.fits.iter().any(|fit| fit.operation == operation))
         .collect();
@@ -28,23 +28,24 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
     for fit in &fits {
         let (mut points, mut titles) = (Vec::new(), Vec::new());
         for size in &report.sizes {
-            let Some((row, ns)) = row_of(size, fit).and_then(|row| Some((row, whole(row)?))) else {
+            let Some((row, ns)) = find_row(size, fit).and_then(|row| Some((row, run_ns(row)?)))
+            else {
                 continue;
             };
             points.push((size.faces as f64, ns / 1e6));
-            let how = if row.median_ns.is_none() {
+            let note = if row.median_ns.is_none() {
                 ", estimated"
             } else {
                 ""
             };
             titles.push(format!(
-                "{}, {} faces: {}{how}",
+                "{}, {} faces: {}{note}",
                 fit.backend,
                 grouped(size.faces),
                 duration(ns)
             ));
         }
-        let colour = of_column(&fit.backend);
+        let colour = column_colour(&fit.backend);
         let legend = match fit.all {
             Some(slope) => format!("{}: {:.2}", fit.backend, slope.exponent),
             None => fit.backend.clone(),
@@ -66,22 +67,22 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
     }
     for size in &report.sizes {
         let cell = |fit: &&Fit| {
-            let each =
-                row_of(size, fit).and_then(|row| Some(whole(row)? / row.elements?.max(1) as f64));
+            let each = find_row(size, fit)
+                .and_then(|row| Some(run_ns(row)? / row.elements?.max(1) as f64));
             each.map_or_else(|| "–".into(), duration)
         };
         let mut line = vec![grouped(size.faces)];
         line.extend(fits.iter().map(cell));
         table.row(line);
     }
-    type Of = fn(&Fit) -> Option<Slope>;
-    let slopes: [(&str, Of); 3] = [
+    type Select = fn(&Fit) -> Option<Slope>;
+    let slopes: [(&str, Select); 3] = [
         ("slope", |fit| fit.all),
         ("slope, in cache", |fit| fit.in_cache),
         ("slope, beyond", |fit| fit.beyond),
     ];
-    for (name, of) in slopes {
-        let cells = fits.iter().map(|fit| match of(fit) {
+    for (name, select) in slopes {
+        let cells = fits.iter().map(|fit| match select(fit) {
             Some(Slope {
                 exponent,
                 standard_error: Some(error),
@@ -95,15 +96,15 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
             table.row([vec![name.into()], cells].concat());
         }
     }
-    let (name, per) = (operation.name(), one(operation.per()));
+    let (name, per) = (operation.name(), per_unit(operation.unit()));
     let title = format!("{name}: how its cost grows with the mesh");
-    let layout = laid_out(&plots, 860.0, 440.0)
+    let layout = base_layout(&plots, 860.0, 440.0)
         .with_log_scale()
         .with_x_label("faces")
         .with_y_label("total time, ms");
     Figure {
         id: format!("{id}-{}", name.replace('_', "-")),
-        svg: drawn(&title, plots, layout),
+        svg: render_svg(&title, plots, layout),
         title,
         caption: format!(
             "Both axes are logarithmic, so a straight line is a power of the number of faces. The number after each name \
@@ -116,12 +117,12 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
 }
 
 /// Returns the row of `size` with the backend and operation of `fit`.
-fn row_of<'s>(size: &'s SizeReport, fit: &Fit) -> Option<&'s ResultRow> {
+fn find_row<'s>(size: &'s SizeReport, fit: &Fit) -> Option<&'s ResultRow> {
     let mut rows = size.results.iter();
     rows.find(|row| row.operation == fit.operation && row.backend == fit.backend)
 }
 
 /// Returns the time of a whole run in nanoseconds, measured or estimated.
-fn whole(row: &ResultRow) -> Option<f64> {
+fn run_ns(row: &ResultRow) -> Option<f64> {
     row.median_ns.or(row.estimated_ns)
 }

@@ -7,14 +7,14 @@ use kuva::render::plots::Plot;
 use sixfold_study::numbers::times;
 use sixfold_study::{Collection, Operation, Report};
 
-use crate::colours::GRID;
-use crate::figure::{Figure, Table, drawn, laid_out, ratios};
+use crate::colours::GRID_COLOUR;
+use crate::figure::{Figure, Table, base_layout, ratio_ticks, render_svg};
 
 /// Ratios above this have one colour, so that smaller differences remain visible.
-const LIGHTEST: f64 = 1000.0;
+const MAX_RATIO: f64 = 1000.0;
 
 /// Draws the ratios to the best of one study.
-pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure> {
+pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Option<Figure> {
     let columns = study.backends.iter().filter(|column| column.holds);
     let columns: Vec<&str> = columns.map(|column| column.name.as_str()).collect();
     let ratio = |operation: Operation, column: &str| {
@@ -22,7 +22,7 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
         rows.find(|row| row.backend == column)?.ratio_to_best
     };
     let title = format!("Every operation on every structure: {}", study.mesh.name);
-    figure(&title, &columns, &ratio, of, command)
+    figure(&title, &columns, &ratio, id_prefix, command)
 }
 
 /// Draws the mean ratios over all meshes.
@@ -49,7 +49,7 @@ fn figure(
     title: &str,
     columns: &[&str],
     ratio: &dyn Fn(Operation, &str) -> Option<f64>,
-    of: &str,
+    id_prefix: &str,
     command: &str,
 ) -> Option<Figure> {
     let measured = |operation: &Operation| columns.iter().any(|c| ratio(*operation, c).is_some());
@@ -72,7 +72,7 @@ fn figure(
         for column in columns {
             let value = ratio(operation, column);
             // NaN stands for "not measured" and has its own colour.
-            line.push(value.map_or(f64::NAN, |ratio| ratio.clamp(1.0, LIGHTEST).log10()));
+            line.push(value.map_or(f64::NAN, |ratio| ratio.clamp(1.0, MAX_RATIO).log10()));
             let shown = value.map_or_else(|| "not measured".into(), times);
             titles.push(format!("{operation} on {column}: {shown}"));
         }
@@ -89,18 +89,18 @@ fn figure(
         .iter()
         .rev()
         .map(|operation| operation.name().to_owned());
-    let layout = laid_out(&plots, width, height)
+    let layout = base_layout(&plots, width, height)
         .with_x_categories(columns.iter().map(|&name| name.to_owned()).collect())
         .with_y_categories(names.collect())
-        .with_colorbar_tick_format(ratios(LIGHTEST.log10()));
+        .with_colorbar_tick_format(ratio_ticks(MAX_RATIO.log10()));
     Some(Figure {
-        id: format!("{of}heat-map"),
+        id: format!("{id_prefix}heat-map"),
         title: title.to_owned(),
-        svg: drawn(title, plots, layout),
+        svg: render_svg(title, plots, layout),
         caption: format!(
             "Time relative to the fastest of the row. Dark is fast; {} and more have one colour. Grey cells were not \
              measured, because they would take too long or cannot be done.",
-            times(LIGHTEST)
+            times(MAX_RATIO)
         ),
         table,
         command: command.into(),
@@ -110,7 +110,7 @@ fn figure(
 /// Returns a colour from dark to light; grey for NaN.
 fn colour(value: f64) -> String {
     match value.is_nan() {
-        true => GRID.into(),
+        true => GRID_COLOUR.into(),
         false => ColorMap::Viridis.map(value),
     }
 }

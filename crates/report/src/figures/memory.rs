@@ -5,14 +5,14 @@ use kuva::render::plots::Plot;
 use sixfold_study::Report;
 use sixfold_study::numbers::grouped;
 
-use crate::colours::of_table;
-use crate::figure::{Figure, Table, drawn, laid_out};
+use crate::colours::table_colour;
+use crate::figure::{Figure, Table, base_layout, render_svg};
 
 /// Name of the table of positions; structures with points instead of vertices do not have it.
 const POSITIONS: &str = "positions";
 
 /// Draws the bytes per vertex of each table.
-pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure> {
+pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Option<Figure> {
     let columns = study
         .backends
         .iter()
@@ -33,7 +33,7 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
         let first = usize::from(tables.first().is_none_or(|part| part.table != POSITIONS));
         for (number, part) in tables.iter().enumerate() {
             let each = part.bytes as f64 / vertices as f64;
-            parts.push((each, of_table(first + number)));
+            parts.push((each, table_colour(first + number)));
             titles.push(format!(
                 "{}, {}: {each:.1} bytes per vertex",
                 column.name, part.table
@@ -55,12 +55,12 @@ pub(super) fn of_study(study: &Report, of: &str, command: &str) -> Option<Figure
     let plot = plot.with_stacked();
     let plots = vec![Plot::Bar(plot)];
     let title = format!("Bytes per vertex of each table: {}", study.mesh.name);
-    let layout = laid_out(&plots, 820.0, 420.0)
+    let layout = base_layout(&plots, 820.0, 420.0)
         .with_y_label("bytes per vertex")
         .with_clamp_y_axis();
     Some(Figure {
-        id: format!("{of}memory"),
-        svg: drawn(&title, plots, layout),
+        id: format!("{id_prefix}memory"),
+        svg: render_svg(&title, plots, layout),
         title,
         caption: "Bytes held, including spare capacity. Positions are at the bottom, in one colour for all structures; \
              the other tables of each structure are above. Point at a part to see its name."

@@ -5,12 +5,12 @@ use kuva::render::plots::Plot;
 use sixfold_study::numbers::duration;
 use sixfold_study::{Comparison, OrderRow, OrdersReport};
 
-use super::one;
-use crate::colours::of_table;
-use crate::figure::{Figure, LEAST, Table, drawn, laid_out, ratios};
+use super::per_unit;
+use crate::colours::table_colour;
+use crate::figure::{Figure, MIN_BAR_LENGTH, Table, base_layout, ratio_ticks, render_svg};
 
 /// Draws one figure for each operation.
-pub(super) fn of_orders(report: &OrdersReport, id: &str, command: &str) -> Vec<Figure> {
+pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Vec<Figure> {
     let figures = { report.comparisons.iter() }
         .filter_map(|comparison| figure(report, comparison, id, command));
     figures.collect()
@@ -33,13 +33,13 @@ fn figure(
     let (mut plot, mut titles) = (BarPlot::new().with_legend(names), Vec::new());
     let logs = rows.iter().filter_map(|row| row.row.ratio_to_best);
     // The axis reaches at least 1.5, so that noise does not fill the figure.
-    let most = logs.fold(1.5, f64::max).log10();
-    let per = one(operation.per());
-    for of_one in rows.chunk_by(|a, b| a.row.backend == b.row.backend) {
-        let backend = &of_one[0].row.backend;
+    let max_log = logs.fold(1.5, f64::max).log10();
+    let per = per_unit(operation.unit());
+    for backend_rows in rows.chunk_by(|a, b| a.row.backend == b.row.backend) {
+        let backend = &backend_rows[0].row.backend;
         let (mut bars, mut line) = (Vec::new(), vec![backend.clone()]);
         for (i, &order) in report.orders.iter().enumerate() {
-            let row = of_one.iter().find(|row| row.order == order);
+            let row = backend_rows.iter().find(|row| row.order == order);
             let ratio = row.and_then(|row| row.row.ratio_to_best);
             let time = row.and_then(|row| row.row.ns_per_element);
             let time = time.map_or_else(|| "–".into(), duration);
@@ -49,8 +49,8 @@ fn figure(
                 }
                 None => format!("{backend}, {order}: not measured"),
             });
-            let length = ratio.map_or(0.0, |ratio| ratio.log10().max(LEAST * most));
-            bars.push((length, of_table(i)));
+            let length = ratio.map_or(0.0, |ratio| ratio.log10().max(MIN_BAR_LENGTH * max_log));
+            bars.push((length, table_colour(i)));
             line.push(time);
         }
         let effect = comparison.orders.iter().find(|e| e.backend == *backend);
@@ -69,14 +69,14 @@ fn figure(
         "{name}: effect of the order in memory, {}",
         report.mesh.name
     );
-    let layout = laid_out(&plots, 860.0, 360.0)
+    let layout = base_layout(&plots, 860.0, 360.0)
         .with_y_label("× the best order of the structure")
         .with_y_axis_min(0.0)
-        .with_y_axis_max(1.05 * most)
-        .with_y_tick_format(ratios(most));
+        .with_y_axis_max(1.05 * max_log)
+        .with_y_tick_format(ratio_ticks(max_log));
     Some(Figure {
         id: format!("{id}-{}", name.replace('_', "-")),
-        svg: drawn(&title, plots, layout),
+        svg: render_svg(&title, plots, layout),
         title,
         caption: format!(
             "Times of each structure in four orders of the same mesh, relative to its own best order; the axis is \

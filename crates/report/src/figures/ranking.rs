@@ -3,14 +3,16 @@
 use kuva::plot::BarPlot;
 use kuva::render::plots::Plot;
 use sixfold_study::numbers::duration;
-use sixfold_study::{Answer, Collection, FIRST_TIME_SHOWN, Operation, Report, ResultRow, Standing};
+use sixfold_study::{
+    Collection, FIRST_TIME_SHOWN, Operation, PickReport, Report, ResultRow, Standing,
+};
 
-use super::{Row, one};
-use crate::colours::{WHISKER, of_column};
-use crate::figure::{Figure, LEAST, Table, drawn, laid_out, ratios};
+use super::{Row, per_unit};
+use crate::colours::{INTERVAL_COLOUR, column_colour};
+use crate::figure::{Figure, MIN_BAR_LENGTH, Table, base_layout, ratio_ticks, render_svg};
 
 /// Draws one figure for each operation of a study.
-pub(super) fn of_study(study: &Report, command: &str) -> Vec<Figure> {
+pub(super) fn from_study(study: &Report, command: &str) -> Vec<Figure> {
     let figures = Operation::ALL.into_iter().filter_map(|operation| {
         let rows = study.rows(operation).filter_map(|row| {
             Some(Row {
@@ -31,7 +33,7 @@ pub(super) fn of_study(study: &Report, command: &str) -> Vec<Figure> {
             .rows(operation)
             .next()
             .map_or("element", |row| &row.per);
-        of_operation(operation, rows.collect(), per, command)
+        operation_figure(operation, rows.collect(), per, command)
     });
     figures.collect()
 }
@@ -61,14 +63,14 @@ pub(super) fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
                 row.meshes, row.best, row.tied
             ),
         });
-        of_operation(operation, rows.collect(), operation.per(), command)
+        operation_figure(operation, rows.collect(), operation.unit(), command)
     });
     figures.collect()
 }
 
 /// Draws the ranking for a workload.
-pub(super) fn of_workload(answer: &Answer, id: &str, command: &str) -> Option<Figure> {
-    let rows = answer.ranking.iter().map(|ranked| Row {
+pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Option<Figure> {
+    let rows = report.ranking.iter().map(|ranked| Row {
         backend: &ranked.backend,
         ratio: ranked.ratio_to_best,
         interval: ranked.ci_low.zip(ranked.ci_high).map(|(a, b)| [a, b]),
@@ -82,11 +84,11 @@ pub(super) fn of_workload(answer: &Answer, id: &str, command: &str) -> Option<Fi
             _ => String::new(),
         },
     });
-    let title = format!("{}: time relative to the fastest", answer.workload.name);
+    let title = format!("{}: time relative to the fastest", report.workload.name);
     figure(title, id.into(), rows.collect(), "operation", command)
 }
 
-fn of_operation(
+fn operation_figure(
     operation: Operation,
     rows: Vec<Row<'_>>,
     per: &str,
@@ -110,7 +112,12 @@ fn figure(
     }
     rows.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
     let firsts = rows.iter().any(|row| row.first_ns.is_some());
-    let mut header = vec!["".into(), "× the fastest".into(), "95 %".into(), one(per)];
+    let mut header = vec![
+        "".into(),
+        "× the fastest".into(),
+        "95 %".into(),
+        per_unit(per),
+    ];
     header.extend(firsts.then(|| "first run".into()));
     header.push(String::new());
     let mut table = Table::new(header);
@@ -129,7 +136,7 @@ fn figure(
         cells.push(row.note.clone());
         table.row(cells);
         let length = row.ratio.log10();
-        bars.push((row.backend.to_owned(), length, of_column(row.backend)));
+        bars.push((row.backend.to_owned(), length, column_colour(row.backend)));
         let ends = row
             .interval
             .map_or([length; 2], |ends| ends.map(f64::log10));
@@ -138,19 +145,19 @@ fn figure(
         titles.push(format!(
             "{}: {ratio}{between} × the fastest, {time} {}",
             row.backend,
-            one(per)
+            per_unit(per)
         ));
     }
     // The plot draws categories upwards; the fastest must be on top.
     bars.reverse();
     whiskers.reverse();
     titles.reverse();
-    let most = bars
+    let max_log = bars
         .iter()
         .map(|(_, length, _)| *length)
         .fold(0.1, f64::max);
     for (_, length, _) in &mut bars {
-        *length = length.max(LEAST * most);
+        *length = length.max(MIN_BAR_LENGTH * max_log);
     }
     let height = 70.0 + 26.0 * bars.len() as f64;
     let plot = BarPlot::new()
@@ -158,16 +165,16 @@ fn figure(
         .with_horizontal(true)
         .with_width(0.7)
         .with_asymmetric_error(whiskers)
-        .with_error_color(WHISKER)
+        .with_error_color(INTERVAL_COLOUR)
         .with_tooltip_labels(titles);
     let plots = vec![Plot::Bar(plot)];
-    let layout = laid_out(&plots, 680.0, height)
+    let layout = base_layout(&plots, 680.0, height)
         .with_x_axis_min(0.0)
-        .with_x_axis_max(most * 1.08)
-        .with_x_tick_format(ratios(most));
+        .with_x_axis_max(max_log * 1.08)
+        .with_x_tick_format(ratio_ticks(max_log));
     Some(Figure {
         id,
-        svg: drawn(&title, plots, layout),
+        svg: render_svg(&title, plots, layout),
         title,
         caption: "The scale is logarithmic and begins at 1, the fastest. The thin lines are 95 % intervals of the ratio, \
              which is formed within rounds."

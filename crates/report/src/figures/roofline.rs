@@ -4,30 +4,31 @@
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;
 use sixfold_study::numbers::{bytes, duration};
-use sixfold_study::{Rung, Timed, Why, WhyRow};
+use sixfold_study::{BufferSpeed, Timed, Why, WhyRow};
 
-use super::one;
-use crate::colours::{INK, of_column};
-use crate::figure::{Figure, Table, drawn, laid_out};
+use super::per_unit;
+use crate::colours::{TEXT_COLOUR, column_colour};
+use crate::figure::{Figure, Table, base_layout, render_svg};
 
 /// Draws all relations on all structures in one figure; `None` if nothing was measured.
-pub(super) fn of_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
-    let rungs = why.memory.as_ref()?;
+pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
+    let buffers = why.memory.as_ref()?;
     let rows = why.rows.iter().filter_map(|row| Some((row, row.timed?)));
     let rows: Vec<(&WhyRow, Timed)> = rows
         .filter(|(row, _)| row.reads.moved_bytes > 0.0)
         .collect();
     let ends = rows.iter().map(|(row, _)| row.reads.moved_bytes);
-    let [least, most] = ends.fold([f64::INFINITY, 0.0], |[least, most], bytes| {
-        [f64::min(least, bytes), f64::max(most, bytes)]
-    });
+    let [min_bytes, max_bytes] = ends
+        .fold([f64::INFINITY, 0.0], |[min_bytes, max_bytes], bytes| {
+            [f64::min(min_bytes, bytes), f64::max(max_bytes, bytes)]
+        });
     if rows.is_empty() {
         return None;
     }
     let mut plots = Vec::new();
     // The fastest and the slowest buffer; all others are between them.
-    for rung in [rungs.first(), rungs.last()].into_iter().flatten() {
-        plots.push(line(rung, least, most));
+    for buffer in [buffers.first(), buffers.last()].into_iter().flatten() {
+        plots.push(line(buffer, min_bytes, max_bytes));
     }
     for backend in &why.backends {
         let (mut points, mut titles) = (Vec::new(), Vec::new());
@@ -39,7 +40,7 @@ pub(super) fn of_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
                 row.reads.relation,
                 row.reads.moved_bytes,
                 duration(timed.ns_per_element),
-                one(&row.per),
+                per_unit(&row.per),
                 timed.bound.name()
             ));
         }
@@ -49,7 +50,7 @@ pub(super) fn of_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
         plots.push(Plot::Scatter(
             ScatterPlot::new()
                 .with_data(points)
-                .with_color(of_column(&backend.name))
+                .with_color(column_colour(&backend.name))
                 .with_size(5.0)
                 .with_legend(backend.name.clone())
                 .with_tooltip_labels(titles),
@@ -78,13 +79,13 @@ pub(super) fn of_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
         ]);
     }
     let title = format!("Time against the bytes that must move: {}", why.mesh.name);
-    let layout = laid_out(&plots, 860.0, 520.0)
+    let layout = base_layout(&plots, 860.0, 520.0)
         .with_log_scale()
         .with_x_label("bytes that must move per element")
         .with_y_label("time per element, ns");
     Some(Figure {
         id: id.into(),
-        svg: drawn(&title, plots, layout),
+        svg: render_svg(&title, plots, layout),
         title,
         caption: "One mark for each relation on each structure. The lines show the time of this machine to read these \
              bytes in order, from the smallest and from the largest buffer. A mark near its line is bound by \
@@ -96,15 +97,19 @@ pub(super) fn of_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
     })
 }
 
-/// Draws the time to read `least` to `most` bytes at the speed of `rung`.
-fn line(rung: &Rung, least: f64, most: f64) -> Plot {
-    let ends = [least, most].map(|bytes| (bytes, bytes / rung.gb_per_s));
+/// Draws the time to read `min_bytes` to `max_bytes` bytes at the speed of `buffer`.
+fn line(buffer: &BufferSpeed, min_bytes: f64, max_bytes: f64) -> Plot {
+    let ends = [min_bytes, max_bytes].map(|bytes| (bytes, bytes / buffer.gb_per_s));
     Plot::Line(
         LinePlot::new()
             .with_data(ends.to_vec())
-            .with_color(INK)
+            .with_color(TEXT_COLOUR)
             .with_stroke_width(1.0)
             .with_dashed()
-            .with_legend(format!("{:.1} GB/s, {}", rung.gb_per_s, bytes(rung.bytes))),
+            .with_legend(format!(
+                "{:.1} GB/s, {}",
+                buffer.gb_per_s,
+                bytes(buffer.bytes)
+            )),
     )
 }

@@ -169,6 +169,6 @@ fn count(text: &str) -> Result<usize, String> {
 
 fn noise(text: &str) -> Result<f64, String> {
     let parsed: Option<f64> = text.trim().parse().ok();
-    let fine = parsed.filter(|ratio| (1.0..=100.0).contains(ratio));
-    fine.ok_or_else(|| "write a ratio from 1 to 100, such as 1.05".into())
+    let valid = parsed.filter(|ratio| (1.0..=100.0).contains(ratio));
+    valid.ok_or_else(|| "write a ratio from 1 to 100, such as 1.05".into())
 }

@@ -7,7 +7,7 @@ use sixfold::remeshing::{Boundary, Target};
 
 use super::backend;
 use super::reshaping::iterations;
-use super::subdivision::named;
+use super::subdivision::parse_name;
 
 const DECIMATE_EXAMPLES: &str = "Examples:
   sixfold decimate --faces 5000 scan.obj -o small.obj
@@ -153,7 +153,7 @@ fn boundary(text: &str) -> Result<Boundary, String> {
         Boundary::Follow => "follow",
         Boundary::Fixed => "fixed",
     };
-    named(&[Boundary::Follow, Boundary::Fixed], name, text)
+    parse_name(&[Boundary::Follow, Boundary::Fixed], name, text)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use clap::Args;
 use sixfold::operators::{Boundary, Facing, Triangulation, Weights};
 
 use super::backend;
-use super::subdivision::named;
+use super::subdivision::parse_name;
 
 const SMOOTH_EXAMPLES: &str = "Examples:
   sixfold smooth scan.obj -o smooth.obj
@@ -114,7 +114,7 @@ fn weights(text: &str) -> Result<Weights, String> {
         Weights::Uniform => "uniform",
         Weights::Cotangent => "cotangent",
     };
-    named(&[Weights::Uniform, Weights::Cotangent], name, text)
+    parse_name(&[Weights::Uniform, Weights::Cotangent], name, text)
 }
 
 fn boundary(text: &str) -> Result<Boundary, String> {
@@ -122,7 +122,7 @@ fn boundary(text: &str) -> Result<Boundary, String> {
         Boundary::Fixed => "fixed",
         Boundary::Curve => "curve",
     };
-    named(&[Boundary::Fixed, Boundary::Curve], name, text)
+    parse_name(&[Boundary::Fixed, Boundary::Curve], name, text)
 }
 
 fn triangulation(text: &str) -> Result<Triangulation, String> {
@@ -131,7 +131,7 @@ fn triangulation(text: &str) -> Result<Triangulation, String> {
         Triangulation::Fan => "fan",
     };
     let all = [Triangulation::EarClipping, Triangulation::Fan];
-    named(&all, name, text)
+    parse_name(&all, name, text)
 }
 
 fn facing(text: &str) -> Result<Facing, String> {
@@ -139,5 +139,5 @@ fn facing(text: &str) -> Result<Facing, String> {
         Facing::Majority => "majority",
         Facing::Outward => "outward",
     };
-    named(&[Facing::Majority, Facing::Outward], name, text)
+    parse_name(&[Facing::Majority, Facing::Outward], name, text)
 }

@@ -137,7 +137,7 @@ fn select(text: &str) -> Result<Select, String> {
 }
 
 /// Returns the item of `all` with the name `text`.
-pub(super) fn named<T: Copy>(
+pub(super) fn parse_name<T: Copy>(
     all: &[T],
     name: impl Fn(T) -> &'static str,
     text: &str,
@@ -150,31 +150,33 @@ pub(super) fn named<T: Copy>(
 }
 
 fn scheme(text: &str) -> Result<Scheme, String> {
-    named(&Scheme::ALL, Scheme::name, text)
+    parse_name(&Scheme::ALL, Scheme::name, text)
 }
 
 fn method(text: &str) -> Result<Method, String> {
-    named(&Method::ALL, Method::name, text)
+    parse_name(&Method::ALL, Method::name, text)
 }
 
 fn boundary(text: &str) -> Result<Boundary, String> {
-    named(&Boundary::ALL, Boundary::name, text)
+    parse_name(&Boundary::ALL, Boundary::name, text)
 }
 
 fn creasing(text: &str) -> Result<Creasing, String> {
-    named(&Creasing::ALL, Creasing::name, text)
+    parse_name(&Creasing::ALL, Creasing::name, text)
 }
 
 fn loop_weights(text: &str) -> Result<LoopWeights, String> {
-    named(&LoopWeights::ALL, LoopWeights::name, text)
+    parse_name(&LoopWeights::ALL, LoopWeights::name, text)
 }
 
 /// Parses a number of levels. The limit exceeds the times that a 32-bit coordinate can be halved.
 fn levels(text: &str) -> Result<u32, String> {
-    const MOST: u32 = 1000;
+    const MAX_LEVELS: u32 = 1000;
     match text.trim().parse() {
-        Ok(levels) if levels <= MOST => Ok(levels),
-        _ => Err(format!("the number of levels must be from 0 to {MOST}")),
+        Ok(levels) if levels <= MAX_LEVELS => Ok(levels),
+        _ => Err(format!(
+            "the number of levels must be from 0 to {MAX_LEVELS}"
+        )),
     }
 }
 

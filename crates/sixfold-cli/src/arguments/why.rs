@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::Args;
 use sixfold::Relation;
 
-use super::subdivision::named;
+use super::subdivision::parse_name;
 use super::{backend, duration};
 
 const WHY_EXAMPLES: &str = "Examples:
@@ -59,5 +59,5 @@ pub(crate) struct Why {
 }
 
 fn relation(text: &str) -> Result<Relation, String> {
-    named(&Relation::ALL, Relation::name, text)
+    parse_name(&Relation::ALL, Relation::name, text)
 }

@@ -15,13 +15,13 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use sixfold_report::Page;
-use sixfold_study::{Asked, Collection, Report, Results};
+use sixfold_report::ReportPage;
+use sixfold_study::{Collection, Report, Results, SharedSettings};
 
 use super::meshes::Mesh;
 use crate::failure::Failure;
 use crate::output::{Output, cannot_write};
-use crate::text::complain;
+use crate::text::print_stderr;
 use sixfold_study::numbers::counted;
 
 /// A folder for results.
@@ -31,18 +31,22 @@ pub(super) struct Folder {
 
 /// The saved study of one mesh, or the reason why it failed.
 #[derive(Debug, Deserialize, Serialize)]
-pub(super) struct Piece {
+pub(super) struct StudyRecord {
     schema: u32,
     mesh: String,
     /// Size and checksum of the mesh file, to detect that the file has changed.
     content: Option<String>,
-    settings: Asked,
+    settings: SharedSettings,
     study: Option<Report>,
     failure: Option<String>,
 }
 
-impl Piece {
-    pub(super) fn new(mesh: &Mesh, settings: &Asked, result: Result<Report, String>) -> Self {
+impl StudyRecord {
+    pub(super) fn new(
+        mesh: &Mesh,
+        settings: &SharedSettings,
+        result: Result<Report, String>,
+    ) -> Self {
         let (study, failure) = match result {
             Ok(study) => (Some(study), None),
             Err(reason) => (None, Some(reason)),
@@ -58,10 +62,10 @@ impl Piece {
     }
 
     /// Adds it to the results.
-    pub(super) fn settle(self, collection: &mut Collection) {
+    pub(super) fn add_to(self, collection: &mut Collection) {
         match self.study {
-            Some(study) => collection.finish(study),
-            None => collection.fail(&self.mesh, self.failure.unwrap_or_default()),
+            Some(study) => collection.add_study(study),
+            None => collection.add_failure(&self.mesh, self.failure.unwrap_or_default()),
         }
     }
 }
@@ -97,13 +101,13 @@ impl Folder {
         let folder = Self { path: path.into() };
         let studies = folder.studies();
         fs::create_dir_all(&studies).map_err(|cause| cannot_write(&shown.to_string(), &cause))?;
-        let pieces = folder.pieces()?;
+        let files = folder.study_files()?;
         if !resume {
-            let foreign = folder.path.join("results.json");
-            return match pieces.len() {
-                0 if foreign.exists() => Err(Failure::usage(format!(
+            let existing = folder.path.join("results.json");
+            return match files.len() {
+                0 if existing.exists() => Err(Failure::usage(format!(
                     "{} exists already, but does not belong to a study in this folder: name another folder, or use --resume to overwrite it",
-                    foreign.display()
+                    existing.display()
                 ))),
                 0 => Ok(folder),
                 finished => {
@@ -114,26 +118,26 @@ impl Folder {
                 }
             };
         }
-        for (file, text) in pieces {
-            let Ok(piece) = serde_json::from_str::<Piece>(&text) else {
+        for (file, text) in files {
+            let Ok(record) = serde_json::from_str::<StudyRecord>(&text) else {
                 let file = file.display();
-                complain(&format!(
+                print_stderr(&format!(
                     "note: {file}: not a study of this program, so the mesh is studied again"
                 ));
                 continue;
             };
-            if piece.settings != collection.settings {
+            if record.settings != collection.settings {
                 return Err(Failure::usage(format!(
                     "{} was made with other settings: name another folder, or use the same settings",
                     file.display()
                 )));
             }
-            let Some(mesh) = meshes.iter().find(|mesh| mesh.name == piece.mesh) else {
+            let Some(mesh) = meshes.iter().find(|mesh| mesh.name == record.mesh) else {
                 continue; // no longer selected
             };
-            match mesh.path.as_deref().and_then(content) == piece.content {
-                true => piece.settle(collection),
-                false => complain(&format!(
+            match mesh.path.as_deref().and_then(content) == record.content {
+                true => record.add_to(collection),
+                false => print_stderr(&format!(
                     "note: {}: the file has changed since it was studied, so it is studied again",
                     mesh.name
                 )),
@@ -143,7 +147,7 @@ impl Folder {
     }
 
     /// Opens or creates the folder at `path`, for complete results.
-    pub(super) fn made(path: &Path) -> Result<Self, Failure> {
+    pub(super) fn create(path: &Path) -> Result<Self, Failure> {
         let shown = path.display().to_string();
         fs::create_dir_all(path).map_err(|cause| cannot_write(&shown, &cause))?;
         Ok(Self { path: path.into() })
@@ -154,52 +158,52 @@ impl Folder {
     }
 
     /// Returns the files of finished studies and their text.
-    fn pieces(&self) -> Result<Vec<(PathBuf, String)>, Failure> {
+    fn study_files(&self) -> Result<Vec<(PathBuf, String)>, Failure> {
         let failed = |path: &Path, cause: io::Error| {
             Failure::usage(format!("{}: cannot be read: {cause}", path.display()))
         };
         let studies = self.studies();
         let entries = fs::read_dir(&studies).map_err(|cause| failed(&studies, cause))?;
-        let mut pieces = Vec::new();
+        let mut files = Vec::new();
         for entry in entries {
             let path = entry.map_err(|cause| failed(&studies, cause))?.path();
             if path.extension().is_some_and(|ending| ending == "json") {
                 let text = fs::read_to_string(&path).map_err(|cause| failed(&path, cause))?;
-                pieces.push((path, text));
+                files.push((path, text));
             }
         }
-        pieces.sort();
-        Ok(pieces)
+        files.sort();
+        Ok(files)
     }
 
     /// Saves the study of a mesh. The file gets its name when it is complete.
-    pub(super) fn keep(&self, piece: &Piece) -> Result<(), Failure> {
-        let stem = Path::new(&piece.mesh).file_stem().unwrap_or_default();
-        let fine = |c: char| {
+    pub(super) fn save_study(&self, record: &StudyRecord) -> Result<(), Failure> {
+        let stem = Path::new(&record.mesh).file_stem().unwrap_or_default();
+        let safe = |c: char| {
             if c.is_ascii_alphanumeric() || "._-".contains(c) {
                 c
             } else {
                 '_'
             }
         };
-        let stem: String = stem.to_string_lossy().chars().map(fine).take(40).collect();
+        let stem: String = stem.to_string_lossy().chars().map(safe).take(40).collect();
         // The checksum of the name keeps the files of meshes with the same stem apart.
-        let name = crc32fast::hash(piece.mesh.as_bytes());
+        let name = crc32fast::hash(record.mesh.as_bytes());
         let path = self.studies().join(format!("{stem}-{name:08x}.json"));
         Output::open(&path)?.finish(|writer| {
-            serde_json::to_writer(&mut *writer, piece)?;
+            serde_json::to_writer(&mut *writer, record)?;
             writeln!(writer)
         })
     }
 
     /// Reads the saved lab `name`; returns `None` if it cannot be read.
-    pub(super) fn lab(&self, name: &str) -> Option<Results> {
+    pub(super) fn load_lab(&self, name: &str) -> Option<Results> {
         let text = fs::read_to_string(self.lab_path(name)).ok()?;
         Results::read_json(&text).ok()
     }
 
     /// Saves the results of the lab `name`.
-    pub(super) fn keep_lab(&self, name: &str, results: &Results) -> Result<(), Failure> {
+    pub(super) fn save_lab(&self, name: &str, results: &Results) -> Result<(), Failure> {
         let path = self.lab_path(name);
         let folder = self.path.join("labs");
         fs::create_dir_all(&folder)
@@ -212,17 +216,21 @@ impl Folder {
     }
 
     /// Writes all results and the page; `command` is the command that reproduces them.
-    pub(super) fn finish(&self, collection: &Collection, command: &str) -> Result<(), Failure> {
+    pub(super) fn write_report(
+        &self,
+        collection: &Collection,
+        command: &str,
+    ) -> Result<(), Failure> {
         let output = |name: &str| Output::open(&self.path.join(name));
         output("results.json")?.finish(|writer| collection.write_json(writer))?;
         output("results.csv")?.finish(|writer| collection.write_csv(writer))?;
-        self.draw(collection, command)
+        self.write_page(collection, command)
     }
 
     /// Writes only the page and its figures.
-    pub(super) fn draw(&self, collection: &Collection, command: &str) -> Result<(), Failure> {
+    pub(super) fn write_page(&self, collection: &Collection, command: &str) -> Result<(), Failure> {
         let output = |name: &str| Output::open(&self.path.join(name));
-        let page = Page::of(collection, command);
+        let page = ReportPage::new(collection, command);
         output("report.html")?.finish(|writer| writer.write_all(page.html().as_bytes()))?;
         output("report.md")?.finish(|writer| writer.write_all(page.markdown().as_bytes()))?;
         let figures = self.path.join("figures");

@@ -4,11 +4,11 @@ use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use sixfold_study::unknown;
-use sixfold_study::{GrowthSettings, Labs, Operation, Results, Settings, Specimen, WhySettings};
+use sixfold_study::{GrowthSettings, Labs, Operation, Results, Settings, StudyMesh, WhySettings};
 
 use super::folder::Folder;
 use crate::failure::Failure;
-use crate::text::{Text, complain, hanging, tame};
+use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
 use crate::{growth, orders, why};
 
 /// A lab.
@@ -36,9 +36,9 @@ impl Lab {
 
 /// The labs selected by `--labs`.
 #[derive(Clone, Debug)]
-pub(crate) struct Chosen(Vec<Lab>);
+pub(crate) struct LabSelection(Vec<Lab>);
 
-impl FromStr for Chosen {
+impl FromStr for LabSelection {
     type Err = String;
 
     /// Parses `all`, `none`, or names separated by commas.
@@ -58,20 +58,23 @@ impl FromStr for Chosen {
 
 /// Returns the labs of the report: the selected ones, or all by default. Several meshes have no
 /// labs.
-pub(super) fn wanted(chosen: Option<&Chosen>, single: bool) -> Result<Vec<Lab>, Failure> {
-    match (chosen, single) {
-        (Some(Chosen(labs)), false) if !labs.is_empty() => Err(Failure::usage(
+pub(super) fn selected_labs(
+    selection: Option<&LabSelection>,
+    single: bool,
+) -> Result<Vec<Lab>, Failure> {
+    match (selection, single) {
+        (Some(LabSelection(labs)), false) if !labs.is_empty() => Err(Failure::usage(
             "--labs is for the report of one mesh: use `sixfold orders`, `growth` and `why` instead",
         )),
         (_, false) => Ok(Vec::new()),
-        (Some(Chosen(labs)), true) => Ok(labs.clone()),
+        (Some(LabSelection(labs)), true) => Ok(labs.clone()),
         (None, true) => Ok(Lab::ALL.into()),
     }
 }
 
-/// The input of the labs.
-pub(super) struct Measuring<'a> {
-    pub(super) specimen: &'a Specimen,
+/// Measures labs, with the input that all labs share.
+pub(super) struct LabRunner<'a> {
+    pub(super) study_mesh: &'a StudyMesh,
     pub(super) settings: &'a Settings,
     pub(super) folder: &'a Folder,
     /// The study was finished by an earlier run: the folder has results of the same mesh and
@@ -80,35 +83,35 @@ pub(super) struct Measuring<'a> {
     pub(super) stop: &'a AtomicBool,
 }
 
-impl Measuring<'_> {
+impl LabRunner<'_> {
     /// Measures the labs that are not in the folder yet. A lab that cannot be measured is reported
     /// and left out.
-    pub(super) fn labs(&self, wanted: &[Lab]) -> Result<Labs, Failure> {
+    pub(super) fn run(&self, selected: &[Lab]) -> Result<Labs, Failure> {
         let mut labs = Labs::default();
-        for &lab in wanted {
-            let known = match self.resumed {
-                true => self.folder.lab(lab.name()),
+        for &lab in selected {
+            let saved = match self.resumed {
+                true => self.folder.load_lab(lab.name()),
                 false => None,
             };
-            if known.is_none() && self.stop.load(Ordering::Relaxed) {
+            if saved.is_none() && self.stop.load(Ordering::Relaxed) {
                 continue;
             }
-            let found = match known {
-                Some(known) => Ok(Some(known)),
-                None => self.measured(lab),
+            let results = match saved {
+                Some(saved) => Ok(Some(saved)),
+                None => self.measure(lab),
             };
-            match found {
+            match results {
                 Ok(Some(results)) => {
                     if !self.stop.load(Ordering::Relaxed) {
-                        self.folder.keep_lab(lab.name(), &results)?;
+                        self.folder.save_lab(lab.name(), &results)?;
                     }
-                    labs.take(results);
+                    labs.add(results);
                 }
-                Ok(None) => complain(&format!(
+                Ok(None) => print_stderr(&format!(
                     "note: the report is without {}: none of the selected operations is a relation",
                     lab.name()
                 )),
-                Err(failure) => complain(&format!(
+                Err(failure) => print_stderr(&format!(
                     "note: the report is without {}: {}",
                     lab.name(),
                     failure.message
@@ -118,7 +121,7 @@ impl Measuring<'_> {
         Ok(labs)
     }
 
-    fn measured(&self, lab: Lab) -> Result<Option<Results>, Failure> {
+    fn measure(&self, lab: Lab) -> Result<Option<Results>, Failure> {
         let Settings {
             backends,
             operations,
@@ -139,12 +142,12 @@ impl Measuring<'_> {
         };
         Ok(match lab {
             Lab::Orders => {
-                let orders = orders::measured(self.specimen, &settings(), self.stop)?;
+                let orders = orders::measure(self.study_mesh, &settings(), self.stop)?;
                 Some(Results::Orders(orders.into()))
             }
             Lab::Growth => {
-                let settings = GrowthSettings::within(settings());
-                let growth = growth::measured(&settings, self.stop)?;
+                let settings = GrowthSettings::from_study(settings());
+                let growth = growth::measure(&settings, self.stop)?;
                 Some(Results::Growth(growth.into()))
             }
             Lab::Why => {
@@ -160,7 +163,7 @@ impl Measuring<'_> {
                 if settings.relations.is_empty() && !operations.is_empty() {
                     return Ok(None);
                 }
-                let why = why::measured(self.specimen, settings, Some(*budget), self.stop)?;
+                let why = why::measure(self.study_mesh, settings, Some(*budget), self.stop)?;
                 Some(Results::Why(why.into()))
             }
         })
@@ -168,18 +171,22 @@ impl Measuring<'_> {
 }
 
 /// Prints the findings of the labs; the report has the rest.
-pub(super) fn print(labs: &Labs, text: &mut Text) {
+pub(super) fn print(labs: &Labs, text: &mut TextOutput) {
     let orders = { labs.orders.iter() }.map(|orders| {
-        let title = format!("Effect of the order of {}", tame(&orders.mesh.name));
-        (title, &orders.words)
+        let title = format!("Effect of the order of {}", sanitize(&orders.mesh.name));
+        (title, &orders.sentences)
     });
-    let growth = { labs.growth.iter() }
-        .map(|growth| (format!("How costs grow: {}", growth.shape), &growth.words));
-    for (title, words) in orders.chain(growth) {
-        text.say("");
-        text.say(&title);
-        for words in words {
-            text.say(&hanging("- ", words));
+    let growth = { labs.growth.iter() }.map(|growth| {
+        (
+            format!("How costs grow: {}", growth.shape),
+            &growth.sentences,
+        )
+    });
+    for (title, sentences) in orders.chain(growth) {
+        text.print_line("");
+        text.print_line(&title);
+        for sentence in sentences {
+            text.print_line(&hanging_indent("- ", sentence));
         }
     }
 }

@@ -8,9 +8,9 @@ use super::folder::Folder;
 use crate::arguments::Merge;
 use crate::failure::Failure;
 use crate::load;
-use crate::measured::{studies_ended, typed};
-use crate::output::{Output, check_kept, is_stdout};
-use crate::text::Text;
+use crate::outcome::{command_line, studies_exit_code};
+use crate::output::{Output, check_not_overwritten, is_stdout};
+use crate::text::TextOutput;
 
 /// Reads the results of the shards, and writes them as the results of a single run.
 pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
@@ -21,9 +21,9 @@ pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
     }
     let mut merged: Option<Collection> = None;
     for place in &arguments.shards {
-        let file = load::results_in(place);
-        check_kept("a shard", &file, &[("--json", arguments.json.as_ref())])?;
-        let shard = load::results(&file, Collection::read_json)?;
+        let file = load::results_path(place);
+        check_not_overwritten("a shard", &file, &[("--json", arguments.json.as_ref())])?;
+        let shard = load::read_results(&file, Collection::read_json)?;
         match &mut merged {
             None => merged = Some(shard),
             Some(merged) => merged
@@ -35,7 +35,7 @@ pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
         return Err(Failure::usage("name the folders or files to merge"));
     };
     let on_stdout = arguments.json.as_deref().is_some_and(is_stdout);
-    let mut text = Text::shown(!on_stdout);
+    let mut text = TextOutput::new(!on_stdout);
     super::print(&merged, &mut text);
     let mut written = text.finish();
     if let Some(path) = &arguments.json {
@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
         written = written.and(output.finish(|writer| merged.write_json(writer)));
     }
     if let Some(path) = &arguments.report {
-        written = written.and(Folder::made(path)?.finish(&merged, &typed()));
+        written = written.and(Folder::create(path)?.write_report(&merged, &command_line()));
     }
-    studies_ended(written, &merged.studies, merged.labs.mismatches(), false)
+    studies_exit_code(written, &merged.studies, merged.labs.mismatches(), false)
 }

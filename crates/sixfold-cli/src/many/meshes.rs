@@ -26,7 +26,7 @@ pub(crate) struct Shard {
 
 impl Shard {
     /// Returns whether mesh `number`, counted from 0, is in the shard.
-    pub(crate) fn has(self, number: usize) -> bool {
+    pub(crate) fn contains(self, number: usize) -> bool {
         number % self.count == self.index - 1
     }
 }
@@ -50,7 +50,7 @@ impl FromStr for Shard {
 
 /// Returns the meshes in `places`: files, and all OBJ files in folders and their subfolders, sorted
 /// by name. Each file occurs once. Without any place, returns the built-in mesh.
-pub(crate) fn found(places: &[PathBuf]) -> Result<Vec<Mesh>, Failure> {
+pub(crate) fn find_meshes(places: &[PathBuf]) -> Result<Vec<Mesh>, Failure> {
     let mut meshes: Vec<Mesh> = Vec::new();
     if places.is_empty() {
         let name = crate::load::built_in().name;
@@ -60,7 +60,7 @@ pub(crate) fn found(places: &[PathBuf]) -> Result<Vec<Mesh>, Failure> {
     for place in places {
         let mut files = Vec::new();
         if place.is_dir() {
-            let listed = list(place, &mut files);
+            let listed = list_obj_files(place, &mut files);
             listed.map_err(|(folder, cause)| {
                 Failure::usage(format!("{}: cannot be listed: {cause}", folder.display()))
             })?;
@@ -93,7 +93,7 @@ fn name_of(path: &Path) -> String {
 
 /// Lists all OBJ files in `folder` and its subfolders, sorted by name. Skips hidden files, which
 /// other programs leave behind. Does not follow links to folders, because they may form a cycle.
-fn list(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), (PathBuf, io::Error)> {
+fn list_obj_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), (PathBuf, io::Error)> {
     let failed = |cause| (folder.to_owned(), cause);
     let entries = fs::read_dir(folder).map_err(failed)?;
     let mut paths = Vec::new();
@@ -105,7 +105,7 @@ fn list(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), (PathBuf, io::Err
         let path = entry.path();
         let is_folder = entry.file_type().map_err(failed)?.is_dir();
         // Only files and links to files: opening a pipe, for example, may block.
-        if is_folder || fs::metadata(&path).is_ok_and(|there| there.is_file()) {
+        if is_folder || fs::metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
             paths.push((path, is_folder));
         }
     }
@@ -113,7 +113,7 @@ fn list(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), (PathBuf, io::Err
     for (path, is_folder) in paths {
         let ending = path.extension();
         if is_folder {
-            list(&path, files)?;
+            list_obj_files(&path, files)?;
         } else if ending.is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
             files.push(path);
         }
@@ -131,8 +131,8 @@ mod tests {
             .map(|i| format!("{i}/3").parse().expect("a shard"))
             .collect();
         for number in 0..10 {
-            let owners = shards.iter().filter(|shard| shard.has(number)).count();
-            assert_eq!(owners, 1, "{number}");
+            let containing = shards.iter().filter(|shard| shard.contains(number)).count();
+            assert_eq!(containing, 1, "{number}");
         }
         for text in ["", "1", "0/3", "4/3", "1/0", "a/b", "-1/3", "1/3/3"] {
             assert!(text.parse::<Shard>().is_err(), "{text}");

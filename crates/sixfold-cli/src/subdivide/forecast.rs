@@ -5,7 +5,7 @@ use sixfold::{Counts, MAX_ROWS, Point, PolygonMesh, VertexId};
 use sixfold_study::Backend;
 
 use crate::failure::Failure;
-use crate::free_memory::check_room;
+use crate::free_memory::check_free_memory;
 use sixfold_study::numbers::{bytes, counted};
 
 /// Bytes of the sums per edge in a pass over the faces. They are in a hash map if edges have no
@@ -25,7 +25,7 @@ pub(crate) struct Forecast {
 
 impl Forecast {
     /// Predicts the sizes of `levels` steps from `polygons`.
-    pub(crate) fn of(
+    pub(crate) fn new(
         subdivision: &Subdivision,
         method: Method,
         backend: &str,
@@ -33,10 +33,10 @@ impl Forecast {
         levels: u32,
         limit: bool,
     ) -> Result<Self, Failure> {
-        let mut extent = Extent::of(polygons);
+        let mut extent = Extent::from_polygons(polygons);
         let mut counts = vec![extent.counts];
         for level in 0..levels {
-            extent = subdivision.grown(&extent, level);
+            extent = subdivision.refined_extent(&extent, level);
             let Counts {
                 vertices,
                 edges,
@@ -56,22 +56,35 @@ impl Forecast {
             }
             counts.push(extent.counts);
         }
-        let peak = counts.windows(2).map(|pair| {
+        let peaks = counts.windows(2).map(|pair| {
             let [old, new] = [&pair[0], &pair[1]];
             match method {
                 // Two meshes, and at the end the polygons of the result.
-                Method::Native => held(backend, old) + held(backend, new) + flat(new),
+                Method::Native => {
+                    structure_bytes(backend, old)
+                        + structure_bytes(backend, new)
+                        + polygon_bytes(new)
+                }
                 // The polygons of both levels, the structure, and data per handle.
-                Method::Gather => flat(old) + flat(new) + 3 * held(backend, old),
+                Method::Gather => {
+                    polygon_bytes(old) + polygon_bytes(new) + 3 * structure_bytes(backend, old)
+                }
                 Method::Scatter => {
-                    flat(old) + flat(new) + held(backend, old) + old.edges * SUMS_BYTES
+                    polygon_bytes(old)
+                        + polygon_bytes(new)
+                        + structure_bytes(backend, old)
+                        + old.edges * SUMS_BYTES
                 }
             }
         });
-        let steps = peak.max().unwrap_or_else(|| flat(&counts[0]));
+        let steps = peaks.max().unwrap_or_else(|| polygon_bytes(&counts[0]));
         let result = &counts[counts.len() - 1];
         let limits = match limit {
-            true => 2 * flat(result) + held("face-vertex", result) + result.vertices * LIMIT_BYTES,
+            true => {
+                2 * polygon_bytes(result)
+                    + structure_bytes("face-vertex", result)
+                    + result.vertices * LIMIT_BYTES
+            }
             false => 0,
         };
         Ok(Self {
@@ -81,12 +94,12 @@ impl Forecast {
     }
 
     /// Returns the number of faces of all new levels.
-    pub(crate) fn faces_in_all(&self) -> usize {
+    pub(crate) fn new_faces(&self) -> usize {
         self.levels.iter().skip(1).map(|counts| counts.faces).sum()
     }
 
     /// Describes the expected result in a line.
-    pub(crate) fn told(&self) -> String {
+    pub(crate) fn describe(&self) -> String {
         let result = &self.levels[self.levels.len() - 1];
         format!(
             "result: {}, {}; needs about {} of memory",
@@ -108,7 +121,7 @@ impl Forecast {
 pub(super) fn check_memory(what: &str, peak: usize, force: bool) -> Result<(), Failure> {
     match force {
         true => Ok(()),
-        false => check_room(
+        false => check_free_memory(
             what,
             peak as u64,
             "take fewer levels, or continue with --force",
@@ -117,13 +130,13 @@ pub(super) fn check_memory(what: &str, peak: usize, force: bool) -> Result<(), F
 }
 
 /// Returns the bytes of the positions and faces of a polygon mesh.
-fn flat(counts: &Counts) -> usize {
+fn polygon_bytes(counts: &Counts) -> usize {
     let positions = counts.vertices.saturating_mul(size_of::<Point>());
     positions.saturating_add(counts.corners.saturating_mul(size_of::<VertexId>()))
 }
 
 /// Returns the bytes of the structure with the name `backend`.
-fn held(backend: &str, counts: &Counts) -> usize {
+fn structure_bytes(backend: &str, counts: &Counts) -> usize {
     let mut roster = Backend::roster().into_iter();
     let found = roster.find(|found| found.name() == backend);
     found.map_or(0, |found| (found.layout_bytes)(counts))

@@ -9,7 +9,7 @@ use sixfold::subdivision::{LimitPoint, NoLimit, Step, Subdivision};
 use sixfold::{FaceVertexMesh, MeshQuery, Point, PolygonMesh, Representation};
 
 use crate::failure::Failure;
-use crate::text::tame;
+use crate::text::sanitize;
 use sixfold_study::numbers::counted;
 
 /// A result with its vertices at their limits for infinitely many levels.
@@ -23,11 +23,15 @@ pub(super) struct Limits {
 impl Limits {
     /// Computes the limit positions and normals of `step`. A vertex without a limit keeps its
     /// position.
-    pub(super) fn of(subdivision: &Subdivision, step: &Step, levels: u32) -> Result<Self, Failure> {
+    pub(super) fn new(
+        subdivision: &Subdivision,
+        step: &Step,
+        levels: u32,
+    ) -> Result<Self, Failure> {
         // Face-vertex meshes hold every polygon mesh, and keep the order of the elements.
         let mesh = FaceVertexMesh::from_polygons(&step.polygons).map_err(Failure::unsupported)?;
         let creases = match levels {
-            0 => subdivision.control(&mesh, &step.polygons, &step.creases),
+            0 => subdivision.control_creases(&mesh, &step.polygons, &step.creases),
             _ => Ok(step.creases.clone()),
         };
         let creases = creases.map_err(Failure::unsupported)?;
@@ -42,7 +46,7 @@ impl Limits {
             positions.push(limit.position().unwrap_or_else(|| mesh.position(v)));
             normals.push(limit.normal());
             if let LimitPoint::Undefined(reason) = limit {
-                *undefined.entry(because(reason)).or_default() += 1;
+                *undefined.entry(reason_text(reason)).or_default() += 1;
             }
         }
         let faces = step.polygons.faces().clone();
@@ -59,20 +63,20 @@ impl Limits {
     }
 
     /// Describes the limits, written to `path`, in lines.
-    pub(super) fn told(&self, path: &Path) -> Vec<String> {
-        let place = tame(&path.display().to_string());
-        let with = self.normals.iter().flatten().count();
-        let normals = counted(with, "normal", "normals");
+    pub(super) fn describe(&self, path: &Path) -> Vec<String> {
+        let place = sanitize(&path.display().to_string());
+        let normals = self.normals.iter().flatten().count();
+        let normals = counted(normals, "normal", "normals");
         let mut lines = vec![format!("{place}: limit positions, {normals}")];
-        for (because, &number) in &self.undefined {
+        for (reason, &number) in &self.undefined {
             let vertices = counted(number, "vertex stays", "vertices stay");
-            lines.push(format!("{place}: {vertices}, {because}"));
+            lines.push(format!("{place}: {vertices}, {reason}"));
         }
         lines
     }
 }
 
-fn because(reason: NoLimit) -> &'static str {
+fn reason_text(reason: NoLimit) -> &'static str {
     match reason {
         NoLimit::SemiSharp => "still sharp for some levels: take more levels",
         NoLimit::NotAllQuads => "at a face that is not a quad: take one more level",

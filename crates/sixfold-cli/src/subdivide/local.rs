@@ -11,9 +11,9 @@ use sixfold::{FaceId, Point, PolygonMesh, Representation, Visitor, visit};
 use crate::arguments::{Select, Subdivide};
 use crate::failure::Failure;
 use crate::load;
-use crate::output::{Output, check_kept, is_stdout};
-use crate::progress::Waiting;
-use crate::text::{Text, tame};
+use crate::output::{Output, check_not_overwritten, is_stdout};
+use crate::progress::Spinner;
+use crate::text::{TextOutput, sanitize};
 use sixfold_study::numbers::{counted, grouped};
 
 use super::check_tags;
@@ -21,10 +21,10 @@ use super::forecast::check_memory;
 
 /// Refines the chosen triangles and writes the mesh.
 pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Failure> {
-    check(arguments)?;
+    check_options(arguments)?;
     if let Select::Faces(path) = select {
         let outputs = [("--output", Some(&arguments.output))];
-        check_kept("the list of faces", path, &outputs)?;
+        check_not_overwritten("the list of faces", path, &outputs)?;
     }
     let (polygons, creases) = load::with_creases(&arguments.mesh)?;
     check_tags(arguments, &creases)?;
@@ -36,26 +36,26 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
             _ => Failure::usage(error),
         })?;
     let output = Output::open(&arguments.output)?;
-    let waiting = Waiting::shown(format!("refining {}", arguments.mesh.display()));
-    let mut work = Locally {
+    let spinner = Spinner::start(format!("refining {}", arguments.mesh.display()));
+    let mut work = LocalRefinement {
         polygons: &polygons,
         selection: &selection,
         levels: arguments.levels,
         force: arguments.force,
     };
     let refined = visit(&arguments.backend, &mut work);
-    waiting.clear();
+    spinner.clear();
     let refined = refined
         .ok_or_else(|| Failure::usage(format!("no backend is called `{}`", arguments.backend)))??;
     let mesh = refined.polygons();
     output.finish(|writer| write_obj(mesh, writer))?;
-    let mut text = Text::shown(!is_stdout(&arguments.output));
-    let place = tame(&arguments.output.display().to_string());
+    let mut text = TextOutput::new(!is_stdout(&arguments.output));
+    let place = sanitize(&arguments.output.display().to_string());
     let vertices = counted(mesh.vertex_count(), "vertex", "vertices");
     let faces = counted(mesh.face_count(), "face", "faces");
     let all = mesh.faces().iter();
     let green = all.filter(|&(f, _)| refined.is_green(f)).count();
-    text.say(&format!(
+    text.print_line(&format!(
         "{place}: {vertices}, {faces} ({} of them halves); refined on {}",
         grouped(green),
         arguments.backend
@@ -65,7 +65,7 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
 }
 
 /// Refuses schemes other than midpoint, and options that midpoints do not use.
-fn check(arguments: &Subdivide) -> Result<(), Failure> {
+fn check_options(arguments: &Subdivide) -> Result<(), Failure> {
     let Subdivide { scheme, .. } = arguments;
     if *scheme != Scheme::Midpoint {
         return Err(Failure::unsupported(format!(
@@ -84,7 +84,7 @@ fn check(arguments: &Subdivide) -> Result<(), Failure> {
         ("--limit", arguments.limit.is_some()),
         ("--creases-left", arguments.creases_left.is_some()),
     ];
-    match others.into_iter().find(|&(_, asked)| asked) {
+    match others.into_iter().find(|&(_, given)| given) {
         Some((option, _)) => Err(Failure::unsupported(format!(
             "{option} has no effect with --select, which inserts midpoints: leave it out"
         ))),
@@ -94,7 +94,7 @@ fn check(arguments: &Subdivide) -> Result<(), Failure> {
 
 fn selection(select: &Select) -> Result<Selection, Failure> {
     Ok(match select {
-        Select::Faces(path) => Selection::Faces(listed(path)?),
+        Select::Faces(path) => Selection::Faces(read_face_list(path)?),
         Select::Box(min, max) => Selection::Box {
             min: Point::from_array(*min),
             max: Point::from_array(*max),
@@ -104,7 +104,7 @@ fn selection(select: &Select) -> Result<Selection, Failure> {
 }
 
 /// Reads the faces that a file lists: numbers from 0 separated by spaces; `#` begins a comment.
-fn listed(path: &Path) -> Result<Vec<FaceId>, Failure> {
+fn read_face_list(path: &Path) -> Result<Vec<FaceId>, Failure> {
     let shown = path.display();
     let text = fs::read_to_string(path).map_err(|cause| {
         Failure::usage(format!(
@@ -113,8 +113,8 @@ fn listed(path: &Path) -> Result<Vec<FaceId>, Failure> {
     })?;
     let mut faces = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {
-        let said = line.split('#').next().unwrap_or_default();
-        for word in said.split_whitespace() {
+        let content = line.split('#').next().unwrap_or_default();
+        for word in content.split_whitespace() {
             let face: u32 = word.parse().map_err(|_| {
                 Failure::usage(format!(
                     "{shown}:{number}: `{word}` is not a face: write numbers from 0, one or more per line"
@@ -128,22 +128,22 @@ fn listed(path: &Path) -> Result<Vec<FaceId>, Failure> {
 
 /// Returns an upper bound of the bytes of a level, for a mesh with `faces` faces and `chosen`
 /// selected ones. Each selected face becomes four and also splits some neighbours.
-fn most_bytes(faces: usize, chosen: usize) -> usize {
+fn max_bytes(faces: usize, chosen: usize) -> usize {
     /// Bytes of polygons, structure and scratch data, per old or new face.
     const BYTES: usize = 200;
-    let grown = faces.saturating_add(chosen.saturating_mul(12));
-    grown.min(faces.saturating_mul(4)).saturating_mul(BYTES)
+    let new_faces = faces.saturating_add(chosen.saturating_mul(12));
+    new_faces.min(faces.saturating_mul(4)).saturating_mul(BYTES)
 }
 
 /// Local refinement on a structure that is selected at run time.
-struct Locally<'a> {
+struct LocalRefinement<'a> {
     polygons: &'a PolygonMesh,
     selection: &'a Selection,
     levels: u32,
     force: bool,
 }
 
-impl Visitor for Locally<'_> {
+impl Visitor for LocalRefinement<'_> {
     type Output = Result<LocalMesh, Failure>;
 
     /// Works as `refine_locally`, but checks the memory of each level once its faces are selected.
@@ -152,7 +152,7 @@ impl Visitor for Locally<'_> {
         for level in 0..self.levels {
             let mesh = M::from_polygons(local.polygons()).map_err(|refusal| {
                 let structure = M::NAME;
-                Failure::not_held(LocalError::Build {
+                Failure::cannot_hold(LocalError::Build {
                     structure,
                     level,
                     refusal,
@@ -165,7 +165,7 @@ impl Visitor for Locally<'_> {
             if chosen.is_empty() {
                 break;
             }
-            let peak = most_bytes(local.polygons().face_count(), chosen.len());
+            let peak = max_bytes(local.polygons().face_count(), chosen.len());
             check_memory(&format!("level {}", level + 1), peak, self.force)?;
             local = local
                 .refined(&mesh, &chosen)

@@ -6,17 +6,17 @@ use std::time::Duration;
 use sixfold::shapes;
 
 use super::*;
-use crate::{Settings, Specimen, study};
+use crate::{Settings, StudyMesh, study};
 
 /// Returns a study whose samples are replaced by known ones: 1000 ns times `factor`.
 fn report(factor: impl Fn(&str, Operation) -> f64) -> Report {
-    let specimen = Specimen::new("ball", shapes::icosahedron());
+    let study_mesh = StudyMesh::new("ball", shapes::icosahedron());
     let settings = Settings {
         operations: vec![Operation::Boundary, Operation::EdgeLength, Operation::Build],
         budget: Duration::from_millis(400),
         ..Settings::default()
     };
-    let report = study(&specimen, &settings, &AtomicBool::new(false), &mut |_| ());
+    let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ());
     let mut report = report.expect("a study");
     report.control = None;
     // Other tests of this program may have changed the policy.
@@ -63,9 +63,9 @@ fn a_known_change_is_found_and_nothing_else() {
         ("winged-edge", Operation::Boundary) => 1.06,
         _ => 1.0,
     });
-    let quiet = Comparing {
+    let quiet = CompareSettings {
         drift: 1.05,
-        ..Comparing::default()
+        ..CompareSettings::default()
     };
     assert_eq!(
         compare(&before, &after, quiet)
@@ -74,7 +74,7 @@ fn a_known_change_is_found_and_nothing_else() {
             .count(),
         3
     );
-    let changes = compare(&before, &after, Comparing::default()).expect("one memory state");
+    let changes = compare(&before, &after, CompareSettings::default()).expect("one memory state");
     assert_eq!(changes.rows.len(), before.results.len());
     let found: Vec<_> = { changes.changed() }
         .map(|row| (row.backend.as_str(), row.operation, row.verdict))
@@ -99,9 +99,9 @@ fn a_known_change_is_found_and_nothing_else() {
         (&[][..], &None)
     );
     assert!(
-        changes.words[0].contains("1 are faster, 1 slower"),
+        changes.sentences[0].contains("1 are faster, 1 slower"),
         "{:?}",
-        changes.words
+        changes.sentences
     );
 }
 
@@ -113,25 +113,25 @@ fn a_slower_machine_is_one_factor_that_relative_removes() {
         _ => 3.0,
     });
     after.environment.cpu_model = Some("an old one".into());
-    let absolute = compare(&before, &after, Comparing::default()).expect("one memory state");
+    let absolute = compare(&before, &after, CompareSettings::default()).expect("one memory state");
     assert_eq!(absolute.count(Verdict::Slower), absolute.rows.len());
     assert!(
-        absolute.words[1].contains("3.00 × slower"),
+        absolute.sentences[1].contains("3.00 × slower"),
         "{:?}",
-        absolute.words
+        absolute.sentences
     );
     assert!(
-        absolute.words[1].contains("--relative"),
+        absolute.sentences[1].contains("--relative"),
         "{:?}",
-        absolute.words
+        absolute.sentences
     );
     assert_eq!(absolute.environment[0].what, "processor");
     let relative = compare(
         &before,
         &after,
-        Comparing {
+        CompareSettings {
             relative: true,
-            ..Comparing::default()
+            ..CompareSettings::default()
         },
     )
     .expect("one memory state");
@@ -150,7 +150,7 @@ fn different_heaps_and_caches_are_refused() {
         Policy::Kept => Policy::System,
         Policy::System => Policy::Kept,
     };
-    let refused = compare(&before, &after, Comparing::default());
+    let refused = compare(&before, &after, CompareSettings::default());
     let message = refused.expect_err("two policies").to_string();
     assert!(
         message.contains("--heap kept") && message.contains("--heap system"),
@@ -159,13 +159,13 @@ fn different_heaps_and_caches_are_refused() {
     let mut after = before.clone();
     let caches = after.environment.cache_state.as_mut().expect("measured");
     caches.state = CacheState::Cold;
-    let refused = compare(&before, &after, Comparing::default());
+    let refused = compare(&before, &after, CompareSettings::default());
     let message = refused.expect_err("two states").to_string();
     assert!(message.contains("--caches cold"), "{message}");
     // Older versions measured on the system's heap with warm caches.
     let mut old = before.clone();
     (old.environment.heap, old.environment.cache_state) = (None, None);
-    assert_eq!(old.environment.memory_words(), ["system", "warm"]);
+    assert_eq!(old.environment.memory_settings(), ["system", "warm"]);
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn missing_rows_other_checksums_and_new_winners_are_reported() {
     row.checksum = row.checksum.map(|sum| sum * 1.01);
     let name = row.backend.clone();
     after.backends[3].bytes = Some(7);
-    let changes = compare(&before, &after, Comparing::default()).expect("one memory state");
+    let changes = compare(&before, &after, CompareSettings::default()).expect("one memory state");
     assert_eq!(changes.only_before.len(), 6);
     assert!(
         changes.only_before[0].starts_with("build on "),
@@ -201,9 +201,9 @@ fn missing_rows_other_checksums_and_new_winners_are_reported() {
     assert_eq!(changes.winners.len(), 2);
     assert_eq!(changes.winners[0].after, "corner-table");
     assert!(
-        changes.words.last().expect("words").contains(&name),
+        changes.sentences.last().expect("sentences").contains(&name),
         "{:?}",
-        changes.words
+        changes.sentences
     );
 }
 
@@ -212,7 +212,7 @@ fn without_samples_only_ratios_above_two_count() {
     let before = report(|_, _| 1.0);
     let mut after = report(|backend, _| if backend == "half-edge" { 2.5 } else { 1.5 });
     after.raw.clear();
-    let changes = compare(&before, &after, Comparing::default()).expect("one memory state");
+    let changes = compare(&before, &after, CompareSettings::default()).expect("one memory state");
     let found: Vec<_> = changes.changed().map(|row| row.backend.as_str()).collect();
     assert_eq!(found, ["half-edge"; 3]);
     assert!(changes.rows.iter().all(|row| row.ci_low.is_none()));

@@ -13,22 +13,22 @@ use serde::{Deserialize, Serialize};
 
 use sixfold_workload::pages::Policy;
 
-use crate::tame::tame;
+use crate::sanitize::sanitize;
 
 /// Version of the protocol.
 const PROTOCOL: u32 = 1;
 /// Largest length of a line in bytes. It limits the memory that a program's output can take.
 const LONGEST_LINE: u64 = 1 << 16;
 /// Number of last bytes of standard error that are kept.
-const LAST_WORDS: usize = 400;
+const STDERR_TAIL_BYTES: usize = 400;
 /// Interval between two checks of the stop flag while waiting.
-const LOOK: Duration = Duration::from_millis(20);
+const POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// Time limit for a program to end after its input is closed.
-const FAREWELL: Duration = Duration::from_secs(1);
+const EXIT_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// The first line of a program.
+/// The first line of a program: whether it takes part.
 #[derive(Debug, Deserialize)]
-pub(super) struct Greeting {
+pub(super) struct Handshake {
     protocol: u32,
     /// Whether it holds the mesh.
     pub(super) holds: bool,
@@ -50,8 +50,8 @@ const TUNABLES: [&str; 2] = [
     "glibc.malloc.mmap_max=0:glibc.malloc.trim_threshold=9223372036854775807:glibc.malloc.top_pad=1048576:glibc.malloc.arena_max=1",
 ];
 
-impl Greeting {
-    pub(super) fn refusing(reason: String) -> Self {
+impl Handshake {
+    pub(super) fn from_refusal(reason: String) -> Self {
         Self {
             protocol: PROTOCOL,
             holds: false,
@@ -63,14 +63,14 @@ impl Greeting {
     }
 
     /// Returns whether its allocator keeps pages if started with [`TUNABLES`].
-    pub(super) fn keeps_pages_if_told(&self) -> bool {
+    pub(super) fn keeps_pages_if_tuned(&self) -> bool {
         self.heap.as_deref() == Some("glibc")
     }
 }
 
 /// A request to run an operation.
 #[derive(Debug, Serialize)]
-pub(super) struct Question {
+pub(super) struct Request {
     /// Name of the operation.
     pub(super) run: &'static str,
     /// Number of runs in a row.
@@ -79,7 +79,7 @@ pub(super) struct Question {
 
 /// The answer to a request.
 #[derive(Debug, Deserialize)]
-pub(super) struct Answer {
+pub(super) struct Response {
     /// Why it does not run the operation.
     pub(super) refused: Option<String>,
     /// Processor time of all runs together.
@@ -97,8 +97,8 @@ pub(super) struct Program<'a> {
     child: Child,
     input: Option<ChildStdin>,
     lines: Receiver<Line>,
-    last_words: Arc<Mutex<Vec<u8>>>,
-    patience: Duration,
+    stderr_tail: Arc<Mutex<Vec<u8>>>,
+    timeout: Duration,
     stop: &'a AtomicBool,
 }
 
@@ -109,16 +109,16 @@ enum Line {
 }
 
 impl<'a> Program<'a> {
-    /// Starts the program `words[0]` with the other words as arguments; `Err` holds the reason.
+    /// Starts the program `arguments[0]` with the other arguments; `Err` holds the reason.
     pub(super) fn start(
-        words: &[String],
+        arguments: &[String],
         heap: Policy,
-        patience: Duration,
+        timeout: Duration,
         stop: &'a AtomicBool,
     ) -> Result<Self, String> {
-        let mut command = Command::new(&words[0]);
-        command.args(&words[1..]);
-        if Self::is_told(heap) {
+        let mut command = Command::new(&arguments[0]);
+        command.args(&arguments[1..]);
+        if Self::sets_tunables(heap) {
             let [tunables, kept] = TUNABLES;
             command.env(tunables, kept);
         }
@@ -129,7 +129,7 @@ impl<'a> Program<'a> {
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let child = command.spawn();
         let mut child =
-            child.map_err(|cause| format!("{} cannot be started: {cause}", words[0]))?;
+            child.map_err(|cause| format!("{} cannot be started: {cause}", arguments[0]))?;
         let (sender, lines) = sync_channel(4);
         let output = child.stdout.take();
         thread::spawn(move || {
@@ -142,62 +142,63 @@ impl<'a> Program<'a> {
                 }
             }
         });
-        let last_words = Arc::new(Mutex::new(Vec::new()));
-        let (kept, errors) = (Arc::clone(&last_words), child.stderr.take());
-        thread::spawn(move || keep_the_end(errors?, &kept));
+        let stderr_tail = Arc::new(Mutex::new(Vec::new()));
+        let (kept, errors) = (Arc::clone(&stderr_tail), child.stderr.take());
+        thread::spawn(move || keep_tail(errors?, &kept));
         Ok(Self {
             input: child.stdin.take(),
             child,
             lines,
-            last_words,
-            patience,
+            stderr_tail,
+            timeout,
             stop,
         })
     }
 
     /// Returns whether programs are started with [`TUNABLES`]: not if the user has set the
     /// variable.
-    pub(super) fn is_told(heap: Policy) -> bool {
+    pub(super) fn sets_tunables(heap: Policy) -> bool {
         heap == Policy::Kept && std::env::var_os(TUNABLES[0]).is_none()
     }
 
     /// Reads the first line of the program and checks its protocol version.
-    pub(super) fn greeting(&mut self) -> Result<Greeting, String> {
-        let greeting: Greeting = self.answer("at the start")?;
-        if greeting.protocol != PROTOCOL {
-            let other = greeting.protocol;
+    pub(super) fn handshake(&mut self) -> Result<Handshake, String> {
+        let handshake: Handshake = self.read_answer("at the start")?;
+        if handshake.protocol != PROTOCOL {
+            let other = handshake.protocol;
             return Err(format!(
                 "it uses version {other} of the protocol, expected version {PROTOCOL}"
             ));
         }
-        Ok(greeting)
+        Ok(handshake)
     }
 
-    /// Sends `question` and waits for the answer.
-    pub(super) fn ask(&mut self, question: &Question) -> Result<Answer, String> {
-        // A line that is already there would be taken for the answer to this question.
+    /// Sends `request` and waits for the answer.
+    pub(super) fn ask(&mut self, request: &Request) -> Result<Response, String> {
+        // A line that is already there would be taken for the answer to this request.
         if let Ok(Line::Text(line)) = self.lines.try_recv() {
             self.kill();
-            let shown = shown(&line);
-            return Err(format!("it wrote `{shown}` without a request"));
+            let excerpt = excerpt(&line);
+            return Err(format!("it wrote `{excerpt}` without a request"));
         }
-        let mut line = serde_json::to_string(question).map_err(|error| error.to_string())?;
+        let mut line = serde_json::to_string(request).map_err(|error| error.to_string())?;
         line.push('\n');
-        let asked = self.input.as_mut().map(|input| {
+        let sent = self.input.as_mut().map(|input| {
             input.write_all(line.as_bytes())?;
             input.flush()
         });
-        match asked {
-            Some(Ok(())) => self.answer(&format!("to {}", question.run)),
+        match sent {
+            Some(Ok(())) => self.read_answer(&format!("to {}", request.run)),
             // It closed its input: report its status and last error line.
-            _ => Err(self.ended()),
+            _ => Err(self.describe_exit()),
         }
     }
 
-    fn answer<T: DeserializeOwned>(&mut self, to: &str) -> Result<T, String> {
+    /// Waits for the next line and parses it; `to` names the request in errors.
+    fn read_answer<T: DeserializeOwned>(&mut self, to: &str) -> Result<T, String> {
         let start = Instant::now();
         let line = loop {
-            match self.lines.recv_timeout(LOOK) {
+            match self.lines.recv_timeout(POLL_INTERVAL) {
                 Ok(Line::Text(line)) => break line,
                 Ok(Line::TooLong) => {
                     self.kill();
@@ -205,14 +206,16 @@ impl<'a> Program<'a> {
                         "its answer {to} is longer than {LONGEST_LINE} bytes"
                     ));
                 }
-                Ok(Line::End) | Err(RecvTimeoutError::Disconnected) => return Err(self.ended()),
+                Ok(Line::End) | Err(RecvTimeoutError::Disconnected) => {
+                    return Err(self.describe_exit());
+                }
                 Err(RecvTimeoutError::Timeout) if self.stop.load(Ordering::Relaxed) => {
                     self.kill();
                     return Err("the study was stopped".into());
                 }
-                Err(RecvTimeoutError::Timeout) if start.elapsed() > self.patience => {
+                Err(RecvTimeoutError::Timeout) if start.elapsed() > self.timeout => {
                     self.kill();
-                    let seconds = self.patience.as_secs_f64();
+                    let seconds = self.timeout.as_secs_f64();
                     return Err(format!(
                         "no answer {to} within {seconds} s, so it was killed"
                     ));
@@ -222,36 +225,36 @@ impl<'a> Program<'a> {
         };
         serde_json::from_str(&line).map_err(|error| {
             self.kill();
-            let shown = shown(&line);
-            format!("its answer {to}, `{shown}`, does not follow the protocol: {error}")
+            let excerpt = excerpt(&line);
+            format!("its answer {to}, `{excerpt}`, does not follow the protocol: {error}")
         })
     }
 
     /// Ends the program and describes its exit status and the last line of its standard error.
-    fn ended(&mut self) -> String {
-        let status = self.wait(FAREWELL);
+    fn describe_exit(&mut self) -> String {
+        let status = self.wait(EXIT_TIMEOUT);
         let how = match status {
             Some(status) => format!("it ended ({status})"),
             None => "it closed its output".into(),
         };
         self.kill();
-        let words = self
-            .last_words
+        let tail = self
+            .stderr_tail
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
-        let words = String::from_utf8_lossy(&words);
-        match words.trim().lines().last().map(tame) {
-            Some(words) => format!("{how}: {words}"),
+        let tail = String::from_utf8_lossy(&tail);
+        match tail.trim().lines().last().map(sanitize) {
+            Some(message) => format!("{how}: {message}"),
             None => how,
         }
     }
 
-    /// Waits up to `patience` for the program to end; `None` if it is still running.
-    fn wait(&mut self, patience: Duration) -> Option<ExitStatus> {
+    /// Waits up to `timeout` for the program to end; `None` if it is still running.
+    fn wait(&mut self, timeout: Duration) -> Option<ExitStatus> {
         let start = Instant::now();
         loop {
             match self.child.try_wait() {
-                Ok(None) if start.elapsed() < patience => thread::sleep(LOOK / 4),
+                Ok(None) if start.elapsed() < timeout => thread::sleep(POLL_INTERVAL / 4),
                 Ok(status) => return status,
                 Err(_) => return None,
             }
@@ -275,15 +278,15 @@ impl Drop for Program<'_> {
     /// Ends the program, so that it does not outlive the study.
     fn drop(&mut self) {
         self.input = None;
-        if self.wait(FAREWELL).is_none() {
+        if self.wait(EXIT_TIMEOUT).is_none() {
             self.kill();
         }
     }
 }
 
 /// Returns the first 80 characters of an invalid line, without control characters.
-fn shown(line: &str) -> String {
-    tame(line).chars().take(80).collect()
+fn excerpt(line: &str) -> String {
+    sanitize(line).chars().take(80).collect()
 }
 
 fn read_line(output: &mut impl BufRead) -> Line {
@@ -296,14 +299,14 @@ fn read_line(output: &mut impl BufRead) -> Line {
     }
 }
 
-/// Reads `errors` to the end and keeps the last [`LAST_WORDS`] bytes.
-fn keep_the_end(mut errors: impl Read, kept: &Mutex<Vec<u8>>) -> Option<()> {
-    let mut buffer = [0; LAST_WORDS];
+/// Reads `errors` to the end and keeps the last [`STDERR_TAIL_BYTES`] bytes.
+fn keep_tail(mut errors: impl Read, kept: &Mutex<Vec<u8>>) -> Option<()> {
+    let mut buffer = [0; STDERR_TAIL_BYTES];
     loop {
         let count = errors.read(&mut buffer).ok().filter(|&count| count > 0)?;
         let mut kept = kept.lock().ok()?;
         kept.extend_from_slice(&buffer[..count]);
-        let spare = kept.len().saturating_sub(LAST_WORDS);
+        let spare = kept.len().saturating_sub(STDERR_TAIL_BYTES);
         kept.drain(..spare);
     }
 }

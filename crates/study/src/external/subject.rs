@@ -1,14 +1,14 @@
 //! An external program as a subject of measurements, beside the structures.
 
 use sixfold::QueryCost;
-use sixfold_workload::{Clock, Job, Outcome, Run, Series, Subject, Time};
+use sixfold_workload::{Clock, Job, Outcome, Run, Series, Time, TimedBackend};
 
-use super::program::{Answer, Program, Question};
-use crate::tame::tame;
+use super::program::{Program, Request, Response};
+use crate::sanitize::sanitize;
 
 /// Largest ratio of the time a program reports to the time Sixfold waited; the two clocks may
 /// differ.
-const CLOCKS: f64 = 1.01;
+const CLOCK_TOLERANCE: f64 = 1.01;
 
 /// An external program that holds the mesh; after a failure, the error instead of the program.
 pub(super) struct ExternalSubject<'a> {
@@ -26,31 +26,31 @@ impl<'a> ExternalSubject<'a> {
         }
     }
 
-    /// Sends `question` and checks the reported time, which is `None` if the program refuses. After
+    /// Sends `request` and checks the reported time, which is `None` if the program refuses. After
     /// an error or an impossible time the program is not used again.
     fn ask(
         &mut self,
-        question: &Question,
+        request: &Request,
         clock: &dyn Clock,
-    ) -> Result<(Answer, Option<Time>), String> {
+    ) -> Result<(Response, Option<Time>), String> {
         let program = self.program.as_mut().map_err(|why| why.clone())?;
         let before = clock.now();
-        let answered = program.ask(question).and_then(|answer| {
+        let result = program.ask(request).and_then(|response| {
             let waited = clock.now().wall_ns - before.wall_ns;
-            let time = match answer.refused {
+            let time = match response.refused {
                 Some(_) => None,
-                None => Some(time(&answer, waited, before.cpu_ns.is_some())?),
+                None => Some(time(&response, waited, before.cpu_ns.is_some())?),
             };
-            Ok((answer, time))
+            Ok((response, time))
         });
-        if let Err(why) = &answered {
+        if let Err(why) = &result {
             self.program = Err(format!("it failed earlier: {why}"));
         }
-        answered
+        result
     }
 }
 
-impl Subject for ExternalSubject<'_> {
+impl TimedBackend for ExternalSubject<'_> {
     fn name(&self) -> &str {
         &self.name
     }
@@ -74,7 +74,7 @@ impl Subject for ExternalSubject<'_> {
 
     fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
         let clock = series.clock;
-        let none = Time::none_like(clock.now());
+        let none = Time::zero_like(clock.now());
         let refused = |refusal: String| Run {
             time: none,
             outcome: None,
@@ -83,36 +83,36 @@ impl Subject for ExternalSubject<'_> {
         if job.sample.is_some() {
             return refused("it cannot run samples".into());
         }
-        let question = |times: u32| Question {
+        let request = |times: u32| Request {
             run: job.operation.name(),
             times,
         };
         if series.untimed > 0
-            && let Err(why) = self.ask(&question(series.untimed), clock)
+            && let Err(why) = self.ask(&request(series.untimed), clock)
         {
             return refused(why);
         }
         series.begin();
-        match self.ask(&question(series.runs), clock) {
-            Ok((answer, Some(time))) => {
-                let found = answer.checksum.zip(answer.elements);
+        match self.ask(&request(series.runs), clock) {
+            Ok((response, Some(time))) => {
+                let found = response.checksum.zip(response.elements);
                 let outcome = found.map(|(checksum, elements)| Outcome { checksum, elements });
                 Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
             }
-            Ok((answer, None)) => refused(tame(&answer.refused.unwrap_or_default())),
+            Ok((response, None)) => refused(sanitize(&response.refused.unwrap_or_default())),
             Err(why) => refused(why),
         }
     }
 }
 
 /// Returns the reported time, or an error if it is missing or impossible.
-fn time(answer: &Answer, waited_ns: f64, cpu: bool) -> Result<Time, String> {
-    let Some(wall_ns) = answer.wall_ns else {
+fn time(response: &Response, waited_ns: f64, cpu: bool) -> Result<Time, String> {
+    let Some(wall_ns) = response.wall_ns else {
         return Err("its answer has no `wall_ns`, the time of the runs".into());
     };
-    let times = [Some(wall_ns), answer.cpu_ns.filter(|_| cpu)];
+    let times = [Some(wall_ns), response.cpu_ns.filter(|_| cpu)];
     for ns in times.into_iter().flatten() {
-        if !(0.0..=waited_ns * CLOCKS).contains(&ns) {
+        if !(0.0..=waited_ns * CLOCK_TOLERANCE).contains(&ns) {
             return Err(format!(
                 "it reports {ns} ns, but its answer took {waited_ns:.0} ns: give the time of all runs together, on one thread, in nanoseconds"
             ));
@@ -120,7 +120,7 @@ fn time(answer: &Answer, waited_ns: f64, cpu: bool) -> Result<Time, String> {
     }
     Ok(Time {
         cpu_ns: match cpu {
-            true => Some(answer.cpu_ns.unwrap_or(wall_ns)),
+            true => Some(response.cpu_ns.unwrap_or(wall_ns)),
             false => None,
         },
         wall_ns,

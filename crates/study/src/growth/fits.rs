@@ -30,7 +30,7 @@ pub struct Fit {
 
 /// The size at which a structure outgrows a cache.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub struct CacheEnd {
+pub struct CacheLimit {
     /// The backend.
     pub backend: String,
     /// Level of the cache.
@@ -46,7 +46,7 @@ pub(super) fn fits(
     sizes: &[SizeReport],
     backends: &[&Backend],
     operations: &[Operation],
-    last_level: Option<u64>,
+    last_level_bytes: Option<u64>,
 ) -> Vec<Fit> {
     let mut fits = Vec::new();
     for &operation in operations {
@@ -57,15 +57,18 @@ pub(super) fn fits(
                 let row = size.results.iter();
                 let mut row =
                     row.filter(|r| r.operation == operation && r.backend == backend.name());
-                let weight = size.weights.iter().find(|w| w.backend == backend.name());
-                let Some((row, weight)) = row.next().zip(weight) else {
+                let memory = size
+                    .backend_bytes
+                    .iter()
+                    .find(|w| w.backend == backend.name());
+                let Some((row, memory)) = row.next().zip(memory) else {
                     continue;
                 };
                 let Some(ns) = row.median_ns.or(row.estimated_ns) else {
                     continue;
                 };
                 estimated += usize::from(row.median_ns.is_none());
-                let fits = last_level.is_some_and(|bytes| weight.bytes as u64 <= bytes);
+                let fits = last_level_bytes.is_some_and(|bytes| memory.bytes as u64 <= bytes);
                 points.push((size.faces as f64, ns, fits));
             }
             if points.is_empty() {
@@ -73,9 +76,9 @@ pub(super) fn fits(
             }
             let slope = |takes_part: &dyn Fn(bool) -> bool| {
                 let part = points.iter().filter(|(.., fits)| takes_part(*fits));
-                Slope::of(part.map(|&(faces, ns, _)| (faces, ns)))
+                Slope::fit(part.map(|&(faces, ns, _)| (faces, ns)))
             };
-            let known = last_level.is_some();
+            let known = last_level_bytes.is_some();
             fits.push(Fit {
                 backend: backend.name().into(),
                 operation,
@@ -92,11 +95,11 @@ pub(super) fn fits(
 
 /// Finds for each data cache the size at which each layout outgrows it; `counts` are those of a
 /// large mesh.
-pub(super) fn cache_ends(
+pub(super) fn cache_limits(
     backends: &[&Backend],
     counts: &Counts,
     caches: &[Cache],
-) -> Vec<CacheEnd> {
+) -> Vec<CacheLimit> {
     let mut ends = Vec::new();
     for cache in caches.iter().filter(|cache| cache.holds_data()) {
         for backend in backends {
@@ -105,19 +108,19 @@ pub(super) fn cache_ends(
                 (backend.layout_bytes)(&counts) as u64 > cache.bytes
             };
             // Every layout takes at least one byte per face.
-            let (mut fits, mut does_not) = (0, cache.bytes as usize + 1);
-            while does_not - fits > 1 {
-                let middle = usize::midpoint(fits, does_not);
+            let (mut fits, mut too_large) = (0, cache.bytes as usize + 1);
+            while too_large - fits > 1 {
+                let middle = usize::midpoint(fits, too_large);
                 match beyond(middle) {
-                    true => does_not = middle,
+                    true => too_large = middle,
                     false => fits = middle,
                 }
             }
-            ends.push(CacheEnd {
+            ends.push(CacheLimit {
                 backend: backend.name().into(),
                 level: cache.level,
                 cache_bytes: cache.bytes,
-                faces: does_not,
+                faces: too_large,
             });
         }
     }
@@ -127,7 +130,7 @@ pub(super) fn cache_ends(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::growth::Weight;
+    use crate::growth::BackendBytes;
     use crate::report::ResultRow;
     use sixfold::{Facts, shapes};
 
@@ -142,7 +145,7 @@ mod tests {
             vertices: 0,
             edges: 0,
             faces,
-            weights: vec![Weight {
+            backend_bytes: vec![BackendBytes {
                 backend: "half-edge".into(),
                 bytes,
                 fits_in: None,
@@ -168,27 +171,28 @@ mod tests {
             .into();
         let backends = Backend::roster();
         let backends: Vec<&Backend> = backends.iter().collect();
-        let fit = |last_level| fits(&sizes, &backends, &[Operation::Boundary], last_level);
+        let fit =
+            |last_level_bytes| fits(&sizes, &backends, &[Operation::Boundary], last_level_bytes);
         let found = fit(Some(1_000_000));
-        let [fit_of_it] = &found[..] else {
+        let [only_fit] = &found[..] else {
             panic!("one backend has times: {found:?}")
         };
-        assert_eq!((fit_of_it.estimated, fit_of_it.scans), (1, false));
-        let [small, large, all] = [fit_of_it.in_cache, fit_of_it.beyond, fit_of_it.all];
+        assert_eq!((only_fit.estimated, only_fit.scans), (1, false));
+        let [small, large, all] = [only_fit.in_cache, only_fit.beyond, only_fit.all];
         let (small, large) = (small.expect("three"), large.expect("two"));
         assert!((small.exponent - 1.0).abs() < 1e-9 && small.sizes == 3);
         assert!((large.exponent - 1.5).abs() < 1e-9 && large.sizes == 2);
         assert!(all.is_some_and(|all| all.sizes == 5));
         // If the cache size is unknown, there is only one line.
-        let blind = &fit(None)[0];
-        assert_eq!((blind.in_cache, blind.beyond), (None, None));
-        assert_eq!(blind.all, fit_of_it.all);
+        let unknown = &fit(None)[0];
+        assert_eq!((unknown.in_cache, unknown.beyond), (None, None));
+        assert_eq!(unknown.all, only_fit.all);
     }
 
     #[test]
     fn a_cache_ends_at_the_first_layout_larger_than_it() {
         let mesh = shapes::triangle_torus(20, 10).expect("small");
-        let counts = mesh.counts(Facts::of(&mesh).edges);
+        let counts = mesh.counts(Facts::from_polygons(&mesh).edges);
         let cache = |kind: &str| Cache {
             level: 2,
             kind: kind.into(),
@@ -197,7 +201,7 @@ mod tests {
         };
         let roster = Backend::roster();
         let backends: Vec<&Backend> = roster.iter().collect();
-        let ends = cache_ends(
+        let ends = cache_limits(
             &backends,
             &counts,
             &[cache("instruction"), cache("unified")],

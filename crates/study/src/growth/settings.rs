@@ -5,27 +5,27 @@ use std::time::Duration;
 use sixfold::Facts;
 use sixfold::shapes::{Order, ShapeError};
 
-use super::shapes::{GROWING, Growing};
-use crate::orders::{chosen_operations, draw_bytes, on_the_bench_bytes};
+use super::shapes::{SCALABLE_SHAPES, ScalableShape};
+use crate::orders::{chosen_operations, draw_bytes, prepared_bytes};
 use crate::study::{Settings, StudyError};
 use sixfold_workload::{Backend, Operation, unknown};
 
 /// Smallest number of faces; smaller meshes are too short to time.
-const LEAST: usize = 100;
+const MIN_FACES: usize = 100;
 /// Largest number of faces; corner handles can number about this many triangles.
-const MOST: usize = 500_000_000;
+const MAX_FACES: usize = 500_000_000;
 /// Smallest budget of one size.
-const SHORTEST: Duration = Duration::from_millis(100);
+const MIN_SIZE_BUDGET: Duration = Duration::from_millis(100);
 /// Largest number of sizes.
-const MOST_STEPS: usize = 1000;
+const MAX_STEPS: usize = 1000;
 
 /// The shape, the sizes and the budget of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GrowthSettings {
     /// Backends, operations, seed, and the budget of the whole sweep. If the operations are empty,
-    /// [`FEW_OPERATIONS`](crate::FEW_OPERATIONS) are measured.
+    /// [`DEFAULT_OPERATIONS`](crate::DEFAULT_OPERATIONS) are measured.
     pub study: Settings,
-    /// Name of a shape of [`GROWING`].
+    /// Name of a shape of [`SCALABLE_SHAPES`].
     pub shape: String,
     /// Order of its elements in memory.
     pub order: Order,
@@ -44,7 +44,7 @@ impl Default for GrowthSettings {
                 budget: Duration::from_secs(60),
                 ..Settings::default()
             },
-            shape: GROWING[0].name.into(),
+            shape: SCALABLE_SHAPES[0].name.into(),
             order: Order::Given,
             from: 1000,
             to: 1_000_000,
@@ -65,16 +65,16 @@ pub enum GrowthError {
     #[error(transparent)]
     Shape(#[from] ShapeError),
     /// The name of the shape is unknown.
-    #[error("{}", unknown("shape that grows", .name, &GROWING.iter().map(|shape| shape.name).collect::<Vec<_>>()))]
+    #[error("{}", unknown("shape that grows", .name, &SCALABLE_SHAPES.iter().map(|shape| shape.name).collect::<Vec<_>>()))]
     UnknownShape { name: String },
     /// The largest size is not larger than the smallest.
     #[error("sizes from {from} to {to} faces do not grow: give the smaller first")]
     SizesReversed { from: usize, to: usize },
     /// A size is too small to time, or too large for handles.
-    #[error("{faces} faces: choose from {LEAST} to {MOST}")]
+    #[error("{faces} faces: choose from {MIN_FACES} to {MAX_FACES}")]
     SizeOutOfRange { faces: usize },
     /// The number of sizes is below two or too large.
-    #[error("{steps} sizes: choose from 2 to {MOST_STEPS}")]
+    #[error("{steps} sizes: choose from 2 to {MAX_STEPS}")]
     StepsOutOfRange { steps: usize },
     /// All requested face counts give the same mesh.
     #[error("the shape has only one size from {from} to {to} faces: use sizes further apart")]
@@ -90,7 +90,7 @@ pub enum GrowthError {
 
 /// Checked settings.
 pub(super) struct Plan {
-    pub(super) shape: &'static Growing,
+    pub(super) shape: &'static ScalableShape,
     /// Approximate numbers of faces, ascending.
     pub(super) sizes: Vec<usize>,
     pub(super) backends: Vec<Backend>,
@@ -99,9 +99,9 @@ pub(super) struct Plan {
 
 impl GrowthSettings {
     /// Returns the default range of sizes, with fewer steps if the budget of `study` is short.
-    pub fn within(study: Settings) -> Self {
+    pub fn from_study(study: Settings) -> Self {
         let usual = Self::default();
-        let time_for = study.budget.as_millis() / SHORTEST.as_millis();
+        let time_for = study.budget.as_millis() / MIN_SIZE_BUDGET.as_millis();
         let steps = usize::try_from(time_for).unwrap_or(usize::MAX);
         Self {
             study,
@@ -121,20 +121,20 @@ impl GrowthSettings {
         } = self;
         let (from, to, steps) = (*from, *to, *steps);
         let name = || self.shape.clone();
-        let shape = Growing::named(&self.shape);
+        let shape = ScalableShape::from_name(&self.shape);
         let shape = shape.ok_or_else(|| GrowthError::UnknownShape { name: name() })?;
         for faces in [from, to] {
-            if !(LEAST..=MOST).contains(&faces) {
+            if !(MIN_FACES..=MAX_FACES).contains(&faces) {
                 return Err(GrowthError::SizeOutOfRange { faces });
             }
         }
         if from >= to {
             return Err(GrowthError::SizesReversed { from, to });
         }
-        if !(2..=MOST_STEPS).contains(&steps) {
+        if !(2..=MAX_STEPS).contains(&steps) {
             return Err(GrowthError::StepsOutOfRange { steps });
         }
-        let least = SHORTEST * steps as u32;
+        let least = MIN_SIZE_BUDGET * steps as u32;
         if study.budget < least {
             return Err(GrowthError::BudgetTooSmall {
                 budget: study.budget,
@@ -175,10 +175,10 @@ pub fn growth_bytes(settings: &GrowthSettings) -> Result<u64, GrowthError> {
     let plan = settings.plan()?;
     // A small mesh has the same proportions as a large one.
     let small = plan.shape.make(plan.sizes[0])?;
-    let counts = small.counts(Facts::of(&small).edges);
+    let counts = small.counts(Facts::from_polygons(&small).edges);
     let counts = scaled(&counts, settings.to as f64 / counts.faces as f64);
-    let weights = plan.backends.iter().map(|b| on_the_bench_bytes(b, &counts));
-    let (all, most) = weights.fold((0, 0), |(all, most): (u64, u64), one| {
+    let bytes = plan.backends.iter().map(|b| prepared_bytes(b, &counts));
+    let (all, most) = bytes.fold((0, 0), |(all, most): (u64, u64), one| {
         (all + one, most.max(one))
     });
     // Plus the control, and temporary memory for building one structure.
@@ -236,20 +236,20 @@ mod tests {
             (|s| s.study.budget = Duration::from_millis(1299), "1300 ms"),
             (|s| s.study.backends = vec!["abacus".into()], "half-edge"),
         ];
-        for (change, says) in cases {
-            let said = refused(change);
-            assert!(said.contains(says), "{said}");
+        for (change, expected) in cases {
+            let message = refused(change);
+            assert!(message.contains(expected), "{message}");
         }
     }
 
     #[test]
     fn a_short_budget_has_fewer_sizes_but_at_least_two() {
         let steps = |milliseconds| {
-            let within = GrowthSettings::within(Settings {
+            let settings = GrowthSettings::from_study(Settings {
                 budget: Duration::from_millis(milliseconds),
                 ..Settings::default()
             });
-            (within.steps, within.plan().is_ok())
+            (settings.steps, settings.plan().is_ok())
         };
         assert_eq!(steps(60_000), (GrowthSettings::default().steps, true));
         assert_eq!(steps(550), (5, true));

@@ -1,27 +1,27 @@
 //! Shapes of any size: the parameters for an approximate number of faces.
 
 use sixfold::PolygonMesh;
-use sixfold::shapes::{ShapeError, recipe};
+use sixfold::shapes::{ShapeError, generator};
 
 /// A shape that can be made with approximately any number of faces.
 #[derive(Clone, Copy, Debug)]
-pub struct Growing {
+pub struct ScalableShape {
     /// Name, the same as in `generate`.
     pub name: &'static str,
     /// Description in one line.
     pub summary: &'static str,
-    takes: fn(f64) -> Vec<(&'static str, f64)>,
+    parameters_for: fn(f64) -> Vec<(&'static str, f64)>,
 }
 
-impl Growing {
+impl ScalableShape {
     /// Returns the shape called `name`.
-    pub fn named(name: &str) -> Option<&'static Self> {
-        GROWING.iter().find(|shape| shape.name == name)
+    pub fn from_name(name: &str) -> Option<&'static Self> {
+        SCALABLE_SHAPES.iter().find(|shape| shape.name == name)
     }
 
-    /// Returns the parameters of its recipe for approximately `faces` faces.
+    /// Returns the parameters of its generator for approximately `faces` faces.
     pub(super) fn parameters(&self, faces: usize) -> Vec<(&'static str, f64)> {
-        (self.takes)(faces as f64)
+        (self.parameters_for)(faces as f64)
     }
 
     /// Builds the shape with approximately `faces` faces.
@@ -32,54 +32,55 @@ impl Growing {
     ///
     /// # Panics
     ///
-    /// Panics if `name` is not the name of a recipe. A test checks this for all of [`GROWING`].
+    /// Panics if `name` is not the name of a generator. A test checks this for all of
+    /// [`SCALABLE_SHAPES`].
     pub fn make(&self, faces: usize) -> Result<PolygonMesh, ShapeError> {
-        let recipe = recipe(self.name).expect("a recipe");
-        recipe.make(&self.parameters(faces))
+        let generator = generator(self.name).expect("a generator");
+        generator.build(&self.parameters(faces))
     }
 }
 
 /// All shapes for sweeps; the first is the default.
-pub const GROWING: &[Growing] = &[
-    Growing {
+pub const SCALABLE_SHAPES: &[ScalableShape] = &[
+    ScalableShape {
         name: "geodesic",
         summary: "triangles on a sphere, closed",
-        takes: |faces| vec![("frequency", (faces / 20.0).sqrt().round().max(1.0))],
+        parameters_for: |faces| vec![("frequency", (faces / 20.0).sqrt().round().max(1.0))],
     },
-    Growing {
+    ScalableShape {
         name: "triangle-torus",
         summary: "triangles around a ring, closed, every vertex of valence 6",
-        takes: |faces| cells(faces / 2.0, 2.0),
+        parameters_for: |faces| cells(faces / 2.0, 2.0),
     },
-    Growing {
+    ScalableShape {
         name: "torus",
         summary: "quads around a ring, closed",
-        takes: |faces| cells(faces, 2.0),
+        parameters_for: |faces| cells(faces, 2.0),
     },
-    Growing {
+    ScalableShape {
         name: "triangle-grid",
         summary: "triangles in the plane, with a boundary",
-        takes: |faces| cells(faces / 2.0, 1.0),
+        parameters_for: |faces| cells(faces / 2.0, 1.0),
     },
-    Growing {
+    ScalableShape {
         name: "grid",
         summary: "squares in the plane, with a boundary",
-        takes: |faces| cells(faces, 1.0),
+        parameters_for: |faces| cells(faces, 1.0),
     },
-    Growing {
+    ScalableShape {
         name: "mixed-grid",
         summary: "squares and triangles in the plane, with a boundary",
-        takes: |faces| cells(faces / 1.5, 1.0),
+        parameters_for: |faces| cells(faces / 1.5, 1.0),
     },
-    Growing {
+    ScalableShape {
         name: "hexagon-tiling",
         summary: "hexagons in the plane, with a boundary",
-        takes: |faces| cells(faces, 1.0),
+        parameters_for: |faces| cells(faces, 1.0),
     },
-    Growing {
+    ScalableShape {
         name: "blobs",
         summary: "irregular triangles of marching tetrahedra, closed",
-        takes: |faces| vec![("faces", faces.round())],
+        parameters_for: |faces| vec![("faces", faces.round())],
     },
 ];
 
@@ -95,8 +96,8 @@ mod tests {
 
     #[test]
     fn every_shape_has_within_ten_percent_of_the_requested_faces() {
-        for shape in GROWING {
-            let summary = recipe(shape.name).map(|recipe| recipe.summary);
+        for shape in SCALABLE_SHAPES {
+            let summary = generator(shape.name).map(|generator| generator.summary);
             assert!(summary.is_some(), "{}", shape.name);
             for faces in [1000, 5000, 20_000] {
                 let made = shape.make(faces).expect("of that size").face_count();
@@ -104,11 +105,11 @@ mod tests {
                 assert!(off < 0.1, "{}: {made} for {faces}", shape.name);
             }
         }
-        assert!(Growing::named("teapot").is_none());
+        assert!(ScalableShape::from_name("teapot").is_none());
     }
 
     #[test]
     fn too_many_faces_are_refused() {
-        assert!(GROWING[1].make(1 << 40).is_err());
+        assert!(SCALABLE_SHAPES[1].make(1 << 40).is_err());
     }
 }

@@ -9,25 +9,25 @@ use sixfold::{QueryCost, Relation};
 
 use super::*;
 use crate::control::{control, noise};
-use crate::disturbed::Machine;
 use crate::heap::CacheState;
-use crate::plan::FEWEST_ELEMENTS;
+use crate::plan::MIN_ELEMENTS;
+use crate::simulated_machine::SimulatedMachine;
 use crate::statistics::Median;
 use sixfold_workload::pages::Policy;
 
 /// A structure with the same known time for every element.
 struct Synthetic {
-    machine: Machine,
+    machine: SimulatedMachine,
     ns_per_element: f64,
     elements: usize,
     costs: [QueryCost; 9],
-    asked: Rc<Cell<usize>>,
-    place: Place,
+    most_run: Rc<Cell<usize>>,
+    placement: Placement,
 }
 
 /// The place of the tables of a structure in memory.
 #[derive(Clone, Default)]
-struct Place {
+struct Placement {
     /// Time to build them elsewhere, in nanoseconds.
     rebuild_ns: f64,
     /// Number of rebuilds.
@@ -36,15 +36,15 @@ struct Place {
     slowdowns: Vec<f64>,
 }
 
-impl Place {
+impl Placement {
     fn slowdown(&self) -> f64 {
         let places = self.slowdowns.len().max(1);
-        let here = self.slowdowns.get(self.rebuilt.get() as usize % places);
-        here.copied().unwrap_or(1.0)
+        let current = self.slowdowns.get(self.rebuilt.get() as usize % places);
+        current.copied().unwrap_or(1.0)
     }
 }
 
-impl Subject for Synthetic {
+impl TimedBackend for Synthetic {
     fn name(&self) -> &str {
         "synthetic"
     }
@@ -58,16 +58,16 @@ impl Subject for Synthetic {
         1
     }
     fn rebuild(&mut self) {
-        self.machine.work(self.place.rebuild_ns);
-        self.place.rebuilt.set(self.place.rebuilt.get() + 1);
+        self.machine.work(self.placement.rebuild_ns);
+        self.placement.rebuilt.set(self.placement.rebuilt.get() + 1);
     }
     fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
         let Series { runs, clock, .. } = *series;
         let size = job
             .sample
             .map_or(self.elements, |s| s.size.min(self.elements));
-        self.asked.set(self.asked.get().max(size));
-        let ns = self.ns_per_element * size as f64 * self.place.slowdown();
+        self.most_run.set(self.most_run.get().max(size));
+        let ns = self.ns_per_element * size as f64 * self.placement.slowdown();
         for _ in 0..series.untimed {
             self.machine.work(ns);
         }
@@ -83,18 +83,18 @@ impl Subject for Synthetic {
 const VV: Operation = Operation::Relation(Relation::VertexVertices);
 
 fn measured(costs_ns: &[f64], scanning: bool, budget: Duration, stop: bool) -> Vec<Entry> {
-    bench(costs_ns, scanning, budget, stop, false).0
+    measure_all(costs_ns, scanning, budget, stop, false).0
 }
 
 /// Returns the measured entries and the time taken.
-fn bench(
+fn measure_all(
     costs_ns: &[f64],
     scanning: bool,
     budget: Duration,
     stop: bool,
     skewed: bool,
 ) -> (Vec<Entry>, Duration) {
-    let machine = Machine::default();
+    let machine = SimulatedMachine::default();
     let cost = if scanning {
         QueryCost::Scan
     } else {
@@ -106,9 +106,9 @@ fn bench(
             ns_per_element,
             elements: 10_000,
             costs: [cost; 9],
-            asked: Rc::default(),
-            place: Place::default(),
-        }) as Box<dyn Subject>
+            most_run: Rc::default(),
+            placement: Placement::default(),
+        }) as Box<dyn TimedBackend>
     };
     let mut subjects: Vec<_> = costs_ns.iter().map(subject).collect();
     run(&machine, &mut subjects, budget, stop, skewed)
@@ -116,14 +116,14 @@ fn bench(
 
 /// Returns the measured entries of `subjects` and the time taken.
 fn run(
-    machine: &Machine,
-    subjects: &mut [Box<dyn Subject>],
+    machine: &SimulatedMachine,
+    subjects: &mut [Box<dyn TimedBackend>],
     budget: Duration,
     stop: bool,
     skewed: bool,
 ) -> (Vec<Entry>, Duration) {
     let stop = AtomicBool::new(stop);
-    let mut bench = Bench {
+    let mut measurement = Measurement {
         subjects,
         control: None,
         population: [10_000; 3],
@@ -136,13 +136,13 @@ fn run(
         stop: &stop,
         progress: &mut |_| (),
     };
-    let entries = bench.measure(&[VV, Operation::Circulate, Operation::FfBfs]);
+    let entries = measurement.measure(&[VV, Operation::Circulate, Operation::FfBfs]);
     (entries, Duration::from_nanos(machine.ns() as u64))
 }
 
 fn ratio(entries: &[Entry], a: usize, b: usize) -> Median {
     let pairs = entries[a].samples.iter().zip(&entries[b].samples);
-    Median::of(pairs.map(|((_, a), (_, b))| a.ns() / b.ns())).expect("samples")
+    Median::from_samples(pairs.map(|((_, a), (_, b))| a.ns() / b.ns())).expect("samples")
 }
 
 #[test]
@@ -163,7 +163,7 @@ fn the_control_shows_a_difference_of_its_two_entries() {
 fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget() {
     let budget = Duration::from_secs(2);
     let placed = |rebuild_ns: f64| {
-        let machine = Machine::default();
+        let machine = SimulatedMachine::default();
         let rebuilt: [Rc<Cell<u32>>; 2] = Default::default();
         let subject = |i: usize, slowdowns: [f64; 2]| {
             Box::new(Synthetic {
@@ -171,22 +171,22 @@ fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget()
                 ns_per_element: 7.0,
                 elements: 10_000,
                 costs: [QueryCost::Local; 9],
-                asked: Rc::default(),
-                place: Place {
+                most_run: Rc::default(),
+                placement: Placement {
                     rebuild_ns,
                     rebuilt: rebuilt[i].clone(),
                     slowdowns: slowdowns.to_vec(),
                 },
-            }) as Box<dyn Subject>
+            }) as Box<dyn TimedBackend>
         };
         // At each place one is slow and the other fast.
         let mut subjects = vec![subject(0, [1.0, 1.2]), subject(1, [1.2, 1.0])];
-        let (entries, took) = run(&machine, &mut subjects, budget, false, false);
-        (entries, took, rebuilt[0].get())
+        let (entries, elapsed) = run(&machine, &mut subjects, budget, false, false);
+        (entries, elapsed, rebuilt[0].get())
     };
     // Both are at both places equally often.
-    let (entries, took, rebuilt) = placed(100_000.0);
-    assert!(took <= budget);
+    let (entries, elapsed, rebuilt) = placed(100_000.0);
+    assert!(elapsed <= budget);
     assert!(
         rebuilt >= 15 && f64::from(rebuilt) * 200_000.0 <= 0.05 * 2e9,
         "{rebuilt}"
@@ -220,7 +220,7 @@ fn untimed_runs_last_as_long_as_a_sample_may_and_are_at_least_one() {
 fn a_control_leaves_out_times_of_zero() {
     let mut entries = measured(&[7.0, 7.0], false, Duration::from_secs(1), false);
     for (_, time) in &mut entries[1].samples {
-        *time = Time::of_wall(0.0);
+        *time = Time::from_wall_ns(0.0);
     }
     let control = control(&entries, 0, 1, "synthetic").expect("two operations");
     assert_eq!(control.operations.len(), 2);
@@ -255,7 +255,8 @@ fn ratios_within_rounds_do_not_depend_on_drift() {
         assert!((alike - 1.0).abs() < 0.05, "{alike}");
     }
     // The drift is large: single samples of one entry differ by more than the two costs.
-    let own = Median::of(entries[0].samples.iter().map(|(_, t)| t.ns())).expect("samples");
+    let own =
+        Median::from_samples(entries[0].samples.iter().map(|(_, t)| t.ns())).expect("samples");
     let most = entries[0]
         .samples
         .iter()
@@ -270,12 +271,9 @@ fn scans_are_sampled_or_estimated_to_fit_the_budget() {
     let entries = measured(&[200_000.0], true, Duration::from_secs(2), false);
     for entry in &entries[..2] {
         let sample = entry.job.sample.expect("a sample");
-        assert!(
-            (FEWEST_ELEMENTS..2_000).contains(&sample.size),
-            "{sample:?}"
-        );
+        assert!((MIN_ELEMENTS..2_000).contains(&sample.size), "{sample:?}");
         assert!(entry.samples.len() >= 5, "{} rounds", entry.samples.len());
-        let ns = Median::of(entry.samples.iter().map(|(_, t)| t.ns())).expect("samples");
+        let ns = Median::from_samples(entry.samples.iter().map(|(_, t)| t.ns())).expect("samples");
         assert!((1e9..1e10).contains(&ns.value), "{ns:?}");
     }
     let estimate = entries[2]
@@ -297,29 +295,29 @@ fn a_skewed_mesh_is_sampled_on_every_structure() {
     // 2 s per run on each of three structures that do not scan; six entries walk around elements.
     let costs = [200_000.0; 3];
     let budget = Duration::from_secs(2);
-    let (entries, took) = bench(&costs, false, budget, false, true);
-    assert!(took < budget * 3 / 2, "{took:?}");
+    let (entries, elapsed) = measure_all(&costs, false, budget, false, true);
+    assert!(elapsed < budget * 3 / 2, "{elapsed:?}");
     for entry in &entries[..6] {
         assert!(entry.job.sample.is_some() && !entry.times().is_empty());
     }
     assert!(entries[6..].iter().all(|e| e.estimate.is_some()));
     // Cheap operations run in full on a skewed mesh, too.
-    let (entries, _) = bench(&[7.0], false, budget, false, true);
+    let (entries, _) = measure_all(&[7.0], false, budget, false, true);
     assert!(entries.iter().all(|e| e.job.sample.is_none()));
     assert!(entries.iter().all(|e| e.samples.len() >= 5));
     // On a mesh that is not skewed nothing is sampled: the run takes far longer than the budget.
-    let (_, took) = bench(&costs, false, budget, false, false);
-    assert!(took > budget * 5, "{took:?}");
+    let (_, elapsed) = measure_all(&costs, false, budget, false, false);
+    assert!(elapsed > budget * 5, "{elapsed:?}");
 }
 
 #[test]
 fn a_search_that_fits_the_budget_once_is_run_once() {
     // 1 s per run: too long for rounds within the budget of 6 s, but not for a single run.
-    let (entries, took) = bench(&[100_000.0], true, Duration::from_secs(6), false, false);
+    let (entries, elapsed) = measure_all(&[100_000.0], true, Duration::from_secs(6), false, false);
     let search = &entries[2];
     assert!(search.estimate.is_none() && search.samples.is_empty());
     assert_eq!(search.times().len(), 1);
-    assert!(took < Duration::from_secs(8), "{took:?}");
+    assert!(elapsed < Duration::from_secs(8), "{elapsed:?}");
     assert!(
         entries[0].samples.len() >= 5,
         "the others keep their rounds"
@@ -336,19 +334,19 @@ fn a_stopped_study_has_no_times_and_a_tiny_budget_has_the_warm_up() {
 
 #[test]
 fn a_long_subdivision_is_only_estimated_unless_requested_by_name() {
-    let machine = Machine::default();
+    let machine = SimulatedMachine::default();
     let stop = AtomicBool::new(false);
     let planned = |ns_per_element: f64, cost: QueryCost, named: bool| {
-        let asked: Rc<Cell<usize>> = Rc::default();
-        let mut subjects: Vec<Box<dyn Subject>> = vec![Box::new(Synthetic {
+        let most_run: Rc<Cell<usize>> = Rc::default();
+        let mut subjects: Vec<Box<dyn TimedBackend>> = vec![Box::new(Synthetic {
             machine: machine.clone(),
             ns_per_element,
             elements: 10_000,
             costs: [cost; 9],
-            asked: asked.clone(),
-            place: Place::default(),
+            most_run: most_run.clone(),
+            placement: Placement::default(),
         })];
-        let mut bench = Bench {
+        let mut measurement = Measurement {
             subjects: &mut subjects,
             control: None,
             population: [10_000; 3],
@@ -361,20 +359,20 @@ fn a_long_subdivision_is_only_estimated_unless_requested_by_name() {
             stop: &stop,
             progress: &mut |_| (),
         };
-        let entries = bench.measure(&[Operation::CatmullClark(Method::Gather)]);
-        (entries[0].clone(), asked.get())
+        let entries = measurement.measure(&[Operation::CatmullClark(Method::Gather)]);
+        (entries[0].clone(), most_run.get())
     };
     // 1 ms per run without searches: it takes part in rounds.
     let (entry, _) = planned(100.0, QueryCost::Local, false);
     assert!(entry.samples.len() >= 5 && entry.estimate.is_none());
     // 0.3 s per run in a budget of 2 s: only estimated from a patch, unless requested by name.
-    let (entry, asked) = planned(30_000.0, QueryCost::Local, false);
+    let (entry, most_run) = planned(30_000.0, QueryCost::Local, false);
     let estimate = entry.estimate.expect("long").ns();
     assert!((1e8..1e9).contains(&estimate) && entry.by_name_only);
-    assert!(asked < 10_000 && entry.times().is_empty());
-    let (entry, asked) = planned(30_000.0, QueryCost::Local, true);
+    assert!(most_run < 10_000 && entry.times().is_empty());
+    let (entry, most_run) = planned(30_000.0, QueryCost::Local, true);
     assert!(entry.estimate.is_none() && entry.times().len() == 1);
-    assert_eq!(asked, 10_000);
+    assert_eq!(most_run, 10_000);
     // Searches for six relations, 0.1 s each.
     let (entry, _) = planned(10_000.0, QueryCost::Scan, false);
     let estimate = entry.estimate.expect("long").ns();

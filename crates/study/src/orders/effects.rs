@@ -3,15 +3,15 @@
 use serde::{Deserialize, Serialize};
 use sixfold::shapes::Order;
 
-use crate::standing::ratio;
+use crate::ranking::ratio;
 use crate::statistics::Median;
 use sixfold_workload::{Operation, Time};
 
 /// Assumed error factor of a ratio without an interval.
-const UNSURE: f64 = 1.5;
+const ASSUMED_ERROR: f64 = 1.5;
 
 /// The samples of one structure in one order.
-pub(super) struct Timed {
+pub(super) struct OrderSamples {
     pub(super) backend: &'static str,
     pub(super) order: Order,
     /// Whether it scans all faces for each element.
@@ -19,9 +19,10 @@ pub(super) struct Timed {
     pub(super) samples: Vec<(u32, Time)>,
 }
 
-impl Timed {
+impl OrderSamples {
     fn median(&self) -> Option<f64> {
-        Median::of(self.samples.iter().map(|(_, time)| time.ns())).map(|median| median.value)
+        Median::from_samples(self.samples.iter().map(|(_, time)| time.ns()))
+            .map(|median| median.value)
     }
 }
 
@@ -37,7 +38,7 @@ pub struct Factor {
 }
 
 impl Factor {
-    fn of(slow: &Timed, fast: &Timed) -> Option<Self> {
+    fn new(slow: &OrderSamples, fast: &OrderSamples) -> Option<Self> {
         let ratio = ratio(&slow.samples, &fast.samples)?;
         Some(Self {
             ratio: ratio.value,
@@ -52,11 +53,11 @@ impl Factor {
     }
 
     fn low(&self) -> f64 {
-        self.ci_low.unwrap_or(self.ratio / UNSURE)
+        self.ci_low.unwrap_or(self.ratio / ASSUMED_ERROR)
     }
 
     fn high(&self) -> f64 {
-        self.ci_high.unwrap_or(self.ratio * UNSURE)
+        self.ci_high.unwrap_or(self.ratio * ASSUMED_ERROR)
     }
 }
 
@@ -124,17 +125,17 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    pub(super) fn of(operation: Operation, timed: &[Timed], noise: f64) -> Self {
-        let of_one = |a: &Timed, b: &Timed| a.backend == b.backend;
-        let by_backend = || timed.chunk_by(of_one);
+    pub(super) fn new(operation: Operation, timed: &[OrderSamples], noise: f64) -> Self {
+        let same_backend = |a: &OrderSamples, b: &OrderSamples| a.backend == b.backend;
+        let by_backend = || timed.chunk_by(same_backend);
         let orders: Vec<OrderEffect> = by_backend()
-            .filter_map(|orders| effect(orders, noise))
+            .filter_map(|orders| order_effect(orders, noise))
             .collect();
         let local = by_backend().filter(|orders| !orders[0].scans);
-        let best: Vec<&Timed> = local
+        let best: Vec<&OrderSamples> = local
             .filter_map(|orders| Some(extremes(orders)?.0))
             .collect();
-        let structures = between(&best, noise);
+        let structures = structure_effect(&best, noise);
         let larger = structures.as_ref().and_then(|between| {
             let local = orders.iter().filter(|effect| !effect.scans);
             let factors: Vec<Factor> = local.map(|effect| effect.worst_to_best).collect();
@@ -151,19 +152,21 @@ impl Comparison {
 }
 
 /// Returns the entries with the smallest and the largest median.
-fn extremes<'t>(timed: impl IntoIterator<Item = &'t Timed>) -> Option<(&'t Timed, &'t Timed)> {
-    let there = timed.into_iter().filter_map(|t| Some((t.median()?, t)));
-    let mut sorted: Vec<(f64, &Timed)> = there.collect();
+fn extremes<'t>(
+    timed: impl IntoIterator<Item = &'t OrderSamples>,
+) -> Option<(&'t OrderSamples, &'t OrderSamples)> {
+    let with_median = timed.into_iter().filter_map(|t| Some((t.median()?, t)));
+    let mut sorted: Vec<(f64, &OrderSamples)> = with_median.collect();
     sorted.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     Some((sorted.first()?.1, sorted.last()?.1))
 }
 
-fn effect(orders: &[Timed], noise: f64) -> Option<OrderEffect> {
+fn order_effect(orders: &[OrderSamples], noise: f64) -> Option<OrderEffect> {
     let (best, worst) = extremes(orders)?;
     if orders.iter().filter(|t| !t.samples.is_empty()).count() < 2 {
         return None;
     }
-    let worst_to_best = Factor::of(worst, best)?;
+    let worst_to_best = Factor::new(worst, best)?;
     let given = orders.iter().find(|t| t.order == Order::Given);
     Some(OrderEffect {
         backend: best.backend.into(),
@@ -171,17 +174,17 @@ fn effect(orders: &[Timed], noise: f64) -> Option<OrderEffect> {
         best: best.order,
         worst: worst.order,
         worst_to_best,
-        given_to_best: given.and_then(|given| Factor::of(given, best)),
+        given_to_best: given.and_then(|given| Factor::new(given, best)),
         matters: worst_to_best.beyond(noise),
     })
 }
 
-fn between(best: &[&Timed], noise: f64) -> Option<StructureEffect> {
+fn structure_effect(best: &[&OrderSamples], noise: f64) -> Option<StructureEffect> {
     let (fastest, slowest) = extremes(best.iter().copied())?;
     if best.len() < 2 {
         return None;
     }
-    let slowest_to_fastest = Factor::of(slowest, fastest)?;
+    let slowest_to_fastest = Factor::new(slowest, fastest)?;
     Some(StructureEffect {
         fastest: fastest.backend.into(),
         fastest_order: fastest.order,
@@ -214,14 +217,14 @@ mod tests {
     use super::*;
 
     /// Returns samples of about `ns` in seven rounds on a machine that drifts.
-    fn timed(backend: &'static str, order: Order, ns: f64, scans: bool) -> Timed {
+    fn timed(backend: &'static str, order: Order, ns: f64, scans: bool) -> OrderSamples {
         let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
         let time = |drift: f64| Time {
             cpu_ns: Some(ns * drift),
             wall_ns: ns * drift,
             faults: None,
         };
-        Timed {
+        OrderSamples {
             backend,
             order,
             scans,
@@ -238,8 +241,8 @@ mod tests {
                     timed(backend, Order::Shuffled, shuffled, scans),
                 ]
             });
-        let timed: Vec<Timed> = timed.collect();
-        Comparison::of(Operation::Boundary, &timed, 1.02)
+        let timed: Vec<OrderSamples> = timed.collect();
+        Comparison::new(Operation::Boundary, &timed, 1.02)
     }
 
     #[test]
@@ -299,10 +302,10 @@ mod tests {
             timed("a", Order::Morton, 14.0, false),
         ];
         a.iter_mut().for_each(|t| t.samples.truncate(2));
-        let effect = effect(&a, 1.02).expect("two orders");
+        let effect = order_effect(&a, 1.02).expect("two orders");
         assert_eq!(effect.worst_to_best.ci_low, None);
         assert!(!effect.matters, "{effect:?}");
         a[1].samples.clear();
-        assert_eq!(super::effect(&a, 1.02), None);
+        assert_eq!(super::order_effect(&a, 1.02), None);
     }
 }

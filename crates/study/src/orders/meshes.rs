@@ -6,15 +6,15 @@ use sixfold::shapes::{Order, Reordered};
 use sixfold_workload::{Draw, Side};
 
 /// The mesh in every order, each with the same drawn elements under its own handles.
-pub(super) struct Meshes(Vec<(Order, PolygonMesh, Option<Draw>)>);
+pub(super) struct OrderedMeshes(Vec<(Order, PolygonMesh, Option<Draw>)>);
 
-impl Meshes {
-    pub(super) fn of(polygons: &PolygonMesh, seed: u64, drawn: bool) -> Self {
+impl OrderedMeshes {
+    pub(super) fn new(polygons: &PolygonMesh, seed: u64, needs_draw: bool) -> Self {
         // A seed other than that of the shuffle, so that the draw does not repeat its order.
-        let draw = drawn.then(|| Draw::of(polygons, !seed));
+        let draw = needs_draw.then(|| Draw::new(polygons, !seed));
         let meshes = Order::ALL.map(|order| {
-            let reordered = order.with_names(polygons, seed);
-            let draw = draw.as_ref().map(|draw| renamed(draw, &reordered));
+            let reordered = order.apply_with_handles(polygons, seed);
+            let draw = draw.as_ref().map(|draw| with_new_handles(draw, &reordered));
             (order, reordered.mesh, draw)
         });
         Self(meshes.into())
@@ -28,7 +28,7 @@ impl Meshes {
 }
 
 /// Returns the draw with the handles that its elements have after reordering.
-fn renamed(draw: &Draw, to: &Reordered) -> Draw {
+fn with_new_handles(draw: &Draw, to: &Reordered) -> Draw {
     let side = |side: &Side| {
         let mut ends = side.ends.map(|v| to.vertices[v.index()]);
         ends.sort_unstable();

@@ -1,7 +1,7 @@
 //! The number of operations after which building a structure has paid off.
 
-use crate::pick::answer::{BreakEven, Ranked};
-use crate::pick::entrant::Entrant;
+use crate::pick::backend::PickBackend;
+use crate::pick::report::{BreakEven, Ranked};
 use crate::statistics::Median;
 
 /// The structure that a program has from the start: positions and index lists.
@@ -12,20 +12,20 @@ const BASE: &str = "indexed-face-set";
 /// time. Differences are formed within rounds; the interval of n is derived from the interval of
 /// the median difference. `operations` is the number of operations in one use.
 pub(crate) fn break_even(
-    entrants: &[&Entrant<'_>],
+    backends: &[&PickBackend<'_>],
     ranking: &[Ranked],
     operations: f64,
 ) -> Vec<BreakEven> {
-    let Some(base) = entrants.iter().find(|e| e.mixer.name() == BASE) else {
+    let Some(base) = backends.iter().find(|b| b.mixer.name() == BASE) else {
         return Vec::new();
     };
     let row = |ranked: &Ranked| {
-        let entrant = entrants.iter().find(|e| e.mixer.name() == ranked.backend)?;
-        let saved = entrant.samples.iter().filter_map(|(round, time)| {
+        let backend = backends.iter().find(|b| b.mixer.name() == ranked.backend)?;
+        let saved = backend.samples.iter().filter_map(|(round, time)| {
             let base = base.samples.iter().find(|(r, _)| r == round)?;
             Some(base.1.ns() - time.ns())
         });
-        let saved = Median::of(saved)?;
+        let saved = Median::from_samples(saved)?;
         let build = if ranked.backend == BASE {
             0.0
         } else {

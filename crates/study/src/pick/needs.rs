@@ -55,10 +55,10 @@ impl Need {
     }
 
     /// Returns why `backend` does not meet this need; `None` if it does.
-    pub(crate) fn lacking(self, backend: &Backend) -> Option<String> {
+    pub(crate) fn unmet_reason(self, backend: &Backend) -> Option<String> {
         let can = backend.info.capabilities;
         let (has, lacks) = match self {
-            // Only the roster lists the edits: `Backend::of` leaves them out.
+            // Only the roster lists the edits: `Backend::new` leaves them out.
             Self::Edit => (edits(backend.name()), "it cannot be edited"),
             Self::NonManifold => (
                 can.non_manifold_edges && can.non_manifold_vertices,
@@ -89,7 +89,7 @@ fn refines(name: &str) -> bool {
     let splits = |scheme| {
         support(scheme)
             .iter()
-            .any(|row| row.backend == name && row.best() == Some(Method::Native))
+            .any(|row| row.backend == name && row.default_method() == Some(Method::Native))
     };
     [Scheme::Loop, Scheme::CatmullClark].into_iter().any(splits)
 }

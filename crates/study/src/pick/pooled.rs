@@ -1,37 +1,37 @@
-//! Combines the results of one or several meshes into one answer.
+//! Combines the results of one or several meshes into one report.
 
 use std::collections::BTreeMap;
 
 use crate::environment::Environment;
-use crate::pick::Question;
-use crate::pick::answer::{Answer, BreakEven, Excluded, OnMesh, Ranked};
-use crate::pick::contest::Outcome;
+use crate::pick::PickSettings;
+use crate::pick::measurement::Outcome;
 use crate::pick::reasons;
+use crate::pick::report::{BreakEven, Excluded, MeshRanking, PickReport, Ranked};
 use crate::report::SCHEMA;
-use crate::standing::NO_DIFFERENCE;
+use crate::ranking::NO_DIFFERENCE;
 use crate::timer::Timer;
 
 /// Combines the outcomes of the meshes. A backend that is excluded on one mesh is excluded from the
 /// ranking; the others are compared by geometric means over the meshes.
 pub(crate) fn pooled(
     mut outcomes: Vec<Outcome>,
-    question: &Question,
+    settings: &PickSettings,
     timer: Timer,
     environment: Environment,
     interrupted: bool,
-) -> Answer {
+) -> PickReport {
     let several = outcomes.len() > 1;
     let mut excluded: Vec<Excluded> = Vec::new();
     for outcome in &mut outcomes {
-        for out in outcome.excluded.drain(..) {
-            if excluded.iter().any(|known| known.backend == out.backend) {
+        for new in outcome.excluded.drain(..) {
+            if excluded.iter().any(|known| known.backend == new.backend) {
                 continue;
             }
             let reason = match several {
-                true => format!("{}: {}", outcome.mesh, out.reason),
-                false => out.reason,
+                true => format!("{}: {}", outcome.mesh, new.reason),
+                false => new.reason,
             };
-            excluded.push(Excluded { reason, ..out });
+            excluded.push(Excluded { reason, ..new });
         }
     }
     let noise = outcomes.iter().filter_map(|o| o.noise);
@@ -45,7 +45,7 @@ pub(crate) fn pooled(
         [only] => only.break_even.clone(),
         many => ranking
             .iter()
-            .filter_map(|ranked| on_all(many, ranked))
+            .filter_map(|ranked| break_even_on_all(many, ranked))
             .collect(),
     };
     let shortest = outcomes.iter().filter_map(|o| o.shortest_ns);
@@ -56,19 +56,19 @@ pub(crate) fn pooled(
         .collect();
     disagreeing.sort();
     disagreeing.dedup();
-    let mut answer = Answer {
+    let mut report = PickReport {
         schema: SCHEMA,
         meshes: outcomes.iter().map(|o| o.mesh.clone()).collect(),
-        workload: question.workload.clone(),
+        workload: settings.workload.clone(),
         operations,
-        needs: question.needs.clone(),
-        max_memory: question.max_memory,
+        needs: settings.needs.clone(),
+        max_memory: settings.max_memory,
         ranking,
         excluded,
         break_even,
         noise,
         mismatches: disagreeing,
-        words: Vec::new(),
+        sentences: Vec::new(),
         warnings: Vec::new(),
         interrupted,
         timer,
@@ -76,17 +76,17 @@ pub(crate) fn pooled(
         by_mesh: Vec::new(),
     };
     if several {
-        let each = outcomes.into_iter().map(|outcome| OnMesh {
+        let each = outcomes.into_iter().map(|outcome| MeshRanking {
             mesh: outcome.mesh,
             ranking: outcome.ranking,
             break_even: outcome.break_even,
             noise: outcome.noise,
         });
-        answer.by_mesh = each.collect();
+        report.by_mesh = each.collect();
     }
-    answer.words = reasons::words(&answer);
-    answer.warnings = reasons::warnings(&answer);
-    answer
+    report.sentences = reasons::sentences(&report);
+    report.warnings = reasons::warnings(&report);
+    report
 }
 
 /// Ranks the backends that took part on all meshes, by the geometric mean of their times.
@@ -112,28 +112,28 @@ fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
         );
         // Meshes are measured independently, so the squared half widths of the log intervals add
         // up. The interval of the best backend is added, too.
-        let doubt = |rows: &[&Ranked]| -> f64 {
+        let squared_widths = |rows: &[&Ranked]| -> f64 {
             let width = |r: &&Ranked| Some((r.ci_high? / r.ci_low?).ln() / 2.0);
             rows.iter()
                 .map(|r| width(r).unwrap_or(f64::INFINITY).powi(2))
                 .sum()
         };
         let same = rows[0].backend == best[0].backend;
-        let doubt = if same {
+        let half_width = if same {
             0.0
         } else {
-            (doubt(rows) + doubt(&best)).sqrt() / rows.len() as f64
+            (squared_widths(rows) + squared_widths(&best)).sqrt() / rows.len() as f64
         };
-        let known = doubt.is_finite();
+        let known = half_width.is_finite();
         let bytes = rows.iter().map(|r| r.bytes).max().unwrap_or(0);
         Ranked {
             ns_per_operation: time(rows),
             ns_ci_low: None,
             ns_ci_high: None,
             ratio_to_best: ratio,
-            ci_low: known.then(|| ratio * (-doubt).exp()),
-            ci_high: known.then(|| ratio * doubt.exp()),
-            tied_with_best: ratio <= noise || (known && ratio * (-doubt).exp() <= 1.0),
+            ci_low: known.then(|| ratio * (-half_width).exp()),
+            ci_high: known.then(|| ratio * half_width.exp()),
+            tied_with_best: ratio <= noise || (known && ratio * (-half_width).exp() <= 1.0),
             build_ns: geometric(rows.iter().map(|r| r.build_ns)),
             first_build_ns: { rows.iter().map(|r| r.first_build_ns) }
                 .collect::<Option<Vec<f64>>>()
@@ -150,7 +150,7 @@ fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
 }
 
 /// Returns the break-even of `ranked` over all meshes; never if it is never on one of them.
-fn on_all(outcomes: &[Outcome], ranked: &Ranked) -> Option<BreakEven> {
+fn break_even_on_all(outcomes: &[Outcome], ranked: &Ranked) -> Option<BreakEven> {
     let rows: Option<Vec<&BreakEven>> = outcomes
         .iter()
         .map(|o| {

@@ -1,38 +1,38 @@
-//! The answer and its reasons, as sentences.
+//! The result of a pick and its reasons, as sentences.
 
 use crate::numbers::{duration, grouped, times};
-use crate::pick::answer::{Answer, PartCost, Ranked};
+use crate::pick::report::{PartCost, PickReport, Ranked};
 
-/// Returns the answer, its reasons, the break-even and the packages to add, in this order.
-pub(crate) fn words(answer: &Answer) -> Vec<String> {
-    let Some(best) = answer.ranking.first() else {
+/// Returns the fastest backend, the reasons, the break-even and the packages to add, in this order.
+pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
+    let Some(best) = report.ranking.first() else {
         return vec!["No backend qualifies.".into()];
     };
-    let mut words = vec![verdict(answer, best)];
-    words.extend(dominating(answer, best));
-    words.extend(runner_up(answer, best));
-    words.extend(tables(answer, best));
-    words.extend(over_one_use(answer, best));
-    words.push(to_add(best));
-    words
+    let mut sentences = vec![fastest(report, best)];
+    sentences.extend(dominant_part(report, best));
+    sentences.extend(largest_loss(report, best));
+    sentences.extend(tables(report, best));
+    sentences.extend(one_use_with_building(report, best));
+    sentences.push(packages_to_add(best));
+    sentences
 }
 
 /// Returns warnings: noise, few rounds, a busy machine, backends with other results.
-pub(crate) fn warnings(answer: &Answer) -> Vec<String> {
-    let mut warnings = crate::warnings::of_machine(&answer.environment);
-    if let Some(noise) = answer.noise.filter(|&noise| noise > 1.05) {
+pub(crate) fn warnings(report: &PickReport) -> Vec<String> {
+    let mut warnings = crate::warnings::machine_warnings(&report.environment);
+    if let Some(noise) = report.noise.filter(|&noise| noise > 1.05) {
         warnings.push(format!(
             "Two measurements of one backend differ by {:.0} %: smaller differences between backends are not significant. Measure on a quieter machine, or with a longer --budget.",
             100.0 * (noise - 1.0)
         ));
     }
-    let fewest = answer.ranking.iter().map(|ranked| ranked.samples).min();
+    let fewest = report.ranking.iter().map(|ranked| ranked.samples).min();
     if let Some(fewest) = fewest.filter(|&fewest| fewest < 6) {
         warnings.push(format!(
             "Some figures are from {fewest} rounds, too few for a 95 % interval: use a longer --budget."
         ));
     }
-    for backend in &answer.mismatches {
+    for backend in &report.mismatches {
         warnings.push(format!(
             "{backend} has other results than the other backends: a fault in Sixfold; please report it."
         ));
@@ -42,20 +42,20 @@ pub(crate) fn warnings(answer: &Answer) -> Vec<String> {
 
 /// Returns the name of a backend in a sentence.
 fn name(ranked: &Ranked) -> String {
-    match &ranked.over {
-        Some(over) => format!("{} (made from {over})", ranked.backend),
+    match &ranked.made_from {
+        Some(made_from) => format!("{} (made from {made_from})", ranked.backend),
         None => ranked.backend.clone(),
     }
 }
 
-fn verdict(answer: &Answer, best: &Ranked) -> String {
-    let tied: Vec<String> = { answer.ranking[1..].iter() }
+fn fastest(report: &PickReport, best: &Ranked) -> String {
+    let tied: Vec<String> = { report.ranking[1..].iter() }
         .filter(|ranked| ranked.tied_with_best)
         .map(name)
         .collect();
     let each = duration(best.ns_per_operation);
-    let workload = &answer.workload.name;
-    let next = answer.ranking[1..]
+    let workload = &report.workload.name;
+    let next = report.ranking[1..]
         .iter()
         .find(|ranked| !ranked.tied_with_best);
     let next = next.map_or(String::new(), |next| {
@@ -94,33 +94,33 @@ fn precise(ratio: f64) -> String {
 }
 
 /// Describes which part of the mix takes most of the time.
-fn dominating(answer: &Answer, best: &Ranked) -> Option<String> {
-    let total: f64 = best.parts.iter().map(PartCost::weighed).sum();
+fn dominant_part(report: &PickReport, best: &Ranked) -> Option<String> {
+    let total: f64 = best.parts.iter().map(PartCost::weighted_ns).sum();
     let heaviest = best
         .parts
         .iter()
-        .max_by(|a, b| a.weighed().total_cmp(&b.weighed()))?;
+        .max_by(|a, b| a.weighted_ns().total_cmp(&b.weighted_ns()))?;
     let each = duration(heaviest.ns?);
-    if answer.workload.mix.len() == 1 {
+    if report.workload.mix.len() == 1 {
         return None;
     }
     Some(format!(
         "{} takes {:.0} % of the time of the fastest backend ({each} each).",
         heaviest.operation,
-        100.0 * heaviest.weighed() / total
+        100.0 * heaviest.weighted_ns() / total
     ))
 }
 
 /// Describes the part of the mix in which the first slower backend loses most time.
-fn runner_up(answer: &Answer, best: &Ranked) -> Option<String> {
-    let next = answer
+fn largest_loss(report: &PickReport, best: &Ranked) -> Option<String> {
+    let next = report
         .ranking
         .iter()
         .find(|ranked| !ranked.tied_with_best)?;
-    let lost = |(a, b): (&PartCost, &PartCost)| a.weighed() - b.weighed();
+    let lost = |(a, b): (&PartCost, &PartCost)| a.weighted_ns() - b.weighted_ns();
     let pairs = || next.parts.iter().zip(&best.parts);
     let (theirs, ours) = pairs().max_by(|&a, &b| lost(a).total_cmp(&lost(b)))?;
-    if lost((theirs, ours)) <= 0.0 || answer.workload.mix.len() == 1 {
+    if lost((theirs, ours)) <= 0.0 || report.workload.mix.len() == 1 {
         return None;
     }
     Some(format!(
@@ -133,26 +133,32 @@ fn runner_up(answer: &Answer, best: &Ranked) -> Option<String> {
 }
 
 /// Describes the time of relation tables; if they are the best, that of the fastest structure.
-fn tables(answer: &Answer, best: &Ranked) -> Option<String> {
-    let structure = answer.ranking.iter().find(|ranked| ranked.over.is_none())?;
-    if best.over.is_some() {
+fn tables(report: &PickReport, best: &Ranked) -> Option<String> {
+    let structure = report
+        .ranking
+        .iter()
+        .find(|ranked| ranked.made_from.is_none())?;
+    if best.made_from.is_some() {
         return Some(format!(
             "Without relation tables, {} is fastest: {} per operation.",
             structure.backend,
             duration(structure.ns_per_operation)
         ));
     }
-    let tables = answer.ranking.iter().find(|ranked| ranked.over.is_some())?;
+    let tables = report
+        .ranking
+        .iter()
+        .find(|ranked| ranked.made_from.is_some())?;
     Some(format!(
         "Tables of only the queried relations, made once from {}, take {} the time of the fastest.",
-        tables.over.as_deref().unwrap_or_default(),
+        tables.made_from.as_deref().unwrap_or_default(),
         times(tables.ratio_to_best)
     ))
 }
 
 /// Describes the fastest backend for one use of the mesh, building included.
-fn over_one_use(answer: &Answer, best: &Ranked) -> Option<String> {
-    let operations = answer.operations;
+fn one_use_with_building(report: &PickReport, best: &Ranked) -> Option<String> {
+    let operations = report.operations;
     let total = |ranked: &Ranked| {
         // A program has an indexed face set before it builds anything.
         let build = match ranked.backend.as_str() {
@@ -161,7 +167,7 @@ fn over_one_use(answer: &Answer, best: &Ranked) -> Option<String> {
         };
         build + operations * ranked.ns_per_operation
     };
-    let least = { answer.ranking.iter() }.min_by(|a, b| total(a).total_cmp(&total(b)))?;
+    let least = { report.ranking.iter() }.min_by(|a, b| total(a).total_cmp(&total(b)))?;
     let count = grouped(operations.round() as usize);
     let used = if operations.round() == 1.0 {
         "operation"
@@ -185,7 +191,7 @@ fn over_one_use(answer: &Answer, best: &Ranked) -> Option<String> {
 
 /// Describes the command that adds the packages, and the types to use. Packages of Sixfold are
 /// taken from a checkout.
-fn to_add(best: &Ranked) -> String {
+fn packages_to_add(best: &Ranked) -> String {
     let command = |package: &String| match package.strip_prefix("sixfold-") {
         Some(folder) => format!("`cargo add {package} --path CHECKOUT/crates/{folder}`"),
         None => format!("`cargo add {package}`"),

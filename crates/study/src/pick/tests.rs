@@ -2,24 +2,24 @@
 
 use sixfold::{PolygonMesh, shapes};
 use sixfold_workload::pages::Policy;
-use sixfold_workload::{MixRun, Mixer, Operation, Run, Sample, Series, Time, built_in};
+use sixfold_workload::{ElementSample, MixBackend, MixRun, Operation, Run, Series, Time, built_in};
 
 use super::*;
-use crate::disturbed::Machine;
-use crate::pick::contest::Outcome;
+use crate::pick::measurement::Outcome;
+use crate::simulated_machine::SimulatedMachine;
 
 /// A mixer with a known time for each operation and a known building time.
-struct Known {
+struct KnownBackend {
     name: &'static str,
-    machine: Machine,
+    machine: SimulatedMachine,
     operation_ns: f64,
     build_ns: f64,
     parts: usize,
     /// What it yields per operation: 1, if it agrees with the others.
-    yields: u64,
+    yield_per_operation: u64,
 }
 
-impl Known {
+impl KnownBackend {
     fn time(&self, ns: f64, clock: &dyn sixfold_workload::Clock) -> Time {
         let start = clock.now();
         self.machine.work(ns);
@@ -27,7 +27,7 @@ impl Known {
     }
 }
 
-impl Mixer for Known {
+impl MixBackend for KnownBackend {
     fn name(&self) -> &'static str {
         self.name
     }
@@ -68,20 +68,20 @@ impl Mixer for Known {
         MixRun {
             time: self.time(self.operation_ns * operations as f64, clock),
             operations,
-            yielded: operations * self.yields,
+            yielded: operations * self.yield_per_operation,
             refused: 0,
         }
     }
-    fn cycle(&self, _: usize) -> u64 {
+    fn cycle_length(&self, _: usize) -> u64 {
         1000
     }
-    fn run_pass(&mut self, _: Operation, _: Option<Sample>, series: &Series<'_>) -> Run {
+    fn run_pass(&mut self, _: Operation, _: Option<ElementSample>, series: &Series<'_>) -> Run {
         Run::done(self.time(1e6, series.clock), None)
     }
-    fn accepted(&mut self) -> Vec<Vec<bool>> {
+    fn accepted_places(&mut self) -> Vec<Vec<bool>> {
         Vec::new()
     }
-    fn keep(&mut self, _: &[Vec<bool>]) {}
+    fn keep_places(&mut self, _: &[Vec<bool>]) {}
     fn build(&self, series: &Series<'_>) -> Time {
         let untimed = series.untimed;
         (0..untimed).for_each(|_| self.machine.work(self.build_ns));
@@ -89,8 +89,8 @@ impl Mixer for Known {
     }
 }
 
-fn question(budget: Duration) -> Question {
-    Question {
+fn settings(budget: Duration) -> PickSettings {
+    PickSettings {
         workload: built_in("geodesic-dijkstra").expect("a built-in workload"),
         backends: Vec::new(),
         needs: Vec::new(),
@@ -105,51 +105,52 @@ fn question(budget: Duration) -> Question {
 const FAULTY: &str = "face-vertex";
 
 /// Measures an indexed face set of 50 ns per operation, and mixers of these costs.
-fn contest(costs_ns: &[f64], seed: u64) -> Outcome {
-    let specimen = Specimen::new("ball", shapes::icosahedron());
+fn measure_known(costs_ns: &[f64], seed: u64) -> Outcome {
+    let study_mesh = StudyMesh::new("ball", shapes::icosahedron());
     let budget = Duration::from_secs(1);
-    let question = Question {
+    let settings = PickSettings {
         seed,
-        ..question(budget)
+        ..settings(budget)
     };
-    let counts = specimen.polygons.counts(specimen.facts.edges);
-    let script = Script::of(&question.workload, &counts);
-    let machine = Machine::default();
+    let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
+    let schedule = Schedule::new(&settings.workload, &counts);
+    let machine = SimulatedMachine::default();
     let names = ["half-edge", "winged-edge", "corner-table", "face-vertex"];
     let known = |name, operation_ns| {
         let machine = machine.clone();
-        Box::new(Known {
+        Box::new(KnownBackend {
             name,
             machine,
             operation_ns,
             build_ns: 40e3,
-            parts: script.parts.len(),
-            yields: if name == FAULTY { 2 } else { 1 },
+            parts: schedule.parts.len(),
+            yield_per_operation: if name == FAULTY { 2 } else { 1 },
         })
     };
-    let mut entrants: Vec<Entrant<'_>> = vec![Entrant::of(known("indexed-face-set", 50.0))];
+    let mut backends: Vec<PickBackend<'_>> =
+        vec![PickBackend::new(known("indexed-face-set", 50.0))];
     for (name, &cost) in names.into_iter().zip(costs_ns) {
-        entrants.push(Entrant::of(known(name, cost)));
+        backends.push(PickBackend::new(known(name, cost)));
     }
-    entrants.push(Entrant::control(known("half-edge", costs_ns[0])));
+    backends.push(PickBackend::control(known("half-edge", costs_ns[0])));
     let stop = AtomicBool::new(false);
-    let contest = Contest {
-        specimen: &specimen,
-        question: &question,
+    let measurement = PickMeasurement {
+        study_mesh: &study_mesh,
+        settings: &settings,
         counts,
-        script: &script,
+        schedule: &schedule,
         budget,
         clock: &machine,
         memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
         stop: &stop,
         progress: &mut |_, _| (),
     };
-    contest.held(entrants, Vec::new()).expect("enough time")
+    measurement.run(backends, Vec::new()).expect("enough time")
 }
 
 #[test]
 fn known_ratios_are_found_on_a_drifting_machine() {
-    let outcome = contest(&[10.0, 10.5, 12.5, 10.0], 1);
+    let outcome = measure_known(&[10.0, 10.5, 12.5, 10.0], 1);
     let of = |name: &str| {
         outcome
             .ranking
@@ -184,7 +185,7 @@ fn known_ratios_are_found_on_a_drifting_machine() {
 
 #[test]
 fn break_even_is_building_time_divided_by_time_saved() {
-    let outcome = contest(&[10.0, 60.0], 1);
+    let outcome = measure_known(&[10.0, 60.0], 1);
     let row = |name: &str| outcome.break_even.iter().find(|row| row.backend == name);
     // 40 µs divided by 40 ns per operation; the machine drifts between building and running.
     let pays = row("half-edge")
@@ -202,7 +203,7 @@ fn break_even_is_building_time_divided_by_time_saved() {
 fn intervals_cover_a_known_ratio() {
     let mut covered = 0;
     for seed in 0..40 {
-        let outcome = contest(&[10.0, 13.0], seed);
+        let outcome = measure_known(&[10.0, 13.0], seed);
         let row = outcome
             .ranking
             .iter()
@@ -214,13 +215,13 @@ fn intervals_cover_a_known_ratio() {
     assert!(covered >= 35, "{covered} of 40");
 }
 
-fn quick(question: &Question, meshes: &[PolygonMesh]) -> Result<Answer, PickError> {
+fn quick(settings: &PickSettings, meshes: &[PolygonMesh]) -> Result<PickReport, PickError> {
     let named = meshes.iter().enumerate();
-    let specimens = named.map(|(i, mesh)| Specimen::new(format!("mesh {i}"), mesh.clone()));
-    let specimens: Vec<Specimen> = specimens.collect();
+    let study_meshes = named.map(|(i, mesh)| StudyMesh::new(format!("mesh {i}"), mesh.clone()));
+    let study_meshes: Vec<StudyMesh> = study_meshes.collect();
     pick(
-        &specimens,
-        question,
+        &study_meshes,
+        settings,
         &AtomicBool::new(false),
         &mut |_, _| (),
     )
@@ -229,28 +230,28 @@ fn quick(question: &Question, meshes: &[PolygonMesh]) -> Result<Answer, PickErro
 #[test]
 fn a_real_measurement_ranks_all_backends_with_reasons() {
     let torus = shapes::triangle_torus(24, 24).expect("a torus");
-    let answer = quick(&question(Duration::from_secs(2)), &[torus]).expect("enough time");
-    assert_eq!(answer.ranking.len(), 7, "{:?}", answer.ranking);
-    assert!(answer.excluded.is_empty());
-    let times = answer.ranking.iter().map(|row| row.ns_per_operation);
+    let report = quick(&settings(Duration::from_secs(2)), &[torus]).expect("enough time");
+    assert_eq!(report.ranking.len(), 7, "{:?}", report.ranking);
+    assert!(report.excluded.is_empty());
+    let times = report.ranking.iter().map(|row| row.ns_per_operation);
     assert!(times.is_sorted());
-    assert_eq!(answer.ranking[0].ratio_to_best, 1.0);
-    assert_eq!(answer.break_even.len(), 6);
-    let soup = answer.ranking.last().expect("seven backends");
+    assert_eq!(report.ranking[0].ratio_to_best, 1.0);
+    assert_eq!(report.break_even.len(), 6);
+    let soup = report.ranking.last().expect("seven backends");
     assert!(soup.sampled && soup.ratio_to_best > 10.0);
     assert!(
-        answer.words[0].starts_with("For geodesic-dijkstra, "),
+        report.sentences[0].starts_with("For geodesic-dijkstra, "),
         "{:?}",
-        answer.words
+        report.sentences
     );
     assert!(
-        answer
-            .words
+        report
+            .sentences
             .iter()
-            .any(|words| words.contains("% of the time"))
+            .any(|sentence| sentence.contains("% of the time"))
     );
     let mut json = Vec::new();
-    answer.write_json(&mut json).expect("into memory");
+    report.write_json(&mut json).expect("into memory");
     let json: serde_json::Value = serde_json::from_slice(&json).expect("it is JSON");
     for key in [
         "backend",
@@ -270,57 +271,57 @@ fn a_real_measurement_ranks_all_backends_with_reasons() {
 #[test]
 fn needs_and_memory_limits_exclude_backends() {
     let torus = shapes::triangle_torus(24, 24).expect("a torus");
-    let asked = |needs: &[Need], max_memory| Question {
+    let with_limits = |needs: &[Need], max_memory| PickSettings {
         needs: needs.to_vec(),
         max_memory,
-        ..question(Duration::from_secs(1))
+        ..settings(Duration::from_secs(1))
     };
-    let answer = quick(
-        &asked(&[Need::Edit, Need::NonManifold], None),
+    let report = quick(
+        &with_limits(&[Need::Edit, Need::NonManifold], None),
         std::slice::from_ref(&torus),
     );
-    let answer = answer.expect("enough time");
-    let mut names: Vec<&str> = answer
+    let report = report.expect("enough time");
+    let mut names: Vec<&str> = report
         .ranking
         .iter()
         .map(|row| row.backend.as_str())
         .collect();
     names.sort_unstable();
     assert_eq!(names, ["face-vertex", "indexed-face-set", "polygon-soup"]);
-    assert_eq!(answer.excluded.len(), 4, "{:?}", answer.excluded);
+    assert_eq!(report.excluded.len(), 4, "{:?}", report.excluded);
     // The smallest structure takes nine words per vertex.
     let vertices = torus.vertex_count() as u64;
-    let answer = quick(
-        &asked(&[], Some(36 * vertices)),
+    let report = quick(
+        &with_limits(&[], Some(36 * vertices)),
         std::slice::from_ref(&torus),
     )
-    .expect("an answer");
+    .expect("a report");
     assert!(
-        answer
+        report
             .ranking
             .iter()
             .all(|row| row.bytes as u64 <= 36 * vertices)
     );
     assert!(
-        answer
+        report
             .excluded
             .iter()
             .any(|out| out.reason.contains("--max-memory"))
     );
-    let answer = quick(&asked(&[], Some(10)), &[torus]).expect("an answer");
-    assert!(answer.ranking.is_empty());
-    assert_eq!(answer.words, ["No backend qualifies."]);
+    let report = quick(&with_limits(&[], Some(10)), &[torus]).expect("a report");
+    assert!(report.ranking.is_empty());
+    assert_eq!(report.sentences, ["No backend qualifies."]);
 }
 
 #[test]
 fn edits_are_done_by_all_at_the_same_places() {
     let torus = shapes::triangle_torus(30, 30).expect("a torus");
-    let question = Question {
+    let settings = PickSettings {
         workload: built_in("remeshing").expect("a built-in workload"),
-        ..question(Duration::from_secs(3))
+        ..settings(Duration::from_secs(3))
     };
-    let answer = quick(&question, &[torus]).expect("enough time");
-    let names: Vec<&str> = answer
+    let report = quick(&settings, &[torus]).expect("enough time");
+    let names: Vec<&str> = report
         .ranking
         .iter()
         .map(|row| row.backend.as_str())
@@ -338,75 +339,81 @@ fn several_meshes_give_one_answer() {
         shapes::triangle_grid(20, 20).expect("a grid"),
         shapes::grid(12, 12).expect("a grid"),
     ];
-    let answer = quick(&question(Duration::from_secs(3)), &meshes).expect("enough time");
-    assert_eq!(answer.by_mesh.len(), 3);
+    let report = quick(&settings(Duration::from_secs(3)), &meshes).expect("enough time");
+    assert_eq!(report.by_mesh.len(), 3);
     assert!(
-        answer
+        report
             .ranking
             .iter()
             .all(|row| row.backend != "corner-table")
     );
-    let out = answer
+    let out = report
         .excluded
         .iter()
         .find(|out| out.backend == "corner-table")
         .expect("it holds triangles only");
     assert!(out.reason.starts_with("mesh 2: "), "{}", out.reason);
-    assert_eq!(answer.ranking[0].ratio_to_best, 1.0);
+    assert_eq!(report.ranking[0].ratio_to_best, 1.0);
 }
 
 #[test]
-fn invalid_questions_are_refused() {
+fn invalid_settings_are_refused() {
     let torus = shapes::triangle_torus(20, 20).expect("a torus");
     let nothing = quick(
-        &question(Duration::from_nanos(1)),
+        &settings(Duration::from_nanos(1)),
         std::slice::from_ref(&torus),
     );
-    let said = nothing.expect_err("no time at all").to_string();
+    let message = nothing.expect_err("no time at all").to_string();
     assert!(
-        said.contains("too small to measure anything") && said.contains("--budget"),
-        "{said}"
+        message.contains("too small to measure anything") && message.contains("--budget"),
+        "{message}"
     );
     assert!(matches!(
-        quick(&question(Duration::from_secs(1)), &[]),
+        quick(&settings(Duration::from_secs(1)), &[]),
         Err(PickError::NoMesh)
     ));
     let points = PolygonMesh::default();
-    let said = quick(&question(Duration::from_secs(1)), &[points]).expect_err("no faces");
+    let message = quick(&settings(Duration::from_secs(1)), &[points]).expect_err("no faces");
     assert!(
-        matches!(said, PickError::Study(StudyError::NoFaces)),
-        "{said}"
+        matches!(message, PickError::Study(StudyError::NoFaces)),
+        "{message}"
     );
     let quads = shapes::grid(20, 20).expect("a grid");
-    let remeshing = Question {
+    let remeshing = PickSettings {
         workload: built_in("remeshing").expect("a built-in workload"),
-        ..question(Duration::from_secs(1))
+        ..settings(Duration::from_secs(1))
     };
-    let said = quick(&remeshing, &[quads]).expect_err("quads").to_string();
-    assert!(said.contains("mesh 0: face f0 has 4 corners"), "{said}");
-    let said = quick(&remeshing, &[shapes::tetrahedron()])
+    let message = quick(&remeshing, &[quads]).expect_err("quads").to_string();
+    assert!(
+        message.contains("mesh 0: face f0 has 4 corners"),
+        "{message}"
+    );
+    let message = quick(&remeshing, &[shapes::tetrahedron()])
         .expect_err("tiny")
         .to_string();
-    assert!(said.contains("no room for 3 kinds of edits"), "{said}");
+    assert!(
+        message.contains("no room for 3 kinds of edits"),
+        "{message}"
+    );
 }
 
 #[test]
 fn an_interrupted_measurement_keeps_its_samples() {
     let torus = shapes::triangle_torus(20, 20).expect("a torus");
-    let specimen = [Specimen::new("torus", torus)];
+    let study_mesh = [StudyMesh::new("torus", torus)];
     let stop = AtomicBool::new(false);
-    let mut heard = 0;
-    let answer = pick(
-        &specimen,
-        &question(Duration::from_secs(60)),
+    let mut calls = 0;
+    let report = pick(
+        &study_mesh,
+        &settings(Duration::from_secs(60)),
         &stop,
         &mut |_, what| {
-            heard += usize::from(what.starts_with("round"));
-            if heard > 20 {
+            calls += usize::from(what.starts_with("round"));
+            if calls > 20 {
                 stop.store(true, Ordering::Relaxed);
             }
         },
     );
-    let answer = answer.expect("the finished part");
-    assert!(answer.interrupted && !answer.ranking.is_empty());
+    let report = report.expect("the finished part");
+    assert!(report.interrupted && !report.ranking.is_empty());
 }

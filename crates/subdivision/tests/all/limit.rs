@@ -19,7 +19,9 @@ fn limits<M: Representation>(
     creases: &Creases,
 ) -> (Creases, Vec<LimitPoint>) {
     let mesh = M::from_polygons(polygons).expect("the structure accepts it");
-    let control = scheme.control(&mesh, polygons, creases).expect("creases");
+    let control = scheme
+        .control_creases(&mesh, polygons, creases)
+        .expect("creases");
     let limits = limits_of(scheme, &mesh, &control);
     (control, limits)
 }
@@ -103,7 +105,7 @@ fn ring_after(scheme: &Subdivision, from: &Step) -> (Step, Point, f32) {
 
 /// Returns the position of vertex 0 after `levels` steps, and the direction of the sum of the
 /// normals of its faces; only of the faces that `counts` selects by their first neighbour.
-fn followed(
+fn vertex_after(
     scheme: &Subdivision,
     from: Step,
     levels: usize,
@@ -207,7 +209,7 @@ fn a_smooth_vertex_converges_to_its_limit() {
             let (creases, at) = limits::<IndexedFaceSet>(&scheme, &polygons, &Creases::default());
             let (position, normal) = defined(at[0]);
             let start = Step { polygons, creases };
-            let (place, seen) = followed(&scheme, start, 24, |_| true);
+            let (place, seen) = vertex_after(&scheme, start, 24, |_| true);
             assert!(
                 place.distance(position) < 1e-5,
                 "{scheme:?} {n}: {place} {position}"
@@ -241,7 +243,7 @@ fn a_boundary_vertex_converges_to_its_limit() {
                 3 => (20, 0.9995),
                 _ => (45, 0.99),
             };
-            let (place, seen) = followed(&scheme, start, levels, |_| true);
+            let (place, seen) = vertex_after(&scheme, start, levels, |_| true);
             assert!(
                 place.distance(position) < 1e-4,
                 "{scheme:?} {k}: {place} {position}"
@@ -276,7 +278,7 @@ fn a_crease_has_a_normal_on_either_side() {
                 // The ring may start at any neighbour: try every start, and take the best normal.
                 let best = (0..n).map(|first| {
                     let counts = |i: usize| (i as u32 + n - first) % n < faces;
-                    let (place, seen) = followed(&scheme, start.clone(), levels, counts);
+                    let (place, seen) = vertex_after(&scheme, start.clone(), levels, counts);
                     assert!(place.distance(position) < 1e-4);
                     seen.dot(normal)
                 });

@@ -49,8 +49,8 @@ fn smallest_of_halves(polygons: &PolygonMesh) -> f64 {
 }
 
 /// Asserts that the topology is unchanged; a corner inside a side would open the mesh there.
-fn conforms(before: &PolygonMesh, after: &PolygonMesh) {
-    let [old, new] = [before, after].map(Facts::of);
+fn assert_conforming(before: &PolygonMesh, after: &PolygonMesh) {
+    let [old, new] = [before, after].map(Facts::from_polygons);
     assert_eq!(new.euler_characteristic, old.euler_characteristic);
     assert_eq!(new.components, old.components);
     assert_eq!(new.boundary_loops, old.boundary_loops);
@@ -60,10 +60,10 @@ fn conforms(before: &PolygonMesh, after: &PolygonMesh) {
     // The length of the boundary is unchanged, so its new points lie on it.
     let length = |mesh: &PolygonMesh| -> f64 {
         let structure = IndexedFaceSet::from_polygons(mesh).expect("it accepts any mesh");
-        let rim = structure
+        let boundary = structure
             .edges()
             .filter(|&e| structure.edge_faces(e).count() == 1);
-        let ends = rim.map(|e| structure.edge_vertices(e).map(|v| structure.position(v)));
+        let ends = boundary.map(|e| structure.edge_vertices(e).map(|v| structure.position(v)));
         ends.map(|[a, b]| f64::from(a.distance(b))).sum()
     };
     assert!((length(before) - length(after)).abs() <= 1e-4 * length(before));
@@ -90,12 +90,16 @@ fn one_face_of_an_octahedron() {
     let mut sizes: Vec<usize> = parts.values().map(Vec::len).collect();
     sizes.sort_unstable();
     assert_eq!(sizes, [1, 1, 1, 1, 2, 2, 2, 4]);
-    for of in parts.values() {
-        assert!(of.iter().all(|&f| local.is_green(f) == (of.len() == 2)));
+    for faces in parts.values() {
+        assert!(
+            faces
+                .iter()
+                .all(|&f| local.is_green(f) == (faces.len() == 2))
+        );
     }
     assert_eq!(local.chosen_parts(), parts[&FaceId::new(0)]);
     assert_eq!(local.polygons().vertex_count(), 6 + 3);
-    conforms(&before, local.polygons());
+    assert_conforming(&before, local.polygons());
 }
 
 #[test]
@@ -149,7 +153,7 @@ fn green_faces_are_undone() {
         // A face next to the green pair is chosen: the whole of the pair becomes red, and one of
         // its outer parts green.
         let third = first.refined(&mesh, &ids(&[0])).expect("small");
-        conforms(&before, third.polygons());
+        assert_conforming(&before, third.polygons());
         assert!((area(third.polygons()) - 1.0).abs() < 1e-6);
     }
 }
@@ -178,7 +182,7 @@ fn angles_stay_bounded_at_a_point() {
         for levels in 1..=8 {
             let local = refined(&mesh, &selection, levels);
             let polygons = local.polygons();
-            conforms(&mesh, polygons);
+            assert_conforming(&mesh, polygons);
             assert!((area(polygons) - area(&mesh)).abs() < 1e-5 * area(&mesh));
             // At all levels, every face has the shape of an old face or of half of one.
             let angle = smallest_angle(polygons);
@@ -222,7 +226,7 @@ fn an_angle_finds_the_folds() {
     assert_eq!(chosen(1.0, 91.0), []);
     assert_eq!(chosen(0.0, 0.0), []);
     let local = refined(&strip(1.0), &Selection::Angle(45.0), 4);
-    conforms(&strip(1.0), local.polygons());
+    assert_conforming(&strip(1.0), local.polygons());
     // The ridge has 2 · 2⁴ edges, each with two faces.
     let mesh = HalfEdgeMesh::from_polygons(local.polygons()).expect("a sheet");
     let folds = Selection::Angle(45.0).faces(&mesh).expect("an angle");
@@ -243,7 +247,7 @@ fn faces_that_run_in_the_same_direction_are_not_a_fold() {
 }
 
 #[test]
-fn all_pages_of_a_book_take_part() {
+fn all_faces_of_a_non_manifold_edge_are_split() {
     let points = [
         [0.0, 0.0, 0.0],
         [0.0, 0.0, 1.0],
@@ -254,8 +258,8 @@ fn all_pages_of_a_book_take_part() {
     let book = PolygonMesh::new(points.map(Point::from), [[0, 1, 2], [0, 1, 3], [1, 0, 4]]);
     let book = book.expect("valid");
     let local = refined(&book, &Selection::Faces(ids(&[1])), 3);
-    conforms(&book, local.polygons());
-    assert_eq!(Facts::of(local.polygons()).non_manifold_edges, 8);
+    assert_conforming(&book, local.polygons());
+    assert_eq!(Facts::from_polygons(local.polygons()).non_manifold_edges, 8);
     let mesh = IndexedFaceSet::from_polygons(&book).expect("it accepts any mesh");
     assert_eq!(Selection::Angle(180.0).faces(&mesh), Ok(ids(&[0, 1, 2])));
 }
@@ -263,27 +267,33 @@ fn all_pages_of_a_book_take_part() {
 #[test]
 fn each_invalid_input_returns_its_error() {
     let mesh = sixfold_shapes::octahedron();
-    let fault =
+    let error_of =
         |selection: Selection| refine_locally::<IndexedFaceSet>(&mesh, &selection, 1).unwrap_err();
     let missing = LocalError::MissingFace {
         face: FaceId::new(8),
         faces: 8,
     };
-    assert_eq!(fault(Selection::Faces(ids(&[0, 8]))), missing);
+    assert_eq!(error_of(Selection::Faces(ids(&[0, 8]))), missing);
     let local = LocalMesh::new(mesh.clone()).expect("triangles");
     let structure = IndexedFaceSet::from_polygons(&mesh).expect("it accepts any mesh");
     assert_eq!(local.refined(&structure, &ids(&[8])), Err(missing));
-    let of = |min, max| fault(Selection::Box { min, max });
+    let box_error = |min, max| error_of(Selection::Box { min, max });
     let nan = Point::new(0.0, f32::NAN, 0.0);
-    assert!(matches!(of(nan, Point::ONE), LocalError::BadBox { .. }));
-    assert!(matches!(of(Point::ZERO, nan), LocalError::BadBox { .. }));
     assert!(matches!(
-        of(Point::ONE, Point::ZERO),
+        box_error(nan, Point::ONE),
+        LocalError::BadBox { .. }
+    ));
+    assert!(matches!(
+        box_error(Point::ZERO, nan),
+        LocalError::BadBox { .. }
+    ));
+    assert!(matches!(
+        box_error(Point::ONE, Point::ZERO),
         LocalError::BadBox { .. }
     ));
     for degrees in [f32::NAN, -1.0, 180.5] {
         assert!(matches!(
-            fault(Selection::Angle(degrees)),
+            error_of(Selection::Angle(degrees)),
             LocalError::BadAngle { .. }
         ));
     }
@@ -350,7 +360,7 @@ proptest! {
             .map(|pick| FaceId::new(pick.index(before.face_count()) as u32))
             .collect();
         let local = refined(&before, &Selection::Faces(chosen.clone()), levels);
-        conforms(&before, local.polygons());
+        assert_conforming(&before, local.polygons());
         prop_assert!((area(local.polygons()) - area(&before)).abs() < 1e-4 * area(&before) + 1e-6);
         let parts = parts(&local);
         prop_assert_eq!(parts.len(), before.face_count(), "every face has parts");
@@ -373,7 +383,7 @@ proptest! {
         let mesh = IndexedFaceSet::from_polygons(local.polygons()).expect("it accepts any mesh");
         let any = FaceId::new(again.index(local.polygons().face_count()) as u32);
         let next = local.refined(&mesh, &[any]).expect("small");
-        conforms(&before, next.polygons());
+        assert_conforming(&before, next.polygons());
         prop_assert!(next.chosen_parts().len() >= 4);
         // Another structure makes the same faces, compared by the positions of their corners.
         if HalfEdgeMesh::from_polygons(&before).is_ok() {

@@ -1,10 +1,10 @@
 //! Adding faces.
 
 use sixfold_core::{
-    EditError, EditLog, FaceId, Few, Lookup, MeshQuery, Probe, Refusal, Slot, VertexId,
+    EditError, EditLog, FaceId, Lookup, MeshQuery, Probe, Refusal, ShortVec, Slot, VertexId,
 };
 
-use super::surgery::both_sides;
+use super::primitives::runs_of;
 use crate::edge::{Edge, RunId};
 use crate::mesh::EditableWingedEdgeMesh;
 
@@ -52,7 +52,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
             return Err(EditError::TooFewCorners { corners });
         }
         corners.iter().try_for_each(|&v| self.check_vertex(v))?;
-        if let Some(vertex) = repeated(corners) {
+        if let Some(vertex) = repeated_vertex(corners) {
             return Err(EditError::RepeatedVertex { vertex });
         }
         let mut new_edges = 0;
@@ -106,7 +106,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
             },
             log,
         );
-        let [run, _] = both_sides(edge);
+        let [run, _] = runs_of(edge);
         NewSide { run, is_new: true }
     }
 
@@ -114,17 +114,17 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         let (into, out) = (before.run, after.run);
         match [before.is_new, after.is_new] {
             [true, true] => {
-                self.link(out.back(), into.back());
+                self.link(out.twin(), into.twin());
                 self.set_spoke(v, out.edge);
             }
             [false, true] => {
                 let beyond = self.run_after(into);
-                self.link(out.back(), beyond);
+                self.link(out.twin(), beyond);
                 self.set_spoke(v, out.edge);
             }
             [true, false] => {
                 let beyond = self.run_before(out);
-                self.link(beyond, into.back());
+                self.link(beyond, into.twin());
             }
             [false, false] => {}
         }
@@ -140,14 +140,14 @@ struct NewSide {
 }
 
 /// Returns a vertex that occurs twice, if there is one.
-fn repeated(corners: &[VertexId]) -> Option<VertexId> {
+fn repeated_vertex(corners: &[VertexId]) -> Option<VertexId> {
     if corners.len() <= 16 {
         let mut pairs = corners.iter().enumerate();
         return pairs.find_map(|(i, v)| corners[..i].contains(v).then_some(*v));
     }
-    let mut sorted = Few::new();
+    let mut sorted = ShortVec::new();
     corners.iter().for_each(|&v| sorted.push(v));
-    sorted.order();
+    sorted.sort_for_lookup();
     let twice = sorted.as_slice().windows(2).find(|pair| pair[0] == pair[1]);
     twice.map(|pair| pair[0])
 }

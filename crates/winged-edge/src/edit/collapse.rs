@@ -1,7 +1,7 @@
 //! Edge collapse: merges the two ends of an edge into one vertex.
 
 use sixfold_core::{
-    EdgeId, EditError, EditLog, FaceId, Few, Lookup, MeshQuery, Point, Probe, Refusal, Slot,
+    EdgeId, EditError, EditLog, FaceId, Lookup, MeshQuery, Point, Probe, Refusal, ShortVec, Slot,
     VertexId,
 };
 
@@ -11,9 +11,9 @@ use crate::mesh::EditableWingedEdgeMesh;
 /// A triangle along the collapsed edge, and its other two sides.
 ///
 /// ```text
-///           c              The edge k–c stays, and g–c is removed. The run of k–c inside the
-///         ╱   ╲            triangle (`stays`) replaces the run of g–c outside it (`beyond`).
-///  stays ╱     ╲ beyond
+///           c              The edge k–c is kept, and g–c is removed. The run of k–c inside the
+///         ╱   ╲            triangle (`kept`) replaces the run of g–c outside it (`outer`).
+///   kept ╱     ╲ outer
 ///      ╱         ╲         The triangle on the other side of k–g is the mirror image.
 ///     k ────────► g
 /// ```
@@ -21,13 +21,13 @@ use crate::mesh::EditableWingedEdgeMesh;
 struct Triangle {
     face: FaceId,
     apex: VertexId,
-    stays: RunId,
-    beyond: RunId,
+    kept: RunId,
+    outer: RunId,
 }
 
 /// The edges at the removed end, except those that are removed too.
 struct Spokes {
-    edges: Few<EdgeId>,
+    edges: ShortVec<EdgeId>,
     on_boundary: bool,
 }
 
@@ -46,18 +46,18 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
             return Err(EditError::NotAnEnd { edge: e, vertex });
         }
         let run = Run::from(edge, keep);
-        let (gone, before, out) = (run.target(), run.prev(), RunId::on(e, run.side()));
-        let sides = [self.left_of(run, gone)?, self.right_of(run.back(), keep)?];
+        let (gone, before, out) = (run.target(), run.prev(), RunId::new(e, run.side()));
+        let sides = [self.left_of(run, gone)?, self.right_of(run.twin(), keep)?];
         let first = match sides {
             [Some(left), Some(right)] if left.apex == right.apex => {
                 let vertex = left.apex;
                 return Err(EditError::SameApex { edge: e, vertex });
             }
-            [Some(left), Some(right)] if self.is_tip_of_three(left, right) => {
-                if self.are_three(left, right) {
+            [Some(left), Some(right)] if self.removed_end_has_valence_three(left, right) => {
+                if self.kept_end_has_valence_three(left, right) {
                     return Err(EditError::Pillow { edge: e });
                 }
-                self.relink_one(left, right);
+                self.merge_three_triangles(left, right);
                 None
             }
             _ => {
@@ -66,9 +66,9 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
             }
         };
         for triangle in sides.into_iter().flatten() {
-            let (goes, stays) = (triangle.beyond.edge, triangle.stays.edge);
-            self.replace_spoke(triangle.apex, goes, stays);
-            self.delete_edge(goes, log);
+            let (removed, kept) = (triangle.outer.edge, triangle.kept.edge);
+            self.replace_spoke(triangle.apex, removed, kept);
+            self.delete_edge(removed, log);
             self.delete_face(triangle.face, log);
         }
         match first {
@@ -96,8 +96,8 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         } else {
             None
         };
-        // Faces that only lose a side come first, because a triangle may take over their runs.
-        for (run, _) in { [out, out.back()].into_iter().zip(sides) }.filter(|(_, s)| s.is_none()) {
+        // Faces that only lose a side come first: a kept side may then replace one of their runs.
+        for (run, _) in { [out, out.twin()].into_iter().zip(sides) }.filter(|(_, s)| s.is_none()) {
             let (before, after) = (self.run_before(run), self.run_after(run));
             let face = self.run(run).face();
             self.link(before, after);
@@ -108,21 +108,21 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         for &spoke in spokes.edges.as_slice() {
             self.set_end(spoke, gone, keep);
         }
-        // One of these two runs may follow the other, so both get the new end before `take_over`.
+        // One of these two runs may follow the other, so both get the new end before `replace`.
         for triangle in sides.into_iter().flatten() {
-            self.set_end(triangle.beyond.edge, gone, keep);
+            self.set_end(triangle.outer.edge, gone, keep);
         }
-        for Triangle { stays, beyond, .. } in sides.into_iter().flatten() {
-            self.take_over(beyond, stays);
-            if first == Some(beyond.edge) {
-                first = Some(stays.edge);
+        for Triangle { kept, outer, .. } in sides.into_iter().flatten() {
+            self.replace(outer, kept);
+            if first == Some(outer.edge) {
+                first = Some(kept.edge);
             }
         }
         first
     }
 
     /// Puts `new` in the place of `old`.
-    fn take_over(&mut self, old: RunId, new: RunId) {
+    fn replace(&mut self, old: RunId, new: RunId) {
         let (before, after) = (self.run_before(old), self.run_after(old));
         let face = self.run(old).face();
         self.link(before, new);
@@ -136,15 +136,15 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// Merges the three triangles around a vertex into one: the triangle that is not along the
     /// collapsed edge gets the remaining sides of the other two.
     #[inline(always)]
-    fn relink_one(&mut self, left: Triangle, right: Triangle) {
-        let run = self.run(left.beyond);
+    fn merge_three_triangles(&mut self, left: Triangle, right: Triangle) {
+        let run = self.run(left.outer);
         let (face, base) = (run.face(), run.prev());
-        let (next, prev) = (left.stays.edge, right.stays.edge);
-        self.set_lane(left.stays, face, prev, base);
-        self.set_lane(right.stays, face, base, next);
+        let (next, prev) = (left.kept.edge, right.kept.edge);
+        self.set_links(left.kept, face, prev, base);
+        self.set_links(right.kept, face, base, next);
         if let Some(f) = face.get() {
             let base = self.along(base, f);
-            self.set_lane(base, face, next, prev);
+            self.set_links(base, face, next, prev);
             self.set_side(f, base.edge);
         }
     }
@@ -153,19 +153,19 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// triangle.
     #[inline(always)]
     fn left_of(&self, out: Run<'_>, gone: VertexId) -> Result<Option<Triangle>, Refusal<Self>> {
-        let goes = Run::from(self.record(out.next()), gone);
-        let (Some(face), true) = (out.face().get(), goes.next() == out.prev()) else {
+        let removed = Run::from(self.record(out.next()), gone);
+        let (Some(face), true) = (out.face().get(), removed.next() == out.prev()) else {
             return Ok(None);
         };
-        let apex = goes.target();
-        let stays = Run::from(self.record(out.prev()), apex);
-        let across = [goes.across(), stays.across()];
+        let apex = removed.target();
+        let kept = Run::from(self.record(out.prev()), apex);
+        let across = [removed.across(), kept.across()];
         Self::check_last_face(apex, across)?;
         Ok(Some(Triangle {
             face,
             apex,
-            stays: RunId::on(out.prev(), stays.side()),
-            beyond: RunId::on(out.next(), goes.side()).back(),
+            kept: RunId::new(out.prev(), kept.side()),
+            outer: RunId::new(out.next(), removed.side()).twin(),
         }))
     }
 
@@ -173,23 +173,23 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// triangle.
     #[inline(always)]
     fn right_of(&self, back: Run<'_>, keep: VertexId) -> Result<Option<Triangle>, Refusal<Self>> {
-        let stays = Run::from(self.record(back.next()), keep);
-        let (Some(face), true) = (back.face().get(), stays.next() == back.prev()) else {
+        let kept = Run::from(self.record(back.next()), keep);
+        let (Some(face), true) = (back.face().get(), kept.next() == back.prev()) else {
             return Ok(None);
         };
-        let apex = stays.target();
-        let goes = Run::from(self.record(back.prev()), apex);
-        let across = [goes.across(), stays.across()];
+        let apex = kept.target();
+        let removed = Run::from(self.record(back.prev()), apex);
+        let across = [removed.across(), kept.across()];
         Self::check_last_face(apex, across)?;
         Ok(Some(Triangle {
             face,
             apex,
-            stays: RunId::on(back.next(), stays.side()),
-            beyond: RunId::on(back.prev(), goes.side()).back(),
+            kept: RunId::new(back.next(), kept.side()),
+            outer: RunId::new(back.prev(), removed.side()).twin(),
         }))
     }
 
-    /// Checks that there is a face beyond at least one of the two sides that become one.
+    /// Checks that there is a face across at least one of the two sides that become one.
     #[inline(always)]
     fn check_last_face(vertex: VertexId, across: [Slot<FaceId>; 2]) -> Result<(), Refusal<Self>> {
         if across == [Slot::NONE; 2] {
@@ -210,14 +210,14 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     ) -> Result<Spokes, Refusal<Self>> {
         let e = out.edge;
         let mut spokes = Spokes {
-            edges: Few::new(),
+            edges: ShortVec::new(),
             on_boundary: false,
         };
         let apexes = sides.map(|side| side.map(|triangle| triangle.apex));
         let is_apex = |v| apexes.contains(&Some(v));
-        let (mut ends, mut faces) = (Few::new(), Few::new());
+        let (mut ends, mut faces) = (ShortVec::new(), ShortVec::new());
         let mut valence = 0;
-        let mut run = self.run(out.back());
+        let mut run = self.run(out.twin());
         spokes.on_boundary = run.face() == Slot::NONE;
         while run.ccw() != e {
             let at = run.ccw();
@@ -233,8 +233,8 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
                 face => faces.push(face),
             }
         }
-        ends.order();
-        faces.order();
+        ends.sort_for_lookup();
+        faces.sort_for_lookup();
         run = self.run(out);
         let mut keep_on_boundary = run.face() == Slot::NONE;
         while run.ccw() != e {
@@ -250,13 +250,13 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
             keep_on_boundary |= run.face() == Slot::NONE;
         }
         if spokes.on_boundary && keep_on_boundary {
-            let [left, right] = [out, out.back()].map(|run| self.run(run).face());
+            let [left, right] = [out, out.twin()].map(|run| self.run(run).face());
             if left != Slot::NONE && right != Slot::NONE {
                 return Err(EditError::AcrossBoundary { edge: e });
             }
         } else if !spokes.on_boundary && !keep_on_boundary {
             let merged = apexes.iter().flatten().count();
-            if valence == merged + 2 && self.only_triangles_stay(out, [keep, gone]) {
+            if valence == merged + 2 && self.only_triangles_remain(out, [keep, gone]) {
                 return Err(EditError::Pillow { edge: e });
             }
         }
@@ -266,20 +266,20 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// Returns whether the removed end has three edges and three triangles around it. Its
     /// neighbours are then the kept end and the third corners, so no walk is needed.
     #[inline(always)]
-    fn is_tip_of_three(&self, left: Triangle, right: Triangle) -> bool {
-        let (to_tip, from_tip) = (self.run(left.beyond), self.run(right.beyond));
-        to_tip.next() == right.beyond.edge
-            && to_tip.face() != Slot::NONE
-            && to_tip.prev() == from_tip.next()
+    fn removed_end_has_valence_three(&self, left: Triangle, right: Triangle) -> bool {
+        let (to_removed, from_removed) = (self.run(left.outer), self.run(right.outer));
+        to_removed.next() == right.outer.edge
+            && to_removed.face() != Slot::NONE
+            && to_removed.prev() == from_removed.next()
     }
 
     /// Returns whether the same is true of the kept end. The last two triangles would then have the
     /// same corners.
     #[inline(always)]
-    fn are_three(&self, left: Triangle, right: Triangle) -> bool {
-        let from_keep = self.run(left.stays.back());
-        let to_keep = self.run(right.stays.back());
-        to_keep.next() == left.stays.edge
+    fn kept_end_has_valence_three(&self, left: Triangle, right: Triangle) -> bool {
+        let from_keep = self.run(left.kept.twin());
+        let to_keep = self.run(right.kept.twin());
+        to_keep.next() == left.kept.edge
             && to_keep.face() != Slot::NONE
             && to_keep.prev() == from_keep.next()
     }
@@ -287,8 +287,8 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// Returns whether all faces at the ends of `out` would be triangles after the collapse.
     #[cold]
     #[inline(never)]
-    fn only_triangles_stay(&self, out: RunId, ends: [VertexId; 2]) -> bool {
-        let along = [out, out.back()].map(|run| self.run(run).face().get());
+    fn only_triangles_remain(&self, out: RunId, ends: [VertexId; 2]) -> bool {
+        let along = [out, out.twin()].map(|run| self.run(run).face().get());
         let faces = ends.into_iter().flat_map(|v| self.vertex_faces(v));
         faces.into_iter().all(|f| {
             let degree = self.face_edges(f).count();

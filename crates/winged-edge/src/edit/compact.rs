@@ -7,27 +7,27 @@ use crate::wings::Wings;
 
 impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// Moves all rows down over the holes, in order, and replaces the handles in them; O(mesh).
-    pub(super) fn close_holes<L: EditLog<Self>>(&mut self, log: &mut L) {
-        let vertices = NewNames::of(&self.vertex_holes, self.positions.len());
-        let edges = NewNames::of(&self.edge_holes, self.edges.len());
-        let faces = NewNames::of(&self.face_holes, self.sides.len());
-        if L::LISTENS {
-            vertices.tell(&self.vertex_holes, |old, new| log.renamed_vertex(old, new));
-            edges.tell(&self.edge_holes, |old, new| log.renamed_edge(old, new));
-            faces.tell(&self.face_holes, |old, new| log.renamed_face(old, new));
+    pub(super) fn compact_tables<L: EditLog<Self>>(&mut self, log: &mut L) {
+        let vertices = NewRows::from_holes(&self.vertex_holes, self.positions.len());
+        let edges = NewRows::from_holes(&self.edge_holes, self.edges.len());
+        let faces = NewRows::from_holes(&self.face_holes, self.sides.len());
+        if L::USES_REPORTS {
+            vertices.report_new_rows(&self.vertex_holes, |old, new| log.renamed_vertex(old, new));
+            edges.report_new_rows(&self.edge_holes, |old, new| log.renamed_edge(old, new));
+            faces.report_new_rows(&self.face_holes, |old, new| log.renamed_face(old, new));
         }
-        self.vertex_holes.close(&mut self.positions);
-        self.vertex_holes.close(&mut self.spokes);
-        self.edge_holes.close(&mut self.edges);
-        self.face_holes.close(&mut self.sides);
-        let vertex = |v: VertexId| vertices.of_old(v);
-        let edge = |e: EdgeId| edges.of_old(e);
-        let face = |f: Slot<FaceId>| Slot::from(f.get().map(|f| faces.of_old(f)));
+        self.vertex_holes.compact_table(&mut self.positions);
+        self.vertex_holes.compact_table(&mut self.spokes);
+        self.edge_holes.compact_table(&mut self.edges);
+        self.face_holes.compact_table(&mut self.sides);
+        let vertex = |v: VertexId| vertices.new_handle(v);
+        let edge = |e: EdgeId| edges.new_handle(e);
+        let face = |f: Slot<FaceId>| Slot::from(f.get().map(|f| faces.new_handle(f)));
         for record in self.edges.rows_mut() {
             record.ends = record.ends.map(vertex);
             record.faces = record.faces.map(face);
-            record.next = Wings::of(record.next.both().map(edge));
-            record.prev = Wings::of(record.prev.both().map(edge));
+            record.next = Wings::new(record.next.both().map(edge));
+            record.prev = Wings::new(record.prev.both().map(edge));
         }
         for spoke in self.spokes.rows_mut() {
             *spoke = Slot::from(spoke.get().map(edge));
@@ -35,20 +35,20 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         for side in self.sides.rows_mut() {
             *side = edge(*side);
         }
-        self.vertex_holes.fill();
-        self.edge_holes.fill();
-        self.face_holes.fill();
+        self.vertex_holes.clear();
+        self.edge_holes.clear();
+        self.face_holes.clear();
     }
 }
 
 /// The new row of each old row after the holes are closed.
-struct NewNames {
+struct NewRows {
     /// By old row; empty if there are no holes, because every row then stays.
     rows: Vec<u32>,
 }
 
-impl NewNames {
-    fn of<P: Probe>(holes: &Holes<P>, rows: usize) -> Self {
+impl NewRows {
+    fn from_holes<P: Probe>(holes: &Holes<P>, rows: usize) -> Self {
         let rows = if holes.is_empty() {
             Vec::new()
         } else {
@@ -58,7 +58,7 @@ impl NewNames {
     }
 
     #[inline(always)]
-    fn of_old<H: RowId>(&self, old: H) -> H {
+    fn new_handle<H: RowId>(&self, old: H) -> H {
         if self.rows.is_empty() {
             old
         } else {
@@ -66,11 +66,12 @@ impl NewNames {
         }
     }
 
-    fn tell<H: RowId, P: Probe>(&self, holes: &Holes<P>, mut renamed: impl FnMut(H, H)) {
+    /// Calls `report` with the old and the new handle of each row that moves.
+    fn report_new_rows<H: RowId, P: Probe>(&self, holes: &Holes<P>, mut report: impl FnMut(H, H)) {
         for old in holes.handles(self.rows.len()) {
-            let new = self.of_old(old);
+            let new = self.new_handle(old);
             if old != new {
-                renamed(old, new);
+                report(old, new);
             }
         }
     }

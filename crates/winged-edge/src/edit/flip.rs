@@ -2,7 +2,7 @@
 
 use sixfold_core::{EdgeId, EditError, Probe, Refusal, Slot, VertexId};
 
-use super::surgery::{both_sides, edge_of};
+use super::primitives::{edge_record, runs_of};
 use crate::edge::{Run, RunId};
 use crate::mesh::EditableWingedEdgeMesh;
 
@@ -33,7 +33,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         let [b_to_c, b_to_d] = [bc, db].map(|edge| Run::from(self.record(edge), b));
         let [a_to_c, a_to_d] = [ca, ad].map(|edge| Run::from(self.record(edge), a));
         if b_to_c.next() != ca || a_to_d.next() != db {
-            return Err(self.flips_no_polygon(e));
+            return Err(self.not_two_triangles(e));
         }
         let (c, d) = (b_to_c.target(), a_to_d.target());
         if c == d {
@@ -46,22 +46,22 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         if b_to_d.ccw() == bc && b_to_d.face() != Slot::NONE {
             return Err(EditError::LowValence { vertex: b });
         }
-        let rings = [
-            (c, b_to_c.back().ccw(), ca, d),
-            (d, a_to_d.back().ccw(), db, c),
+        let walks = [
+            (c, b_to_c.twin().ccw(), ca, d),
+            (d, a_to_d.twin().ccw(), db, c),
         ];
-        if self.meet(rings) {
+        if self.are_neighbours(walks) {
             return Err(EditError::EdgeExists { ends: [c, d] });
         }
         let [bc, db] = [(bc, b_to_c.side()), (db, b_to_d.side().other())];
         let [ca, ad] = [(ca, a_to_c.side().other()), (ad, a_to_d.side())];
-        let [bc, db, ca, ad] = [bc, db, ca, ad].map(|(edge, side)| RunId::on(edge, side));
+        let [bc, db, ca, ad] = [bc, db, ca, ad].map(|(edge, side)| RunId::new(edge, side));
         let (left, right) = ((f, ca.edge, ad.edge), (g, db.edge, bc.edge));
-        *self.edges.write(e.index()) = edge_of([d, c], left, right);
-        self.set_lane(ca, f, ad.edge, e);
-        self.set_lane(ad, f, e, ca.edge);
-        self.set_lane(db, g, bc.edge, e);
-        self.set_lane(bc, g, e, db.edge);
+        *self.edges.write(e.index()) = edge_record([d, c], left, right);
+        self.set_links(ca, f, ad.edge, e);
+        self.set_links(ad, f, e, ca.edge);
+        self.set_links(db, g, bc.edge, e);
+        self.set_links(bc, g, e, db.edge);
         // If e is the spoke of an end, that end is an inner vertex: no boundary spoke is lost.
         self.replace_spoke(a, e, ad.edge);
         self.replace_spoke(b, e, bc.edge);
@@ -77,8 +77,8 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// Walks around both vertices at once, so that neither walk waits for the other, until the
     /// shorter walk ends: a vertex with many edges costs no more than the other one.
     #[inline(always)]
-    fn meet(&self, rings: [(VertexId, EdgeId, EdgeId, VertexId); 2]) -> bool {
-        let [(c, mut at_c, end_c, to_d), (d, mut at_d, end_d, to_c)] = rings;
+    fn are_neighbours(&self, walks: [(VertexId, EdgeId, EdgeId, VertexId); 2]) -> bool {
+        let [(c, mut at_c, end_c, to_d), (d, mut at_d, end_d, to_c)] = walks;
         while at_c != end_c && at_d != end_d {
             let from_c = Run::from(self.record(at_c), c);
             let from_d = Run::from(self.record(at_d), d);
@@ -93,8 +93,8 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// Returns the error for the face of `e` that is not a triangle.
     #[cold]
     #[inline(never)]
-    fn flips_no_polygon(&self, e: EdgeId) -> Refusal<Self> {
-        for run in both_sides(e) {
+    fn not_two_triangles(&self, e: EdgeId) -> Refusal<Self> {
+        for run in runs_of(e) {
             if let Err(degree) = self.apex(run) {
                 return Self::not_a_triangle(self.run(run).face(), degree);
             }

@@ -1,10 +1,10 @@
 //! Merging two faces.
 
 use sixfold_core::{
-    EdgeId, EditError, EditLog, FaceId, Few, Lookup, Probe, Refusal, Slot, VertexId,
+    EdgeId, EditError, EditLog, FaceId, Lookup, Probe, Refusal, ShortVec, Slot, VertexId,
 };
 
-use super::surgery::both_sides;
+use super::primitives::runs_of;
 use crate::edge::RunId;
 use crate::mesh::EditableWingedEdgeMesh;
 
@@ -19,12 +19,12 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         let [Some(left), Some(right)] = edge.faces() else {
             return Err(EditError::NotTwoFaces { edge: e, faces: 1 });
         };
-        let [out, back] = both_sides(e);
-        let (corners, others) = (self.corners_beyond(out), self.corners_beyond(back));
+        let [out, back] = runs_of(e);
+        let (corners, others) = (self.other_corners(out), self.other_corners(back));
         let (degree, other_degree) = (corners.as_slice().len(), others.as_slice().len());
-        let mut sought = corners;
-        sought.order();
-        if let Some(&vertex) = others.as_slice().iter().find(|&&v| sought.has(v)) {
+        let mut sorted = corners;
+        sorted.sort_for_lookup();
+        if let Some(&vertex) = others.as_slice().iter().find(|&&v| sorted.has(v)) {
             return Err(EditError::RepeatedVertex { vertex });
         }
         let (kept, gone, along_gone) = if degree >= other_degree {
@@ -51,9 +51,9 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     }
 
     /// Returns the corners of the face along `run`, except the ends of `run`.
-    fn corners_beyond(&self, run: RunId) -> Few<VertexId> {
+    fn other_corners(&self, run: RunId) -> ShortVec<VertexId> {
         let end = self.run(run).origin();
-        let mut corners = Few::new();
+        let mut corners = ShortVec::new();
         let mut at = self.run_after(run);
         loop {
             let corner = self.run(at).target();

@@ -1,7 +1,7 @@
 //! Removing one face, all faces at a vertex, and isolated vertices.
 
 use sixfold_core::{
-    EditError, EditLog, FaceId, Few, HoleSet, Lookup, Probe, Refusal, Slot, VertexId, row,
+    EditError, EditLog, FaceId, HoleSet, Lookup, Probe, Refusal, ShortVec, Slot, VertexId, row,
 };
 
 use crate::edge::{Run, RunId};
@@ -11,22 +11,22 @@ use crate::wings::Side;
 /// A run along the outline of the removed faces. The outline of one face is all its sides; the
 /// outline of the faces at a vertex is their sides that do not touch the vertex.
 #[derive(Clone, Copy)]
-struct Rim {
+struct OutlineRun {
     run: RunId,
     origin: VertexId,
     target: VertexId,
     across: Across,
 }
 
-/// What is on the other side of a rim.
+/// What is on the other side of a run of the outline.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Across {
-    /// A face that stays: the rim becomes a boundary.
-    Stays,
+    /// A face that is kept: the run becomes a boundary.
+    Kept,
     /// No face: the edge is removed.
-    Blank,
+    NoFace,
     /// Another removed face: the edge is removed, and is on the outline twice.
-    Goes,
+    Removed,
 }
 
 /// A corner of the outline, and the runs there that lose their face but stay.
@@ -44,12 +44,12 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         log: &mut impl EditLog<Self>,
     ) -> Result<(), Refusal<Self>> {
         let first = self.along(self.check_face(f)?, f);
-        let mut gone = Few::new();
+        let mut gone = ShortVec::new();
         gone.push(f);
-        let mut outline = Few::new();
+        let mut outline = ShortVec::new();
         let mut run = first;
         loop {
-            outline.push(self.rim(run, &gone));
+            outline.push(self.outline_run(run, &gone));
             run = self.run_after(run);
             if run == first {
                 break;
@@ -57,7 +57,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         }
         let corners = corners_of(outline.as_slice());
         self.check_corners(corners.clone(), &gone)?;
-        self.take_out(outline.as_slice(), corners, log);
+        self.make_boundary(outline.as_slice(), corners, log);
         self.delete_face(f, log);
         Ok(())
     }
@@ -72,16 +72,16 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
             self.delete_vertex(v, log);
             return Ok(());
         }
-        let mut gone = Few::new();
-        let mut spokes = Few::new();
+        let mut gone = ShortVec::new();
+        let mut spokes = ShortVec::new();
         for (e, run) in self.runs_from(v) {
             spokes.push(e);
             if let Some(f) = run.face().get() {
                 gone.push(f);
             }
         }
-        gone.order();
-        let mut outline = Few::new();
+        gone.sort_for_lookup();
+        let mut outline = ShortVec::new();
         for &e in spokes.as_slice() {
             let first = self.leaving(e, v);
             if self.run(first).face() == Slot::NONE {
@@ -89,19 +89,19 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
             }
             let mut run = self.run_after(first);
             while self.run(run).target() != v {
-                outline.push(self.rim(run, &gone));
+                outline.push(self.outline_run(run, &gone));
                 run = self.run_after(run);
             }
         }
         let corners = corners_of(outline.as_slice());
         if outline.as_slice().len() == gone.as_slice().len() {
             self.check_corners(corners.clone(), &gone)?;
-            self.take_out(outline.as_slice(), corners, log);
+            self.make_boundary(outline.as_slice(), corners, log);
         } else {
             // With polygons, the outline may visit a vertex twice; with triangles only, it cannot.
-            let merged = Self::merged(corners.collect())?;
+            let merged = Self::merge_corners(corners.collect())?;
             self.check_corners(merged.iter().copied(), &gone)?;
-            self.take_out(outline.as_slice(), merged, log);
+            self.make_boundary(outline.as_slice(), merged, log);
         }
         for &e in spokes.as_slice() {
             self.delete_edge(e, log);
@@ -124,14 +124,14 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         self.vertex_holes.len() - before
     }
 
-    fn rim(&self, id: RunId, gone: &Few<FaceId>) -> Rim {
+    fn outline_run(&self, id: RunId, gone: &ShortVec<FaceId>) -> OutlineRun {
         let run = self.run(id);
         let across = match run.across().get() {
-            None => Across::Blank,
-            Some(f) if gone.has(f) => Across::Goes,
-            Some(_) => Across::Stays,
+            None => Across::NoFace,
+            Some(f) if gone.has(f) => Across::Removed,
+            Some(_) => Across::Kept,
         };
-        Rim {
+        OutlineRun {
             run: id,
             origin: run.origin(),
             target: run.target(),
@@ -140,7 +140,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     }
 
     /// Merges the corners of each vertex. Refuses if two fans would remain at one.
-    fn merged(mut corners: Vec<Corner>) -> Result<Vec<Corner>, Refusal<Self>> {
+    fn merge_corners(mut corners: Vec<Corner>) -> Result<Vec<Corner>, Refusal<Self>> {
         corners.sort_unstable_by_key(|corner| corner.v);
         let mut two_fans = None;
         corners.dedup_by(|later, corner| {
@@ -162,11 +162,11 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     }
 
     /// Checks that one fan remains at each corner. A fan begins where the outline arrives and the
-    /// face across it stays. No other fan may then begin at the boundary that was there before.
+    /// face across it is kept. No other fan may then begin at the boundary that was there before.
     fn check_corners(
         &self,
         corners: impl IntoIterator<Item = Corner>,
-        gone: &Few<FaceId>,
+        gone: &ShortVec<FaceId>,
     ) -> Result<(), Refusal<Self>> {
         let corners = corners.into_iter();
         for corner in corners.filter(|corner| corner.into.is_some()) {
@@ -184,9 +184,9 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     }
 
     /// Makes the outline a boundary, and removes the edges that no longer have a face.
-    fn take_out(
+    fn make_boundary(
         &mut self,
-        outline: &[Rim],
+        outline: &[OutlineRun],
         corners: impl IntoIterator<Item = Corner>,
         log: &mut impl EditLog<Self>,
     ) {
@@ -208,11 +208,11 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
                 (None, None) => *self.spokes.write(v.index()) = Slot::NONE,
             }
         }
-        for rim in outline {
-            match (rim.across, rim.run.side) {
-                (Across::Stays, _) => self.set_face(rim.run, Slot::NONE),
-                (Across::Goes, Side::RIGHT) => {}
-                _ => self.delete_edge(rim.run.edge, log),
+        for side in outline {
+            match (side.across, side.run.side) {
+                (Across::Kept, _) => self.set_face(side.run, Slot::NONE),
+                (Across::Removed, Side::RIGHT) => {}
+                _ => self.delete_edge(side.run.edge, log),
             }
         }
     }
@@ -221,26 +221,26 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     /// boundary.
     fn old_boundary_into(&self, v: VertexId) -> RunId {
         let into = self.boundary_into(v);
-        into.expect("a fan that does not end at a rim ends at the boundary")
+        into.expect("a fan that does not end at the outline ends at the boundary")
     }
 }
 
-/// Iterates over the corners between consecutive rims, and those where a chain of rims begins or
-/// ends.
-fn corners_of(outline: &[Rim]) -> impl Iterator<Item = Corner> + Clone {
-    let kept = |rim: &Rim| (rim.across == Across::Stays).then_some(rim.run);
+/// Iterates over the corners between consecutive runs of the outline, and over those where a chain
+/// of runs begins or ends.
+fn corners_of(outline: &[OutlineRun]) -> impl Iterator<Item = Corner> + Clone {
+    let kept = |side: &OutlineRun| (side.across == Across::Kept).then_some(side.run);
     let before = outline.iter().cycle().skip(outline.len() - 1);
-    before.zip(outline).flat_map(move |(before, rim)| {
-        let joined = before.target == rim.origin;
+    before.zip(outline).flat_map(move |(before, side)| {
+        let joined = before.target == side.origin;
         let end = Corner {
             v: before.target,
             into: kept(before),
-            out: kept(rim).filter(|_| joined),
+            out: kept(side).filter(|_| joined),
         };
         let start = Corner {
-            v: rim.origin,
+            v: side.origin,
             into: None,
-            out: kept(rim),
+            out: kept(side),
         };
         [Some(end), (!joined).then_some(start)]
             .into_iter()

@@ -1,10 +1,10 @@
 //! Vertex split: makes two vertices out of one.
 
 use sixfold_core::{
-    EdgeId, EditError, EditLog, Few, MeshQuery, Point, Probe, Refusal, Slot, VertexId,
+    EdgeId, EditError, EditLog, MeshQuery, Point, Probe, Refusal, ShortVec, Slot, VertexId,
 };
 
-use super::surgery::both_sides;
+use super::primitives::runs_of;
 use crate::edge::{Edge, Run, RunId};
 use crate::mesh::EditableWingedEdgeMesh;
 
@@ -14,7 +14,7 @@ struct Part {
     left: Option<EdgeId>,
     right: Option<EdgeId>,
     /// The edges between them; if one is missing, from or up to the boundary.
-    moved: Few<EdgeId>,
+    moved: ShortVec<EdgeId>,
     /// Whether the boundary begins in this part.
     has_boundary: bool,
 }
@@ -57,25 +57,25 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
             ..Edge::BLANK
         };
         let e = self.push_edge(blank([v, n]), log);
-        let [to_n, to_v] = both_sides(e);
+        let [to_n, to_v] = runs_of(e);
         let on_left = part.left.zip(left).map(|(edge, side)| {
             let new = self.push_edge(blank([n, side]), log);
-            self.doubled(self.arriving(edge, v), both_sides(new)[1])
+            self.doubled(self.arriving(edge, v), runs_of(new)[1])
         });
         let on_right = part.right.zip(right).map(|(edge, side)| {
             let new = self.push_edge(blank([n, side]), log);
-            self.doubled(self.leaving(edge, v), both_sides(new)[0])
+            self.doubled(self.leaving(edge, v), runs_of(new)[0])
         });
         let doubled = [on_left, on_right];
         // A run before or after a doubled run is now before or after the new run.
-        let now = |run: RunId| {
+        let current = |run: RunId| {
             let mut doubled = doubled.iter().flatten();
             doubled.find(|d| d.run == run).map_or(run, |d| d.new)
         };
         for d in doubled.into_iter().flatten() {
             let face = self.run(d.run).face();
-            self.link(now(d.before), d.new);
-            self.link(d.new, now(d.after));
+            self.link(current(d.before), d.new);
+            self.link(d.new, current(d.after));
             self.set_face(d.new, face);
             if let Some(f) = face.get() {
                 self.set_side(f, d.new.edge);
@@ -84,15 +84,15 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         // If a side is not given, the new edge is part of the boundary there.
         for (d, run) in [(on_left, to_n), (on_right, to_v)] {
             if let (None, Some([into, out])) = (d, boundary) {
-                self.link(now(into), run);
-                self.link(run, now(out));
+                self.link(current(into), run);
+                self.link(run, current(out));
             }
         }
         if let Some(d) = on_left {
-            self.fill([to_n, d.new.back(), d.run], log);
+            self.add_triangle([to_n, d.new.twin(), d.run], log);
         }
         if let Some(d) = on_right {
-            self.fill([to_v, d.run, d.new.back()], log);
+            self.add_triangle([to_v, d.run, d.new.twin()], log);
             if self.run(d.new).face() == Slot::NONE {
                 // The boundary that ran from v to the side now runs from n.
                 let side = self.run(d.new).target();
@@ -108,7 +108,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         }
         let first = boundary
             .filter(|_| begins_at_n)
-            .map(|[into, _]| now(into).edge);
+            .map(|[into, _]| current(into).edge);
         self.set_spoke(n, first.unwrap_or(e));
         Ok(n)
     }
@@ -126,7 +126,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
             .chain(sides)
             .try_for_each(|v| self.check_vertex(v))?;
         if left == right {
-            return Err(EditError::NoSides { vertex });
+            return Err(EditError::BadNeighbours { vertex });
         }
         let Some(spoke) = self.spoke(v) else {
             return Err(EditError::NoFan { vertex });
@@ -143,7 +143,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
         let mut part = Part {
             left: None,
             right,
-            moved: Few::new(),
+            moved: ShortVec::new(),
             has_boundary: false,
         };
         let mut at = first;
@@ -179,11 +179,11 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
     }
 
     /// Adds a triangle along three runs.
-    fn fill(&mut self, runs: [RunId; 3], log: &mut impl EditLog<Self>) {
+    fn add_triangle(&mut self, runs: [RunId; 3], log: &mut impl EditLog<Self>) {
         let f = self.push_face(runs[0].edge, log);
         for i in 0..3 {
             let [next, prev] = [runs[(i + 1) % 3].edge, runs[(i + 2) % 3].edge];
-            self.set_lane(runs[i], Slot::some(f), next, prev);
+            self.set_links(runs[i], Slot::some(f), next, prev);
         }
     }
 }

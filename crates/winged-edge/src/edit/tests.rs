@@ -47,7 +47,7 @@ fn row(edge: &Edge) -> ([u32; 2], [Option<u32>; 2], [u32; 2], [u32; 2]) {
 }
 
 #[test]
-fn a_flip_turns_the_records_as_drawn() {
+fn a_flip_writes_the_expected_records() {
     let mut mesh = square();
     let e = between(&mesh, 0, 2);
     let [ab, bc, cd, da] =

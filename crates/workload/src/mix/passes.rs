@@ -5,9 +5,9 @@ use std::hint::black_box;
 use sixfold::MeshQuery;
 
 use crate::candidate::{Outcome, Run};
-use crate::operation::{Kind, Operation};
+use crate::operation::{ElementKind, Operation};
 use crate::series::Series;
-use crate::sweeps::{All, Outputs, Tally, field_sum, share};
+use crate::sweeps::{All, Outputs, SweepResult, field_sum, sweep_kind};
 
 /// Runs `operation` over all of `mesh` as `series` describes; the time is that of one run.
 pub(crate) fn pass_over<M: MeshQuery>(
@@ -16,11 +16,11 @@ pub(crate) fn pass_over<M: MeshQuery>(
     operation: Operation,
     series: &Series<'_>,
 ) -> Run {
-    let mut sum = Tally::default();
+    let mut result = SweepResult::default();
     let time = series.time_together(|| {
-        sum = Tally::default();
+        result = SweepResult::default();
         for &kind in operation.kinds() {
-            sum.add(share(operation, kind, black_box(mesh), &All, outputs));
+            result.add(sweep_kind(operation, kind, black_box(mesh), &All, outputs));
         }
         black_box(&mut *outputs);
     });
@@ -30,17 +30,17 @@ pub(crate) fn pass_over<M: MeshQuery>(
         let checksum = match operation {
             Operation::FaceBarycenter => of_faces(),
             Operation::VertexNormal | Operation::VvSmooth => of_vertices(),
-            Operation::EdgeLength => sum.sum,
-            _ => sum.count as f64,
+            Operation::EdgeLength => result.sum,
+            _ => result.count as f64,
         };
-        let named = Kind::ALL
+        let kind = ElementKind::ALL
             .into_iter()
-            .find(|kind| kind.name() == operation.per());
-        let elements = match named {
-            Some(Kind::Vertex) => mesh.vertex_count() as u64,
-            Some(Kind::Edge) => mesh.edge_count() as u64,
-            Some(Kind::Face) => mesh.face_count() as u64,
-            None => sum.count,
+            .find(|kind| kind.name() == operation.unit());
+        let elements = match kind {
+            Some(ElementKind::Vertex) => mesh.vertex_count() as u64,
+            Some(ElementKind::Edge) => mesh.edge_count() as u64,
+            Some(ElementKind::Face) => mesh.face_count() as u64,
+            None => result.count,
         };
         Outcome { checksum, elements }
     });

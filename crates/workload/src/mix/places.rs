@@ -2,21 +2,21 @@
 
 use sixfold::{Edit, FaceId, FaceVertexMesh, PolygonMesh, Representation};
 
-use crate::mix::script::Script;
-use crate::place::places;
+use crate::edit_place::independent_faces;
+use crate::mix::schedule::Schedule;
 use crate::workload::Action;
 
 /// Minimum number of vertices for each place. The rest of the mesh is left for queries.
-const VERTICES_A_PLACE: usize = 60;
+const VERTICES_PER_PLACE: usize = 60;
 /// Maximum number of places. More do not improve a sample, and structures that scan are slow at
 /// each.
-const MOST_PLACES: usize = 512;
+const MAX_PLACES: usize = 512;
 
 /// The reason why a mix with edits cannot be run on a mesh.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message explains each field")]
-pub enum NoPlace {
+pub enum EditPlaceError {
     /// A face is not a triangle; edits need triangles.
     #[error("face {face} has {degree} corners, and {edit} needs triangles: triangulate the mesh")]
     NotATriangle {
@@ -33,25 +33,25 @@ pub enum NoPlace {
     #[error(
         "no place of the mesh allows {edit} on all backends: leave it out, or use another mesh"
     )]
-    NowhereTaken { edit: Edit },
+    NowhereAccepted { edit: Edit },
 }
 
-/// The faces at which each edit of a script is done, and the vertices near them.
+/// The faces at which each edit of a schedule is done, and the vertices near them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Places {
-    /// By edit of the script: its faces.
+pub(crate) struct EditPlaces {
+    /// By edit of the schedule: its faces.
     pub(crate) by_edit: Vec<Vec<FaceId>>,
     /// By vertex of the mesh: whether it is near a place. Empty if there are no edits.
-    pub(crate) taken: Vec<bool>,
+    pub(crate) occupied: Vec<bool>,
 }
 
-impl Places {
-    /// Distributes the edits of `script` over `polygons`, in proportion to their shares.
-    pub(crate) fn of(script: &Script, polygons: &PolygonMesh) -> Result<Self, NoPlace> {
-        let edits: Vec<(Edit, f64)> = script
+impl EditPlaces {
+    /// Distributes the edits of `schedule` over `polygons`, in proportion to their shares.
+    pub(crate) fn new(schedule: &Schedule, polygons: &PolygonMesh) -> Result<Self, EditPlaceError> {
+        let edits: Vec<(Edit, f64)> = schedule
             .edits()
-            .map(|part| match script.parts[part].action {
-                Action::Edit(edit) => (edit, script.shares[part]),
+            .map(|part| match schedule.parts[part].action {
+                Action::Edit(edit) => (edit, schedule.shares[part]),
                 _ => (Edit::Compact, 0.0), // unreachable: `edits` returns only edits
             })
             .collect();
@@ -59,33 +59,33 @@ impl Places {
             return Ok(Self::default());
         };
         if let Some((face, degree)) = polygons.first_polygon() {
-            return Err(NoPlace::NotATriangle { edit, face, degree });
+            return Err(EditPlaceError::NotATriangle { edit, face, degree });
         }
-        let too_small = NoPlace::TooSmall { edits: edits.len() };
-        let most = (polygons.vertex_count() / VERTICES_A_PLACE).min(MOST_PLACES);
-        let mut faces = places(polygons, most.max(edits.len())).unwrap_or_default();
+        let too_small = EditPlaceError::TooSmall { edits: edits.len() };
+        let max_count = (polygons.vertex_count() / VERTICES_PER_PLACE).min(MAX_PLACES);
+        let mut faces = independent_faces(polygons, max_count.max(edits.len())).unwrap_or_default();
         if faces.len() < edits.len() {
             return Err(too_small);
         }
         // Each edit gets one place, then the edit with the fewest places relative to its share.
         let mut by_edit: Vec<Vec<FaceId>> = faces.drain(..edits.len()).map(|f| vec![f]).collect();
         for face in faces {
-            let poorest = (0..edits.len()).min_by(|&a, &b| {
-                let wealth = |i: usize| by_edit[i].len() as f64 / edits[i].1;
-                wealth(a).total_cmp(&wealth(b))
+            let fewest = (0..edits.len()).min_by(|&a, &b| {
+                let per_share = |i: usize| by_edit[i].len() as f64 / edits[i].1;
+                per_share(a).total_cmp(&per_share(b))
             });
-            by_edit[poorest.unwrap_or(0)].push(face);
+            by_edit[fewest.unwrap_or(0)].push(face);
         }
-        let taken = around(&by_edit, polygons);
-        let free = |corners: &[sixfold::VertexId]| corners.iter().all(|v| !taken[v.index()]);
+        let occupied = vertices_near_places(&by_edit, polygons);
+        let free = |corners: &[sixfold::VertexId]| corners.iter().all(|v| !occupied[v.index()]);
         if !polygons.faces().iter().any(|(_, corners)| free(corners)) {
             return Err(too_small);
         }
-        Ok(Self { by_edit, taken })
+        Ok(Self { by_edit, occupied })
     }
 
     /// Returns only the accepted places.
-    pub(crate) fn kept(&self, accepted: &[Vec<bool>]) -> Self {
+    pub(crate) fn filter_accepted(&self, accepted: &[Vec<bool>]) -> Self {
         let keep = |(faces, accepted): (&Vec<FaceId>, &Vec<bool>)| {
             let both = faces.iter().zip(accepted);
             both.filter(|(_, accepted)| **accepted)
@@ -94,21 +94,21 @@ impl Places {
         };
         Self {
             by_edit: self.by_edit.iter().zip(accepted).map(keep).collect(),
-            taken: self.taken.clone(),
+            occupied: self.occupied.clone(),
         }
     }
 }
 
 /// Returns for each vertex whether it is a corner of a face that touches a place.
-fn around(by_edit: &[Vec<FaceId>], polygons: &PolygonMesh) -> Vec<bool> {
-    let mut taken = vec![false; polygons.vertex_count()];
+fn vertices_near_places(by_edit: &[Vec<FaceId>], polygons: &PolygonMesh) -> Vec<bool> {
+    let mut occupied = vec![false; polygons.vertex_count()];
     let Ok(mesh) = FaceVertexMesh::from_polygons(polygons) else {
-        return taken; // it refuses only meshes with too many elements
+        return occupied; // it refuses only meshes with too many elements
     };
     for &f in by_edit.iter().flatten() {
         let fans = mesh.face(f).iter().flat_map(|&v| mesh.fan(v));
         fans.flat_map(|&g| mesh.face(g))
-            .for_each(|v| taken[v.index()] = true);
+            .for_each(|v| occupied[v.index()] = true);
     }
-    taken
+    occupied
 }

@@ -5,17 +5,17 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sixfold::{FaceId, FaceVertexMesh, MeshQuery, PolygonMesh, Representation, VertexId};
 
-use crate::sample::{Draw, Side};
+use crate::draw::{Draw, Side};
 use crate::workload::Access;
 
 /// Maximum number of faces of a patch.
-const PATCH: usize = 128;
+const PATCH_FACES: usize = 128;
 
 /// The elements of a mesh in the order in which they are visited.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Route {
     /// Whether elements are visited in the order of each structure. The lists are empty then.
-    pub(crate) own: bool,
+    pub(crate) structure_order: bool,
     pub(crate) vertices: Vec<VertexId>,
     pub(crate) edges: Vec<Side>,
     pub(crate) faces: Vec<FaceId>,
@@ -23,19 +23,19 @@ pub struct Route {
 
 impl Route {
     /// Builds the route through `polygons`, with random choices from `seed`. O(corners) expected.
-    pub fn of(access: Access, polygons: &PolygonMesh, seed: u64) -> Self {
-        let nothing = Self {
-            own: true,
+    pub fn new(access: Access, polygons: &PolygonMesh, seed: u64) -> Self {
+        let empty = Self {
+            structure_order: true,
             vertices: Vec::new(),
             edges: Vec::new(),
             faces: Vec::new(),
         };
         match access {
-            Access::Sequential => nothing,
+            Access::Sequential => empty,
             Access::Random => {
-                let draw = Draw::of(polygons, seed);
+                let draw = Draw::new(polygons, seed);
                 Self {
-                    own: false,
+                    structure_order: false,
                     vertices: draw.vertices,
                     edges: draw.edges,
                     faces: draw.faces,
@@ -43,7 +43,7 @@ impl Route {
             }
             Access::Patches => match FaceVertexMesh::from_polygons(polygons) {
                 Ok(mesh) => patches(&mesh, polygons, seed),
-                Err(_) => nothing, // it refuses only meshes with too many elements
+                Err(_) => empty, // it refuses only meshes with too many elements
             },
         }
     }
@@ -54,7 +54,7 @@ impl Route {
 fn patches(mesh: &FaceVertexMesh, polygons: &PolygonMesh, seed: u64) -> Route {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut route = Route {
-        own: false,
+        structure_order: false,
         vertices: Vec::new(),
         edges: Vec::new(),
         faces: Vec::new(),
@@ -71,13 +71,14 @@ fn patches(mesh: &FaceVertexMesh, polygons: &PolygonMesh, seed: u64) -> Route {
         let mut head = first;
         face_seen[seed] = patch;
         route.faces.push(FaceId::new(seed as u32));
-        while head < route.faces.len() && head < first + PATCH {
+        while head < route.faces.len() && head < first + PATCH_FACES {
             let face = route.faces[head];
             head += 1;
-            for beside in mesh.face_faces(face) {
-                if route.faces.len() < first + PATCH && face_seen[beside.index()] != patch {
-                    face_seen[beside.index()] = patch;
-                    route.faces.push(beside);
+            for neighbour in mesh.face_faces(face) {
+                if route.faces.len() < first + PATCH_FACES && face_seen[neighbour.index()] != patch
+                {
+                    face_seen[neighbour.index()] = patch;
+                    route.faces.push(neighbour);
                 }
             }
         }
@@ -98,12 +99,12 @@ fn patches(mesh: &FaceVertexMesh, polygons: &PolygonMesh, seed: u64) -> Route {
         let mut of_patch = route.edges.split_off(sides);
         let mut order: Vec<usize> = (0..of_patch.len()).collect();
         order.sort_by_key(|&i| (of_patch[i].ends, i));
-        let mut again = vec![false; of_patch.len()];
+        let mut is_repeat = vec![false; of_patch.len()];
         for pair in order.windows(2) {
-            again[pair[1]] = of_patch[pair[0]].ends == of_patch[pair[1]].ends;
+            is_repeat[pair[1]] = of_patch[pair[0]].ends == of_patch[pair[1]].ends;
         }
-        let mut repeats = again.iter();
-        of_patch.retain(|_| !repeats.next().is_some_and(|&again| again));
+        let mut is_repeat = is_repeat.iter();
+        of_patch.retain(|_| !is_repeat.next().is_some_and(|&repeat| repeat));
         route.edges.append(&mut of_patch);
     }
     route
@@ -120,13 +121,17 @@ mod tests {
     #[test]
     fn a_patch_is_connected_and_contains_each_element_once() {
         let mesh = shapes::triangle_torus(40, 40).expect("small");
-        let route = Route::of(Access::Patches, &mesh, 3);
+        let route = Route::new(Access::Patches, &mesh, 3);
         assert!(route.faces.len() >= mesh.face_count());
-        let patch: BTreeSet<FaceId> = route.faces[..PATCH].iter().copied().collect();
-        assert_eq!(patch.len(), PATCH);
+        let patch: BTreeSet<FaceId> = route.faces[..PATCH_FACES].iter().copied().collect();
+        assert_eq!(patch.len(), PATCH_FACES);
         let built = FaceVertexMesh::from_polygons(&mesh).expect("closed");
-        for &face in &route.faces[1..PATCH] {
-            assert!(built.face_faces(face).any(|beside| patch.contains(&beside)));
+        for &face in &route.faces[1..PATCH_FACES] {
+            assert!(
+                built
+                    .face_faces(face)
+                    .any(|neighbour| patch.contains(&neighbour))
+            );
         }
         // Euler: V − E + F = 1 for a patch without a hole.
         let corners = |f: &FaceId| mesh.faces().face(*f).to_vec();
@@ -137,19 +142,19 @@ mod tests {
                 .collect::<BTreeSet<_>>(),
             vertices.iter().collect()
         );
-        let edges = vertices.len() + PATCH - 1;
+        let edges = vertices.len() + PATCH_FACES - 1;
         let ends: BTreeSet<_> = route.edges[..edges].iter().map(|side| side.ends).collect();
         assert_eq!(ends.len(), edges);
-        assert_eq!(route, Route::of(Access::Patches, &mesh, 3));
-        assert_ne!(route, Route::of(Access::Patches, &mesh, 4));
+        assert_eq!(route, Route::new(Access::Patches, &mesh, 3));
+        assert_ne!(route, Route::new(Access::Patches, &mesh, 4));
     }
 
     #[test]
     fn a_random_route_has_every_element_once() {
         let mesh = shapes::default_study();
-        let route = Route::of(Access::Random, &mesh, 3);
+        let route = Route::new(Access::Random, &mesh, 3);
         assert_eq!(route.faces.len(), mesh.face_count());
         assert_eq!(route.edges.len() * 2, mesh.corner_count());
-        assert!(Route::of(Access::Sequential, &mesh, 3).own);
+        assert!(Route::new(Access::Sequential, &mesh, 3).structure_order);
     }
 }

@@ -7,26 +7,26 @@ use sixfold::{
 };
 
 use super::*;
-use crate::ledger::LINE_BYTES;
+use crate::read_probe::LINE_BYTES;
 
-/// Keeps all counts.
+/// An observer that keeps all counts.
 #[derive(Default)]
-struct Kept(Vec<Reads>);
+struct Collected(Vec<Reads>);
 
-impl Counted for Kept {
-    fn begins(&mut self, _: Relation) {}
+impl ReadsObserver for Collected {
+    fn relation_started(&mut self, _: Relation) {}
 
-    fn ends(&mut self, reads: Reads) {
+    fn relation_counted(&mut self, reads: Reads) {
         self.0.push(reads);
     }
 }
 
 fn reads_of<M: Measured>(polygons: &PolygonMesh, relation: Relation) -> Reads {
     let mesh = M::from_polygons(polygons).expect("the structure holds it");
-    let mut kept = Kept::default();
-    count(mesh, &[relation], &AtomicBool::new(false), &mut kept);
-    let reads = kept.0.pop().expect("not stopped");
-    assert!(kept.0.is_empty());
+    let mut collected = Collected::default();
+    count(mesh, &[relation], &AtomicBool::new(false), &mut collected);
+    let reads = collected.0.pop().expect("not stopped");
+    assert!(collected.0.is_empty());
     reads
 }
 
@@ -49,7 +49,7 @@ fn corners_of_a_triangle_are_twelve_bytes_in_one_or_two_lines() {
     let strip: Vec<&[u32]> = strip.iter().map(|face| &face[..]).collect();
     let reads = reads_of::<IndexedFaceSet>(&polygons(18, &strip), Relation::FaceVertices);
     assert_eq!(
-        (reads.elements, reads.asked, reads.sampled),
+        (reads.elements, reads.queried, reads.sampled),
         (16, 16, false)
     );
     assert_eq!((reads.answers, reads.reads, reads.bytes), (3.0, 3.0, 12.0));
@@ -126,7 +126,7 @@ fn a_scan_is_sampled_and_reads_every_corner() {
     let grid = shapes::triangle_grid(9, 9).expect("a grid");
     let corners = grid.corner_count();
     let reads = reads_of::<IndexedFaceSet>(&grid, Relation::VertexFaces);
-    assert!(reads.sampled && reads.asked == SAMPLE as u64);
+    assert!(reads.sampled && reads.queried == SCAN_SAMPLE as u64);
     assert_eq!(reads.reads, corners as f64);
     assert_eq!(reads.lines, (4 * corners).div_ceil(LINE_BYTES) as f64);
     assert_eq!(
@@ -142,15 +142,19 @@ fn a_scan_is_sampled_and_reads_every_corner() {
 
 #[test]
 fn a_sample_is_evenly_spaced() {
-    let sweep = |elements, asked| Sweep {
+    let sweep = |elements, queried| Sweep {
         relation: Relation::VertexFaces,
         elements,
-        asked,
+        queried,
     };
-    let places = |sweep: Sweep| (0..sweep.asked).map(|i| sweep.next(i)).collect::<Vec<_>>();
-    assert_eq!(places(sweep(10, 4)), [0, 2, 5, 7]);
-    assert_eq!(places(sweep(3, 3)), [0, 1, 2]);
-    let last = sweep(u32::MAX as usize, SAMPLE).next(SAMPLE - 1);
+    let indices = |sweep: Sweep| {
+        (0..sweep.queried)
+            .map(|i| sweep.nth_index(i))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(indices(sweep(10, 4)), [0, 2, 5, 7]);
+    assert_eq!(indices(sweep(3, 3)), [0, 1, 2]);
+    let last = sweep(u32::MAX as usize, SCAN_SAMPLE).nth_index(SCAN_SAMPLE - 1);
     assert!(last < u32::MAX as usize && last > u32::MAX as usize / 16 * 14);
 }
 
@@ -164,14 +168,14 @@ fn walks_around_very_many_faces_are_sampled_too() {
         let reads = reads_of::<FaceVertexMesh>(&fan, relation);
         let walks = relation == Relation::EdgeEdges;
         assert_eq!(reads.sampled, walks, "{relation}");
-        assert_eq!(reads.asked, if walks { 16 } else { 2001 }, "{relation}");
+        assert_eq!(reads.queried, if walks { 16 } else { 2001 }, "{relation}");
     }
 }
 
 #[test]
 fn the_order_of_a_mesh_changes_jumps_but_not_reads() {
     let given = shapes::triangle_grid(200, 200).expect("a grid");
-    let shuffled = Order::Shuffled.of(&given, 3);
+    let shuffled = Order::Shuffled.apply(&given, 3);
     let [given, shuffled] =
         [&given, &shuffled].map(|mesh| reads_of::<FaceVertexMesh>(mesh, Relation::VertexVertices));
     assert_eq!(given.reads, shuffled.reads);
@@ -186,25 +190,25 @@ fn the_order_of_a_mesh_changes_jumps_but_not_reads() {
 #[test]
 fn a_stopped_count_returns_nothing() {
     let mesh = HalfEdgeMesh::from_polygons(&polygons(3, &[&[0, 1, 2]])).expect("held");
-    let mut kept = Kept::default();
-    count(mesh, &Relation::ALL, &AtomicBool::new(true), &mut kept);
-    assert_eq!(kept.0, []);
+    let mut collected = Collected::default();
+    count(mesh, &Relation::ALL, &AtomicBool::new(true), &mut collected);
+    assert_eq!(collected.0, []);
 }
 
 /// Reads, bytes and lines per query, computed from a log of all accesses with sets.
-struct ByTheLog<'a>(&'a PolygonMesh);
+struct AccessLog<'a>(&'a PolygonMesh);
 
-impl ByTheLog<'_> {
-    fn ask<H: Handle, I: IntoIterator>(
+impl AccessLog<'_> {
+    fn query_all<H: Handle, I: IntoIterator>(
         probe: &Traced,
         handles: Vec<H>,
-        ask: impl Fn(H) -> I,
+        query: impl Fn(H) -> I,
     ) -> [f64; 3] {
         let mut sums = [0, 0, 0];
-        let asked = handles.len() as f64;
+        let queried = handles.len() as f64;
         for handle in handles {
             probe.take();
-            number(ask(handle));
+            count_results(query(handle));
             let log = probe.take();
             let mut bytes = HashSet::new();
             for access in &log {
@@ -216,11 +220,11 @@ impl ByTheLog<'_> {
             sums[1] += bytes.len();
             sums[2] += lines.len();
         }
-        sums.map(|sum| sum as f64 / asked)
+        sums.map(|sum| sum as f64 / queried)
     }
 }
 
-impl ByTheLog<'_> {
+impl AccessLog<'_> {
     /// Compares all structures of Sixfold with the log.
     fn all(&self) -> Vec<bool> {
         let mut agree = Vec::new();
@@ -235,28 +239,33 @@ impl ByTheLog<'_> {
             return false;
         };
         let probe = Traced::default();
-        let watched = mesh.clone().probed(probe.clone());
-        let mut kept = Kept::default();
+        let probed = mesh.clone().probed(probe.clone());
+        let mut collected = Collected::default();
         let (vertices, edges, faces): (Vec<_>, Vec<_>, Vec<_>) = (
             mesh.vertices().collect(),
             mesh.edges().collect(),
             mesh.faces().collect(),
         );
-        count(mesh, &Relation::ALL, &AtomicBool::new(false), &mut kept);
+        count(
+            mesh,
+            &Relation::ALL,
+            &AtomicBool::new(false),
+            &mut collected,
+        );
         let (v, e, f) = (|| vertices.clone(), || edges.clone(), || faces.clone());
-        let mesh = &watched;
+        let mesh = &probed;
         let expected = [
-            Self::ask(&probe, v(), |v| mesh.vertex_vertices(v)),
-            Self::ask(&probe, v(), |v| mesh.vertex_edges(v)),
-            Self::ask(&probe, v(), |v| mesh.vertex_faces(v)),
-            Self::ask(&probe, e(), |e| mesh.edge_vertices(e)),
-            Self::ask(&probe, e(), |e| mesh.edge_edges(e)),
-            Self::ask(&probe, e(), |e| mesh.edge_faces(e)),
-            Self::ask(&probe, f(), |f| mesh.face_vertices(f)),
-            Self::ask(&probe, f(), |f| mesh.face_edges(f)),
-            Self::ask(&probe, f(), |f| mesh.face_faces(f)),
+            Self::query_all(&probe, v(), |v| mesh.vertex_vertices(v)),
+            Self::query_all(&probe, v(), |v| mesh.vertex_edges(v)),
+            Self::query_all(&probe, v(), |v| mesh.vertex_faces(v)),
+            Self::query_all(&probe, e(), |e| mesh.edge_vertices(e)),
+            Self::query_all(&probe, e(), |e| mesh.edge_edges(e)),
+            Self::query_all(&probe, e(), |e| mesh.edge_faces(e)),
+            Self::query_all(&probe, f(), |f| mesh.face_vertices(f)),
+            Self::query_all(&probe, f(), |f| mesh.face_edges(f)),
+            Self::query_all(&probe, f(), |f| mesh.face_faces(f)),
         ];
-        for (reads, expected) in kept.0.iter().zip(expected) {
+        for (reads, expected) in collected.0.iter().zip(expected) {
             let found = [reads.reads, reads.bytes, reads.lines];
             assert!(!reads.sampled);
             assert_eq!(found, expected, "{} on {}", reads.relation, M::NAME);
@@ -264,7 +273,7 @@ impl ByTheLog<'_> {
             let close = (named - reads.reads).abs() < 1e-9;
             assert!(close, "{}: a table is missing in memory()", M::NAME);
         }
-        assert_eq!(kept.0.len(), 9);
+        assert_eq!(collected.0.len(), 9);
         true
     }
 }
@@ -275,8 +284,8 @@ fn counts_of_all_six_structures_equal_their_logs() {
     let open = polygons(6, &[&[0, 1, 2], &[0, 2, 3], &[3, 2, 4], &[4, 2, 5]]);
     let mixed = polygons(7, &[&[0, 1, 2], &[0, 2, 3, 4], &[4, 3, 5], &[0, 4, 6, 1]]);
     let isolated = polygons(8, &[&[0, 1, 2], &[2, 1, 3], &[2, 3, 4, 5, 6]]);
-    assert_eq!(ByTheLog(&open).all(), [true; 6]);
+    assert_eq!(AccessLog(&open).all(), [true; 6]);
     // A corner table holds no polygons; a corner table and a soup hold no isolated vertices.
-    let held = |mesh: &PolygonMesh| ByTheLog(mesh).all().into_iter().filter(|&h| h).count();
+    let held = |mesh: &PolygonMesh| AccessLog(mesh).all().into_iter().filter(|&h| h).count();
     assert_eq!((held(&mixed), held(&isolated)), (5, 4));
 }

@@ -77,7 +77,7 @@ pub trait Column: Sized {
 }
 
 #[derive(Serialize)]
-struct Greeting<'a> {
+struct Header<'a> {
     protocol: u32,
     holds: bool,
     library: &'a str,
@@ -89,13 +89,13 @@ struct Greeting<'a> {
 }
 
 #[derive(Deserialize)]
-struct Question {
+struct Request {
     run: String,
     times: u64,
 }
 
 #[derive(Serialize)]
-struct Answer {
+struct Response {
     wall_ns: u128,
     cpu_ns: u128,
     checksum: f64,
@@ -121,24 +121,24 @@ pub fn serve<C: Column>() -> Result<(), Box<dyn Error>> {
     // Some libraries panic if they cannot hold the mesh.
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| ()));
-    let built = panic::catch_unwind(|| operations::Running::new(input.clone(), C::build(&input)?));
+    let built = panic::catch_unwind(|| operations::Runner::new(input.clone(), C::build(&input)?));
     panic::set_hook(hook);
-    let built = built.unwrap_or_else(|payload| Err(words(payload.as_ref())));
-    say(&Greeting {
+    let built = built.unwrap_or_else(|payload| Err(panic_message(payload.as_ref())));
+    write_line(&Header {
         protocol: 1,
         holds: built.is_ok(),
         library: C::LIBRARY,
         reason: built.as_ref().err().cloned(),
         heap: cfg!(all(target_os = "linux", target_env = "gnu")).then_some("glibc"),
     })?;
-    let Ok(mut running) = built else {
+    let Ok(mut runner) = built else {
         return Ok(());
     };
     for line in io::stdin().lock().lines() {
-        let question: Question = serde_json::from_str(&line?)?;
-        match running.run(&question.run, question.times) {
-            Some(answer) => say(&answer)?,
-            None => say(&Refused {
+        let request: Request = serde_json::from_str(&line?)?;
+        match runner.run(&request.run, request.times) {
+            Some(response) => write_line(&response)?,
+            None => write_line(&Refused {
                 refused: "the adapter does not support the operation",
             })?,
         }
@@ -147,13 +147,13 @@ pub fn serve<C: Column>() -> Result<(), Box<dyn Error>> {
 }
 
 /// Returns the message of a panic.
-fn words(payload: &(dyn Any + Send)) -> String {
+fn panic_message(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().map(ToString::to_string);
     let text = text.or_else(|| payload.downcast_ref::<String>().cloned());
     text.unwrap_or_else(|| "it panicked".into())
 }
 
-fn say(what: &impl Serialize) -> io::Result<()> {
+fn write_line(what: &impl Serialize) -> io::Result<()> {
     let mut out = io::stdout().lock();
     serde_json::to_writer(&mut out, what)?;
     writeln!(out)?;

@@ -6,20 +6,20 @@ use std::time::{Duration, Instant};
 
 use cpu_time::ThreadTime;
 
-use crate::{Answer, Column, Input};
+use crate::{Response, Column, Input};
 
 type Vector = [f32; 3];
 
 /// A structure with storage for the results of operations.
-pub(crate) struct Running<C> {
+pub(crate) struct Runner<C> {
     input: Input,
     structure: C,
-    of_faces: Vec<Vector>,
-    of_vertices: Vec<Vector>,
+    face_values: Vec<Vector>,
+    vertex_values: Vec<Vector>,
 }
 
 /// The checksum of one run, and the number of visited elements.
-type Found = (f64, u64);
+type RunResult = (f64, u64);
 
 /// A sink that counts results and adds their numbers, so that the compiler cannot omit a result.
 #[derive(Default)]
@@ -29,7 +29,7 @@ struct Sink {
 }
 
 impl Sink {
-    fn take(&mut self, index: usize) {
+    fn add(&mut self, index: usize) {
         self.count += 1;
         self.sum = self.sum.wrapping_add(index);
     }
@@ -41,28 +41,28 @@ impl Sink {
 }
 
 /// A loop over elements that queries one relation of each.
-macro_rules! asked {
+macro_rules! query_all {
     ($structure:expr, $elements:ident, $relation:ident, $index:ident) => {{
         let (mut sink, mut elements) = (Sink::default(), 0);
         for element in $structure.$elements() {
             elements += 1;
-            $structure.$relation(element, |other| sink.take($structure.$index(other)));
+            $structure.$relation(element, |other| sink.add($structure.$index(other)));
         }
         (sink.count(), elements)
     }};
 }
 
-impl<C: Column> Running<C> {
+impl<C: Column> Runner<C> {
     /// Makes a runner. Refuses a mesh that the structure accepted but does not represent correctly.
     pub(crate) fn new(input: Input, structure: C) -> Result<Self, String> {
-        let running = Self {
-            of_faces: vec![[0.0; 3]; input.starts.len() - 1],
-            of_vertices: input.positions.clone(),
+        let runner = Self {
+            face_values: vec![[0.0; 3]; input.starts.len() - 1],
+            vertex_values: input.positions.clone(),
             input,
             structure,
         };
-        running.check()?;
-        Ok(running)
+        runner.check()?;
+        Ok(runner)
     }
 
     fn check(&self) -> Result<(), String> {
@@ -71,7 +71,7 @@ impl<C: Column> Running<C> {
             let nexts = face.iter().cycle().skip(1);
             sides.extend(face.iter().zip(nexts).map(|(a, b)| (a.min(b), a.max(b))));
         }
-        let [vertices, faces] = [self.input.positions.len(), self.of_faces.len()];
+        let [vertices, faces] = [self.input.positions.len(), self.face_values.len()];
         let [corners, edges] = [self.input.corners.len(), sides.len()];
         for (relation, answers, elements) in [
             ("vertex_vertices", 2 * edges, vertices),
@@ -81,7 +81,7 @@ impl<C: Column> Running<C> {
             ("face_vertices", corners, faces),
             ("face_edges", corners, faces),
         ] {
-            let found = self.ask(relation).ok_or("a relation is missing")?;
+            let found = self.query_relation(relation).ok_or("a relation is missing")?;
             if found != (answers as u64, elements as u64) {
                 let (wrong, of) = found;
                 return Err(format!(
@@ -90,12 +90,12 @@ impl<C: Column> Running<C> {
             }
         }
         for f in self.structure.faces() {
-            let (mut around, mut answers) = (HashSet::new(), 0);
+            let (mut distinct, mut count) = (HashSet::new(), 0);
             self.structure.face_faces(f, |g| {
-                around.insert(self.structure.face_index(g));
-                answers += 1;
+                distinct.insert(self.structure.face_index(g));
+                count += 1;
             });
-            if around.len() != answers {
+            if distinct.len() != count {
                 return Err("it returns a face twice if two faces share more than one edge".into());
             }
         }
@@ -103,17 +103,17 @@ impl<C: Column> Running<C> {
     }
 
     /// Runs `operation` `times` times; `None` if the operation is unknown.
-    pub(crate) fn run(&mut self, operation: &str, times: u64) -> Option<Answer> {
+    pub(crate) fn run(&mut self, operation: &str, times: u64) -> Option<Response> {
         let (mut wall, mut cpu) = (Duration::ZERO, Duration::ZERO);
         let mut found = None;
         // Moved positions are reset outside the timing. All other operations are timed together,
         // because reading the clocks takes as long as a run on a small mesh.
         let moves = operation == "vv_smooth";
-        let (turns, each) = if moves { (times, 1) } else { (1, times) };
-        for _ in 0..turns {
+        let (batches, runs) = if moves { (times, 1) } else { (1, times) };
+        for _ in 0..batches {
             let start = (Instant::now(), ThreadTime::now());
-            for _ in 0..each {
-                found = Some(self.once(operation)?);
+            for _ in 0..runs {
+                found = Some(self.run_once(operation)?);
             }
             cpu += start.1.elapsed();
             wall += start.0.elapsed();
@@ -122,7 +122,7 @@ impl<C: Column> Running<C> {
             }
         }
         let (checksum, elements) = found?;
-        Some(Answer {
+        Some(Response {
             wall_ns: wall.as_nanos(),
             cpu_ns: cpu.as_nanos(),
             checksum,
@@ -130,7 +130,7 @@ impl<C: Column> Running<C> {
         })
     }
 
-    fn once(&mut self, operation: &str) -> Option<Found> {
+    fn run_once(&mut self, operation: &str) -> Option<RunResult> {
         Some(match operation {
             "build" => {
                 let built = C::build(&self.input).ok()?;
@@ -140,9 +140,9 @@ impl<C: Column> Running<C> {
                 (all as f64, faces)
             }
             "circulate" => {
-                let (around, _) = self.ask("vertex_faces")?;
-                let (of_faces, _) = self.ask("face_vertices")?;
-                ((around + of_faces) as f64, around + of_faces)
+                let (faces, _) = self.query_relation("vertex_faces")?;
+                let (corners, _) = self.query_relation("face_vertices")?;
+                ((faces + corners) as f64, faces + corners)
             }
             "all_queries" => {
                 const ALL: [&str; 9] = [
@@ -158,7 +158,7 @@ impl<C: Column> Running<C> {
                 ];
                 let mut all = 0;
                 for relation in ALL {
-                    all += self.ask(relation)?.0;
+                    all += self.query_relation(relation)?.0;
                 }
                 (all as f64, all)
             }
@@ -169,39 +169,39 @@ impl<C: Column> Running<C> {
             "boundary" => self.boundary(),
             "ff_bfs" => self.ff_bfs(),
             relation => {
-                let (count, elements) = self.ask(relation)?;
+                let (count, elements) = self.query_relation(relation)?;
                 (count as f64, elements)
             }
         })
     }
 
     /// Queries one relation of every element. Returns the numbers of results and of elements.
-    fn ask(&self, relation: &str) -> Option<(u64, u64)> {
+    fn query_relation(&self, relation: &str) -> Option<(u64, u64)> {
         let structure = &self.structure;
         Some(match relation {
-            "vertex_vertices" => asked!(structure, vertices, vertex_vertices, vertex_index),
-            "vertex_edges" => asked!(structure, vertices, vertex_edges, edge_index),
-            "vertex_faces" => asked!(structure, vertices, vertex_faces, face_index),
+            "vertex_vertices" => query_all!(structure, vertices, vertex_vertices, vertex_index),
+            "vertex_edges" => query_all!(structure, vertices, vertex_edges, edge_index),
+            "vertex_faces" => query_all!(structure, vertices, vertex_faces, face_index),
             "edge_vertices" => {
                 let (mut sink, mut elements) = (Sink::default(), 0);
                 for edge in structure.edges() {
                     elements += 1;
                     for v in structure.edge_vertices(edge) {
-                        sink.take(structure.vertex_index(v));
+                        sink.add(structure.vertex_index(v));
                     }
                 }
                 (sink.count(), elements)
             }
-            "edge_edges" => asked!(structure, edges, edge_edges, edge_index),
-            "edge_faces" => asked!(structure, edges, edge_faces, face_index),
-            "face_vertices" => asked!(structure, faces, face_vertices, vertex_index),
-            "face_edges" => asked!(structure, faces, face_edges, edge_index),
-            "face_faces" => asked!(structure, faces, face_faces, face_index),
+            "edge_edges" => query_all!(structure, edges, edge_edges, edge_index),
+            "edge_faces" => query_all!(structure, edges, edge_faces, face_index),
+            "face_vertices" => query_all!(structure, faces, face_vertices, vertex_index),
+            "face_edges" => query_all!(structure, faces, face_edges, edge_index),
+            "face_faces" => query_all!(structure, faces, face_faces, face_index),
             _ => return None,
         })
     }
 
-    fn face_barycenter(&mut self) -> Found {
+    fn face_barycenter(&mut self) -> RunResult {
         let structure = &self.structure;
         for f in structure.faces() {
             let (mut sum, mut corners) = ([0.0; 3], 0_u32);
@@ -209,44 +209,44 @@ impl<C: Column> Running<C> {
                 sum = plus(sum, structure.position(v));
                 corners += 1;
             });
-            self.of_faces[structure.face_index(f)] = sum.map(|x| x * (1.0 / corners as f32));
+            self.face_values[structure.face_index(f)] = sum.map(|x| x * (1.0 / corners as f32));
         }
-        (field_sum(&self.of_faces), self.of_faces.len() as u64)
+        (field_sum(&self.face_values), self.face_values.len() as u64)
     }
 
-    fn vertex_normal(&mut self) -> Found {
+    fn vertex_normal(&mut self) -> RunResult {
         let structure = &self.structure;
         for f in structure.faces() {
             let [mut first, mut last, mut normal] = [[0.0; 3]; 3];
             let mut seen = 0;
             structure.face_vertices(f, |v| {
-                let here = structure.position(v);
+                let position = structure.position(v);
                 match seen {
-                    0 => first = here,
+                    0 => first = position,
                     1 => {}
                     _ => {
-                        let sides = [last, here].map(|corner| minus(corner, first));
+                        let sides = [last, position].map(|corner| minus(corner, first));
                         normal = plus(normal, cross(sides[0], sides[1]));
                     }
                 }
-                last = here;
+                last = position;
                 seen += 1;
             });
-            self.of_faces[structure.face_index(f)] = normal;
+            self.face_values[structure.face_index(f)] = normal;
         }
         for v in structure.vertices() {
             let mut sum = [0.0; 3];
             structure.vertex_faces(v, |f| {
-                sum = plus(sum, self.of_faces[structure.face_index(f)])
+                sum = plus(sum, self.face_values[structure.face_index(f)])
             });
             let length = sum.map(|x| x * x).iter().sum::<f32>().sqrt();
             let by = if length > 0.0 { 1.0 / length } else { 1.0 };
-            self.of_vertices[structure.vertex_index(v)] = sum.map(|x| x * by);
+            self.vertex_values[structure.vertex_index(v)] = sum.map(|x| x * by);
         }
-        (field_sum(&self.of_vertices), self.of_vertices.len() as u64)
+        (field_sum(&self.vertex_values), self.vertex_values.len() as u64)
     }
 
-    fn vv_smooth(&mut self) -> Found {
+    fn vv_smooth(&mut self) -> RunResult {
         let structure = &self.structure;
         for v in structure.vertices() {
             let (mut sum, mut valence) = ([0.0; 3], 0_u32);
@@ -254,16 +254,16 @@ impl<C: Column> Running<C> {
                 sum = plus(sum, structure.position(w));
                 valence += 1;
             });
-            self.of_vertices[structure.vertex_index(v)] = match valence {
+            self.vertex_values[structure.vertex_index(v)] = match valence {
                 0 => structure.position(v),
                 _ => sum.map(|x| x * (1.0 / valence as f32)),
             };
         }
-        self.structure.set_positions(&self.of_vertices);
-        (field_sum(&self.of_vertices), self.of_vertices.len() as u64)
+        self.structure.set_positions(&self.vertex_values);
+        (field_sum(&self.vertex_values), self.vertex_values.len() as u64)
     }
 
-    fn edge_length(&self) -> Found {
+    fn edge_length(&self) -> RunResult {
         let structure = &self.structure;
         let (mut sum, mut edges) = (0.0, 0);
         for e in structure.edges() {
@@ -275,7 +275,7 @@ impl<C: Column> Running<C> {
         (sum, edges)
     }
 
-    fn boundary(&self) -> Found {
+    fn boundary(&self) -> RunResult {
         let structure = &self.structure;
         let (mut boundary, mut edges) = (0_u64, 0);
         for e in structure.edges() {
@@ -288,7 +288,7 @@ impl<C: Column> Running<C> {
     }
 
     /// Traverses faces breadth first, each time from the lowest unvisited face.
-    fn ff_bfs(&self) -> Found {
+    fn ff_bfs(&self) -> RunResult {
         let structure = &self.structure;
         let faces: Vec<C::Face> = structure.faces().collect();
         let mut depths = vec![u32::MAX; faces.len()];
@@ -304,9 +304,9 @@ impl<C: Column> Running<C> {
                 let depth = depths[structure.face_index(f)];
                 sum += u64::from(depth);
                 structure.face_faces(f, |g| {
-                    let place = &mut depths[structure.face_index(g)];
-                    if *place == u32::MAX {
-                        *place = depth + 1;
+                    let entry = &mut depths[structure.face_index(g)];
+                    if *entry == u32::MAX {
+                        *entry = depth + 1;
                         queue.push_back(g);
                     }
                 });
@@ -317,10 +317,10 @@ impl<C: Column> Running<C> {
 }
 
 fn field_sum(points: &[Vector]) -> f64 {
-    let weigh = |[x, y, z]: &Vector| {
+    let weighted_norm = |[x, y, z]: &Vector| {
         f64::from(x.abs()) + 2.0 * f64::from(y.abs()) + 3.0 * f64::from(z.abs())
     };
-    points.iter().map(weigh).sum()
+    points.iter().map(weighted_norm).sum()
 }
 
 fn plus(a: Vector, b: Vector) -> Vector {

@@ -22,7 +22,7 @@ impl Parry {
     }
 
     /// Returns the previous half-edge. Those of a triangle have consecutive numbers, in order.
-    fn before(half: u32) -> u32 {
+    fn prev(half: u32) -> u32 {
         if half % 3 == 0 { half + 2 } else { half - 1 }
     }
 
@@ -45,7 +45,7 @@ impl Parry {
 
     /// Visits every half-edge that starts at `v`. At a boundary, also visits the half-edge that
     /// ends at `v` and has no twin, with `true`.
-    fn around(&self, v: u32, mut sink: impl FnMut(u32, bool)) {
+    fn visit_spokes(&self, v: u32, mut sink: impl FnMut(u32, bool)) {
         let half_edges = self.half_edges();
         let topology = self.mesh.topology().expect("built with it");
         let first = topology.vertices[v as usize].half_edge;
@@ -55,7 +55,7 @@ impl Parry {
         let mut half = first;
         loop {
             sink(half, false);
-            let incoming = Self::before(half);
+            let incoming = Self::prev(half);
             half = half_edges[incoming as usize].twin;
             if half == first {
                 return;
@@ -113,7 +113,7 @@ impl Column for Parry {
         f as usize
     }
     fn vertex_vertices(&self, v: u32, mut sink: impl FnMut(u32)) {
-        self.around(v, |half, last| {
+        self.visit_spokes(v, |half, last| {
             sink(match last {
                 true => self.half_edges()[half as usize].vertex,
                 false => self.end(half),
@@ -121,10 +121,10 @@ impl Column for Parry {
         });
     }
     fn vertex_edges(&self, v: u32, mut sink: impl FnMut(u32)) {
-        self.around(v, |half, _| sink(self.edge(half)));
+        self.visit_spokes(v, |half, _| sink(self.edge(half)));
     }
     fn vertex_faces(&self, v: u32, mut sink: impl FnMut(u32)) {
-        self.around(v, |half, last| {
+        self.visit_spokes(v, |half, last| {
             if !last {
                 sink(self.half_edges()[half as usize].face);
             }

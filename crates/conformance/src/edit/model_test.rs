@@ -1,0 +1,577 @@
+//! Applies the same edits to a structure and to the model, and compares them.
+
+use std::any::TypeId;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Debug;
+
+use sixfold_core::{
+    Changes, EdgeId, Edit, EditRecord, FaceId, Handle, MeshEdit, MeshQuery, Point, PolygonMesh,
+    Refusal, Representation, VertexId,
+};
+
+use super::action::Action;
+use super::model::{Model, Rules};
+use super::relations::check_relations;
+use crate::catch_panic::catch_panic;
+use crate::subject::stored_mesh;
+use crate::weld::position_key;
+
+/// A mesh, its model, and a map from the elements of the model to the handles of the structure.
+#[derive(Clone)]
+pub struct ModelTest<M: MeshEdit> {
+    /// Mesh under test.
+    pub mesh: M,
+    /// Expected mesh.
+    pub model: Model,
+    rules: Rules,
+    vertices: BTreeMap<usize, M::Vertex>,
+    faces: BTreeMap<usize, M::Face>,
+    /// Handles of removed elements, which must not be valid again.
+    removed: Vec<Removed<M::Vertex, M::Edge, M::Face>>,
+}
+
+#[derive(Clone, Copy)]
+enum Removed<V, E, F> {
+    Vertex(V),
+    Edge(E),
+    Face(F),
+}
+
+impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
+    /// Builds `M` from `polygons`; `None` if its capabilities exclude them.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the structure returns an error for a mesh that its capabilities include.
+    pub fn from_polygons(polygons: &PolygonMesh) -> Option<Self> {
+        M::CAPABILITIES.check(polygons).ok()?;
+        let input = stored_mesh::<M>(polygons);
+        let mesh = M::from_polygons(&input);
+        let mesh = mesh.unwrap_or_else(|e| panic!("{} refuses a supported mesh: {e}", M::NAME));
+        let vertices = input
+            .vertices()
+            .map(|v| (v.index(), M::vertex_handle(&input, v)));
+        let faces = input
+            .faces()
+            .iter()
+            .map(|(f, _)| (f.index(), M::face_handle(&input, f)));
+        Some(Self {
+            model: Model::from_polygons(&input),
+            rules: Rules::new::<M>(),
+            vertices: vertices.collect(),
+            faces: faces.collect(),
+            removed: Vec::new(),
+            mesh,
+        })
+    }
+
+    /// Returns whether `action` is legal for this structure, according to the model.
+    pub fn is_legal(&self, action: &Action) -> bool {
+        self.model.after(action, &self.rules).is_some()
+    }
+
+    /// Applies `action` to the mesh and to the model, and returns whether it was accepted.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the mesh and the model differ: in acceptance, faces, positions, handles or record.
+    /// Also panics if an invariant of the mesh is broken.
+    pub fn apply(&mut self, action: &Action) -> bool {
+        let name = M::NAME;
+        let expected = self.model.after(action, &self.rules);
+        let before = format!("{:?}", self.mesh);
+        let handles = Handles::new(&self.mesh);
+        let mut record = EditRecord::new();
+        let outcome = self.apply_to_mesh(action, &mut record);
+        let (after, made) = match (expected, outcome) {
+            (Some(after), Ok(made)) => (after, made),
+            (None, Err(_)) => {
+                let unchanged = format!("{:?}", self.mesh) == before;
+                assert!(
+                    unchanged,
+                    "{name}: refused {action:?} but changed its tables"
+                );
+                let silent = record.vertices.is_empty()
+                    && record.edges.is_empty()
+                    && record.faces.is_empty();
+                assert!(silent, "{name}: refused {action:?} but recorded {record:?}");
+                return false;
+            }
+            (Some(_), Err(refusal)) => {
+                panic!("{name}: refuses the legal {action:?}: {refusal}")
+            }
+            (None, Ok(_)) => panic!("{name}: accepts the illegal {action:?}"),
+        };
+        if let Err(broken) = self.mesh.validate() {
+            panic!("{name}: after {action:?}: {broken}");
+        }
+        handles.check(&record, &Handles::new(&self.mesh), name, action);
+        let before = std::mem::replace(&mut self.model, after);
+        self.update_handles(&record, made, action);
+        self.compare(action);
+        let manifold = !self.rules.capabilities.non_manifold_edges;
+        if let Some(step) = euler_step(action).filter(|_| manifold) {
+            let change = self.model.euler_characteristic() - before.euler_characteristic();
+            assert_eq!(change, step, "{name}: change of χ by {action:?}");
+        }
+        true
+    }
+
+    /// Returns whether both hold the same mesh: equal positions and equal faces.
+    pub fn is_same_mesh(&self, other: &Self) -> bool {
+        let [first, second] = [self, other].map(|test| test.mesh.to_polygons());
+        sorted_faces(&first) == sorted_faces(&second)
+            && sorted_positions(&first) == sorted_positions(&second)
+    }
+
+    /// Compares all relations of the mesh, which may have holes, with its faces. Checks that the mesh
+    /// contains its own elements, and that removed handles are invalid.
+    ///
+    /// # Panics
+    ///
+    /// Panics if a relation is wrong, or if the handle of a removed element is accepted.
+    pub fn check_all(&mut self) {
+        check_relations(&self.mesh, M::NAME);
+        self.check_set_positions();
+        self.check_into_compact();
+        let mesh = &self.mesh;
+        let contained = mesh.vertices().all(|v| mesh.contains_vertex(v))
+            && mesh.edges().all(|e| mesh.contains_edge(e))
+            && mesh.faces().all(|f| mesh.contains_face(f));
+        assert!(
+            contained,
+            "{}: does not contain an element of its own",
+            M::NAME
+        );
+        for &removed in &self.removed {
+            let (shown, answer, was_edited) = match removed {
+                Removed::Vertex(v) => (
+                    format!("{v:?}"),
+                    catch_panic(|| self.mesh.vertex_faces(v).count()),
+                    self.mesh.clone().remove_vertex(v, &mut ()).is_ok(),
+                ),
+                Removed::Edge(e) => (
+                    format!("{e:?}"),
+                    catch_panic(|| self.mesh.edge_faces(e).count()),
+                    self.mesh.clone().flip_edge(e, &mut ()).is_ok(),
+                ),
+                Removed::Face(f) => (
+                    format!("{f:?}"),
+                    catch_panic(|| self.mesh.face_vertices(f).count()),
+                    self.mesh.clone().remove_face(f, &mut ()).is_ok(),
+                ),
+            };
+            if self.is_reused(removed) {
+                continue;
+            }
+            let name = M::NAME;
+            let contained = catch_panic(|| match removed {
+                Removed::Vertex(v) => self.mesh.contains_vertex(v),
+                Removed::Edge(e) => self.mesh.contains_edge(e),
+                Removed::Face(f) => self.mesh.contains_face(f),
+            });
+            assert!(
+                contained.is_ok_and(|contained| !contained),
+                "{name}: {shown} was removed, but contains_… does not return false"
+            );
+            match answer {
+                // If the handle is not a row, a removed element has empty relations.
+                Ok(0) if Self::has_derived_handle(removed) => {}
+                Ok(found) => panic!("{name}: {shown} was removed but has {found} faces or corners"),
+                Err(panic) => assert!(
+                    panic.message.contains(&shown) || self.mentions_end(&panic.message, removed),
+                    "{name}: {shown} was removed, but the message does not name it: {}",
+                    panic.message
+                ),
+            }
+            assert!(!was_edited, "{name}: {shown} was removed but can be edited");
+        }
+    }
+
+    /// Returns whether the handle of a removed element is not a row of its own, but a pair,
+    /// coordinates or a corner.
+    fn has_derived_handle(removed: Removed<M::Vertex, M::Edge, M::Face>) -> bool {
+        match removed {
+            Removed::Vertex(_) => !M::CAPABILITIES.coincident_vertices,
+            Removed::Edge(_) => TypeId::of::<M::Edge>() != TypeId::of::<EdgeId>(),
+            Removed::Face(_) => false,
+        }
+    }
+
+    /// Returns whether a message contains an end of a removed edge.
+    fn mentions_end(&self, message: &str, removed: Removed<M::Vertex, M::Edge, M::Face>) -> bool {
+        let Removed::Edge(e) = removed else {
+            return false;
+        };
+        let ends = catch_panic(|| self.mesh.edge_vertices(e));
+        ends.is_ok_and(|ends| ends.iter().any(|end| message.contains(&format!("{end:?}"))))
+    }
+
+    /// Returns whether the handle of a removed element is derived, and another element has it now.
+    fn is_reused(&self, removed: Removed<M::Vertex, M::Edge, M::Face>) -> bool {
+        Self::has_derived_handle(removed)
+            && match removed {
+                Removed::Vertex(v) => self.mesh.vertices().any(|known| known == v),
+                // Any corner that faces an edge may stand for it, not only the one used as its
+                // handle.
+                Removed::Edge(e) => {
+                    catch_panic(|| self.mesh.edge_vertices(e)).is_ok_and(|[a, b]| {
+                        catch_panic(|| self.mesh.edge_between(a, b))
+                            .is_ok_and(|known| known.is_some())
+                    })
+                }
+                Removed::Face(_) => false,
+            }
+    }
+
+    /// Checks that the mesh without its holes is the same mesh, and can be made editable again.
+    fn check_into_compact(&self) {
+        let compact = self.mesh.clone().into_compact();
+        assert_eq!(
+            compact.face_rows(),
+            compact.face_count(),
+            "{}: holes",
+            M::NAME
+        );
+        let mesh: M = compact.into();
+        if let Err(broken) = mesh.validate() {
+            panic!("{}: made compact and editable again: {broken}", M::NAME);
+        }
+        let (got, expected) = (mesh.to_polygons(), self.mesh.to_polygons());
+        let same = got.positions() == expected.positions()
+            && got.faces().iter().eq(expected.faces().iter());
+        assert!(same, "{}: into_compact changes the mesh", M::NAME);
+    }
+
+    /// Checks that `set_positions` moves all vertices of a mesh with holes, and that removed
+    /// vertices stay removed.
+    fn check_set_positions(&self) {
+        let mut mesh = self.mesh.clone();
+        // Twice the coordinates, so that different positions stay different.
+        let mut positions = mesh.vertex_map(Point::ZERO);
+        for v in mesh.vertices() {
+            positions[v] = 2.0 * mesh.position(v);
+        }
+        if let Err(refusal) = mesh.set_positions(&positions) {
+            panic!("{}: set_positions of its own vertices: {refusal}", M::NAME);
+        }
+        if let Err(broken) = mesh.validate() {
+            panic!("{}: after all vertices moved: {broken}", M::NAME);
+        }
+        let moved = self.mesh.to_polygons();
+        let moved = moved.positions().iter().map(|&p| 2.0 * p);
+        assert!(
+            mesh.to_polygons().positions().iter().copied().eq(moved),
+            "{}: positions after all vertices moved",
+            M::NAME
+        );
+        for removed in &self.removed {
+            if let Removed::Vertex(v) = *removed {
+                let answers = catch_panic(|| mesh.position(v)).is_ok();
+                let rows = M::CAPABILITIES.coincident_vertices;
+                assert!(
+                    !(answers && rows),
+                    "{}: removed {v:?} has a position",
+                    M::NAME
+                );
+            }
+        }
+    }
+
+    fn vertex(&self, v: usize) -> M::Vertex {
+        self.vertices[&v]
+    }
+
+    fn edge(&self, [a, b]: [usize; 2]) -> M::Edge {
+        let [a, b] = [a, b].map(|v| self.vertex(v));
+        let edge = self.mesh.edge_between(a, b);
+        edge.unwrap_or_else(|| panic!("{}: no edge between {a:?} and {b:?}", M::NAME))
+    }
+
+    /// Applies `action` to the mesh, and returns the vertex that it made or moved.
+    fn apply_to_mesh(
+        &mut self,
+        action: &Action,
+        log: &mut EditRecord<M>,
+    ) -> Result<Option<M::Vertex>, Refusal<M>> {
+        match action {
+            &Action::SetPosition { v, to } => {
+                let v = self.vertex(v);
+                return self.mesh.set_position(v, to, log).map(Some);
+            }
+            &Action::AddVertex { at } => return self.mesh.add_vertex(at, log).map(Some),
+            Action::AddFace { corners } => {
+                let corners: Vec<_> = corners.iter().map(|&v| self.vertex(v)).collect();
+                self.mesh.add_face(&corners, log)?;
+            }
+            Action::RemoveFace { f } => self.mesh.remove_face(self.faces[f], log)?,
+            &Action::RemoveVertex { v } => {
+                let v = self.vertex(v);
+                self.mesh.remove_vertex(v, log)?;
+            }
+            Action::RemoveIsolatedVertices => {
+                let isolated = self.mesh.vertices();
+                let isolated = isolated.filter(|&v| self.mesh.vertex_faces(v).next().is_none());
+                let isolated = isolated.count();
+                assert_eq!(
+                    self.mesh.remove_isolated_vertices(log),
+                    isolated,
+                    "{}",
+                    M::NAME
+                );
+            }
+            &Action::SplitEdge { ends, at } => {
+                let e = self.edge(ends);
+                return self.mesh.split_edge(e, at, log).map(Some);
+            }
+            &Action::BisectEdge { ends, at } => {
+                let e = self.edge(ends);
+                return self.mesh.bisect_edge(e, at, log).map(Some);
+            }
+            &Action::PokeFace { f, at } => {
+                return self.mesh.poke_face(self.faces[&f], at, log).map(Some);
+            }
+            &Action::SplitFace { f, ends } => {
+                let ends = ends.map(|v| self.vertex(v));
+                let e = self.mesh.split_face(self.faces[&f], ends, log)?;
+                assert_eq!(
+                    self.mesh.edge_between(ends[0], ends[1]),
+                    Some(e),
+                    "{}",
+                    M::NAME
+                );
+            }
+            &Action::DissolveEdge { ends } => {
+                let e = self.edge(ends);
+                let faces: Vec<_> = self.mesh.edge_faces(e).collect();
+                let f = self.mesh.dissolve_edge(e, log)?;
+                assert!(
+                    faces.contains(&f),
+                    "{}: {f:?} is not a face of {e:?}",
+                    M::NAME
+                );
+            }
+            &Action::FlipEdge { ends } => {
+                let e = self.edge(ends);
+                let e = self.mesh.flip_edge(e, log)?;
+                let ends = self.mesh.edge_vertices(e);
+                assert_eq!(
+                    self.mesh.edge_between(ends[0], ends[1]),
+                    Some(e),
+                    "{}",
+                    M::NAME
+                );
+            }
+            &Action::CollapseEdge { ends, to } => {
+                let (e, keep) = (self.edge(ends), self.vertex(ends[0]));
+                return self.mesh.collapse_edge(e, keep, to, log).map(Some);
+            }
+            &Action::SplitVertex { v, left, right, at } => {
+                let [left, right] = [left, right].map(|side| side.map(|v| self.vertex(v)));
+                let v = self.vertex(v);
+                return self.mesh.split_vertex(v, left, right, at, log).map(Some);
+            }
+            Action::Compact => self.mesh.compact(log),
+        }
+        Ok(None)
+    }
+
+    /// Updates the map from the elements of the model to the handles after an edit.
+    fn update_handles(&mut self, record: &EditRecord<M>, made: Option<M::Vertex>, action: &Action) {
+        let renamed: BTreeMap<M::Vertex, M::Vertex> = record
+            .vertices
+            .renamed
+            .iter()
+            .map(|&[old, new]| (old, new))
+            .collect();
+        let model = &self.model;
+        let (removed, kept): (Vec<_>, Vec<_>) = std::mem::take(&mut self.vertices)
+            .into_iter()
+            .partition(|&(v, _)| model.position(v).is_none());
+        for (_, handle) in removed {
+            self.removed.push(Removed::Vertex(handle));
+        }
+        let edges = record.edges.removed.iter();
+        self.removed.extend(edges.map(|&e| Removed::Edge(e)));
+        self.vertices = kept
+            .into_iter()
+            .map(|(v, handle)| (v, renamed.get(&handle).copied().unwrap_or(handle)))
+            .collect();
+        if let Some(made) = made {
+            // The newest vertex of the model, or the one that was moved.
+            let v = match action {
+                Action::SetPosition { v, .. } => *v,
+                Action::CollapseEdge { ends, .. } => ends[0],
+                _ => self.model.vertices().last().unwrap_or(0),
+            };
+            let known = self.vertices.insert(v, made);
+            let name = M::NAME;
+            assert!(
+                known.is_none_or(|known| known == made),
+                "{name}: {action:?} returned {made:?}"
+            );
+        }
+        // Faces are matched by their corners, because a structure may choose which part of a split
+        // face keeps the handle.
+        let mut by_corners: BTreeMap<Vec<M::Vertex>, Vec<M::Face>> = BTreeMap::new();
+        let faces: BTreeSet<M::Face> = self.mesh.faces().collect();
+        for &f in &faces {
+            let corners = canonical_rotation(self.mesh.face_vertices(f).collect());
+            by_corners.entry(corners).or_default().push(f);
+        }
+        for (_, f) in std::mem::take(&mut self.faces) {
+            if !faces.contains(&f) {
+                self.removed.push(Removed::Face(f));
+            }
+        }
+        for (f, face) in self.model.faces() {
+            let corners = canonical_rotation(face.iter().map(|v| self.vertices[v]).collect());
+            let found = by_corners.get_mut(&corners).and_then(Vec::pop);
+            let name = M::NAME;
+            let found =
+                found.unwrap_or_else(|| panic!("{name}: no face {corners:?} after {action:?}"));
+            self.faces.insert(f, found);
+        }
+        if let Action::Compact = action {
+            self.removed.clear();
+        }
+    }
+
+    /// Checks that mesh and model have equal vertices, positions and faces.
+    fn compare(&self, action: &Action) {
+        let name = M::NAME;
+        let listed: BTreeSet<M::Vertex> = self.mesh.vertices().collect();
+        let named: BTreeSet<M::Vertex> = self.vertices.values().copied().collect();
+        assert_eq!(listed, named, "{name}: vertices after {action:?}");
+        for (&v, &known) in &self.vertices {
+            let expected = self.model.position(v).map(position_key);
+            assert_eq!(
+                Some(position_key(self.mesh.position(known))),
+                expected,
+                "{name}: position of {known:?}"
+            );
+        }
+        assert_eq!(
+            self.mesh.face_count(),
+            self.faces.len(),
+            "{name}: faces after {action:?}"
+        );
+        // The mesh as polygons, without the holes.
+        let (out, model) = (self.mesh.to_polygons(), self.model.to_polygons());
+        assert_eq!(
+            sorted_faces(&out),
+            sorted_faces(&model),
+            "{name}: faces of to_polygons after {action:?}"
+        );
+        assert_eq!(
+            sorted_positions(&out),
+            sorted_positions(&model),
+            "{name}: positions of to_polygons after {action:?}"
+        );
+    }
+}
+
+/// Returns the change of χ by an edit on a manifold, if it does not depend on the mesh.
+fn euler_step(action: &Action) -> Option<isize> {
+    match action.edit() {
+        Edit::AddVertex => Some(1),
+        Edit::AddFace | Edit::RemoveFace | Edit::RemoveVertex | Edit::RemoveIsolatedVertices => {
+            None
+        }
+        _ => Some(0),
+    }
+}
+
+/// Rotates a face to the lexicographically least list of its corners. Comparing only the first
+/// corner is not enough, because corners may have equal positions.
+fn canonical_rotation<T: Ord>(mut corners: Vec<T>) -> Vec<T> {
+    let from = |i: usize| corners[i..].iter().chain(&corners[..i]);
+    let least = (0..corners.len()).min_by(|&i, &j| from(i).cmp(from(j)));
+    corners.rotate_left(least.unwrap_or(0));
+    corners
+}
+
+/// Returns the sorted positions of all vertices.
+fn sorted_positions(polygons: &PolygonMesh) -> Vec<[u32; 3]> {
+    let mut keys: Vec<_> = polygons
+        .positions()
+        .iter()
+        .copied()
+        .map(position_key)
+        .collect();
+    keys.sort_unstable();
+    keys
+}
+
+/// Returns the sorted faces, each as the positions of its corners.
+fn sorted_faces(polygons: &PolygonMesh) -> Vec<Vec<[u32; 3]>> {
+    let key = |v: &VertexId| position_key(polygons.position(*v));
+    let faces = polygons.faces().iter();
+    let faces =
+        faces.map(|(_, face): (FaceId, _)| canonical_rotation(face.iter().map(key).collect()));
+    let mut faces: Vec<_> = faces.collect();
+    faces.sort_unstable();
+    faces
+}
+
+/// All handles of a mesh.
+struct Handles<M: MeshEdit> {
+    vertices: BTreeSet<M::Vertex>,
+    edges: BTreeSet<M::Edge>,
+    faces: BTreeSet<M::Face>,
+}
+
+impl<M: MeshEdit> Handles<M> {
+    fn new(mesh: &M) -> Self {
+        Self {
+            vertices: mesh.vertices().collect(),
+            edges: mesh.edges().collect(),
+            faces: mesh.faces().collect(),
+        }
+    }
+
+    /// Checks that `record` describes the change from these handles to those of `after`.
+    fn check(&self, record: &EditRecord<M>, after: &Self, name: &str, action: &Action) {
+        let context =
+            |what: &str| format!("{name}: {what} after {action:?}, with record {record:?}");
+        check_changes(
+            &self.vertices,
+            &record.vertices,
+            &after.vertices,
+            &context("vertices"),
+        );
+        check_changes(&self.edges, &record.edges, &after.edges, &context("edges"));
+        check_changes(&self.faces, &record.faces, &after.faces, &context("faces"));
+    }
+}
+
+/// Checks that `changes` turns the handles `before` into `after`.
+fn check_changes<H: Handle>(
+    before: &BTreeSet<H>,
+    changes: &Changes<H>,
+    after: &BTreeSet<H>,
+    context: &str,
+) {
+    let mut handles = before.clone();
+    for old in &changes.removed {
+        assert!(
+            handles.remove(old),
+            "{context}: removes {old:?}, which does not exist"
+        );
+    }
+    for [old, new] in &changes.renamed {
+        assert!(
+            handles.remove(old),
+            "{context}: renames {old:?}, which does not exist"
+        );
+        assert_ne!(old, new, "{context}: renamed to the same handle");
+    }
+    let new_handles = changes.renamed.iter().map(|[_, new]| new);
+    for new in new_handles.chain(&changes.created) {
+        assert!(
+            handles.insert(*new),
+            "{context}: {new:?} is the handle of two elements"
+        );
+    }
+    assert_eq!(&handles, after, "{context}");
+}

@@ -1,0 +1,56 @@
+//! Lists that are nearly always short: the elements around a vertex, an edge or a face.
+
+use smallvec::SmallVec;
+
+/// The number of items that are stored on the stack and compared one by one.
+const INLINE_LEN: usize = 16;
+
+/// A list of a neighbourhood: up to 16 items on the stack, which is more than the valence of nearly
+/// every vertex; more items on the heap.
+pub type ShortVec<T> = SmallVec<[T; INLINE_LEN]>;
+
+/// Search for items in a list: one by one if there are few, by bisection if there are many.
+pub trait Lookup<T> {
+    /// Sorts the items if [`has`](Self::has) needs it; O(items log items).
+    fn sort_for_lookup(&mut self);
+
+    /// Returns whether `item` is in the list, after [`sort_for_lookup`](Self::sort_for_lookup);
+    /// O(log items) if there are many.
+    fn has(&self, item: T) -> bool;
+}
+
+impl<T: Copy + Ord> Lookup<T> for [T] {
+    #[inline]
+    fn sort_for_lookup(&mut self) {
+        if self.len() > INLINE_LEN {
+            self.sort_unstable();
+        }
+    }
+
+    #[inline]
+    fn has(&self, item: T) -> bool {
+        if self.len() > INLINE_LEN {
+            return self.binary_search(&item).is_ok();
+        }
+        // No early exit: the position of an item is unpredictable.
+        self.iter()
+            .fold(false, |found, &other| found | (other == item))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn items_are_found_in_short_and_long_lists() {
+        for len in [0, 1, 15, 16, 17, 40] {
+            let mut list: ShortVec<usize> = (0..len).rev().map(|i| 3 * i).collect();
+            list.sort_for_lookup();
+            for i in 0..3 * len {
+                assert_eq!(list.has(i), i % 3 == 0, "{i} among {len}");
+            }
+            assert!(!list.has(3 * len));
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! The order in which polygons are painted over each other.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use sixfold_core::{FaceId, PolygonMesh, row};
+
+use crate::layout::Panel;
+use crate::rasterise::{Corner, Rasteriser};
+
+/// Number of samples after which further faces are ordered by mean depth alone.
+const MAX_SAMPLES: usize = 1 << 24;
+
+/// Minimum difference in depth, in pixels, for which the nearer face must come later.
+const MIN_DEPTH_DIFFERENCE: f32 = 0.25;
+
+/// The surface of a face at a pixel.
+struct Layer {
+    pixel: u32,
+    depth: f32,
+    face: u32,
+}
+
+/// Returns the faces marked `visible`, from back to front; O(samples · log samples).
+///
+/// Sorting by one depth per face is wrong for long faces next to short ones. Here, the surfaces at
+/// each pixel give rules for which face comes before which. The order follows these rules by the
+/// algorithm of Kahn (1962); among several candidates, the farthest comes first. Faces that
+/// intersect each other can have no valid order; then the farthest of the remaining faces comes
+/// next.
+pub(crate) fn back_to_front(mesh: &PolygonMesh, panel: &Panel, visible: &[bool]) -> Vec<FaceId> {
+    let mut layers: Vec<Layer> = Vec::new();
+    let mut rasteriser = Rasteriser::new(panel.width, panel.height);
+    // Sorted by mean depth: the order if no rule applies.
+    let mut ranked: Vec<(f64, FaceId)> = Vec::new();
+    for (f, face) in mesh.faces().iter().filter(|(f, _)| visible[f.index()]) {
+        let depths = face.iter().map(|&v| panel.position(v).z);
+        ranked.push((depths.sum::<f64>() / face.len() as f64, f));
+    }
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut corners = Vec::new();
+    for (rank, &(_, f)) in ranked.iter().enumerate() {
+        if layers.len() > MAX_SAMPLES {
+            break;
+        }
+        corners.clear();
+        corners.extend(mesh.faces().face(f).iter().map(|&v| Corner {
+            position: panel.position(v),
+            normal: glam::DVec3::Z,
+        }));
+        rasteriser.rasterise(&corners, |sample| {
+            layers.push(Layer {
+                pixel: row(sample.row * panel.width + sample.column),
+                depth: sample.depth as f32,
+                face: row(rank),
+            });
+        });
+    }
+    layers.sort_by(|a, b| {
+        let by_depth = || a.depth.total_cmp(&b.depth);
+        a.pixel.cmp(&b.pixel).then_with(by_depth)
+    });
+    let rules = layers.windows(2).filter_map(|pair| {
+        let [far, near] = [&pair[0], &pair[1]];
+        let rule = far.pixel == near.pixel && near.depth - far.depth > MIN_DEPTH_DIFFERENCE;
+        (rule && far.face != near.face).then_some((far.face, near.face))
+    });
+    let order = topological_order(ranked.len(), rules.collect());
+    order.into_iter().map(|rank| ranked[rank].1).collect()
+}
+
+/// Returns the numbers below `count` in an order in which the first of each rule comes before the
+/// second. Among several candidates, the lowest comes first.
+fn topological_order(count: usize, mut rules: Vec<(u32, u32)>) -> Vec<usize> {
+    rules.sort_unstable();
+    rules.dedup();
+    let mut predecessors = vec![0_usize; count];
+    for &(_, later) in &rules {
+        predecessors[later as usize] += 1;
+    }
+    let mut ready: BinaryHeap<Reverse<usize>> = BinaryHeap::new();
+    ready.extend((0..count).filter(|&n| predecessors[n] == 0).map(Reverse));
+    let mut placed = vec![false; count];
+    let mut order = Vec::with_capacity(count);
+    let mut lowest = 0;
+    while order.len() < count {
+        let next = ready.pop().map(|Reverse(next)| next);
+        let next = next.unwrap_or_else(|| {
+            // All remaining numbers wait for each other.
+            while placed[lowest] {
+                lowest += 1;
+            }
+            lowest
+        });
+        placed[next] = true;
+        order.push(next);
+        let start = rules.partition_point(|&(first, _)| (first as usize) < next);
+        let of_next = rules[start..].iter();
+        for &(_, later) in of_next.take_while(|&&(first, _)| first as usize == next) {
+            let later = later as usize;
+            predecessors[later] = predecessors[later].saturating_sub(1);
+            if predecessors[later] == 0 && !placed[later] {
+                ready.push(Reverse(later));
+            }
+        }
+    }
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rules_are_followed_and_cycles_are_broken() {
+        assert_eq!(topological_order(3, vec![]), [0, 1, 2]);
+        assert_eq!(topological_order(4, vec![(3, 0), (0, 1)]), [2, 3, 0, 1]);
+        assert_eq!(
+            topological_order(3, vec![(2, 1), (2, 1), (1, 0)]),
+            [2, 1, 0]
+        );
+        // 1 and 2 wait for each other, and 0 waits for 2.
+        assert_eq!(
+            topological_order(3, vec![(1, 2), (2, 1), (2, 0)]),
+            [0, 1, 2]
+        );
+    }
+}

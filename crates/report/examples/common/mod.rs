@@ -1,0 +1,34 @@
+//! Shared code of the programs that make reports: the introduction and the median.
+
+use sixfold_study::Environment;
+
+/// Returns the command that makes the report, as a code block, and a description of the machine.
+pub(crate) fn introduction(
+    machine: &Environment,
+    example: &str,
+    folder: &str,
+    rounds: usize,
+) -> String {
+    let cpu = machine.cpu_model.as_deref().unwrap_or("unknown processor");
+    let load = machine.load_average.unwrap_or(f64::NAN);
+    let flags = match machine.rustflags.as_str() {
+        "" => String::new(),
+        flags => format!("RUSTFLAGS=\"{flags}\" "),
+    };
+    format!(
+        "```sh\n{flags}cargo run --release -p sixfold-report --example {example} -- {folder} {rounds}\n```\n\n\
+         {cpu}, {} cores, load {load:.1} at the start; {} {} {}; one thread, thread-CPU time, medians of \
+         {rounds} interleaved rounds.",
+        machine.cores.unwrap_or(0),
+        machine.rustc,
+        machine.profile,
+        machine.rustflags,
+    )
+}
+
+/// Returns the median of `samples`.
+pub(crate) fn median(samples: &[f64]) -> f64 {
+    let mut sorted = samples.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    f64::midpoint(sorted[(sorted.len() - 1) / 2], sorted[sorted.len() / 2])
+}

@@ -1,0 +1,402 @@
+//! Every shape by name, with its parameters as data, for the command line.
+
+use sixfold_core::PolygonMesh;
+
+use crate::error::{MAX_SEGMENTS, MAX_SIDE, ShapeError, check_value};
+use crate::fitting::{MAX_FACES, MIN_FACES};
+use crate::geodesic::MAX_FREQUENCY;
+use crate::implicit::{Blob, Field};
+use crate::patch::{MAX_CONTROL_POINTS, MAX_DEGREE};
+use crate::{ControlNet, genus, geodesic, planar, platonic, solids, study, surfaces};
+use crate::{b_spline_patch, bezier_patch};
+
+/// A shape that can be selected by name.
+#[derive(Clone, Copy, Debug)]
+pub struct Generator {
+    /// Name for users, such as `triangle-torus`.
+    pub name: &'static str,
+    /// Description in one line.
+    pub summary: &'static str,
+    /// Parameters, in order.
+    pub parameters: &'static [Parameter],
+    build: fn(&[f64]) -> Result<PolygonMesh, ShapeError>,
+}
+
+/// A numeric parameter of a generator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// Name for users.
+    pub name: &'static str,
+    /// Description in a few words.
+    pub meaning: &'static str,
+    /// Default value.
+    pub default: f64,
+    /// Minimum value.
+    pub min: f64,
+    /// Maximum value; in combination with other parameters, a shape may allow less.
+    pub max: f64,
+    /// Whether the value must be a whole number.
+    pub is_integer: bool,
+}
+
+impl Parameter {
+    const fn count(
+        name: &'static str,
+        meaning: &'static str,
+        default: usize,
+        min: usize,
+        max: usize,
+    ) -> Self {
+        Self {
+            name,
+            meaning,
+            default: default as f64,
+            min: min as f64,
+            max: max as f64,
+            is_integer: true,
+        }
+    }
+
+    /// Returns an error if `value` is out of range, or not whole although it must be.
+    fn check(&self, value: f64) -> Result<(), ShapeError> {
+        let Self {
+            name: parameter,
+            min,
+            max,
+            ..
+        } = *self;
+        if self.is_integer && value.is_finite() && value.fract() != 0.0 {
+            return Err(ShapeError::NotInteger {
+                parameter,
+                value,
+                min,
+                max,
+            });
+        }
+        check_value(parameter, value, min, max)
+    }
+}
+
+impl Generator {
+    /// Builds the shape with `values` given by name, and default values for the other parameters.
+    ///
+    /// # Errors
+    ///
+    /// Fails if a name is unknown or given twice, if a value is out of range or not whole although
+    /// it must be, or if the shape itself returns an error.
+    pub fn build(&self, values: &[(&str, f64)]) -> Result<PolygonMesh, ShapeError> {
+        let mut given: Vec<Option<f64>> = vec![None; self.parameters.len()];
+        for &(name, value) in values {
+            let found = self.parameters.iter().zip(&mut given);
+            let (parameter, slot) = found
+                .into_iter()
+                .find(|(parameter, _)| parameter.name == name)
+                .ok_or_else(|| self.unknown(name))?;
+            parameter.check(value)?;
+            if slot.replace(value).is_some() {
+                return Err(ShapeError::RepeatedParameter {
+                    shape: self.name,
+                    parameter: parameter.name,
+                });
+            }
+        }
+        let values = given.into_iter().zip(self.parameters);
+        let values: Vec<f64> = values
+            .map(|(value, parameter)| value.unwrap_or(parameter.default))
+            .collect();
+        (self.build)(&values)
+    }
+
+    fn unknown(&self, given: &str) -> ShapeError {
+        ShapeError::UnknownParameter {
+            shape: self.name,
+            given: given.to_owned(),
+            parameters: self.parameters.iter().map(|p| p.name).collect(),
+        }
+    }
+}
+
+/// Returns the generator with this name.
+pub fn generator(name: &str) -> Option<&'static Generator> {
+    GENERATORS.iter().find(|generator| generator.name == name)
+}
+
+const NONE: &[Parameter] = &[];
+
+const SIDES: Parameter = Parameter::count("n", "sides of the polygon", 8, 3, MAX_SEGMENTS);
+
+const GRID: &[Parameter] = &[
+    Parameter::count("m", "cells from left to right", 20, 1, MAX_SIDE),
+    Parameter::count("n", "cells from bottom to top", 20, 1, MAX_SIDE),
+];
+
+const TORUS: &[Parameter] = &[
+    Parameter::count("m", "cells around the axis", 40, 3, MAX_SEGMENTS),
+    Parameter::count("n", "cells around the tube", 20, 3, MAX_SEGMENTS),
+];
+
+const STEPS_M: Parameter = Parameter::count("m", "cells from left to right", 20, 1, MAX_SEGMENTS);
+const STEPS_N: Parameter = Parameter::count("n", "cells from bottom to top", 20, 1, MAX_SEGMENTS);
+/// The parameter for the number of triangles. With fewer than `min`, the lattice would be too
+/// coarse for the thin parts of the shape.
+const fn faces(min: usize) -> Parameter {
+    let meaning = "triangles, within 5 % or 20";
+    Parameter::count("faces", meaning, 5_000, min, MAX_FACES)
+}
+
+/// All shapes, in the order of the help text.
+pub const GENERATORS: &[Generator] = &[
+    Generator {
+        name: "tetrahedron",
+        summary: "four triangles",
+        parameters: NONE,
+        build: |_| Ok(platonic::tetrahedron()),
+    },
+    Generator {
+        name: "cube",
+        summary: "six squares",
+        parameters: NONE,
+        build: |_| Ok(platonic::cube()),
+    },
+    Generator {
+        name: "octahedron",
+        summary: "eight triangles",
+        parameters: NONE,
+        build: |_| Ok(platonic::octahedron()),
+    },
+    Generator {
+        name: "dodecahedron",
+        summary: "twelve pentagons",
+        parameters: NONE,
+        build: |_| Ok(platonic::dodecahedron()),
+    },
+    Generator {
+        name: "icosahedron",
+        summary: "twenty triangles",
+        parameters: NONE,
+        build: |_| Ok(platonic::icosahedron()),
+    },
+    Generator {
+        name: "prism",
+        summary: "two polygons joined by quads",
+        parameters: &[SIDES],
+        build: |v| solids::prism(count(v[0])),
+    },
+    Generator {
+        name: "antiprism",
+        summary: "two polygons joined by triangles",
+        parameters: &[SIDES],
+        build: |v| solids::antiprism(count(v[0])),
+    },
+    Generator {
+        name: "grid",
+        summary: "unit squares, the tiling {4, 4}",
+        parameters: GRID,
+        build: |v| planar::grid(count(v[0]), count(v[1])),
+    },
+    Generator {
+        name: "triangle-grid",
+        summary: "unit squares cut in two",
+        parameters: GRID,
+        build: |v| planar::triangle_grid(count(v[0]), count(v[1])),
+    },
+    Generator {
+        name: "mixed-grid",
+        summary: "unit squares, every other one cut in two",
+        parameters: GRID,
+        build: |v| planar::mixed_grid(count(v[0]), count(v[1])),
+    },
+    Generator {
+        name: "grid-with-hole",
+        summary: "unit squares with a hole: the middle third in both directions",
+        parameters: &[
+            Parameter::count("m", "cells from left to right", 20, 3, MAX_SIDE),
+            Parameter::count("n", "cells from bottom to top", 20, 3, MAX_SIDE),
+        ],
+        build: |v| planar::grid_with_hole(count(v[0]), count(v[1])),
+    },
+    Generator {
+        name: "grid-with-holes",
+        summary: "unit squares with one-cell holes that do not touch",
+        parameters: &[
+            GRID[0],
+            GRID[1],
+            Parameter::count("holes", "number of holes", 12, 0, 1 << 27),
+        ],
+        build: |v| planar::grid_with_holes(count(v[0]), count(v[1]), count(v[2])),
+    },
+    Generator {
+        name: "triangle-tiling",
+        summary: "equilateral triangles, the tiling {3, 6}",
+        parameters: GRID,
+        build: |v| planar::triangle_tiling(count(v[0]), count(v[1])),
+    },
+    Generator {
+        name: "hexagon-tiling",
+        summary: "regular hexagons, the tiling {6, 3}",
+        parameters: GRID,
+        build: |v| planar::hexagon_tiling(count(v[0]), count(v[1])),
+    },
+    Generator {
+        name: "torus",
+        summary: "a ring of quads",
+        parameters: TORUS,
+        build: |v| surfaces::torus(count(v[0]), count(v[1])),
+    },
+    Generator {
+        name: "triangle-torus",
+        summary: "a ring of triangles, every vertex of valence 6",
+        parameters: TORUS,
+        build: |v| surfaces::triangle_torus(count(v[0]), count(v[1])),
+    },
+    Generator {
+        name: "moebius",
+        summary: "a strip of quads with half a twist: one side, one boundary loop",
+        parameters: &[Parameter::count(
+            "n",
+            "cells along the strip",
+            40,
+            3,
+            MAX_SEGMENTS,
+        )],
+        build: |v| surfaces::moebius(count(v[0])),
+    },
+    Generator {
+        name: "uv-sphere",
+        summary: "a sphere of meridians and parallels",
+        parameters: &[
+            Parameter::count("m", "meridians", 32, 3, MAX_SEGMENTS),
+            Parameter::count("n", "bands between the poles", 16, 2, MAX_SEGMENTS),
+        ],
+        build: |v| solids::uv_sphere(count(v[0]), count(v[1])),
+    },
+    Generator {
+        name: "geodesic",
+        summary: "an icosahedron with divided edges, projected to a sphere",
+        parameters: &[Parameter::count(
+            "frequency",
+            "parts of each edge",
+            6,
+            1,
+            MAX_FREQUENCY,
+        )],
+        build: |v| geodesic::geodesic(count(v[0])),
+    },
+    Generator {
+        name: "genus",
+        summary: "a closed bar of quads with holes through it",
+        parameters: &[Parameter::count("g", "holes", 2, 0, MAX_SIDE)],
+        build: |v| genus::genus(count(v[0])),
+    },
+    Generator {
+        name: "bezier-patch",
+        summary: "a Bézier patch over a saddle of control points",
+        parameters: &[
+            Parameter::count("degree", "degree in both directions", 3, 1, MAX_DEGREE),
+            STEPS_M,
+            STEPS_N,
+        ],
+        build: |v| {
+            let points = count(v[0]) + 1;
+            bezier_patch(
+                &ControlNet::saddle(points, points)?,
+                count(v[1]),
+                count(v[2]),
+            )
+        },
+    },
+    Generator {
+        name: "b-spline-patch",
+        summary: "a uniform B-spline patch over waves of control points",
+        parameters: &[
+            Parameter::count("degree", "degree in both directions", 3, 1, MAX_DEGREE),
+            Parameter::count(
+                "points",
+                "control points in both directions, more than the degree",
+                9,
+                2,
+                MAX_CONTROL_POINTS,
+            ),
+            STEPS_M,
+            STEPS_N,
+        ],
+        build: |v| {
+            let points = count(v[1]);
+            let net = ControlNet::waves(points, points)?;
+            b_spline_patch(&net, count(v[0]), count(v[2]), count(v[3]))
+        },
+    },
+    Generator {
+        name: "blobs",
+        summary: "a sum of Gaussian bells, triangulated by marching tetrahedra",
+        parameters: &[faces(MIN_FACES)],
+        build: |v| blobs()?.polygonised(count(v[0])),
+    },
+    Generator {
+        name: "csg",
+        summary: "the intersection of a cube and a ball minus three bars: genus 5",
+        parameters: &[faces(1_000)],
+        build: |v| csg()?.polygonised(count(v[0])),
+    },
+    Generator {
+        name: "smooth-union",
+        summary: "two linked rings that blend where they meet",
+        parameters: &[
+            faces(1_500),
+            Parameter {
+                name: "alpha",
+                meaning: "sharpness of the blend",
+                default: 0.0,
+                min: 0.0,
+                max: 1.0,
+                is_integer: false,
+            },
+        ],
+        build: |v| smooth_union(v[1])?.polygonised(count(v[0])),
+    },
+    Generator {
+        name: "default-study",
+        summary: "the irregular mesh that a study uses if no file is given",
+        parameters: NONE,
+        build: |_| Ok(study::default_study()),
+    },
+];
+
+/// Converts a value that is known to be a whole number in a small range.
+fn count(value: f64) -> usize {
+    value as usize
+}
+
+fn blobs() -> Result<Field, ShapeError> {
+    let blob = |centre, strength, sharpness| Blob {
+        centre,
+        strength,
+        sharpness,
+    };
+    let blobs = [
+        blob([0.0, 0.0, 0.0], 1.0, 2.0),
+        blob([1.0, 0.2, 0.1], 0.9, 3.0),
+        blob([-0.5, 0.9, -0.2], 0.8, 2.5),
+        blob([-0.6, -0.7, 0.5], 1.1, 4.0),
+        blob([0.2, 0.1, 1.0], 0.7, 3.5),
+        blob([0.3, -0.4, -0.8], 0.8, 3.0),
+    ];
+    Field::blobs(&blobs, 0.4)
+}
+
+fn csg() -> Result<Field, ShapeError> {
+    let cube = Field::cuboid([0.0; 3], [1.0; 3])?;
+    let mut solid = cube.intersection(Field::sphere([0.0; 3], 1.35)?)?;
+    for axis in 0..3 {
+        let mut half = [0.5; 3];
+        half[axis] = 2.0;
+        solid = solid.difference(Field::cuboid([0.0; 3], half)?)?;
+    }
+    Ok(solid)
+}
+
+fn smooth_union(alpha: f64) -> Result<Field, ShapeError> {
+    let flat = Field::torus([-0.5, 0.0, 0.0], [0.0, 0.0, 1.0], 1.0, 0.25)?;
+    let upright = Field::torus([0.9, 0.0, 0.0], [0.0, 1.0, 0.0], 1.0, 0.25)?;
+    flat.smooth_union(upright, alpha)?.inflated(0.1)
+}

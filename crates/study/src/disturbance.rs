@@ -1,0 +1,312 @@
+//! Detects whether other programs slow the machine down at this moment.
+//!
+//! On a shared machine another program may run on the same core at any time. A sample then takes up
+//! to twice as long, in phases of milliseconds to seconds. A small fixed piece of work, timed
+//! before and after each sample, then takes longer, too. Such a sample is *disturbed*: it is taken
+//! again, within limits, and does not count if enough others are undisturbed. The time of the fixed
+//! work does not depend on the sample, so this prefers no backend and no result.
+
+use std::hint::black_box;
+
+use sixfold_workload::{Clock, Time, timed};
+
+/// Largest number of times a sample is taken again.
+const MAX_RETAKEN: u32 = 3;
+/// Words of the table that the fixed work reads: half of a typical first-level cache.
+const WORDS: usize = 2048;
+/// Passes over the table in one reference run, a timing of the fixed work: about 10 µs.
+const PASSES: usize = 12;
+/// The machine is disturbed if the fixed work takes more than this multiple of its undisturbed
+/// time. A lower limit would mostly find phases of another processor frequency. These last longer
+/// than a round and affect all backends equally, and each retaken sample leaves time for fewer
+/// rounds.
+const DISTURBED: f64 = 1.3;
+/// The undisturbed time is this quantile of the times of all reference runs.
+const UNDISTURBED: f64 = 0.05;
+/// Longest wait for an undisturbed moment before a sample, in nanoseconds.
+const LONGEST_WAIT_NS: f64 = 10_000_000.0;
+/// Part of the budget for waiting and for disturbed samples.
+const FOR_DISTURBED: f64 = 0.3;
+/// Part of the budget for samples that are taken again because of page faults.
+const FOR_FAULTS: f64 = 0.1;
+/// Only undisturbed samples count if they are at least this part of all samples.
+const MIN_UNDISTURBED: f64 = 0.25;
+
+/// The fixed work, its past times, and the time left for waiting and for samples taken again.
+pub(crate) struct DisturbanceDetector {
+    words: Vec<u64>,
+    /// Times of the reference runs, one before and one after each sample; ascending.
+    reference_ns: Vec<f64>,
+    /// Time left for waiting and for disturbed samples.
+    disturbed_left_ns: f64,
+    /// Time left for samples that are taken again because of page faults.
+    faults_left_ns: f64,
+}
+
+impl DisturbanceDetector {
+    /// Creates a detector for measurements with a budget of `budget_ns`.
+    pub(crate) fn new(budget_ns: f64) -> Self {
+        let word = |i: u64| i.wrapping_mul(0x9e37_79b9_7f4a_7c15) % WORDS as u64;
+        Self {
+            words: (0..WORDS as u64).map(word).collect(),
+            reference_ns: Vec::new(),
+            disturbed_left_ns: FOR_DISTURBED * budget_ns,
+            faults_left_ns: FOR_FAULTS * budget_ns,
+        }
+    }
+
+    /// Takes a sample by calling `sample`. Takes it again if `verdict` is [`Verdict::Again`], or if
+    /// the machine was disturbed before or after it: at most three times, and only while the time
+    /// for that reason lasts.
+    pub(crate) fn take_sample<T>(
+        &mut self,
+        clock: &dyn Clock,
+        mut sample: impl FnMut() -> T,
+        verdict: impl Fn(&T) -> Verdict,
+    ) -> TakenSample<T> {
+        let mut retaken = 0;
+        loop {
+            let before = self.wait(clock);
+            let start = clock.now().wall_ns;
+            let value = sample();
+            let elapsed_ns = clock.now().wall_ns - start;
+            let slowdown = self.slowdown(clock).max(before);
+            let disturbed = slowdown > DISTURBED && self.has_time_left();
+            let left_ns = match verdict(&value) {
+                Verdict::Good if disturbed => Some(&mut self.disturbed_left_ns),
+                Verdict::Again => Some(&mut self.faults_left_ns),
+                Verdict::Good | Verdict::Final => None,
+            };
+            let left_ns = left_ns.filter(|left_ns| **left_ns > 0.0 && retaken < MAX_RETAKEN);
+            let Some(left_ns) = left_ns else {
+                return TakenSample {
+                    value,
+                    slowdown,
+                    retaken,
+                    disturbed,
+                };
+            };
+            retaken += 1;
+            *left_ns -= elapsed_ns;
+        }
+    }
+
+    /// Returns whether time is left for waiting and for disturbed samples.
+    fn has_time_left(&self) -> bool {
+        self.disturbed_left_ns > 0.0
+    }
+
+    /// Waits up to 10 ms for an undisturbed moment. Returns the slowdown after that.
+    fn wait(&mut self, clock: &dyn Clock) -> f64 {
+        let start = clock.now().wall_ns;
+        loop {
+            let ns = self.time_reference(clock);
+            let waited = clock.now().wall_ns - start;
+            let disturbed = self.slowdown_at(ns) > DISTURBED;
+            if !disturbed || waited > LONGEST_WAIT_NS || !self.has_time_left() {
+                self.disturbed_left_ns -= waited;
+                // Keep only one reference run of a wait: hundreds of disturbed ones would count as
+                // undisturbed.
+                return self.record(ns);
+            }
+        }
+    }
+
+    /// Returns the time of the fixed work now, divided by its undisturbed time; 1 if the clock does
+    /// not advance meanwhile.
+    fn slowdown(&mut self, clock: &dyn Clock) -> f64 {
+        let ns = self.time_reference(clock);
+        self.record(ns)
+    }
+
+    /// Times the fixed work once; in nanoseconds.
+    fn time_reference(&self, clock: &dyn Clock) -> f64 {
+        // The first pass brings the table into the cache.
+        black_box(self.pass());
+        let time = timed(clock, || {
+            for _ in 0..PASSES {
+                black_box(self.pass());
+            }
+        });
+        time.ns()
+    }
+
+    /// Records the time of a reference run and returns its slowdown.
+    fn record(&mut self, ns: f64) -> f64 {
+        let index = self.reference_ns.partition_point(|&other| other < ns);
+        self.reference_ns.insert(index, ns);
+        self.slowdown_at(ns)
+    }
+
+    /// Returns `ns` divided by the undisturbed time; 1 if either is zero or there are no reference
+    /// runs yet.
+    fn slowdown_at(&self, ns: f64) -> f64 {
+        let undisturbed = (self.reference_ns.len() as f64 * UNDISTURBED) as usize;
+        match self.reference_ns.get(undisturbed) {
+            Some(&undisturbed) if ns > 0.0 && undisturbed > 0.0 => ns / undisturbed,
+            _ => 1.0,
+        }
+    }
+
+    /// Adds up four independent sums. This uses the whole core, so it takes longer if another
+    /// thread shares the core.
+    fn pass(&self) -> u64 {
+        let words = black_box(&self.words);
+        let mut sums = [0_u64; 4];
+        for four in words.chunks_exact(4) {
+            for (sum, &word) in sums.iter_mut().zip(four) {
+                *sum = sum.wrapping_add(words[word as usize % WORDS] ^ word);
+            }
+        }
+        sums.iter().fold(0, |all, sum| all.wrapping_add(*sum))
+    }
+}
+
+/// The decision of [`DisturbanceDetector::take_sample`] about a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Verdict {
+    /// Keep it, unless the machine was disturbed.
+    Good,
+    /// Take it again because of page faults.
+    Again,
+    /// Keep it in any case: the run was refused, or the study is to stop.
+    Final,
+}
+
+impl Verdict {
+    /// Returns the verdict on a sample of `time`. If pages are `kept`, a sample should have no
+    /// faults.
+    pub(crate) fn on_faults(time: Time, kept: bool) -> Self {
+        match kept && time.faults.is_some_and(|faults| faults > 0) {
+            true => Self::Again,
+            false => Self::Good,
+        }
+    }
+}
+
+/// A sample, and the conditions under which it was taken.
+pub(crate) struct TakenSample<T> {
+    pub(crate) value: T,
+    /// The larger of the slowdowns before and after the sample.
+    pub(crate) slowdown: f64,
+    /// Number of times it was taken again.
+    pub(crate) retaken: u32,
+    /// Whether the machine was disturbed and time is left for another sample.
+    pub(crate) disturbed: bool,
+}
+
+/// Returns the samples that count: the undisturbed ones if they are at least a quarter, else all.
+pub(crate) fn undisturbed<T: Copy>(samples: &[T], slowdowns: &[f64]) -> Vec<T> {
+    let quiet = samples.iter().zip(slowdowns);
+    let quiet = quiet.filter(|(_, slowdown)| **slowdown <= DISTURBED);
+    let quiet: Vec<T> = quiet.map(|(sample, _)| *sample).collect();
+    match !quiet.is_empty() && quiet.len() as f64 >= MIN_UNDISTURBED * samples.len() as f64 {
+        true => quiet,
+        false => samples.to_vec(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+
+    /// A clock on which the reference runs take the listed times in order, then always the last
+    /// one.
+    struct Scripted(Mutex<(f64, Vec<f64>, bool)>);
+
+    impl Clock for Scripted {
+        fn now(&self) -> Time {
+            let (now, script, ends) = &mut *self.0.lock().expect("no panics");
+            if *ends {
+                *now += if script.len() > 1 {
+                    script.remove(0)
+                } else {
+                    script[0]
+                };
+            }
+            *ends = !*ends;
+            Time::from_wall_ns(*now)
+        }
+    }
+
+    /// A clock that advances by [`TICK_NS`] with each reading.
+    #[derive(Default)]
+    struct Ticking(Mutex<f64>);
+
+    const TICK_NS: f64 = 1e6;
+
+    impl Clock for Ticking {
+        fn now(&self) -> Time {
+            let now = &mut *self.0.lock().expect("no panics");
+            *now += TICK_NS;
+            Time::from_wall_ns(*now)
+        }
+    }
+
+    #[test]
+    fn disturbed_moments_are_detected_and_waited_for_while_time_is_left() {
+        let clock_of = |script: &[f64]| Scripted(Mutex::new((0.0, script.to_vec(), false)));
+        let mut detector = DisturbanceDetector::new(1e9);
+        let clock = clock_of(&[100.0, 101.0, 160.0, 99.0, 106.0, 132.0]);
+        let slowdowns: Vec<f64> = (0..6).map(|_| detector.slowdown(&clock)).collect();
+        let disturbed: Vec<bool> = slowdowns.iter().map(|s| *s > DISTURBED).collect();
+        assert_eq!(disturbed, [false, false, true, false, false, true]);
+
+        assert_eq!(
+            DisturbanceDetector::new(1.0).slowdown(&clock_of(&[0.0])),
+            1.0
+        );
+
+        // If no time is left, a disturbed moment is not waited for.
+        detector.disturbed_left_ns = 0.0;
+        let slow = Ticking::default();
+        assert!(detector.wait(&slow) > 1.9);
+        assert_eq!(
+            *slow.0.lock().expect("no panics"),
+            4.0 * TICK_NS,
+            "one reference run"
+        );
+    }
+
+    #[test]
+    fn samples_are_taken_again_up_to_three_times() {
+        let tries = |verdict: Verdict, reference_ns: &[f64], disturbed_left_ns: f64| {
+            let mut detector = DisturbanceDetector {
+                reference_ns: reference_ns.to_vec(),
+                ..DisturbanceDetector::new(1.0)
+            };
+            detector.disturbed_left_ns = disturbed_left_ns;
+            detector.faults_left_ns = 1e9;
+            let mut tries = 0;
+            let taken = detector.take_sample(&Ticking::default(), || tries += 1, |()| verdict);
+            assert_eq!(taken.retaken + 1, tries);
+            (tries, taken.disturbed)
+        };
+        let (quiet, disturbed) = (&[TICK_NS; 40], &[TICK_NS / 2.0; 400]);
+        assert_eq!(tries(Verdict::Good, quiet, 1e9), (1, false));
+        assert_eq!(tries(Verdict::Again, quiet, 1e9), (4, false));
+        assert_eq!(tries(Verdict::Good, disturbed, 1e9), (4, true));
+        assert_eq!(tries(Verdict::Final, disturbed, 1e9), (1, true));
+        assert_eq!(tries(Verdict::Good, disturbed, 0.0), (1, false));
+        // Page faults have a budget of their own.
+        assert_eq!(tries(Verdict::Again, quiet, 0.0), (4, false));
+    }
+
+    #[test]
+    fn disturbed_samples_do_not_count_if_enough_others_do() {
+        let samples: Vec<(u32, Time)> = (0..6)
+            .map(|i| (i, Time::from_wall_ns(f64::from(i))))
+            .collect();
+        let rounds = |slowdowns: [f64; 6]| -> Vec<u32> {
+            let counted = undisturbed(&samples, &slowdowns);
+            counted.iter().map(|(round, _)| *round).collect()
+        };
+        assert_eq!(rounds([1.0, 1.5, 1.0, 1.29, 2.0, 1.0]), [0, 2, 3, 5]);
+        assert_eq!(rounds([1.0, 1.5, 1.0, 1.5, 2.0, 1.5]), [0, 2]);
+        assert_eq!(rounds([1.0, 1.5, 1.4, 1.5, 2.0, 1.5]), [0, 1, 2, 3, 4, 5]);
+        // Results of older versions have no slowdowns.
+        assert_eq!(undisturbed(&samples, &[]).len(), 6);
+    }
+}

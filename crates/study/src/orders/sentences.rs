@@ -1,0 +1,185 @@
+//! Sentences on the tables of orders.
+
+use sixfold::shapes::Order;
+
+use super::{Comparison, Larger, OrderEffect, OrderRow};
+use crate::numbers::times;
+use crate::report::{Agreement, Control, Standing};
+
+/// Returns sentences on the best order, on the given order, and on the larger effect.
+pub(super) fn sentences(
+    rows: &[OrderRow],
+    comparisons: &[Comparison],
+    control: Option<&Control>,
+) -> Vec<String> {
+    let mut sentences = Vec::new();
+    sentences.extend(best_orders(rows));
+    sentences.extend(given_order(comparisons));
+    sentences.extend(comparisons.iter().filter_map(effects));
+    sentences.extend(scan_effect(comparisons));
+    sentences.extend(verdict(comparisons));
+    sentences.extend(control.map(|control| {
+        let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
+        format!(
+            "Noise: {} in the given order was measured twice; its two columns typically differ by {}, at most by {}. In each operation, smaller differences are ties.",
+            control.backend,
+            percent(control.typical),
+            percent(control.worst),
+        )
+    }));
+    sentences.extend(few_samples(rows));
+    for OrderRow { order, row } in rows {
+        if row.agreement == Agreement::Mismatch {
+            let (backend, operation) = (&row.backend, row.operation);
+            sentences.push(format!(
+                "{backend} has other results for {operation} in the order {order}: a fault in Sixfold; please report it."
+            ));
+        }
+    }
+    sentences
+}
+
+/// Counts how often each order is best alone, and how often it is tied for best.
+fn best_orders(rows: &[OrderRow]) -> Option<String> {
+    let pairs =
+        rows.chunk_by(|a, b| a.row.operation == b.row.operation && a.row.backend == b.row.backend);
+    let pairs: Vec<&[OrderRow]> = pairs
+        .filter(|pair| pair.iter().filter(|r| r.row.standing.is_some()).count() > 1)
+        .collect();
+    if pairs.is_empty() {
+        return None;
+    }
+    let counts = Order::ALL.map(|order| {
+        let with = |wanted: Standing| {
+            let has_standing =
+                |row: &OrderRow| row.order == order && row.row.standing == Some(wanted);
+            pairs
+                .iter()
+                .filter(|pair| pair.iter().any(has_standing))
+                .count()
+        };
+        (order, with(Standing::Best), with(Standing::Tied))
+    });
+    let mut sorted = counts.to_vec();
+    sorted.sort_by_key(|&(_, best, tied)| std::cmp::Reverse((best + tied, best)));
+    let parts: Vec<String> = sorted
+        .iter()
+        .map(|(order, best, tied)| format!("{order} alone in {best}, tied in {tied}"))
+        .collect();
+    Some(format!(
+        "Of {} pairs of a structure and an operation, the best order is: {}.",
+        pairs.len(),
+        parts.join("; ")
+    ))
+}
+
+/// Describes how far the given order is from the best.
+fn given_order(comparisons: &[Comparison]) -> Option<String> {
+    let effects = comparisons
+        .iter()
+        .flat_map(|comparison| comparison.orders.iter().map(move |o| (comparison, o)));
+    let given: Vec<(f64, &Comparison, &OrderEffect)> = effects
+        .filter_map(|(comparison, effect)| Some((effect.given_to_best?.ratio, comparison, effect)))
+        .collect();
+    let (most, comparison, effect) = given.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let within_noise = given
+        .iter()
+        .filter(|(ratio, c, _)| *ratio <= c.noise)
+        .count();
+    let all = given.len();
+    if within_noise == all {
+        return Some("The given order is within the noise of the best everywhere.".into());
+    }
+    Some(format!(
+        "The given order is within the noise of the best in {within_noise} of {all} pairs; at worst it takes {} the time of the best ({} on {}, best order {}).",
+        times(*most),
+        comparison.operation,
+        effect.backend,
+        effect.best,
+    ))
+}
+
+/// Describes for one operation the effects of order and structure, and which is larger.
+fn effects(comparison: &Comparison) -> Option<String> {
+    let local = || comparison.orders.iter().filter(|effect| !effect.scans);
+    let ratio = |effect: &&OrderEffect| effect.worst_to_best.ratio;
+    let least = local().min_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
+    let most = local().max_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
+    let describe = |effect: &OrderEffect| match effect.matters {
+        true => format!("{} ({})", times(effect.worst_to_best.ratio), effect.backend),
+        false => format!("less than the noise ({})", effect.backend),
+    };
+    let operation = comparison.operation;
+    let orders = match local().count() {
+        1 => format!(
+            "{operation}: the order changes the time by {}",
+            describe(most)
+        ),
+        _ => format!(
+            "{operation}: the order changes the time by {} to {}",
+            describe(least),
+            describe(most)
+        ),
+    };
+    let Some(structures) = &comparison.structures else {
+        return Some(format!("{orders}."));
+    };
+    let between = match structures.matters {
+        true => format!(
+            "the structure by {} ({} to {}, each in its best order)",
+            times(structures.slowest_to_fastest.ratio),
+            structures.fastest,
+            structures.slowest
+        ),
+        false => "the structures in their best orders do not differ beyond the noise".into(),
+    };
+    let larger = match comparison.larger? {
+        Larger::Order => "the order matters more",
+        Larger::Structure => "the structure matters more",
+        Larger::Depends => "which matters more depends on the structure",
+    };
+    Some(format!("{orders}, {between}: {larger}."))
+}
+
+/// Describes the effect of the order on structures that scan: they read memory from end to end.
+fn scan_effect(comparisons: &[Comparison]) -> Option<String> {
+    let scans = comparisons.iter().flat_map(|comparison| {
+        let scans = comparison.orders.iter().filter(|effect| effect.scans);
+        scans.map(move |effect| (comparison.operation, effect))
+    });
+    let (operation, most) = scans.max_by(|(_, a), (_, b)| {
+        let (a, b) = (a.worst_to_best.ratio, b.worst_to_best.ratio);
+        a.total_cmp(&b)
+    })?;
+    Some(match most.matters {
+        true => format!(
+            "If a structure scans all faces for each element, the order changes the time by at most {} ({operation} on {}).",
+            times(most.worst_to_best.ratio),
+            most.backend
+        ),
+        false => "If a structure scans all faces for each element, the order makes no difference beyond the noise.".into(),
+    })
+}
+
+fn verdict(comparisons: &[Comparison]) -> Option<String> {
+    let known: Vec<Larger> = comparisons.iter().filter_map(|c| c.larger).collect();
+    let count = |larger: Larger| known.iter().filter(|&&l| l == larger).count();
+    let (order, structure) = (count(Larger::Order), count(Larger::Structure));
+    (known.len() > 1).then(|| {
+        format!(
+            "Overall: the order matters more in {order} of {} operations, the structure in {structure}; in {} it depends on the structure.",
+            known.len(),
+            count(Larger::Depends)
+        )
+    })
+}
+
+/// Describes figures that are uncertain because the budget was too small.
+fn few_samples(rows: &[OrderRow]) -> Option<String> {
+    let measured = rows.iter().filter(|r| r.row.median_ns.is_some());
+    let fewest = measured.map(|r| r.row.samples).min()?;
+    (fewest < 5).then(|| {
+        let samples = if fewest == 1 { "sample" } else { "samples" };
+        format!("Some figures rest on only {fewest} {samples}: use a longer --budget.")
+    })
+}

@@ -1,0 +1,142 @@
+//! The backends that are measured on a mesh, with their samples.
+
+use sixfold::Edit;
+use sixfold_workload::{Action, Clock, EditPlaceError, MixBackend, Schedule, Series, Time};
+
+/// A structure or relation tables, with its samples.
+pub(crate) struct PickBackend<'a> {
+    pub(crate) mixer: Box<dyn MixBackend + 'a>,
+    /// The structure from which the tables were made; `None` for a structure.
+    pub(crate) made_from: Option<&'static str>,
+    /// Whether it is the second copy of a backend, for the control.
+    pub(crate) control: bool,
+    /// By part: how a pass is timed.
+    pub(crate) passes: Vec<PassPlan>,
+    /// By part: number of operations in one sample of that part alone.
+    pub(crate) part_operations: Vec<u64>,
+    /// By round: the time of one operation of the mix, rebuilding included.
+    pub(crate) samples: Vec<(u32, Time)>,
+    /// By sample: the slowdown that the detector measured before or after it, whichever is larger.
+    pub(crate) slowdowns: Vec<f64>,
+    /// The building times.
+    pub(crate) builds: Vec<Time>,
+    /// Ratios of building times: on fresh pages to directly afterwards on kept pages.
+    pub(crate) first_builds: Vec<f64>,
+    /// By part: the times of one operation, timed by itself, in nanoseconds.
+    pub(crate) parts: Vec<Vec<f64>>,
+    /// By part: what its operations yielded on all elements, or the checksum of a pass; `None` if
+    /// not all elements were queried.
+    pub(crate) results: Vec<Option<f64>>,
+}
+
+/// How a pass is timed on one backend.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct PassPlan {
+    /// The operation that it is on this backend; `None` for parts that are not passes.
+    pub(crate) operation: Option<sixfold_workload::Operation>,
+    /// Number of consecutive runs in one sample.
+    pub(crate) runs: u32,
+    /// The sample of the elements to run on, if it scans.
+    pub(crate) sample: Option<sixfold_workload::ElementSample>,
+    /// Its estimated time, if a run would exceed the budget.
+    pub(crate) estimate: Option<Time>,
+}
+
+impl<'a> PickBackend<'a> {
+    pub(crate) fn new(mixer: Box<dyn MixBackend + 'a>) -> Self {
+        let parts = mixer.scans().len();
+        Self {
+            mixer,
+            made_from: None,
+            control: false,
+            passes: vec![PassPlan::default(); parts],
+            part_operations: vec![0; parts],
+            samples: Vec::new(),
+            slowdowns: Vec::new(),
+            builds: Vec::new(),
+            first_builds: Vec::new(),
+            parts: vec![Vec::new(); parts],
+            results: vec![None; parts],
+        }
+    }
+
+    pub(crate) fn control(mixer: Box<dyn MixBackend + 'a>) -> Self {
+        Self {
+            control: true,
+            ..Self::new(mixer)
+        }
+    }
+
+    /// Returns whether some part scans all faces. Then the parts are timed one by one, on few
+    /// elements.
+    pub(crate) fn scans(&self) -> bool {
+        self.mixer.scans().contains(&true)
+    }
+}
+
+/// Tries the edits of the schedule at their places on all backends, and keeps the places that all
+/// of them accept, so that all do the same work.
+pub(crate) fn keep_common_places(
+    backends: &mut [PickBackend<'_>],
+    schedule: &Schedule,
+) -> Result<(), EditPlaceError> {
+    let edits: Vec<Edit> = schedule
+        .edits()
+        .filter_map(|part| match schedule.parts[part].action {
+            Action::Edit(edit) => Some(edit),
+            _ => None,
+        })
+        .collect();
+    if edits.is_empty() {
+        return Ok(());
+    }
+    let mut common: Option<Vec<Vec<bool>>> = None;
+    for backend in backends.iter_mut() {
+        let accepted = backend.mixer.accepted_places();
+        let both = |(a, b): (bool, bool)| a && b;
+        common = Some(match common {
+            None => accepted,
+            Some(common) => common
+                .into_iter()
+                .zip(accepted)
+                .map(|(a, b)| a.into_iter().zip(b).map(both).collect())
+                .collect(),
+        });
+    }
+    let common = common.unwrap_or_default();
+    if let Some(part) = common.iter().position(|places| !places.contains(&true)) {
+        return Err(EditPlaceError::NowhereAccepted { edit: edits[part] });
+    }
+    for backend in backends {
+        backend.mixer.keep_places(&common);
+    }
+    Ok(())
+}
+
+/// Returns tables of the relations that the workload queries, made from the structure for which
+/// that is fastest; `None` if the workload queries nothing that can be tabulated.
+pub(crate) fn build_tables<'a>(
+    backends: &[PickBackend<'a>],
+    clock: &dyn Clock,
+    tabulate: impl Fn(&str) -> Option<Box<dyn MixBackend + 'a>>,
+) -> Option<PickBackend<'a>> {
+    let usable = backends.iter().filter(|b| !b.control && !b.scans());
+    let mut best: Option<(f64, PickBackend<'a>)> = None;
+    for backend in usable {
+        let structure = backend.mixer.name();
+        let Some(tables) = tabulate(structure) else {
+            continue;
+        };
+        let ns = tables.build(&Series::once(clock)).ns();
+        if best.as_ref().is_none_or(|(least, _)| ns < *least) {
+            best = Some((
+                ns,
+                PickBackend {
+                    made_from: Some(structure),
+                    ..PickBackend::new(tables)
+                },
+            ));
+        }
+    }
+    best.map(|(_, backend)| backend)
+}

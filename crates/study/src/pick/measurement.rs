@@ -1,0 +1,622 @@
+//! The rounds of measurement on one mesh, and the ranking that results.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use sixfold::subdivision::{Method, Scheme};
+use sixfold::{Counts, support};
+use sixfold_workload::{
+    Action, Clock, EditPlaceError, ElementKind, ElementSample, Operation, Run, Schedule, Series,
+    Start, Time,
+};
+
+use crate::agreement::agree;
+use crate::disturbance::{DisturbanceDetector, Verdict, undisturbed};
+use crate::heap::Memory;
+use crate::inspect::StudyMesh;
+use crate::pick::backend::{PassPlan, PickBackend};
+use crate::pick::break_even::break_even;
+use crate::pick::report::{BreakEven, Excluded, PartCost, Ranked};
+use crate::pick::{PickError, PickSettings};
+use crate::ranking::{NO_DIFFERENCE, rank, ratio};
+use crate::statistics::Median;
+
+/// The largest number of rounds. More rounds hardly narrow the intervals.
+const MAX_ROUNDS: u32 = 200;
+/// The smallest number of rounds for a result.
+const MIN_ROUNDS: u32 = 3;
+/// The shortest sample of the fastest backend. In shorter ones the resolution of the clock shows.
+const SHORTEST_SAMPLE_NS: f64 = 500_000.0;
+/// The longest sample of the slowest backend. Longer ones would leave too few rounds.
+const LONGEST_SAMPLE_NS: f64 = 20_000_000.0;
+/// Number of rounds in which building is timed; all rounds if the workload rebuilds.
+const BUILDS: usize = 9;
+/// Part of the budget after the rounds, for timing each part alone and for the first builds.
+const FOR_PARTS: f64 = 0.15;
+/// Part of the budget for building on fresh pages, at the end.
+const FOR_FIRST_BUILDS: f64 = 0.05;
+/// The largest number of copies in a sample. More do not improve it.
+const MAX_COPIES: usize = 10_000;
+/// Sizes of the patches, in faces, from which the time of a scanning pass is estimated.
+const PATCHES: [usize; 2] = [256, 1024];
+/// Number of operations in the first probe of a part.
+const FIRST_PROBE_OPERATIONS: u64 = 4;
+
+/// The measurement on one mesh: the mesh, the settings, the budget, the clock and the memory.
+pub(crate) struct PickMeasurement<'c> {
+    pub(crate) study_mesh: &'c StudyMesh,
+    pub(crate) settings: &'c PickSettings,
+    pub(crate) counts: Counts,
+    pub(crate) schedule: &'c Schedule,
+    pub(crate) budget: Duration,
+    pub(crate) clock: &'c dyn Clock,
+    pub(crate) memory: &'c mut Memory,
+    pub(crate) stop: &'c AtomicBool,
+    pub(crate) progress: &'c mut dyn FnMut(f64, &str),
+}
+
+/// The result of the measurement on one mesh.
+pub(crate) struct Outcome {
+    pub(crate) mesh: String,
+    pub(crate) ranking: Vec<Ranked>,
+    pub(crate) excluded: Vec<Excluded>,
+    pub(crate) break_even: Vec<BreakEven>,
+    pub(crate) noise: Option<f64>,
+    /// Backends whose results differ from the others.
+    pub(crate) disagreeing: Vec<String>,
+    pub(crate) operations: f64,
+    /// The shortest timed sample, in nanoseconds.
+    pub(crate) shortest_ns: Option<f64>,
+}
+
+/// How the element operations are divided into samples.
+#[derive(Clone, Copy, Debug)]
+struct SamplePlan {
+    /// Number of turns in a sample.
+    turns: u64,
+    /// Number of copies that a sample runs on, if there are edits.
+    copies: usize,
+}
+
+impl PickMeasurement<'_> {
+    /// Measures `backends` and ranks them.
+    pub(crate) fn run(
+        mut self,
+        mut backends: Vec<PickBackend<'_>>,
+        excluded: Vec<Excluded>,
+    ) -> Result<Outcome, PickError> {
+        let start = self.now();
+        let budget = self.budget.as_nanos() as f64;
+        let deadline = start + budget;
+        let rounds_end = deadline - FOR_PARTS * budget;
+        (self.progress)(0.08, "warming up");
+        let plan = self
+            .plan_samples(&mut backends)
+            .map_err(|reason| PickError::Impossible {
+                mesh: self.study_mesh.name.clone(),
+                reason,
+            })?;
+        let slot_ns = (rounds_end - self.now()).max(0.0) / 10.0 / backends.len().max(1) as f64;
+        for backend in &mut backends {
+            self.plan_passes(backend, slot_ns);
+            self.plan_parts(backend, slot_ns);
+        }
+        self.memory.reserve();
+        let mut detector = DisturbanceDetector::new(budget);
+        let mut random = ChaCha8Rng::seed_from_u64(self.settings.seed);
+        let mut order: Vec<usize> = (0..backends.len()).collect();
+        let mut cost = 0.0;
+        for round in 0..MAX_ROUNDS {
+            let now = self.now();
+            // The first round is always run: it gives the time of a round.
+            if self.stopped() || (round > 0 && now + cost > rounds_end) {
+                break;
+            }
+            self.memory.check_free_memory();
+            order.shuffle(&mut random);
+            for &i in &order {
+                if self.stopped() {
+                    break;
+                }
+                let name = backends[i].mixer.name();
+                let done = ((now - start) / budget).clamp(0.1, 1.0);
+                (self.progress)(done, &format!("round {}, {name}", round + 1));
+                self.sample(&mut detector, &mut backends[i], round, plan);
+            }
+            cost = cost.max(self.now() - now);
+        }
+        let rounds = backends.iter().map(|b| b.samples.len()).min().unwrap_or(0);
+        if rounds < MIN_ROUNDS as usize && !backends.is_empty() && !self.stopped() {
+            let preparing = (self.now() - start) - cost * rounds as f64;
+            let needed = (preparing + f64::from(MIN_ROUNDS) * cost) / (1.0 - FOR_PARTS);
+            return Err(PickError::BudgetTooSmall {
+                mesh: self.study_mesh.name.clone(),
+                budget: self.budget,
+                needed_ms: (1.5 * needed / 1e8).ceil() as u64 * 100,
+            });
+        }
+        for backend in &mut backends {
+            backend.samples = undisturbed(&backend.samples, &backend.slowdowns);
+        }
+        self.time_parts(&mut backends, deadline - FOR_FIRST_BUILDS * budget);
+        // Last, because it returns pages to the kernel that later samples would need.
+        self.time_first_builds(&mut backends, deadline);
+        let shortest_ns = backends
+            .iter()
+            .filter_map(|b| shortest(b, plan, self.schedule));
+        let shortest_ns = shortest_ns.min_by(f64::total_cmp);
+        Ok(self.outcome(&backends, excluded, shortest_ns))
+    }
+
+    fn now(&self) -> f64 {
+        self.clock.now().wall_ns
+    }
+
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Plans how many turns make a sample: enough for the clock on the fastest backend, not too
+    /// many on the slowest, and no more than there are places for edits.
+    fn plan_samples(&self, backends: &mut [PickBackend<'_>]) -> Result<SamplePlan, EditPlaceError> {
+        let nothing = SamplePlan {
+            turns: 0,
+            copies: 1,
+        };
+        if self.schedule.elements().next().is_none() {
+            return Ok(nothing);
+        }
+        let (mut least, mut most) = (f64::INFINITY, 1.0_f64);
+        for backend in backends.iter_mut().filter(|b| !b.scans()) {
+            backend.mixer.run(0, 1, 1, self.clock);
+            let ns = backend.mixer.run(1, 1, 1, self.clock).time.ns().max(1.0);
+            (least, most) = (least.min(ns), most.max(ns));
+        }
+        if !least.is_finite() {
+            return Ok(nothing); // all backends scan
+        }
+        let turns = (SHORTEST_SAMPLE_NS / least).ceil();
+        let turns = turns.min(LONGEST_SAMPLE_NS / most).max(1.0) as u64;
+        let room = self.schedule.edits().filter_map(|part| {
+            let places = backends.iter().map(|b| b.mixer.cycle_length(part)).min()?;
+            // More turns would need more places than there are.
+            let fits = |turns: &u64| self.schedule.operations_within(part, *turns) <= places;
+            (1..=turns).take_while(fits).last().or(Some(0))
+        });
+        let edits = self.schedule.edits().count();
+        match room.min() {
+            None => Ok(SamplePlan { turns, copies: 1 }),
+            Some(0) => Err(EditPlaceError::TooSmall { edits }),
+            Some(in_a_copy) => {
+                let copies = turns.div_ceil(in_a_copy) as usize;
+                Ok(SamplePlan {
+                    turns: in_a_copy.min(turns),
+                    copies: copies.clamp(1, MAX_COPIES),
+                })
+            }
+        }
+    }
+
+    /// Plans which operation each pass is on this backend, and how it is timed.
+    fn plan_passes(&self, backend: &mut PickBackend<'_>, slot_ns: f64) {
+        for part in self.schedule.passes() {
+            let operation = match self.schedule.parts[part].action {
+                Action::Pass(operation) => operation,
+                _ => self.subdivision(backend.mixer.name()),
+            };
+            let scans = backend.mixer.scans()[part];
+            let costs = sixfold::roster();
+            let costs = costs.iter().find(|row| row.name == backend.mixer.name());
+            let scanned = costs.map_or([false; 3], |row| operation.scans(&row.costs));
+            let mut plan = PassPlan {
+                operation: Some(operation),
+                runs: 1,
+                ..PassPlan::default()
+            };
+            if scans || scanned.contains(&true) {
+                self.plan_search(backend, operation, scanned, slot_ns, &mut plan);
+            } else {
+                let grows = u32::from(operation.grows_tables());
+                let series = Series::once(self.clock).with_untimed(grows).with_result();
+                let run = backend.mixer.run_pass(operation, None, &series);
+                backend.results[part] = run.outcome.map(|outcome| outcome.checksum);
+                let ns = run.time.ns().max(1.0);
+                plan.runs = (SHORTEST_SAMPLE_NS / ns).ceil().clamp(1.0, 1000.0) as u32;
+            }
+            backend.passes[part] = plan;
+        }
+    }
+
+    /// Plans a pass that scans all faces for each element: on a sample of the elements, or, if it
+    /// cannot be sampled and is too long, as an estimate from patches of the mesh.
+    fn plan_search(
+        &self,
+        backend: &mut PickBackend<'_>,
+        operation: Operation,
+        scanned: [bool; 3],
+        slot_ns: f64,
+        plan: &mut PassPlan,
+    ) {
+        let mut run = |operation: Operation, sample: Option<ElementSample>| -> Run {
+            let grows = u32::from(operation.grows_tables());
+            let series = Series::once(self.clock).with_untimed(grows);
+            backend.mixer.run_pass(operation, sample, &series)
+        };
+        if operation.can_be_sampled() || operation == Operation::FfBfs {
+            // A walk over all faces is estimated by the relation that it queries.
+            let probed = match operation.relations(ElementKind::Face) {
+                &[relation] if !operation.can_be_sampled() => Operation::Relation(relation),
+                _ => operation,
+            };
+            let mut size = FIRST_PROBE_OPERATIONS as usize;
+            loop {
+                let sample = ElementSample { scanned, size };
+                let start = self.now();
+                let whole = run(probed, Some(sample)).time;
+                let elapsed_ns = self.now() - start;
+                if elapsed_ns * 4.0 > slot_ns / 4.0 || size >= self.counts.edges {
+                    plan.sample = Some(sample);
+                    plan.operation = Some(probed);
+                    if probed != operation {
+                        plan.estimate = Some(whole);
+                    }
+                    return;
+                }
+                size *= 4;
+            }
+        }
+        // The times of the two patches give the power of n with which the time grows.
+        let [small, large] = PATCHES.map(|size| {
+            let patch = ElementSample {
+                scanned: [false; 3],
+                size,
+            };
+            let size = size.min(self.counts.faces) as f64;
+            // `run_pass` scales the time of a patch to the whole mesh; this undoes it.
+            run(operation, Some(patch))
+                .time
+                .scaled(size / self.counts.faces as f64)
+        });
+        let power = (large.ns() / small.ns()).log(4.0).clamp(1.0, 2.0);
+        let growth = (self.counts.faces as f64 / PATCHES[1] as f64)
+            .max(1.0)
+            .powf(power);
+        let whole = large.scaled(growth);
+        if whole.ns() > slot_ns {
+            plan.estimate = Some(whole);
+        }
+    }
+
+    /// Returns one step of subdivision by the best method of a backend.
+    fn subdivision(&self, backend: &str) -> Operation {
+        let triangles = self.study_mesh.polygons.first_polygon().is_none();
+        let scheme = match triangles {
+            true => Scheme::Loop,
+            false => Scheme::CatmullClark,
+        };
+        let rows = support(scheme);
+        let row = rows.iter().find(|row| row.backend == backend);
+        let method = row
+            .and_then(sixfold::Support::default_method)
+            .unwrap_or(Method::Scatter);
+        match triangles {
+            true => Operation::Loop(method),
+            false => Operation::CatmullClark(method),
+        }
+    }
+
+    /// Plans how many operations of each part make a sample of that part, and records what they
+    /// yield on all elements.
+    fn plan_parts(&self, backend: &mut PickBackend<'_>, slot_ns: f64) {
+        let scans = backend.mixer.scans();
+        for part in self.schedule.elements() {
+            let cycle = backend.mixer.cycle_length(part).max(1);
+            let longest = if scans[part] {
+                slot_ns / 8.0
+            } else {
+                SHORTEST_SAMPLE_NS
+            };
+            let is_edit = matches!(self.schedule.parts[part].action, Action::Edit(_));
+            let mut operations = FIRST_PROBE_OPERATIONS.min(cycle);
+            loop {
+                let run = backend.mixer.run_part(part, 0, operations, self.clock);
+                let enough = run.time.ns() * 4.0 > longest;
+                if enough || (is_edit && operations >= cycle) || operations > 1 << 24 {
+                    break;
+                }
+                operations *= 4;
+                if is_edit {
+                    operations = operations.min(cycle);
+                }
+            }
+            backend.part_operations[part] = operations;
+            if !scans[part] && !is_edit {
+                let all = backend.mixer.run_part(part, 0, cycle, self.clock);
+                backend.results[part] = Some(all.yielded as f64);
+            }
+        }
+    }
+
+    /// Takes a sample of the whole mix.
+    fn sample(
+        &self,
+        detector: &mut DisturbanceDetector,
+        backend: &mut PickBackend<'_>,
+        round: u32,
+        plan: SamplePlan,
+    ) {
+        let kept = self.memory.keeps_pages();
+        let taken = detector.take_sample(
+            self.clock,
+            || self.sample_once(backend, round, plan),
+            |(time, _)| match self.stopped() {
+                true => Verdict::Final,
+                false => Verdict::on_faults(*time, kept),
+            },
+        );
+        if !self.stopped() {
+            let (time, build) = taken.value;
+            backend.builds.extend(build);
+            backend.samples.push((round, time));
+            backend.slowdowns.push(taken.slowdown);
+        }
+    }
+
+    /// Returns the time of one operation of the mix, and the building time if it was built.
+    fn sample_once(
+        &self,
+        backend: &mut PickBackend<'_>,
+        round: u32,
+        plan: SamplePlan,
+    ) -> (Time, Option<Time>) {
+        let mut total = Time::zero_like(self.clock.now());
+        if self.schedule.on_elements > 0.0 {
+            total = total.plus(if backend.scans() {
+                self.time_part_by_part(backend, round)
+            } else {
+                self.time_mix(backend, round, plan)
+            });
+        }
+        for part in self.schedule.passes() {
+            let share = self.schedule.shares[part];
+            total = total.plus(self.time_pass(backend, part).scaled(share));
+        }
+        let rebuilds = self.settings.workload.rebuilds_per_operation(&self.counts);
+        let builds = rebuilds > 0.0 || backend.builds.len() < BUILDS;
+        let build = builds.then(|| backend.mixer.build(&Series::once(self.clock)));
+        if let Some(time) = build {
+            total = total.plus(time.scaled(rebuilds));
+        }
+        (total, build)
+    }
+
+    /// Runs all parts on elements in one loop. The preceding turns are run first, untimed, so that
+    /// the caches are in the same state as in a program.
+    fn time_mix(&self, backend: &mut PickBackend<'_>, round: u32, plan: SamplePlan) -> Time {
+        let SamplePlan { turns, copies } = plan;
+        let at = u64::from(round) * turns;
+        backend.mixer.run(at, turns, 1, self.clock);
+        let run = backend.mixer.run(at + turns, turns, copies, self.clock);
+        let operations = run.operations.max(1) as f64;
+        run.time.scaled(self.schedule.on_elements / operations)
+    }
+
+    /// Runs a few operations of each part. If one part scans all faces, it dominates the others,
+    /// and the state of the caches hardly matters.
+    fn time_part_by_part(&self, backend: &mut PickBackend<'_>, round: u32) -> Time {
+        let mut total = Time::zero_like(self.clock.now());
+        for part in self.schedule.elements() {
+            let operations = backend.part_operations[part];
+            let first = u64::from(round) * operations;
+            let run = backend.mixer.run_part(part, first, operations, self.clock);
+            let each = run.time.scaled(1.0 / run.operations.max(1) as f64);
+            total = total.plus(each.scaled(self.schedule.shares[part]));
+        }
+        total
+    }
+
+    /// Returns the time of the pass `part`: its estimate if it has one.
+    fn time_pass(&self, backend: &mut PickBackend<'_>, part: usize) -> Time {
+        let PassPlan {
+            operation,
+            runs,
+            sample,
+            estimate,
+        } = backend.passes[part];
+        if let Some(estimate) = estimate {
+            return estimate;
+        }
+        let operation = operation.unwrap_or(Operation::Build);
+        let untimed = u32::from(runs > 1 || operation.grows_tables());
+        let series = Series::with_runs(runs, self.clock).with_untimed(untimed);
+        backend.mixer.run_pass(operation, sample, &series).time
+    }
+
+    /// Builds every structure on fresh pages, in rounds, while there is time.
+    fn time_first_builds(&self, backends: &mut [PickBackend<'_>], deadline: f64) {
+        let mut longest = 0.0_f64;
+        for _ in 0..BUILDS {
+            let now = self.now();
+            if self.stopped() || now + longest > deadline {
+                return;
+            }
+            for backend in backends.iter_mut().filter(|b| !b.control) {
+                let series = Series {
+                    start: Start::FreshPages,
+                    ..Series::once(self.clock)
+                };
+                let first = backend.mixer.build(&series);
+                let later = backend
+                    .mixer
+                    .build(&Series::once(self.clock).with_untimed(1));
+                backend.first_builds.push(first.ns() / later.ns().max(1.0));
+            }
+            longest = longest.max(self.now() - now);
+        }
+    }
+
+    /// Times each part alone, in rounds, while there is time; at least once.
+    fn time_parts(&mut self, backends: &mut [PickBackend<'_>], deadline: f64) {
+        let start = self.now();
+        let mut longest = 0.0_f64;
+        for round in 0..9_u32 {
+            let now = self.now();
+            if self.stopped() || (round > 0 && now + longest > deadline) {
+                return;
+            }
+            (self.progress)(
+                0.9 + 0.1 * ((now - start) / (deadline - start).max(1.0)).clamp(0.0, 1.0),
+                "timing each part",
+            );
+            for backend in backends.iter_mut().filter(|b| !b.control) {
+                for part in 0..self.schedule.parts.len() {
+                    let ns = if self.schedule.parts[part].action.is_pass() {
+                        self.time_pass(backend, part).ns()
+                    } else {
+                        let operations = backend.part_operations[part];
+                        let first = u64::from(round) * operations;
+                        backend.mixer.run_part(part, first, operations, self.clock);
+                        let first = first + operations;
+                        let run = backend.mixer.run_part(part, first, operations, self.clock);
+                        run.time.ns() / run.operations.max(1) as f64
+                    };
+                    backend.parts[part].push(ns);
+                }
+            }
+            longest = longest.max(self.now() - now);
+        }
+    }
+
+    /// Returns the backends whose results differ from the first backend that does not merge
+    /// vertices.
+    fn disagreeing(&self, backends: &[PickBackend<'_>]) -> Vec<String> {
+        let keeps_vertices = |b: &&PickBackend<'_>| b.mixer.merged_vertices() == 0;
+        let differs = |backend: &&PickBackend<'_>| {
+            (0..self.schedule.parts.len()).any(|part| {
+                let result = |b: &PickBackend<'_>| b.results[part];
+                let reference = backends.iter().filter(keeps_vertices).find_map(result);
+                let same = |(a, b): (f64, f64)| match backend.passes[part].operation {
+                    Some(operation) => agree(operation, a, b, &self.study_mesh.polygons),
+                    None => a == b,
+                };
+                result(backend)
+                    .zip(reference)
+                    .is_some_and(|both| !same(both))
+            })
+        };
+        let names = backends.iter().filter(keeps_vertices).filter(differs);
+        names.map(|b| b.mixer.name().to_owned()).collect()
+    }
+
+    fn outcome(
+        &self,
+        backends: &[PickBackend<'_>],
+        excluded: Vec<Excluded>,
+        shortest_ns: Option<f64>,
+    ) -> Outcome {
+        let control = backends.iter().find(|b| b.control);
+        let noise = control.and_then(|control| {
+            let same = |b: &&PickBackend<'_>| !b.control && b.mixer.name() == control.mixer.name();
+            let original = backends.iter().find(same)?;
+            let ratio = ratio(&control.samples, &original.samples)?.value;
+            Some(ratio.max(ratio.recip()))
+        });
+        let ranked: Vec<&PickBackend<'_>> = backends
+            .iter()
+            .filter(|b| !b.control && !b.samples.is_empty())
+            .collect();
+        let times: Vec<Vec<(u32, Time)>> = ranked.iter().map(|b| b.samples.clone()).collect();
+        let ranks = rank(&times, noise.unwrap_or(1.0).max(NO_DIFFERENCE));
+        let rows = ranked.iter().zip(&ranks).filter_map(|(backend, rank)| {
+            let rank = (*rank)?;
+            let median = Median::from_samples(backend.samples.iter().map(|(_, time)| time.ns()))?;
+            let build = Median::from_samples(backend.builds.iter().map(|time| time.ns()))?;
+            let bytes = backend.mixer.bytes();
+            let name = backend.mixer.name();
+            let vertices = self.counts.vertices.max(1) as f64;
+            Some(Ranked {
+                backend: name.into(),
+                made_from: backend.made_from.map(str::to_owned),
+                ns_per_operation: median.value,
+                ns_ci_low: median.interval.map(|[low, _]| low),
+                ns_ci_high: median.interval.map(|[_, high]| high),
+                ratio_to_best: rank.ratio.value,
+                ci_low: rank.ratio.interval.map(|[low, _]| low),
+                ci_high: rank.ratio.interval.map(|[_, high]| high),
+                tied_with_best: rank.standing != crate::report::Standing::Slower,
+                build_ns: build.value,
+                first_build_ns: Median::from_samples(backend.first_builds.iter().copied())
+                    .map(|ratio| ratio.value * build.value),
+                bytes,
+                bytes_per_vertex: bytes as f64 / vertices,
+                sampled: backend.scans() || backend.passes.iter().any(|p| p.sample.is_some()),
+                estimated: backend.passes.iter().any(|plan| plan.estimate.is_some()),
+                parts: self.parts(backend),
+                samples: backend.samples.len(),
+                faults: backend
+                    .samples
+                    .iter()
+                    .filter_map(|(_, time)| time.faults)
+                    .max(),
+                crates: backend
+                    .mixer
+                    .type_paths()
+                    .into_iter()
+                    .map(package_of)
+                    .collect(),
+                types: backend
+                    .mixer
+                    .type_paths()
+                    .into_iter()
+                    .map(str::to_owned)
+                    .collect(),
+            })
+        });
+        let mut ranking: Vec<Ranked> = rows.collect();
+        ranking.sort_by(|a, b| a.ns_per_operation.total_cmp(&b.ns_per_operation));
+        let operations = self.settings.workload.operations_on(&self.counts);
+        Outcome {
+            mesh: self.study_mesh.name.clone(),
+            break_even: break_even(&ranked, &ranking, operations),
+            ranking,
+            excluded,
+            noise,
+            disagreeing: self.disagreeing(backends),
+            operations,
+            shortest_ns,
+        }
+    }
+
+    fn parts(&self, backend: &PickBackend<'_>) -> Vec<PartCost> {
+        let parts = self.schedule.parts.iter().enumerate();
+        let cost = |(part, of): (usize, &sixfold_workload::Part)| PartCost {
+            operation: of.action,
+            share: self.schedule.shares[part],
+            ns: Median::from_samples(backend.parts[part].iter().copied()).map(|m| m.value),
+        };
+        parts.map(cost).collect()
+    }
+}
+
+/// Returns the time of the shortest sample of mixed turns, in nanoseconds; `None` without samples.
+fn shortest(backend: &PickBackend<'_>, plan: SamplePlan, schedule: &Schedule) -> Option<f64> {
+    if backend.scans() || schedule.on_elements <= 0.0 {
+        return None;
+    }
+    let turns = plan.turns as f64 * plan.copies as f64;
+    let operations = schedule.turn_operations * turns / schedule.on_elements;
+    let times = backend
+        .samples
+        .iter()
+        .map(|(_, time)| time.ns() * operations);
+    times.min_by(f64::total_cmp)
+}
+
+/// Returns the package of a type; its path begins with the name of the crate.
+fn package_of(type_path: &str) -> String {
+    let (package, _) = type_path.split_once("::").unwrap_or((type_path, ""));
+    package.replace('_', "-")
+}

@@ -1,0 +1,151 @@
+//! Ranks backends: which is fastest, and which are tied with it.
+
+use crate::report::Standing;
+use crate::statistics::Median;
+use sixfold_workload::Time;
+
+/// Ratios up to this are a tie, regardless of their intervals.
+pub(crate) const NO_DIFFERENCE: f64 = 1.02;
+
+/// With too few samples for an interval, ratios of this or more are not a tie.
+pub(crate) const CLEAR_DIFFERENCE: f64 = 2.0;
+
+/// The comparison of one backend with the fastest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rank {
+    /// The median, over rounds, of its time divided by that of the fastest.
+    pub(crate) ratio: Median,
+    /// The standing that follows from the ratio.
+    pub(crate) standing: Standing,
+}
+
+/// Ranks the backends of one operation by their samples, each with its round; `None` for backends
+/// without samples.
+///
+/// The fastest has the smallest median. Another ties with it if the interval of its ratio includes
+/// 1 or less, or if the ratio is at most `noise`. If there are too few samples for an interval, it
+/// ties if the ratio is below 2.
+pub(crate) fn rank(backends: &[Vec<(u32, Time)>], noise: f64) -> Vec<Option<Rank>> {
+    let medians = backends
+        .iter()
+        .map(|samples| Median::from_samples(samples.iter().map(|(_, t)| t.ns())));
+    let medians: Vec<Option<Median>> = medians.collect();
+    let measured = medians.iter().flatten().count();
+    let best = (0..backends.len())
+        .filter(|&b| medians[b].is_some())
+        .min_by(|&a, &b| {
+            let value = |b: usize| medians[b].map_or(f64::INFINITY, |m| m.value);
+            value(a).total_cmp(&value(b))
+        });
+    let Some(best) = best else {
+        return vec![None; backends.len()];
+    };
+    let mut ranks: Vec<Option<Rank>> = backends
+        .iter()
+        .map(|samples| {
+            let ratio = ratio(samples, &backends[best])?;
+            let tied = match ratio.interval {
+                _ if ratio.value <= noise => true,
+                Some([low, _]) => low <= 1.0,
+                None => ratio.value < CLEAR_DIFFERENCE,
+            };
+            let standing = if tied {
+                Standing::Tied
+            } else {
+                Standing::Slower
+            };
+            Some(Rank { ratio, standing })
+        })
+        .collect();
+    let ties = ranks
+        .iter()
+        .flatten()
+        .filter(|p| p.standing == Standing::Tied)
+        .count();
+    if let Some(rank) = &mut ranks[best] {
+        rank.standing = match (measured, ties) {
+            (1, _) => Standing::Alone,
+            (_, 1) => Standing::Best,
+            _ => Standing::Tied,
+        };
+    }
+    ranks
+}
+
+/// Returns the median ratio over the rounds that both have; the ratio of the medians if they have
+/// no round in common.
+pub(crate) fn ratio(samples: &[(u32, Time)], best: &[(u32, Time)]) -> Option<Median> {
+    let of_round = |round: u32| best.iter().find(|(r, _)| *r == round);
+    let pairs = samples
+        .iter()
+        .filter_map(|(round, time)| Some(time.ns() / of_round(*round)?.1.ns()));
+    Median::from_samples(pairs.filter(|ratio| ratio.is_finite())).or_else(|| {
+        let median =
+            |times: &[(u32, Time)]| Median::from_samples(times.iter().map(|(_, t)| t.ns()));
+        let value = median(samples)?.value / median(best)?.value;
+        value.is_finite().then_some(Median {
+            value,
+            least: value,
+            interval: None,
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn samples(times: &[f64]) -> Vec<(u32, Time)> {
+        let time = |&ns: &f64| Time {
+            cpu_ns: Some(ns),
+            wall_ns: ns,
+            faults: None,
+        };
+        (0..).zip(times.iter().map(time)).collect()
+    }
+
+    fn standings(backends: &[Vec<(u32, Time)>]) -> Vec<Option<Standing>> {
+        let ranks = rank(backends, NO_DIFFERENCE).into_iter();
+        ranks.map(|rank| rank.map(|p| p.standing)).collect()
+    }
+
+    #[test]
+    fn a_clear_difference_has_a_best_backend() {
+        let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
+        let fast = samples(&drift);
+        let slow = samples(&drift.map(|t| t * 1.1));
+        let expected = [Some(Standing::Slower), Some(Standing::Best), None];
+        assert_eq!(standings(&[slow.clone(), fast.clone(), vec![]]), expected);
+        let ratio = rank(&[fast, slow], NO_DIFFERENCE)[1];
+        let ratio = ratio.expect("measured").ratio;
+        let [low, high] = ratio.interval.expect("seven rounds");
+        assert!((ratio.value - 1.1).abs() < 1e-9 && low > 1.09 && high < 1.11);
+    }
+
+    #[test]
+    fn noise_and_small_differences_are_ties() {
+        let a = samples(&[1.0, 1.2, 0.9, 1.1, 1.3, 0.8, 1.0]);
+        let b = samples(&[1.1, 1.0, 1.1, 0.9, 1.4, 1.2, 0.9]);
+        let c = samples(&[1.01, 1.212, 0.909, 1.111, 1.313, 0.808, 1.01]);
+        assert_eq!(standings(&[a, b, c]), [Some(Standing::Tied); 3]);
+    }
+
+    #[test]
+    fn ratios_up_to_the_noise_are_ties() {
+        let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
+        let both = [samples(&drift), samples(&drift.map(|t| t * 1.1))];
+        let tied = |noise| rank(&both, noise)[1].map(|rank| rank.standing);
+        assert_eq!(tied(1.05), Some(Standing::Slower));
+        assert_eq!(tied(1.11), Some(Standing::Tied));
+    }
+
+    #[test]
+    fn too_few_samples_are_ties_below_a_ratio_of_two() {
+        let ties = standings(&[samples(&[1.0, 1.0]), samples(&[1.5, 1.5])]);
+        assert_eq!(ties, [Some(Standing::Tied); 2]);
+        let clear = standings(&[samples(&[1.0, 1.0]), samples(&[9.0, 9.0])]);
+        assert_eq!(clear, [Some(Standing::Best), Some(Standing::Slower)]);
+        assert_eq!(standings(&[samples(&[1.0])]), [Some(Standing::Alone)]);
+        assert_eq!(standings(&[vec![], vec![]]), [None, None]);
+    }
+}

@@ -1,0 +1,138 @@
+//! Runs one backend alone, for programs that compare it with other libraries.
+
+use sixfold::{Facts, PolygonMesh};
+
+use crate::disturbance::{DisturbanceDetector, Verdict};
+use crate::measure::{MAX_RUNS, untimed_runs};
+use crate::plan::SHORTEST_SAMPLE_NS;
+use crate::study::{StudyError, prepare};
+use sixfold_workload::Backend;
+use sixfold_workload::Draw;
+use sixfold_workload::Operation;
+use sixfold_workload::pages::{self, Policy};
+use sixfold_workload::{Clock, Time};
+use sixfold_workload::{Job, Series, TimedBackend};
+
+/// One backend, ready to run: the same code as in a study, without its rounds.
+///
+/// Freed pages stay with the process as in a study, if the allocator supports that.
+pub struct BackendRunner<'a> {
+    subject: Box<dyn TimedBackend + 'a>,
+    /// The operation of the last run, and the numbers of untimed and timed runs in a sample of it.
+    last: Option<(Operation, [u32; 2])>,
+    detector: DisturbanceDetector,
+    /// Whether freed pages stay with the process: then samples should have no page faults.
+    kept: bool,
+}
+
+/// How long an operation is run untimed before each sample.
+const UNTIMED_NS: f64 = 2_000_000.0;
+
+/// The budget of which the detector may spend a part on waiting, in nanoseconds.
+const BUDGET_NS: f64 = 10e9;
+
+/// The result of one run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BackendRun {
+    /// The time of the run.
+    pub time: Time,
+    /// A number that depends on all results, but not on the order of neighbours; NaN if the backend
+    /// cannot do the operation on this mesh.
+    pub checksum: f64,
+    /// The number of elements visited.
+    pub elements: u64,
+}
+
+impl<'a> BackendRunner<'a> {
+    /// Builds `backend` from `polygons`.
+    ///
+    /// # Errors
+    ///
+    /// An unknown name, or a mesh that this backend cannot hold.
+    pub fn new(backend: &str, polygons: &'a PolygonMesh) -> Result<Self, StudyError> {
+        let kept = pages::set_policy(Policy::Kept).policy == Policy::Kept;
+        let name = backend.to_owned();
+        let found = Backend::roster()
+            .into_iter()
+            .find(|found| found.name() == backend);
+        let found = found.ok_or(StudyError::UnknownBackend { name })?;
+        let draw: Option<&Draw> = None;
+        let counts = polygons.counts(Facts::from_polygons(polygons).edges);
+        let (report, subject) = prepare(&found, polygons, draw, &counts);
+        let refusals = || vec![(report.name, report.reason.unwrap_or_default())];
+        let subject = subject.ok_or_else(|| StudyError::NoneHolds {
+            refusals: refusals(),
+        })?;
+        Ok(Self {
+            subject,
+            last: None,
+            detector: DisturbanceDetector::new(BUDGET_NS),
+            kept,
+        })
+    }
+
+    /// Returns its size in bytes.
+    pub fn bytes(&self) -> usize {
+        self.subject.bytes()
+    }
+
+    /// Runs `operation` on the whole mesh. A short one is repeated until 200 µs have passed.
+    /// Untimed runs precede it as in a study, and it is run again if other work disturbs the
+    /// machine. The returned time is that of one run.
+    pub fn run(&mut self, operation: Operation, clock: &dyn Clock) -> BackendRun {
+        let runs = match self.last {
+            Some((last, runs)) if last == operation => runs,
+            _ => self.plan_runs(operation, clock),
+        };
+        self.last = Some((operation, runs));
+        let Self {
+            subject, detector, ..
+        } = self;
+        let sample = || run_times(subject.as_mut(), operation, runs, clock);
+        let kept = self.kept;
+        let verdict = |run: &BackendRun| Verdict::on_faults(run.time, kept);
+        detector.take_sample(clock, sample, verdict).value
+    }
+
+    /// Returns how many untimed and timed runs make a sample that is long enough.
+    fn plan_runs(&mut self, operation: Operation, clock: &dyn Clock) -> [u32; 2] {
+        let mut runs = 1;
+        loop {
+            let each = self.run_times(operation, runs, clock).time.ns();
+            let ns = each * f64::from(runs);
+            if ns >= SHORTEST_SAMPLE_NS || f64::from(runs) >= MAX_RUNS {
+                return [untimed_runs(operation, each, UNTIMED_NS), runs];
+            }
+            let wanted = f64::from(runs) * SHORTEST_SAMPLE_NS / ns.max(1.0);
+            runs = (wanted * 1.1).ceil().min(f64::from(runs) * 16.0) as u32;
+        }
+    }
+
+    /// Runs `operation` `runs` times, after an untimed run. The returned time is that of one run.
+    pub fn run_times(&mut self, operation: Operation, runs: u32, clock: &dyn Clock) -> BackendRun {
+        run_times(self.subject.as_mut(), operation, [1, runs], clock)
+    }
+}
+
+fn run_times(
+    subject: &mut dyn TimedBackend,
+    operation: Operation,
+    [untimed, runs]: [u32; 2],
+    clock: &dyn Clock,
+) -> BackendRun {
+    let job = Job {
+        operation,
+        sample: None,
+    };
+    let run = subject.run(
+        &job,
+        &Series::with_runs(runs, clock)
+            .with_untimed(untimed)
+            .with_result(),
+    );
+    BackendRun {
+        time: run.time,
+        checksum: run.outcome.map_or(f64::NAN, |outcome| outcome.checksum),
+        elements: run.outcome.map_or(0, |outcome| outcome.elements),
+    }
+}

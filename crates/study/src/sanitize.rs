@@ -1,0 +1,32 @@
+//! Makes text from outside safe to print: names of files, output of other programs.
+
+/// Returns `text` on one line. Characters that control a terminal or change the direction of
+/// writing are replaced by escapes such as `\u{1b}`.
+pub fn sanitize(text: &str) -> String {
+    let is_unsafe = |c: char| {
+        c.is_control()
+            || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        match is_unsafe(c) {
+            true => safe.extend(c.escape_default()),
+            false => safe.push(c),
+        }
+    }
+    safe
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sanitize;
+
+    #[test]
+    fn terminal_control_characters_are_escaped() {
+        assert_eq!(
+            sanitize("a\u{1b}[2Jb\nc\u{202e}"),
+            "a\\u{1b}[2Jb\\nc\\u{202e}"
+        );
+        assert_eq!(sanitize("Hügel – 山.obj"), "Hügel – 山.obj");
+    }
+}

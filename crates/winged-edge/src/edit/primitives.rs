@@ -1,0 +1,271 @@
+//! Steps that several edits share: checks of handles, runs, links, new rows and holes.
+
+use sixfold_core::{
+    EdgeId, EditError, EditLog, FaceId, HoleSet, MAX_ROWS, Point, Probe, Refusal, Slot, VertexId,
+    row,
+};
+
+use crate::edge::{Edge, NO_EDGE, Run, RunId};
+use crate::mesh::EditableWingedEdgeMesh;
+use crate::wings::Side;
+
+/// Maximum number of edges, as for building from polygons, so that their corners can be numbered
+/// too.
+const MAX_EDGES: usize = MAX_ROWS / 4;
+
+/// Checks that elements exist and that there is room for more.
+impl<P: Probe> EditableWingedEdgeMesh<P> {
+    #[inline(always)]
+    pub(super) fn check_vertex(&self, vertex: VertexId) -> Result<(), Refusal<Self>> {
+        let v = vertex.index();
+        if v >= self.positions.len() || self.vertex_holes.has(v) {
+            return Err(EditError::NoSuchVertex { vertex });
+        }
+        Ok(())
+    }
+
+    /// Returns the record of `edge`, or an error if `edge` does not exist.
+    #[inline(always)]
+    pub(super) fn check_edge(&self, edge: EdgeId) -> Result<&Edge, Refusal<Self>> {
+        if edge.index() < self.edges.len() {
+            let record = self.record(edge);
+            if !record.is_deleted() {
+                return Ok(record);
+            }
+        }
+        Err(EditError::NoSuchEdge { edge })
+    }
+
+    /// Returns a side of `face`, or an error if `face` does not exist.
+    #[inline(always)]
+    pub(super) fn check_face(&self, face: FaceId) -> Result<EdgeId, Refusal<Self>> {
+        if face.index() < self.sides.len() {
+            let side = *self.sides.read(face.index());
+            if side != NO_EDGE {
+                return Ok(side);
+            }
+        }
+        Err(EditError::NoSuchFace { face })
+    }
+
+    /// Checks that this number of vertices, edges and faces can be added.
+    #[inline(always)]
+    pub(super) fn check_room(&self, more: [usize; 3]) -> Result<(), Refusal<Self>> {
+        let [vertices, edges, faces] = more;
+        for (elements, rows, limit) in [
+            ("vertices", self.positions.len() + vertices, MAX_ROWS),
+            ("edges", self.edges.len() + edges, MAX_EDGES),
+            ("faces", self.sides.len() + faces, MAX_ROWS),
+        ] {
+            if rows > limit {
+                return Err(EditError::TooMany { elements, limit });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Runs as an edge and a side; all O(1), except the degree that `apex` returns as an error.
+impl<P: Probe> EditableWingedEdgeMesh<P> {
+    #[inline(always)]
+    pub(super) fn run(&self, run: RunId) -> Run<'_> {
+        Run::new(self.record(run.edge), run.side)
+    }
+
+    /// Returns the run of `edge` that leaves its end `v`.
+    #[inline(always)]
+    pub(super) fn leaving(&self, edge: EdgeId, v: VertexId) -> RunId {
+        RunId::new(edge, Run::from(self.record(edge), v).side())
+    }
+
+    /// Returns the run of `edge` that arrives at its end `v`.
+    #[inline(always)]
+    pub(super) fn arriving(&self, edge: EdgeId, v: VertexId) -> RunId {
+        self.leaving(edge, v).twin()
+    }
+
+    /// Returns the run of `edge` with its face `f` on the left.
+    #[inline(always)]
+    pub(super) fn along(&self, edge: EdgeId, f: FaceId) -> RunId {
+        RunId::new(edge, Run::along(self.record(edge), f).side())
+    }
+
+    /// Returns the run after `run` along its face.
+    #[inline(always)]
+    pub(super) fn run_after(&self, run: RunId) -> RunId {
+        let run = self.run(run);
+        self.leaving(run.next(), run.target())
+    }
+
+    /// Returns the run before `run` along its face.
+    #[inline(always)]
+    pub(super) fn run_before(&self, run: RunId) -> RunId {
+        let run = self.run(run);
+        self.arriving(run.prev(), run.origin())
+    }
+
+    /// Returns the third corner if the face on the left of `run` is a triangle, otherwise its
+    /// degree as an error.
+    pub(super) fn apex(&self, run: RunId) -> Result<VertexId, usize> {
+        let [next, prev] = [self.run(run).next(), self.run(run).prev()];
+        let after = self.run(self.run_after(run));
+        if after.next() == prev {
+            return Ok(after.target());
+        }
+        let mut at = self.leaving(next, self.run(run).target());
+        let mut degree = 1;
+        while at != run {
+            at = self.run_after(at);
+            degree += 1;
+        }
+        Err(degree)
+    }
+}
+
+/// Writes to single fields.
+impl<P: Probe> EditableWingedEdgeMesh<P> {
+    /// Makes `after` follow `before`.
+    #[inline(always)]
+    pub(super) fn link(&mut self, before: RunId, after: RunId) {
+        let record = self.edges.write(before.edge.index());
+        record.next.set(before.side, after.edge);
+        let record = self.edges.write(after.edge.index());
+        record.prev.set(after.side, before.edge);
+    }
+
+    #[inline(always)]
+    pub(super) fn set_face(&mut self, run: RunId, face: Slot<FaceId>) {
+        self.edges.write(run.edge.index()).faces[run.side.index()] = face;
+    }
+
+    /// Sets the face, the next wing and the previous wing of one side.
+    #[inline(always)]
+    pub(super) fn set_links(&mut self, run: RunId, face: Slot<FaceId>, next: EdgeId, prev: EdgeId) {
+        let record = self.edges.write(run.edge.index());
+        record.faces[run.side.index()] = face;
+        record.next.set(run.side, next);
+        record.prev.set(run.side, prev);
+    }
+
+    /// Replaces the end `old` of `edge` by `new`.
+    #[inline(always)]
+    pub(super) fn set_end(&mut self, edge: EdgeId, old: VertexId, new: VertexId) {
+        let ends = &mut self.edges.write(edge.index()).ends;
+        ends[usize::from(ends[0] != old)] = new;
+    }
+
+    #[inline(always)]
+    pub(super) fn set_spoke(&mut self, v: VertexId, spoke: EdgeId) {
+        *self.spokes.write(v.index()) = Slot::some(spoke);
+    }
+
+    /// Makes `other` the spoke of `v` if `gone` was. At an inner vertex, any edge can be the spoke.
+    #[inline(always)]
+    pub(super) fn replace_spoke(&mut self, v: VertexId, gone: EdgeId, other: EdgeId) {
+        if *self.spokes.read(v.index()) == Slot::some(gone) {
+            self.set_spoke(v, other);
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn set_side(&mut self, f: FaceId, side: EdgeId) {
+        *self.sides.write(f.index()) = side;
+    }
+}
+
+/// New rows, and holes. The caller checks the room before it adds rows.
+impl<P: Probe> EditableWingedEdgeMesh<P> {
+    /// Adds a vertex without an edge.
+    #[inline(always)]
+    pub(super) fn push_vertex(&mut self, at: Point, log: &mut impl EditLog<Self>) -> VertexId {
+        let v = VertexId::new(row(self.positions.len()));
+        self.positions.push(at);
+        self.spokes.push(Slot::NONE);
+        log.created_vertex(v);
+        v
+    }
+
+    #[inline(always)]
+    pub(super) fn push_edge(&mut self, edge: Edge, log: &mut impl EditLog<Self>) -> EdgeId {
+        let e = self.next_edge();
+        self.edges.push(edge);
+        log.created_edge(e);
+        e
+    }
+
+    /// Returns the edge that will be added next.
+    #[inline(always)]
+    pub(super) fn next_edge(&self) -> EdgeId {
+        EdgeId::new(row(self.edges.len()))
+    }
+
+    #[inline(always)]
+    pub(super) fn push_face(&mut self, side: EdgeId, log: &mut impl EditLog<Self>) -> FaceId {
+        let f = FaceId::new(row(self.sides.len()));
+        self.sides.push(side);
+        log.created_face(f);
+        f
+    }
+
+    #[inline(always)]
+    pub(super) fn delete_vertex(&mut self, v: VertexId, log: &mut impl EditLog<Self>) {
+        *self.spokes.write(v.index()) = Slot::NONE;
+        self.vertex_holes.insert(v.index());
+        log.removed_vertex(v);
+    }
+
+    #[inline(always)]
+    pub(super) fn delete_edge(&mut self, e: EdgeId, log: &mut impl EditLog<Self>) {
+        *self.edges.write(e.index()) = Edge::DELETED;
+        self.edge_holes.insert(e.index());
+        log.removed_edge(e);
+    }
+
+    #[inline(always)]
+    pub(super) fn delete_face(&mut self, f: FaceId, log: &mut impl EditLog<Self>) {
+        *self.sides.write(f.index()) = NO_EDGE;
+        self.face_holes.insert(f.index());
+        log.removed_face(f);
+    }
+}
+
+/// Steps for boundaries and polygons.
+impl<P: Probe> EditableWingedEdgeMesh<P> {
+    /// Returns the run without a face that arrives at `v`, if `v` is on a boundary.
+    #[inline(always)]
+    pub(super) fn boundary_into(&self, v: VertexId) -> Option<RunId> {
+        let spoke = self.spokes.read(v.index()).get()?;
+        let run = Run::from(self.record(spoke), v);
+        (run.across() == Slot::NONE).then(|| RunId::new(spoke, run.side()).twin())
+    }
+
+    /// Returns the error for a face that is not a triangle.
+    #[cold]
+    pub(super) fn not_a_triangle(face: Slot<FaceId>, degree: usize) -> Refusal<Self> {
+        let face = face.get().expect("a run with a face");
+        EditError::NotATriangle { face, degree }
+    }
+}
+
+/// Builds the record of an edge from `ends[0]` to `ends[1]`. `left` and `right` have the face, the
+/// next wing and the previous wing of each side.
+#[inline(always)]
+pub(super) fn edge_record(
+    ends: [VertexId; 2],
+    left: (Slot<FaceId>, EdgeId, EdgeId),
+    right: (Slot<FaceId>, EdgeId, EdgeId),
+) -> Edge {
+    use crate::wings::Wings;
+    Edge {
+        ends,
+        faces: [left.0, right.0],
+        next: Wings::new([left.1, right.1]),
+        prev: Wings::new([left.2, right.2]),
+    }
+}
+
+/// Returns both runs of `edge`, the left one first.
+#[inline(always)]
+pub(super) fn runs_of(edge: EdgeId) -> [RunId; 2] {
+    [RunId::new(edge, Side::LEFT), RunId::new(edge, Side::RIGHT)]
+}

@@ -1,0 +1,90 @@
+//! A seeded random choice of elements. It is made on the input, so it is the same for every
+//! structure.
+
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use sixfold::{FaceId, PolygonMesh, VertexId};
+
+/// One side of a face, which identifies its edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Side {
+    /// The face.
+    pub face: FaceId,
+    /// The two ends of the edge, the lower first.
+    pub ends: [VertexId; 2],
+}
+
+/// All elements of a mesh in a seeded random order; every prefix is a uniform sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Draw {
+    /// Every vertex.
+    pub vertices: Vec<VertexId>,
+    /// Every edge once, as one of its sides.
+    pub edges: Vec<Side>,
+    /// Every face.
+    pub faces: Vec<FaceId>,
+}
+
+impl Draw {
+    /// Shuffles the elements of `polygons` with `seed`; O(n log n), n the number of corners.
+    pub fn new(polygons: &PolygonMesh, seed: u64) -> Self {
+        let mut draw = Self {
+            vertices: polygons.vertices().collect(),
+            edges: edges_of(polygons),
+            faces: polygons.faces().iter().map(|(f, _)| f).collect(),
+        };
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        draw.vertices.shuffle(&mut random);
+        draw.edges.shuffle(&mut random);
+        draw.faces.shuffle(&mut random);
+        draw
+    }
+
+    /// Returns the number of elements by kind.
+    pub fn population(&self) -> [usize; 3] {
+        [self.vertices.len(), self.edges.len(), self.faces.len()]
+    }
+}
+
+fn edges_of(polygons: &PolygonMesh) -> Vec<Side> {
+    let mut sides = Vec::with_capacity(polygons.corner_count());
+    for (face, corners) in polygons.faces().iter() {
+        let next = corners.iter().cycle().skip(1);
+        sides.extend(corners.iter().zip(next).map(|(&a, &b)| Side {
+            face,
+            ends: [a.min(b), a.max(b)],
+        }));
+    }
+    sides.sort_unstable_by_key(|side| (side.ends, side.face));
+    sides.dedup_by_key(|side| side.ends);
+    sides
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sixfold::shapes;
+
+    #[test]
+    fn every_edge_is_drawn_once_as_a_side_of_one_of_its_faces() {
+        let mesh = shapes::default_study();
+        let draw = Draw::new(&mesh, 7);
+        assert_eq!(draw.edges.len() * 2, mesh.corner_count(), "closed");
+        for side in &draw.edges {
+            let corners = mesh.faces().face(side.face);
+            assert!(side.ends.iter().all(|end| corners.contains(end)));
+        }
+        let mut edges: Vec<_> = draw.edges.iter().map(|side| side.ends).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        assert_eq!(edges.len(), draw.edges.len());
+    }
+
+    #[test]
+    fn the_seed_determines_the_order() {
+        let mesh = shapes::default_study();
+        assert_eq!(Draw::new(&mesh, 7), Draw::new(&mesh, 7));
+        assert_ne!(Draw::new(&mesh, 7), Draw::new(&mesh, 8));
+    }
+}

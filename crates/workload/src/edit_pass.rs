@@ -1,0 +1,395 @@
+//! Passes of edits over a whole mesh, on one structure.
+
+use std::fmt;
+
+use sixfold::remeshing::{Decimation, Target, decimate};
+use sixfold::{
+    EdgeMap, EditLog, EditVisitor, HandleMap, MeshEdit, MeshQuery, PolygonMesh, Representation,
+    visit_editable,
+};
+
+use crate::clock::Time;
+use crate::series::{ReusedCopies, Series};
+
+/// A pass of edits that changes a triangle mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum EditPass {
+    /// Inserts a vertex into the centre of every face, then collapses each into a neighbour, with
+    /// all checks, then compacts the tables. At the end the mesh has its original faces.
+    SplitCollapse,
+    /// Flips every edge of the initial mesh if the flip is legal, in the order in which the faces
+    /// first list the edges; then does the same again.
+    FlipAll,
+    /// Collapses edges by quadric error until half of the faces are left.
+    DecimateHalf,
+    /// Collapses edges by quadric error until a tenth of the faces is left.
+    DecimateTenth,
+}
+
+impl EditPass {
+    /// All four passes.
+    pub const ALL: [Self; 4] = [
+        Self::SplitCollapse,
+        Self::FlipAll,
+        Self::DecimateHalf,
+        Self::DecimateTenth,
+    ];
+
+    /// Returns its name, as users write it: `split_collapse`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::SplitCollapse => "split_collapse",
+            Self::FlipAll => "flip_all",
+            Self::DecimateHalf => "decimate_half",
+            Self::DecimateTenth => "decimate_tenth",
+        }
+    }
+
+    /// Sets it up on the structure called `backend`. Returns `None` if there is no such structure,
+    /// or it cannot be edited.
+    ///
+    /// # Errors
+    ///
+    /// Returns the reason if the structure cannot hold `polygons`, or a face is not a triangle.
+    pub fn prepare(
+        self,
+        backend: &str,
+        polygons: &PolygonMesh,
+    ) -> Option<Result<Box<dyn Editor>, String>> {
+        struct Builder<'a>(EditPass, &'a PolygonMesh);
+
+        impl EditVisitor for Builder<'_> {
+            type Output = Result<Box<dyn Editor>, String>;
+
+            fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output {
+                let &mut Self(pass, polygons) = self;
+                if let Some((f, degree)) = polygons.first_polygon() {
+                    return Err(format!(
+                        "face {f} has {degree} corners, and {pass} needs triangles: triangulate the mesh"
+                    ));
+                }
+                let mesh = M::from_polygons(polygons).map_err(|refusal| refusal.to_string())?;
+                Ok(Box::new(EditPassRun {
+                    pass,
+                    edges: match pass {
+                        EditPass::FlipAll => edges_in_face_order(&mesh),
+                        _ => Vec::new(),
+                    },
+                    mesh,
+                    copies: ReusedCopies::default(),
+                }))
+            }
+        }
+
+        visit_editable(backend, &mut Builder(self, polygons))
+    }
+}
+
+impl fmt::Display for EditPass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Edits that are ready to be run repeatedly, each time on the initial mesh.
+pub trait Editor {
+    /// Runs them as `series` describes and returns the total time of all timed runs.
+    fn time(&mut self, series: &Series<'_>) -> Time;
+
+    /// Returns the counts of a run; all runs do the same.
+    fn result(&self) -> Edits;
+}
+
+/// The counts of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Edits {
+    /// Visited elements: faces to split or to decimate, edges to flip.
+    pub elements: u64,
+    /// Number of edits that were done.
+    pub done: u64,
+    /// Number of edits that were refused.
+    pub refused: u64,
+    /// The sum of all edge lengths afterwards.
+    pub checksum: f64,
+}
+
+/// A pass of edits on a structure of one type.
+struct EditPassRun<M: MeshEdit> {
+    pass: EditPass,
+    mesh: M,
+    /// The edges to flip, in order.
+    edges: Vec<M::Edge>,
+    copies: ReusedCopies<WorkingCopy<M>>,
+}
+
+/// A copy of the mesh, the current handles of its edges, and the counts of the last run on it.
+struct WorkingCopy<M: MeshEdit> {
+    mesh: M,
+    edges: Option<TrackedEdges<M>>,
+    edits: Edits,
+}
+
+impl<M: Representation + MeshEdit + 'static> Editor for EditPassRun<M> {
+    fn time(&mut self, series: &Series<'_>) -> Time {
+        let Self {
+            pass,
+            mesh,
+            edges,
+            copies,
+        } = self;
+        let tracked = match pass {
+            EditPass::FlipAll => Some(TrackedEdges::new(mesh, edges)),
+            _ => None,
+        };
+        copies.time(
+            series,
+            mesh.memory().total(),
+            || WorkingCopy {
+                mesh: mesh.clone(),
+                edges: tracked.clone(),
+                edits: Edits::default(),
+            },
+            |copy| {
+                copy.mesh.clone_from(mesh);
+                copy.edges.clone_from(&tracked);
+            },
+            |copy| {
+                copy.edits = match (*pass, &mut copy.edges) {
+                    (EditPass::FlipAll, Some(edges)) => flip_all(&mut copy.mesh, edges),
+                    (EditPass::DecimateHalf, _) => decimate_to(&mut copy.mesh, 0.5),
+                    (EditPass::DecimateTenth, _) => decimate_to(&mut copy.mesh, 0.1),
+                    _ => split_collapse(&mut copy.mesh),
+                };
+            },
+        )
+    }
+
+    fn result(&self) -> Edits {
+        let Some(WorkingCopy { mesh, edits, .. }) = self.copies.used_copy() else {
+            return Edits::default();
+        };
+        let lengths = mesh.edges().map(|e| {
+            let [a, b] = mesh.edge_vertices(e).map(|v| mesh.position(v).as_dvec3());
+            a.distance(b)
+        });
+        Edits {
+            checksum: lengths.sum(),
+            ..*edits
+        }
+    }
+}
+
+#[inline(never)]
+fn split_collapse<M: MeshEdit>(mesh: &mut M) -> Edits {
+    let mut edits = Edits::default();
+    let faces: Vec<M::Face> = mesh.faces().collect();
+    let mut middles = Vec::with_capacity(faces.len());
+    for f in faces {
+        edits.elements += 1;
+        let mut sum = sixfold::Point::ZERO;
+        mesh.face_vertices(f).for_each(|v| sum += mesh.position(v));
+        match mesh.poke_face(f, sum * (1.0 / 3.0), &mut ()) {
+            Ok(middle) => middles.push(middle),
+            Err(_) => edits.refused += 1,
+        }
+    }
+    for middle in middles {
+        let Some(spoke) = mesh.vertex_edges(middle).next() else {
+            continue;
+        };
+        let [a, b] = mesh.edge_vertices(spoke);
+        let corner = if a == middle { b } else { a };
+        let at = mesh.position(corner);
+        match mesh.collapse_edge(spoke, corner, at, &mut ()) {
+            Ok(_) => edits.done += 1,
+            Err(_) => edits.refused += 1,
+        }
+    }
+    mesh.compact(&mut ());
+    edits
+}
+
+#[inline(never)]
+fn flip_all<M: MeshEdit>(mesh: &mut M, tracked: &mut TrackedEdges<M>) -> Edits {
+    let mut edits = Edits::default();
+    for _ in 0..2 {
+        for i in 0..tracked.edges.len() {
+            edits.elements += 1;
+            tracked.flipping = i;
+            match mesh.flip_edge(tracked.edges[i], tracked) {
+                Ok(flipped) => {
+                    tracked.edges[i] = flipped;
+                    tracked.apply_renames();
+                    edits.done += 1;
+                }
+                Err(_) => edits.refused += 1,
+            }
+        }
+    }
+    edits
+}
+
+#[inline(never)]
+fn decimate_to<M: Representation + MeshEdit>(mesh: &mut M, ratio: f64) -> Edits {
+    let elements = mesh.face_count() as u64;
+    let job = Decimation {
+        target: Target::Ratio(ratio),
+        ..Decimation::default()
+    };
+    let done = decimate(mesh, &job);
+    Edits {
+        elements,
+        done: done.as_ref().map_or(0, |done| done.collapses as u64),
+        refused: done.as_ref().map_or(elements, |done| done.refused as u64),
+        checksum: 0.0,
+    }
+}
+
+/// Returns the edges in the order in which the faces first list them.
+fn edges_in_face_order<M: MeshQuery>(mesh: &M) -> Vec<M::Edge> {
+    let mut listed = mesh.edge_map(false);
+    let mut edges = Vec::new();
+    for f in mesh.faces() {
+        for e in mesh.face_edges(f) {
+            if !std::mem::replace(&mut listed[e], true) {
+                edges.push(e);
+            }
+        }
+    }
+    edges
+}
+
+/// The current handles of a list of edges, updated when flips change handles.
+///
+/// A flip returns the new handle of the flipped edge. It changes handles of other edges only in
+/// structures whose edge handle is a corner that faces the edge. Then `indices` finds the list
+/// entry.
+struct TrackedEdges<M: MeshEdit> {
+    edges: Vec<M::Edge>,
+    /// By edge: its index in `edges`.
+    indices: EdgeMap<M, u32>,
+    /// The index of the edge that is being flipped.
+    flipping: usize,
+    /// Indices and new handles that the current flip has reported.
+    renamed: Vec<(u32, M::Edge)>,
+}
+
+impl<M: MeshEdit> Clone for TrackedEdges<M> {
+    fn clone(&self) -> Self {
+        Self {
+            edges: self.edges.clone(),
+            indices: self.indices.clone(),
+            flipping: self.flipping,
+            renamed: self.renamed.clone(),
+        }
+    }
+
+    /// Copies into the existing tables.
+    fn clone_from(&mut self, source: &Self) {
+        let Self {
+            edges,
+            indices,
+            flipping,
+            renamed,
+        } = source;
+        self.edges.clone_from(edges);
+        self.indices.clone_from(indices);
+        self.flipping = *flipping;
+        self.renamed.clone_from(renamed);
+    }
+}
+
+impl<M: MeshEdit> TrackedEdges<M> {
+    fn new(mesh: &M, edges: &[M::Edge]) -> Self {
+        let mut indices = mesh.edge_map(0);
+        // Maps by row are always filled. Edges without rows need a hash map; their flips rename
+        // only the flipped edge, so the map stays empty.
+        if mesh.edge_rows() > 0 {
+            for (index, &e) in (0..).zip(edges) {
+                indices.insert(e, index);
+            }
+        }
+        Self {
+            edges: edges.to_vec(),
+            indices,
+            flipping: 0,
+            renamed: Vec::with_capacity(8),
+        }
+    }
+
+    /// Stores all new handles at once: a new handle may be the old handle of another edge.
+    #[inline]
+    fn apply_renames(&mut self) {
+        while let Some((index, edge)) = self.renamed.pop() {
+            self.edges[index as usize] = edge;
+            self.indices.insert(edge, index);
+        }
+    }
+}
+
+impl<M: MeshEdit> EditLog<M> for TrackedEdges<M> {
+    #[inline]
+    fn renamed_edge(&mut self, old: M::Edge, new: M::Edge) {
+        if old == self.edges[self.flipping] {
+            self.renamed.push((self.flipping as u32, new));
+        } else {
+            self.renamed.push((self.indices[old], new));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold::{roster, shapes};
+
+    use super::*;
+    use crate::clock::MachineClock;
+
+    #[test]
+    fn every_structure_does_the_same_work() {
+        let polygons = shapes::geodesic(3).expect("small");
+        for pass in EditPass::ALL {
+            let mut results = Vec::new();
+            for backend in roster() {
+                let editor = pass.prepare(backend.name, &polygons);
+                let mut editor = editor.expect("all six").expect("triangles");
+                let clock = MachineClock::start();
+                editor.time(&Series::once(&clock));
+                let once = editor.result();
+                editor.time(&Series::with_runs(3, &clock).with_untimed(1));
+                assert_eq!(editor.result(), once, "{pass} on {}, again", backend.name);
+                results.push((backend.name, once));
+            }
+            let (_, first) = results[0];
+            assert!(first.done > 0 && first.checksum > 0.0);
+            for (name, result) in results {
+                assert_eq!(
+                    (result.elements, result.done),
+                    (first.elements, first.done),
+                    "{pass} on {name}"
+                );
+                let error = (result.checksum - first.checksum).abs();
+                assert!(
+                    error < 1e-6 * first.checksum,
+                    "{pass} on {name}: {result:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn polygons_are_refused_with_the_first_such_face() {
+        let refused = EditPass::FlipAll
+            .prepare("half-edge", &shapes::cube())
+            .expect("one of six");
+        let Err(refusal) = refused else {
+            panic!("quads were accepted")
+        };
+        assert!(refusal.contains("face f0 has 4 corners"), "{refusal}");
+        assert!(
+            EditPass::FlipAll
+                .prepare("abacus", &shapes::cube())
+                .is_none()
+        );
+    }
+}

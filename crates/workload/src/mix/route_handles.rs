@@ -1,0 +1,237 @@
+//! The handles of one structure for the elements of a route, and the operations on them.
+
+use std::hint::black_box;
+use std::ops::Range;
+
+use sixfold::{MeshQuery, Point, PolygonMesh, Relation, Representation, VertexId};
+
+use crate::candidate::edge_handle;
+use crate::mix::route::Route;
+use crate::operation::ElementKind;
+use crate::sweeps::Sink;
+use crate::workload::Action;
+
+/// The elements of a route as handles of one structure.
+pub(crate) struct RouteHandles<M: MeshQuery> {
+    vertices: Vec<M::Vertex>,
+    edges: Vec<M::Edge>,
+    faces: Vec<M::Face>,
+}
+
+impl<M: MeshQuery> RouteHandles<M> {
+    /// Lists all elements in the order of the structure.
+    pub(crate) fn from_mesh(mesh: &M) -> Self {
+        Self {
+            vertices: mesh.vertices().collect(),
+            edges: mesh.edges().collect(),
+            faces: mesh.faces().collect(),
+        }
+    }
+
+    /// Converts the handles to those of another mesh for the same elements.
+    pub(crate) fn map_handles<N: MeshQuery>(
+        self,
+        vertex: impl FnMut(M::Vertex) -> N::Vertex,
+        edge: impl FnMut(M::Edge) -> N::Edge,
+        face: impl FnMut(M::Face) -> N::Face,
+    ) -> RouteHandles<N> {
+        RouteHandles {
+            vertices: self.vertices.into_iter().map(vertex).collect(),
+            edges: self.edges.into_iter().map(edge).collect(),
+            faces: self.faces.into_iter().map(face).collect(),
+        }
+    }
+
+    /// Returns the number of elements of `kind`.
+    pub(crate) fn len(&self, kind: ElementKind) -> usize {
+        match kind {
+            ElementKind::Vertex => self.vertices.len(),
+            ElementKind::Edge => self.edges.len(),
+            ElementKind::Face => self.faces.len(),
+        }
+    }
+
+    /// Runs `action` on the elements of the operations `range`. Returns the number of elements that
+    /// it yielded, or of positions that it read.
+    #[inline(never)]
+    pub(crate) fn run_action(&self, mesh: &M, action: Action, range: Range<u64>) -> u64 {
+        let (v, e, f) = (&self.vertices, &self.edges, &self.faces);
+        match action {
+            Action::Relation(relation) => match relation {
+                Relation::VertexVertices => {
+                    count_results(v, range, |s, v| s.consume(mesh.vertex_vertices(v)))
+                }
+                Relation::VertexEdges => {
+                    count_results(v, range, |s, v| s.consume(mesh.vertex_edges(v)))
+                }
+                Relation::VertexFaces => {
+                    count_results(v, range, |s, v| s.consume(mesh.vertex_faces(v)))
+                }
+                Relation::EdgeVertices => {
+                    count_results(e, range, |s, e| s.consume(mesh.edge_vertices(e)))
+                }
+                Relation::EdgeEdges => {
+                    count_results(e, range, |s, e| s.consume(mesh.edge_edges(e)))
+                }
+                Relation::EdgeFaces => {
+                    count_results(e, range, |s, e| s.consume(mesh.edge_faces(e)))
+                }
+                Relation::FaceVertices => {
+                    count_results(f, range, |s, f| s.consume(mesh.face_vertices(f)))
+                }
+                Relation::FaceEdges => {
+                    count_results(f, range, |s, f| s.consume(mesh.face_edges(f)))
+                }
+                Relation::FaceFaces => {
+                    count_results(f, range, |s, f| s.consume(mesh.face_faces(f)))
+                }
+            },
+            Action::Position => sum_positions(v, range, |sum, v| {
+                *sum += mesh.position(v);
+                1
+            }),
+            Action::NeighbourPositions => sum_positions(v, range, |sum, v| {
+                add_positions(mesh, mesh.vertex_vertices(v), sum)
+            }),
+            Action::CornerPositions => sum_positions(f, range, |sum, f| {
+                add_positions(mesh, mesh.face_vertices(f), sum)
+            }),
+            Action::EndPositions => sum_positions(e, range, |sum, e| {
+                add_positions(mesh, mesh.edge_vertices(e).into_iter(), sum)
+            }),
+            // The callers run actions that write, and passes.
+            Action::SetPosition | Action::Edit(_) | Action::Pass(_) | Action::Subdivide => 0,
+        }
+    }
+
+    /// Returns the vertices of the operations `range`, as one or more slices.
+    pub(crate) fn vertices(&self, range: Range<u64>) -> impl Iterator<Item = &[M::Vertex]> {
+        slices(&self.vertices, range)
+    }
+}
+
+impl<M: Representation> RouteHandles<M> {
+    /// Looks up the handles of `route` on `mesh`, which was built from `polygons`. Leaves out the
+    /// vertices that are `occupied`, and the edges and faces that have such a vertex.
+    pub(crate) fn from_route(
+        route: &Route,
+        mesh: &M,
+        polygons: &PolygonMesh,
+        occupied: &[bool],
+    ) -> Self {
+        let is_free = |v: &VertexId| !occupied.get(v.index()).is_some_and(|&occupied| occupied);
+        if route.structure_order && occupied.is_empty() {
+            return Self::from_mesh(mesh);
+        }
+        if route.structure_order {
+            // In the order of the structure, without the elements near an edit.
+            let mut is_occupied = mesh.vertex_map(false);
+            for v in polygons.vertices().filter(|v| !is_free(v)) {
+                is_occupied[M::vertex_handle(polygons, v)] = true;
+            }
+            let mut handles = Self::from_mesh(mesh);
+            handles.vertices.retain(|&v| !is_occupied[v]);
+            handles
+                .edges
+                .retain(|&e| !mesh.edge_vertices(e).iter().any(|&v| is_occupied[v]));
+            handles
+                .faces
+                .retain(|&f| !mesh.face_vertices(f).any(|v| is_occupied[v]));
+            return handles;
+        }
+        let vertices = route.vertices.iter().filter(|v| is_free(v));
+        let edges = route
+            .edges
+            .iter()
+            .filter(|side| side.ends.iter().all(is_free));
+        let is_free_face = |f: &&sixfold::FaceId| polygons.faces().face(**f).iter().all(is_free);
+        let faces = route.faces.iter().filter(is_free_face);
+        Self {
+            vertices: vertices.map(|&v| M::vertex_handle(polygons, v)).collect(),
+            edges: edges
+                .map(|&side| edge_handle(mesh, polygons, side))
+                .collect(),
+            faces: faces.map(|&f| M::face_handle(polygons, f)).collect(),
+        }
+    }
+}
+
+/// Returns the handles of the operations `range` as one or more slices. After the last handle comes
+/// the first again.
+fn slices<H>(handles: &[H], range: Range<u64>) -> impl Iterator<Item = &[H]> {
+    let all = handles.len() as u64;
+    let mut left = if all == 0 { 0 } else { range.end - range.start };
+    let mut start = if all == 0 { 0 } else { range.start % all };
+    std::iter::from_fn(move || {
+        if left == 0 {
+            return None;
+        }
+        let end = all.min(start + left);
+        let slice = &handles[start as usize..end as usize];
+        left -= end - start;
+        start = 0;
+        Some(slice)
+    })
+}
+
+#[inline(always)]
+fn count_results<H: Copy>(
+    handles: &[H],
+    range: Range<u64>,
+    mut query: impl FnMut(&mut Sink, H),
+) -> u64 {
+    let mut sink = Sink::default();
+    for slice in slices(handles, range) {
+        slice.iter().for_each(|&handle| query(&mut sink, handle));
+    }
+    sink.finish_count()
+}
+
+#[inline(always)]
+fn sum_positions<H: Copy>(
+    handles: &[H],
+    range: Range<u64>,
+    mut add: impl FnMut(&mut Point, H) -> u64,
+) -> u64 {
+    let (mut sum, mut count) = (Point::ZERO, 0);
+    for slice in slices(handles, range) {
+        slice
+            .iter()
+            .for_each(|&handle| count += add(&mut sum, handle));
+    }
+    black_box(sum);
+    count
+}
+
+#[inline(always)]
+fn add_positions<M: MeshQuery>(
+    mesh: &M,
+    vertices: impl Iterator<Item = M::Vertex>,
+    sum: &mut Point,
+) -> u64 {
+    let (all, count) = vertices.fold((*sum, 0), |(sum, count), v| {
+        (sum + mesh.position(v), count + 1)
+    });
+    *sum = all;
+    count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_route_starts_again_after_its_last_element() {
+        let handles = [0, 1, 2, 3, 4];
+        let visited = |range| {
+            slices(&handles, range)
+                .flatten()
+                .copied()
+                .collect::<Vec<i32>>()
+        };
+        assert_eq!(visited(3..9), [3, 4, 0, 1, 2, 3]);
+        assert_eq!(visited(10..10), [0; 0]);
+        assert_eq!(visited(12..14), [2, 3]);
+        assert_eq!(slices(&[0; 0], 3..9).count(), 0);
+    }
+}

@@ -1,0 +1,129 @@
+//! The schedule of a mix: the operations of each part in each turn.
+
+use std::ops::Range;
+
+use sixfold::Counts;
+
+use crate::workload::{Action, Part, Workload};
+
+/// Operations on elements in a turn: enough that switching between the parts takes negligible time.
+const TURN_OPERATIONS: f64 = 256.0;
+/// Operations on elements in a turn if there are edits: edits take longer, and each needs its own
+/// place.
+const EDIT_TURN_OPERATIONS: f64 = 64.0;
+
+/// The schedule of the mix of a workload on a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Schedule {
+    /// The parts of the mix.
+    pub parts: Vec<Part>,
+    /// By part: its share of all operations, from 0 to 1.
+    pub shares: Vec<f64>,
+    /// The share of all operations that work on elements; the rest are passes.
+    pub on_elements: f64,
+    /// The number of operations on elements in a turn.
+    pub turn_operations: f64,
+    /// Whether the mix needs an editable mesh: it has edits or sets positions.
+    pub editable: bool,
+}
+
+impl Schedule {
+    /// Builds the schedule of `workload` on a mesh with these counts.
+    pub fn new(workload: &Workload, counts: &Counts) -> Self {
+        let shares = workload.shares(counts);
+        let on_elements = shares.iter().zip(&workload.mix);
+        let on_elements = on_elements.filter(|(_, part)| !part.action.is_pass());
+        Self {
+            on_elements: on_elements.map(|(share, _)| share).sum(),
+            turn_operations: match workload.mix.iter().any(|part| is_edit(part.action)) {
+                true => EDIT_TURN_OPERATIONS,
+                false => TURN_OPERATIONS,
+            },
+            editable: workload.mix.iter().any(|part| writes(part.action)),
+            parts: workload.mix.clone(),
+            shares,
+        }
+    }
+
+    /// Returns the range of operations of `part` that turn `turn` runs, counted from the first
+    /// turn.
+    pub fn turn_range(&self, part: usize, turn: u64) -> Range<u64> {
+        if self.parts[part].action.is_pass() {
+            return 0..0;
+        }
+        // Rounds the running total, so that no operation is lost or repeated. A part with a share
+        // of 1/1000 gets one operation in about every fourth turn.
+        let each = self.turn_operations * self.shares[part] / self.on_elements;
+        let done = |turns: u64| (each * turns as f64) as u64;
+        done(turn)..done(turn + 1)
+    }
+
+    /// Returns the number of operations of `part` in the first `turns` turns.
+    pub fn operations_within(&self, part: usize, turns: u64) -> u64 {
+        match turns {
+            0 => 0,
+            turns => self.turn_range(part, turns - 1).end,
+        }
+    }
+
+    /// Returns the parts that are edits.
+    pub fn edits(&self) -> impl Iterator<Item = usize> + Clone {
+        (0..self.parts.len()).filter(|&part| is_edit(self.parts[part].action))
+    }
+
+    /// Returns the parts that are passes.
+    pub fn passes(&self) -> impl Iterator<Item = usize> {
+        (0..self.parts.len()).filter(|&part| self.parts[part].action.is_pass())
+    }
+
+    /// Returns the parts that work on elements.
+    pub fn elements(&self) -> impl Iterator<Item = usize> {
+        (0..self.parts.len()).filter(|&part| !self.parts[part].action.is_pass())
+    }
+}
+
+fn is_edit(action: Action) -> bool {
+    matches!(action, Action::Edit(_))
+}
+
+/// Returns whether an action on elements changes the mesh.
+fn writes(action: Action) -> bool {
+    is_edit(action) || action == Action::SetPosition
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_part_gets_its_share() {
+        let text = "operations = 5\n[mix]\nvertex_faces = 3\nedge_faces = 0.001\nboundary = 1";
+        let workload = Workload::parse("test", "test", text).expect("fine");
+        let counts = Counts {
+            vertices: 4,
+            edges: 6,
+            faces: 4,
+            corners: 12,
+            uniform: true,
+        };
+        let schedule = Schedule::new(&workload, &counts);
+        let turns = 100_000;
+        let all: u64 = (0..3)
+            .map(|part| schedule.operations_within(part, turns))
+            .sum();
+        assert!(all.abs_diff(256 * turns) <= 2, "{all}");
+        for part in 0..3 {
+            let summed: u64 = (0..1000)
+                .map(|t| schedule.turn_range(part, t).count() as u64)
+                .sum();
+            assert_eq!(
+                summed,
+                schedule.operations_within(part, 1000),
+                "part {part}"
+            );
+        }
+        assert_eq!(schedule.operations_within(1, turns), 8530); // 25.6 million by 3001
+        assert_eq!(schedule.operations_within(2, turns), 0);
+        assert!((schedule.on_elements - 3.001 / 4.001).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,371 @@
+//! A mix on flat tables of the queried relations, instead of on a structure.
+
+use std::hint::black_box;
+
+use sixfold::{
+    EdgeId, FaceId, MeshQuery, Point, PolygonMesh, Relation, Representation, RowId, VertexId,
+    Visitor, visit,
+};
+use sixfold_relation_table::{Numbering, RelationTable, TabulationError};
+
+use crate::candidate::{ElementSample, Run};
+use crate::clock::{Clock, Time, timed};
+use crate::mix::passes::pass_over;
+use crate::mix::route::Route;
+use crate::mix::route_handles::RouteHandles;
+use crate::mix::schedule::Schedule;
+use crate::mix::{MixBackend, MixRun};
+use crate::operation::Operation;
+use crate::series::{Series, time_making};
+use crate::sweeps::Outputs;
+use crate::workload::Action;
+
+/// Tables of the queried relations, the positions, and the element counts.
+struct Tables {
+    positions: Vec<Point>,
+    edges: usize,
+    faces: usize,
+    vertex_vertices: Option<RelationTable<VertexId, VertexId>>,
+    vertex_edges: Option<RelationTable<VertexId, EdgeId>>,
+    vertex_faces: Option<RelationTable<VertexId, FaceId>>,
+    edge_vertices: Option<RelationTable<EdgeId, VertexId>>,
+    edge_edges: Option<RelationTable<EdgeId, EdgeId>>,
+    edge_faces: Option<RelationTable<EdgeId, FaceId>>,
+    face_vertices: Option<RelationTable<FaceId, VertexId>>,
+    face_edges: Option<RelationTable<FaceId, EdgeId>>,
+    face_faces: Option<RelationTable<FaceId, FaceId>>,
+}
+
+impl Tables {
+    fn new<M: MeshQuery>(mesh: &M, relations: &[Relation]) -> Result<Self, TabulationError> {
+        let numbers = Numbering::new(mesh);
+        let is_queried = |relation| relations.contains(&relation);
+        macro_rules! table {
+            ($name:ident, $relation:ident) => {
+                match is_queried(Relation::$relation) {
+                    true => Some(numbers.$name()?),
+                    false => None,
+                }
+            };
+        }
+        Ok(Self {
+            positions: numbers.positions(),
+            edges: mesh.edge_count(),
+            faces: mesh.face_count(),
+            vertex_vertices: table!(vertex_vertices, VertexVertices),
+            vertex_edges: table!(vertex_edges, VertexEdges),
+            vertex_faces: table!(vertex_faces, VertexFaces),
+            edge_vertices: table!(edge_vertices, EdgeVertices),
+            edge_edges: table!(edge_edges, EdgeEdges),
+            edge_faces: table!(edge_faces, EdgeFaces),
+            face_vertices: table!(face_vertices, FaceVertices),
+            face_edges: table!(face_edges, FaceEdges),
+            face_faces: table!(face_faces, FaceFaces),
+        })
+    }
+
+    fn bytes(&self) -> usize {
+        fn bytes<A: RowId, B: RowId>(table: &Option<RelationTable<A, B>>) -> usize {
+            table.as_ref().map_or(0, RelationTable::bytes)
+        }
+        size_of_val(&self.positions[..])
+            + bytes(&self.vertex_vertices)
+            + bytes(&self.vertex_edges)
+            + bytes(&self.vertex_faces)
+            + bytes(&self.edge_vertices)
+            + bytes(&self.edge_edges)
+            + bytes(&self.edge_faces)
+            + bytes(&self.face_vertices)
+            + bytes(&self.face_edges)
+            + bytes(&self.face_faces)
+    }
+}
+
+/// Defines one query; an empty row if the relation has no table, because the workload does not
+/// query it.
+macro_rules! row {
+    ($name:ident, $from:ty, $to:ty) => {
+        #[inline]
+        fn $name(&self, element: $from) -> impl Iterator<Item = $to> {
+            let row = self
+                .$name
+                .as_ref()
+                .map_or(&[][..], |table| table.row(element));
+            row.iter().copied()
+        }
+    };
+}
+
+fn numbered<H: RowId>(count: usize) -> impl Iterator<Item = H> {
+    (0..count as u32).map(H::from_row)
+}
+
+impl MeshQuery for Tables {
+    type Vertex = VertexId;
+    type Edge = EdgeId;
+    type Face = FaceId;
+
+    fn vertices(&self) -> impl Iterator<Item = VertexId> {
+        numbered(self.positions.len())
+    }
+    fn edges(&self) -> impl Iterator<Item = EdgeId> {
+        numbered(self.edges)
+    }
+    fn faces(&self) -> impl Iterator<Item = FaceId> {
+        numbered(self.faces)
+    }
+    fn vertex_count(&self) -> usize {
+        self.positions.len()
+    }
+    fn edge_count(&self) -> usize {
+        self.edges
+    }
+    fn face_count(&self) -> usize {
+        self.faces
+    }
+    #[inline]
+    fn position(&self, v: VertexId) -> Point {
+        self.positions[v.index()]
+    }
+    row!(vertex_vertices, VertexId, VertexId);
+    row!(vertex_edges, VertexId, EdgeId);
+    row!(vertex_faces, VertexId, FaceId);
+    #[inline]
+    fn edge_vertices(&self, e: EdgeId) -> [VertexId; 2] {
+        let table = self.edge_vertices.as_ref();
+        let row = table.and_then(|table| table.row(e).first_chunk());
+        *row.expect("a queried relation has a table, and an edge has two ends")
+    }
+    row!(edge_edges, EdgeId, EdgeId);
+    row!(edge_faces, EdgeId, FaceId);
+    row!(face_vertices, FaceId, VertexId);
+    row!(face_edges, FaceId, EdgeId);
+    row!(face_faces, FaceId, FaceId);
+    fn vertex_rows(&self) -> usize {
+        self.positions.len()
+    }
+    fn edge_rows(&self) -> usize {
+        self.edges
+    }
+    fn face_rows(&self) -> usize {
+        self.faces
+    }
+}
+
+/// Builds tables of the relations that `schedule` queries, from the structure called `backend`,
+/// which is built from `polygons`. Returns `None` if there is no such structure, it cannot hold
+/// `polygons`, or the schedule changes connectivity.
+pub fn tabulate<'a>(
+    backend: &str,
+    polygons: &'a PolygonMesh,
+    schedule: &'a Schedule,
+    route: &'a Route,
+) -> Option<Box<dyn MixBackend + 'a>> {
+    struct Builder<'a> {
+        polygons: &'a PolygonMesh,
+        schedule: &'a Schedule,
+        route: &'a Route,
+    }
+
+    impl<'a> Visitor for Builder<'a> {
+        type Output = Option<Box<dyn MixBackend + 'a>>;
+
+        fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
+            let mesh = M::from_polygons(self.polygons).ok()?;
+            let relations = relations(self.schedule);
+            let tables = Tables::new(&mesh, &relations).ok()?;
+            let handles = route_handles(&mesh, self.polygons, self.route);
+            Some(Box::new(TableMix {
+                outputs: Outputs::for_mesh(&tables),
+                moved: tables.positions.clone(),
+                merged: self.polygons.vertex_count() - tables.positions.len(),
+                tables,
+                schedule: self.schedule,
+                handles,
+                polygons: self.polygons,
+                build: build::<M>,
+                structure_type: M::type_path(),
+            }))
+        }
+    }
+
+    if schedule
+        .parts
+        .iter()
+        .any(|part| part.action.changes_connectivity())
+    {
+        return None;
+    }
+    let mut builder = Builder {
+        polygons,
+        schedule,
+        route,
+    };
+    visit(backend, &mut builder).flatten()
+}
+
+/// Returns the relations that a schedule queries; a relation may occur several times.
+fn relations(schedule: &Schedule) -> Vec<Relation> {
+    let relations = schedule
+        .parts
+        .iter()
+        .flat_map(|part| part.action.relations());
+    relations.collect()
+}
+
+/// Converts the route to the element numbers of the tables.
+fn route_handles<M: Representation>(
+    mesh: &M,
+    polygons: &PolygonMesh,
+    route: &Route,
+) -> RouteHandles<Tables> {
+    let handles = RouteHandles::from_route(route, mesh, polygons, &[]);
+    let numbers = Numbering::new(mesh);
+    handles.map_handles(
+        |v| numbers.vertex(v),
+        |e| numbers.edge(e),
+        |f| numbers.face(f),
+    )
+}
+
+/// Builds the structure and its tables, and returns the time of both. The tables are dropped
+/// outside the timing.
+fn build<M: Representation>(
+    polygons: &PolygonMesh,
+    relations: &[Relation],
+    bytes: usize,
+    series: &Series<'_>,
+) -> Time {
+    let build = || {
+        let mesh = M::from_polygons(black_box(polygons)).ok();
+        mesh.map(|mesh| Tables::new(&mesh, relations))
+    };
+    time_making(series, bytes, build).0
+}
+
+/// Relation tables and the work of a mix on them.
+struct TableMix<'a> {
+    tables: Tables,
+    schedule: &'a Schedule,
+    handles: RouteHandles<Tables>,
+    outputs: Outputs<Tables>,
+    moved: Vec<Point>,
+    merged: usize,
+    polygons: &'a PolygonMesh,
+    build: fn(&PolygonMesh, &[Relation], usize, &Series<'_>) -> Time,
+    /// The path of the structure type from which the tables are built.
+    structure_type: &'static str,
+}
+
+impl TableMix<'_> {
+    fn run_range(&mut self, part: usize, range: std::ops::Range<u64>) -> u64 {
+        match self.schedule.parts[part].action {
+            Action::SetPosition => {
+                let count = range.end - range.start;
+                for run in self.handles.vertices(range) {
+                    for v in run {
+                        let at = &mut self.tables.positions[v.index()];
+                        *at = black_box(*at);
+                    }
+                }
+                count
+            }
+            action => self
+                .handles
+                .run_action(black_box(&self.tables), action, range),
+        }
+    }
+}
+
+impl MixBackend for TableMix<'_> {
+    fn name(&self) -> &'static str {
+        "relation-tables"
+    }
+
+    fn type_paths(&self) -> Vec<&'static str> {
+        vec![self.structure_type, "sixfold_relation_table::RelationTable"]
+    }
+
+    fn bytes(&self) -> usize {
+        self.tables.bytes()
+    }
+
+    fn merged_vertices(&self) -> usize {
+        self.merged
+    }
+
+    fn scans(&self) -> Vec<bool> {
+        vec![false; self.schedule.parts.len()]
+    }
+
+    fn run(&mut self, turn: u64, turns: u64, _: usize, clock: &dyn Clock) -> MixRun {
+        let (mut operations, mut yielded) = (0, 0);
+        let time = timed(clock, || {
+            for turn in turn..turn + turns {
+                for part in 0..self.schedule.parts.len() {
+                    let range = self.schedule.turn_range(part, turn);
+                    operations += range.end - range.start;
+                    if !range.is_empty() {
+                        yielded += self.run_range(part, range);
+                    }
+                }
+            }
+        });
+        MixRun {
+            time,
+            operations,
+            yielded,
+            refused: 0,
+        }
+    }
+
+    fn run_part(&mut self, part: usize, first: u64, operations: u64, clock: &dyn Clock) -> MixRun {
+        let mut yielded = 0;
+        let time = timed(clock, || {
+            yielded = self.run_range(part, first..first + operations)
+        });
+        MixRun {
+            time,
+            operations,
+            yielded,
+            refused: 0,
+        }
+    }
+
+    fn cycle_length(&self, part: usize) -> u64 {
+        let kind = self.schedule.parts[part].action.kind();
+        kind.map_or(1, |kind| self.handles.len(kind) as u64)
+    }
+
+    fn run_pass(
+        &mut self,
+        operation: Operation,
+        _: Option<ElementSample>,
+        series: &Series<'_>,
+    ) -> Run {
+        let run = pass_over(&self.tables, &mut self.outputs, operation, series);
+        if operation != Operation::VvSmooth {
+            return run;
+        }
+        // Written to a copy, as for every structure, so that the mesh keeps its positions.
+        let Self { moved, outputs, .. } = self;
+        let swap = series.time_together(|| {
+            moved.copy_from_slice(black_box(outputs.vertices.values()));
+            black_box(&mut *moved);
+        });
+        let time = run.time.plus(swap.scaled(1.0 / f64::from(series.runs)));
+        Run { time, ..run }
+    }
+
+    fn accepted_places(&mut self) -> Vec<Vec<bool>> {
+        Vec::new()
+    }
+
+    fn keep_places(&mut self, _: &[Vec<bool>]) {}
+
+    fn build(&self, series: &Series<'_>) -> Time {
+        let bytes = self.tables.bytes();
+        let time = (self.build)(self.polygons, &relations(self.schedule), bytes, series);
+        time.scaled(1.0 / f64::from(series.runs))
+    }
+}

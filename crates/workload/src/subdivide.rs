@@ -1,0 +1,155 @@
+//! One subdivision of a study: sets it up, runs it on one thread, and returns its time and result.
+
+use std::collections::BTreeSet;
+use std::hint::black_box;
+use std::sync::OnceLock;
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use sixfold::subdivision::SubdivisionError;
+use sixfold::{Creases, Point, PolygonMesh, Representation, VertexId};
+
+use crate::candidate::{Outcome, Run};
+use crate::clock::Time;
+use crate::series::Series;
+use crate::subdivision_job::SubdivisionJob;
+
+/// Returns the pool of the one thread that runs all subdivisions. With one thread, its processor
+/// time is that of all the work. All structures use the same thread, so that they share its heap.
+fn one_thread_pool() -> Result<&'static ThreadPool, String> {
+    static POOL: OnceLock<Result<ThreadPool, String>> = OnceLock::new();
+    let start = || {
+        let pool = ThreadPoolBuilder::new().num_threads(1).build();
+        pool.map_err(|error| format!("cannot start a thread: {error}"))
+    };
+    POOL.get_or_init(start).as_ref().map_err(Clone::clone)
+}
+
+/// Sets `job` up on a structure of type `M` built from `polygons`, and runs it as `series`
+/// describes.
+///
+/// Set-up is outside the timing. In native subdivisions, the untimed runs make the tables that all
+/// later runs reuse. The other methods build their structures within the timing.
+pub(crate) fn subdivide<M: Representation + 'static>(
+    job: SubdivisionJob,
+    polygons: &PolygonMesh,
+    series: &Series<'_>,
+) -> Run {
+    // Everything runs on that thread, so clock, caches and page faults are those of the thread.
+    let on_thread = |pool: &ThreadPool| pool.install(|| set_up_and_run::<M>(job, polygons, series));
+    one_thread_pool()
+        .and_then(on_thread)
+        .unwrap_or_else(|refusal| Run {
+            time: Time::zero_like(series.clock.now()),
+            outcome: None,
+            refusal: Some(refusal),
+        })
+}
+
+fn set_up_and_run<M: Representation + 'static>(
+    job: SubdivisionJob,
+    polygons: &PolygonMesh,
+    series: &Series<'_>,
+) -> Result<Run, String> {
+    check_degrees(job, polygons).map_err(|error| error.to_string())?;
+    let refiner = job.prepare_on::<M>(polygons, &Creases::default());
+    let refiner = refiner.ok_or("it has no native method: it cannot split its own tables")?;
+    let mut refiner = refiner.map_err(|error| error.to_string())?;
+    let mut done = Ok(());
+    let time = series.time_together(|| {
+        if done.is_ok() {
+            done = black_box(&mut refiner).run();
+        }
+    });
+    done.map_err(|error| error.to_string())?;
+    let outcome = series.check.then(|| {
+        let (faces, checksum) = refiner.result();
+        Outcome {
+            checksum,
+            elements: faces as u64,
+        }
+    });
+    Ok(Run::done(time, outcome))
+}
+
+/// Checks that the scheme accepts the degrees of the faces. It is checked here, so that the error
+/// is the same for all structures and names a face of the whole mesh. O(faces) at most.
+fn check_degrees(job: SubdivisionJob, polygons: &PolygonMesh) -> Result<(), SubdivisionError> {
+    let scheme = job.subdivision.scheme;
+    if scheme.kind().takes != "triangles" {
+        return Ok(());
+    }
+    match polygons.first_polygon() {
+        Some((face, degree)) => Err(SubdivisionError::NotATriangle {
+            scheme,
+            face,
+            degree,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Returns a mesh of about the first `size` faces of `polygons`, without faces that touch others
+/// only at a vertex. So every structure that holds `polygons` also holds it. O(size · log size) for
+/// each of a few passes.
+pub(crate) fn patch(polygons: &PolygonMesh, size: usize) -> PolygonMesh {
+    let faces = polygons.faces().iter().take(size.max(1));
+    let mut faces: Vec<&[VertexId]> = faces.map(|(_, corners)| corners).collect();
+    loop {
+        let mesh = submesh(polygons, &faces);
+        let mut taken: BTreeSet<VertexId> = BTreeSet::new();
+        let singular: BTreeSet<VertexId> = mesh.vertices_of_several_fans().into_iter().collect();
+        if singular.is_empty() {
+            return mesh;
+        }
+        // Keeps the first face at each such vertex. The number of faces decreases in each pass, and
+        // a single face has no such vertex, so the loop ends.
+        let corners = mesh.faces().iter().map(|(_, corners)| corners);
+        let is_kept: Vec<bool> = corners
+            .map(|corners| {
+                let at = corners.iter().filter(|v| singular.contains(v));
+                let at: Vec<VertexId> = at.copied().collect();
+                let free = at.iter().all(|v| !taken.contains(v));
+                taken.extend(at);
+                free
+            })
+            .collect();
+        let mut is_kept = is_kept.into_iter();
+        faces.retain(|_| is_kept.next().unwrap_or(false));
+    }
+}
+
+/// Builds the mesh of some faces of `polygons`, with only their vertices.
+fn submesh(polygons: &PolygonMesh, faces: &[&[VertexId]]) -> PolygonMesh {
+    let mut used: Vec<VertexId> = faces.iter().copied().flatten().copied().collect();
+    used.sort_unstable();
+    used.dedup();
+    let number = |v: &VertexId| used.partition_point(|u| u < v) as u32;
+    let renumbered = faces.iter().map(|face| face.iter().map(number).collect());
+    let renumbered: Vec<Vec<u32>> = renumbered.collect();
+    let positions: Vec<Point> = used.iter().map(|&v| polygons.position(v)).collect();
+    PolygonMesh::new(positions, renumbered).expect("faces of a mesh, with their own vertices")
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold::{HalfEdgeMesh, shapes};
+
+    use super::*;
+
+    #[test]
+    fn a_structure_that_holds_the_mesh_holds_a_patch() {
+        let ordered = shapes::geodesic(12).expect("small");
+        for mesh in [shapes::shuffled(&ordered, 3), ordered] {
+            for size in [1, 7, 100, 900] {
+                let patch = patch(&mesh, size);
+                assert!((size.div_ceil(20)..=size).contains(&patch.face_count()));
+                assert!(HalfEdgeMesh::from_polygons(&patch).is_ok(), "{size}");
+            }
+            assert_eq!(
+                patch(&mesh, usize::MAX),
+                mesh,
+                "the whole mesh, in its order"
+            );
+        }
+    }
+}

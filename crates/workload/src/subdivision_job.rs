@@ -1,0 +1,305 @@
+//! Subdivision as a workload: one scheme, one way to run it, a number of levels, on one structure.
+
+use std::fmt;
+
+use serde::{Serialize, Serializer};
+use sixfold::subdivision::{
+    Method, Scheme, Subdivision, SubdivisionError, build_level, renumbered,
+};
+use sixfold::{
+    Creases, Point, PolygonMesh, Refine, RefineVisitor, Representation, Visitor, visit,
+    visit_refinable,
+};
+
+/// The method that computes the levels, and the memory that stores them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Way {
+    /// Queries the mesh for each new point, and rebuilds the structure from each level.
+    Gather,
+    /// Makes one pass over the faces, and rebuilds the structure from each level.
+    Scatter,
+    /// Refines the structure's own tables into newly allocated meshes.
+    NativeFresh,
+    /// Refines the structure's own tables into the meshes of the previous run, as an animation
+    /// does.
+    Native,
+}
+
+impl Way {
+    /// All four ways.
+    pub const ALL: [Self; 4] = [Self::Gather, Self::Scatter, Self::NativeFresh, Self::Native];
+
+    /// Returns its name, as users write it: `native_fresh`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Gather => "gather",
+            Self::Scatter => "scatter",
+            Self::NativeFresh => "native_fresh",
+            Self::Native => "native",
+        }
+    }
+
+    /// Returns its method.
+    pub const fn method(self) -> Method {
+        match self {
+            Self::Gather => Method::Gather,
+            Self::Scatter => Method::Scatter,
+            Self::NativeFresh | Self::Native => Method::Native,
+        }
+    }
+}
+
+impl fmt::Display for Way {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl Serialize for Way {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+/// A subdivision to run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SubdivisionJob {
+    /// The scheme with its options.
+    pub subdivision: Subdivision,
+    /// The way to run it.
+    pub way: Way,
+    /// The number of levels; at least 1.
+    pub levels: u32,
+}
+
+/// A subdivision that is ready to be run repeatedly: the control mesh is built.
+pub trait Refiner: Send {
+    /// Computes all levels.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the scheme or the structure refuses a level.
+    fn run(&mut self) -> Result<(), SubdivisionError>;
+
+    /// Returns the number of faces of the last level, and a checksum of its positions:
+    /// Σ |x| + 2|y| + 3|z|.
+    fn result(&self) -> (usize, f64);
+}
+
+impl SubdivisionJob {
+    /// Makes a subdivision by `scheme` with its default options.
+    pub fn new(scheme: Scheme, way: Way, levels: u32) -> Self {
+        Self {
+            subdivision: Subdivision::new(scheme),
+            way,
+            levels,
+        }
+    }
+
+    /// Sets it up on the structure called `backend`. Returns `None` if there is no such structure,
+    /// or it does not support this way.
+    ///
+    /// # Errors
+    ///
+    /// Returns the reason if the structure cannot hold `polygons`, or the scheme refuses `creases`.
+    pub fn prepare(
+        self,
+        backend: &str,
+        polygons: &PolygonMesh,
+        creases: &Creases,
+    ) -> Option<Result<Box<dyn Refiner>, SubdivisionError>> {
+        let mut builder = self.builder(polygons, creases);
+        match self.way {
+            Way::Gather | Way::Scatter => visit(backend, &mut builder),
+            Way::NativeFresh | Way::Native => visit_refinable(backend, &mut builder),
+        }
+    }
+
+    /// Sets it up like [`prepare`](Self::prepare), on a structure of type `M`. If the way rebuilds
+    /// the structure from each level, `M` need not be in the roster.
+    pub(crate) fn prepare_on<M: Representation + 'static>(
+        self,
+        polygons: &PolygonMesh,
+        creases: &Creases,
+    ) -> Option<Result<Box<dyn Refiner>, SubdivisionError>> {
+        match self.way.method() {
+            Method::Native => self.prepare(M::NAME, polygons, creases),
+            _ => Some(Visitor::visit::<M>(&mut self.builder(polygons, creases))),
+        }
+    }
+
+    fn builder<'a>(self, polygons: &'a PolygonMesh, creases: &'a Creases) -> Builder<'a> {
+        Builder {
+            job: self,
+            polygons,
+            creases,
+        }
+    }
+}
+
+/// Builds the control mesh in a structure chosen at run time.
+struct Builder<'a> {
+    job: SubdivisionJob,
+    polygons: &'a PolygonMesh,
+    creases: &'a Creases,
+}
+
+impl Builder<'_> {
+    fn control_mesh<M: Representation>(&self) -> Result<(M, Creases), SubdivisionError> {
+        let mesh = build_level::<M>(self.polygons, 0)?;
+        let creases = self
+            .job
+            .subdivision
+            .control_creases(&mesh, self.polygons, self.creases)?;
+        Ok((mesh, creases))
+    }
+}
+
+impl Visitor for Builder<'_> {
+    type Output = Result<Box<dyn Refiner>, SubdivisionError>;
+
+    fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
+        let (mesh, creases) = self.control_mesh::<M>()?;
+        Ok(Box::new(Rebuilt {
+            job: self.job,
+            mesh,
+            creases,
+            last: PolygonMesh::default(),
+        }))
+    }
+}
+
+impl RefineVisitor for Builder<'_> {
+    type Output = Result<Box<dyn Refiner>, SubdivisionError>;
+
+    fn visit<M: Refine + 'static>(&mut self) -> Self::Output {
+        let (mesh, creases) = self.control_mesh::<M>()?;
+        Ok(Box::new(InPlace {
+            job: self.job,
+            mesh,
+            creases,
+            levels: Vec::new(),
+            numbers: M::EdgeNumbers::default(),
+        }))
+    }
+}
+
+/// A subdivision that computes each level as polygons and builds the structure from them.
+struct Rebuilt<M> {
+    job: SubdivisionJob,
+    mesh: M,
+    creases: Creases,
+    /// The polygons of the last level. The structure may have merged vertices with equal positions.
+    last: PolygonMesh,
+}
+
+impl<M: Representation + 'static> Refiner for Rebuilt<M> {
+    fn run(&mut self) -> Result<(), SubdivisionError> {
+        let subdivision = &self.job.subdivision;
+        let mut creases = self.creases.clone();
+        // Drops the result of the previous run, so that all runs do the same.
+        self.last = PolygonMesh::default();
+        let mut finest: Option<M> = None;
+        for level in 0..self.job.levels {
+            let mesh = finest.as_ref().unwrap_or(&self.mesh);
+            let step = match self.job.way {
+                Way::Gather => subdivision.gather(mesh, &creases, level)?,
+                _ => subdivision.scatter(mesh, &creases, level)?,
+            };
+            let next = build_level::<M>(&step.polygons, level + 1)?;
+            creases = renumbered(&next, &step.polygons, &step.creases);
+            self.last = step.polygons;
+            finest = Some(next);
+        }
+        Ok(())
+    }
+
+    fn result(&self) -> (usize, f64) {
+        let points = self.last.positions().iter().copied();
+        (self.last.face_count(), checksum(points))
+    }
+}
+
+/// A subdivision that refines the tables of the structure, with one mesh for each level.
+struct InPlace<M: Refine> {
+    job: SubdivisionJob,
+    mesh: M,
+    creases: Creases,
+    levels: Vec<M>,
+    numbers: M::EdgeNumbers,
+}
+
+impl<M: Refine + 'static> Refiner for InPlace<M> {
+    fn run(&mut self) -> Result<(), SubdivisionError> {
+        if self.job.way == Way::NativeFresh {
+            self.levels.clear();
+            self.numbers = M::EdgeNumbers::default();
+        }
+        self.levels.resize_with(self.job.levels as usize, M::empty);
+        let mut creases = self.creases.clone();
+        let mut parent = &self.mesh;
+        for (level, child) in (0..).zip(&mut self.levels) {
+            let subdivision = &self.job.subdivision;
+            creases = subdivision.refine_into(parent, &creases, level, &mut self.numbers, child)?;
+            parent = child;
+        }
+        Ok(())
+    }
+
+    fn result(&self) -> (usize, f64) {
+        let mesh = self.levels.last().unwrap_or(&self.mesh);
+        (
+            mesh.face_count(),
+            checksum(mesh.position_rows().iter().copied()),
+        )
+    }
+}
+
+fn checksum(points: impl Iterator<Item = Point>) -> f64 {
+    let each = points.map(|p| {
+        let [x, y, z] = p.to_array().map(|x| f64::from(x).abs());
+        x + 2.0 * y + 3.0 * z
+    });
+    each.sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sixfold::{roster, shapes};
+
+    #[test]
+    fn every_way_does_the_same_work() {
+        let polygons = shapes::geodesic(3).expect("small");
+        let none = Creases::default();
+        for (scheme, levels) in [(Scheme::Loop, 2), (Scheme::CatmullClark, 1)] {
+            let mut results = Vec::new();
+            for way in Way::ALL {
+                for backend in roster() {
+                    let job = SubdivisionJob::new(scheme, way, levels);
+                    let Some(Ok(mut refiner)) = job.prepare(backend.name, &polygons, &none) else {
+                        continue;
+                    };
+                    match refiner.run() {
+                        Ok(()) => results.push(refiner.result()),
+                        // A corner table cannot hold quads.
+                        Err(_) => assert_eq!(backend.name, "corner-table"),
+                    }
+                    if refiner.run().is_ok() {
+                        assert_eq!(results.last(), Some(&refiner.result()), "a second run");
+                    }
+                }
+            }
+            let (faces, sum) = results[0];
+            assert_eq!(
+                faces,
+                polygons.face_count() * if levels == 2 { 16 } else { 3 }
+            );
+            for &(others, other) in &results {
+                assert_eq!(others, faces);
+                assert!((other - sum).abs() < 1e-5 * sum, "{other} and {sum}");
+            }
+            assert!(results.len() > 15, "most ways on most structures");
+        }
+    }
+}
