@@ -2,7 +2,7 @@
 
 use crate::measure::{Bench, Entry, MOST_RUNS, untimed_runs};
 use sixfold_workload::Time;
-use sixfold_workload::{Job, Run, Sample};
+use sixfold_workload::{Job, Run, Sample, exceeds_second_level};
 use sixfold_workload::{Kind, Operation};
 
 /// The number of rounds that the plan aims at.
@@ -142,7 +142,8 @@ impl Bench<'_, '_> {
             true => LONGEST_SAMPLE_NS,
             false => target,
         };
-        entry.untimed = untimed_runs(entry.job.operation, ns, before);
+        let large = exceeds_second_level(self.subjects[entry.subject].bytes());
+        entry.untimed = untimed_runs(entry.job.operation, ns, before, large);
         let cost = ns * f64::from(entry.runs + entry.untimed) + outside;
         self.plan_rounds(entry, cost, share);
     }

@@ -9,7 +9,7 @@ use crate::editing::Editing;
 use crate::operation::{Kind, Operation};
 use crate::refining::Refining;
 use crate::sample::{Draw, Side};
-use crate::series::{KeptCopies, Series, Start, second_level_bytes, time_making};
+use crate::series::{KeptCopies, Series, Start, exceeds_second_level, time_making};
 use crate::subdividing::{patch, subdivide};
 use crate::sweeps::{All, Elements, Outputs, Tally, field_sum, share};
 
@@ -127,6 +127,7 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
         let mut copies = KeptCopies::default();
         let mut tally = Tally::default();
         let mut moved = Ok(());
+        fill_caches_with_outputs(mesh, outputs, series);
         let time = copies.time(
             series,
             mesh.memory().total(),
@@ -165,6 +166,7 @@ impl<'a, M: Representation + 'static> Candidate<'a, M> {
 
     fn whole(&mut self, operation: Operation, series: &Series<'_>) -> Run {
         fill_caches(&self.mesh, series);
+        fill_caches_with_outputs(&self.mesh, &self.outputs, series);
         let mut tallies = [Tally::default(); 3];
         let time = series.time_together(|| {
             for &kind in operation.kinds() {
@@ -334,22 +336,53 @@ impl<M: Representation + 'static> Subject for Candidate<'_, M> {
     }
 }
 
-/// Reads every table of `mesh` from its start to its end, if the mesh is larger than the second-level
-/// cache and runs are to start with warm caches.
+/// Reads every table of `mesh`, if the mesh is larger than the second-level cache and runs are to
+/// start with warm caches.
 ///
 /// After another backend was measured, runs that read the tables in another order need up to ten
 /// passes until the third-level cache holds them again: `edge_edges` on a winged-edge mesh of
 /// 200,000 faces then took 8 ms instead of 3 ms. After one sequential pass it takes 3 ms at once, as
 /// in a program that runs nothing else.
 fn fill_caches<M: Representation>(mesh: &M, series: &Series<'_>) {
-    let is_warm = matches!(series.start, Start::Warm);
-    if !is_warm || mesh.memory().total() <= second_level_bytes() {
-        return;
+    if needs_filling(mesh, series) {
+        let scans = M::COSTS[Relation::VertexFaces as usize] == QueryCost::Scan;
+        read_tables(black_box(mesh), scans);
     }
-    let mesh = black_box(mesh);
-    if M::COSTS[Relation::VertexFaces as usize] != QueryCost::Scan {
+}
+
+/// Reads the outputs of `mesh` from their start to their end, if [`fill_caches`] reads the mesh.
+fn fill_caches_with_outputs<M: Representation>(
+    mesh: &M,
+    outputs: &Outputs<M>,
+    series: &Series<'_>,
+) {
+    if needs_filling(mesh, series) {
         mesh.vertices().for_each(|v| {
-            black_box((mesh.position(v), mesh.vertex_faces(v).next()));
+            black_box(outputs.vertices[v]);
+        });
+        mesh.faces().for_each(|f| {
+            black_box(outputs.faces[f]);
+        });
+    }
+}
+
+/// Returns whether runs start with warm caches, and `mesh` is larger than the second-level cache.
+fn needs_filling<M: Representation>(mesh: &M, series: &Series<'_>) -> bool {
+    matches!(series.start, Start::Warm) && exceeds_second_level(mesh.memory().total())
+}
+
+/// Reads every row of every table of `mesh`, as far as possible in the order of the rows. `scans`:
+/// whether relations of vertices read all faces.
+fn read_tables<M: MeshQuery>(mesh: &M, scans: bool) {
+    mesh.faces().for_each(|f| {
+        black_box(mesh.face_vertices(f).last());
+    });
+    mesh.vertices().for_each(|v| {
+        black_box(mesh.position(v));
+    });
+    if !scans {
+        mesh.vertices().for_each(|v| {
+            black_box(mesh.vertex_faces(v).last());
         });
     }
     // If edges are not rows, no table has them, and listing them would search.
@@ -358,9 +391,6 @@ fn fill_caches<M: Representation>(mesh: &M, series: &Series<'_>) {
             black_box(mesh.edge_vertices(e));
         });
     }
-    mesh.faces().for_each(|f| {
-        black_box(mesh.face_vertices(f).last());
-    });
 }
 
 /// Runs a workload that changes the mesh, or runs it on a patch that represents the mesh.
@@ -481,5 +511,48 @@ impl<M: MeshQuery> Elements<M> for Picked<'_, M> {
     }
     fn faces<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Face> + 'a {
         self.pick(Kind::Face, &self.chosen.faces, || mesh.faces())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use sixfold::{
+        CornerTable, FaceVertexMesh, HalfEdgeMesh, IndexedFaceSet, Measured, PolygonSoup, Traced,
+        WingedEdgeMesh,
+    };
+
+    use super::*;
+
+    fn every_row_is_read<M: Measured>(polygons: &PolygonMesh) {
+        let mesh = M::from_polygons(polygons).expect("a closed manifold");
+        let bytes = mesh.memory().total();
+        let scans = M::COSTS[Relation::VertexFaces as usize] == QueryCost::Scan;
+        let probe = Traced::default();
+        read_tables(&mesh.probed(probe.clone()), scans);
+        let reads = probe.take().into_iter();
+        let rows: HashSet<_> = reads
+            .map(|read| (read.table, read.row, read.bytes))
+            .collect();
+        let read: usize = rows.iter().map(|&(_, _, bytes)| bytes).sum();
+        assert!(read * 100 >= bytes * 99, "{}: {read} of {bytes}", M::NAME);
+    }
+
+    #[test]
+    fn every_table_is_read_completely_before_samples() {
+        for polygons in [
+            sixfold::shapes::geodesic(6).expect("a small frequency"),
+            sixfold::shapes::cube(),
+        ] {
+            every_row_is_read::<PolygonSoup>(&polygons);
+            every_row_is_read::<IndexedFaceSet>(&polygons);
+            every_row_is_read::<FaceVertexMesh>(&polygons);
+            every_row_is_read::<WingedEdgeMesh>(&polygons);
+            every_row_is_read::<HalfEdgeMesh>(&polygons);
+            if polygons.face_count() > 6 {
+                every_row_is_read::<CornerTable>(&polygons);
+            }
+        }
     }
 }

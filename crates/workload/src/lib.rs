@@ -45,7 +45,7 @@ pub use operation::{Kind, Operation, UnknownOperation};
 pub use reads::{Counted, MOST_READS, Reads, SAMPLE, TableReads};
 pub use refining::{Refiner, Refining, Way};
 pub use sample::{Draw, Side};
-pub use series::{LONG_ENOUGH_NS, Scrubber, Series, Start};
+pub use series::{LONG_ENOUGH_NS, Scrubber, Series, Start, exceeds_second_level};
 pub use single_edit::SingleEdit;
 pub use sweeps::field_sum;
 pub use unknown::unknown;
