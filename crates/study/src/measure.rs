@@ -38,6 +38,10 @@ const LARGEST_GAP: usize = 64 << 10;
 pub(crate) const MAX_RUNS: f64 = 1e7;
 /// Runs longer than this fill the caches by themselves.
 pub(crate) const LONG_RUN_NS: f64 = 10_000_000.0;
+/// The most untimed runs, and the most time for them in nanoseconds, that a structure larger than
+/// the second-level cache gets beyond those of a small one.
+const LARGE_WARM_UP_RUNS: u32 = 4;
+const LARGE_WARM_UP_NS: f64 = 20_000_000.0;
 
 /// One operation on one structure: the plan of its measurement, and the results.
 #[derive(Clone, Debug)]
@@ -148,11 +152,19 @@ impl Entry {
 /// is at least one, and they take up to `most_ns`. They fill caches, branch predictors and tables
 /// as in a program that does nothing else. Runs longer than 10 ms do this by themselves; they get
 /// one untimed run if tables grow, else none.
-pub(crate) fn untimed_runs(operation: Operation, ns: f64, most_ns: f64) -> u32 {
-    match ns > LONG_RUN_NS {
-        true => u32::from(operation.grows_tables()),
-        false => (most_ns / ns.max(0.1)).clamp(1.0, MAX_RUNS) as u32,
+///
+/// If the structure is `large`, more than the second-level cache, there are up to four: the
+/// third-level cache keeps data only after it was read several times.
+pub(crate) fn untimed_runs(operation: Operation, ns: f64, most_ns: f64, large: bool) -> u32 {
+    if ns > LONG_RUN_NS {
+        return u32::from(operation.grows_tables());
     }
+    let fit = |time_ns: f64| (time_ns / ns.max(0.1)).clamp(1.0, MAX_RUNS) as u32;
+    let least = match large {
+        true => fit(LARGE_WARM_UP_NS).min(LARGE_WARM_UP_RUNS),
+        false => 1,
+    };
+    fit(most_ns).max(least)
 }
 
 /// Progress of a study, for display.
@@ -300,8 +312,8 @@ impl Measurement<'_, '_> {
     }
 
     /// Builds all structures again, each elsewhere in memory. If pages are kept, it first returns
-    /// them, so that the kernel chooses new ones. The addresses of the tables affect times and do
-    /// not change between two rebuilds.
+    /// them and takes new ones in random order. The addresses and the pages of the tables affect
+    /// times and do not change between two rebuilds.
     fn rebuild(&mut self) {
         let mut order: Vec<usize> = (0..self.subjects.len()).collect();
         order.shuffle(&mut self.random);
@@ -310,6 +322,8 @@ impl Measurement<'_, '_> {
                 return;
             }
             self.memory.release_pages();
+            let bytes = self.subjects[subject].bytes() as u64;
+            self.memory.reserve_for(2 * bytes);
             let gap: Vec<u8> = Vec::with_capacity(self.random.random_range(0..LARGEST_GAP));
             self.subjects[subject].rebuild();
             drop(black_box(gap));

@@ -3,7 +3,7 @@
 use crate::measure::{Entry, MAX_RUNS, Measurement, untimed_runs};
 use sixfold_workload::Time;
 use sixfold_workload::{ElementKind, Operation};
-use sixfold_workload::{ElementSample, Job, Run};
+use sixfold_workload::{ElementSample, Job, Run, exceeds_second_level};
 
 /// The number of rounds that the plan aims at.
 const ROUNDS: u32 = 20;
@@ -143,7 +143,8 @@ impl Measurement<'_, '_> {
             true => LONGEST_SAMPLE_NS,
             false => target,
         };
-        entry.untimed = untimed_runs(entry.job.operation, ns, before);
+        let large = exceeds_second_level(self.subjects[entry.subject].bytes());
+        entry.untimed = untimed_runs(entry.job.operation, ns, before, large);
         let cost = ns * f64::from(entry.runs + entry.untimed) + overhead_ns;
         self.plan_rounds(entry, cost, slot_ns);
     }

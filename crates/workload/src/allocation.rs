@@ -5,11 +5,11 @@ use sixfold::subdivision::Method;
 use sixfold::{Counts, EditVisitor, FaceId, MeshEdit, PolygonMesh, Representation, visit_editable};
 
 use crate::backend::Backend;
-use crate::candidate::Job;
 use crate::clock::{Clock, Time};
 use crate::edit_pass::EditPass;
 use crate::operation::Operation;
 use crate::series::Series;
+use crate::timed_structure::Job;
 
 /// The counter of an allocator that adds up all requests. The program that installs such an
 /// allocator implements it.

@@ -8,10 +8,10 @@ use sixfold::{
     for_each_representation,
 };
 
-use crate::candidate::{TimedBackend, TimedStructure};
 use crate::draw::Draw;
 use crate::heap::{Heap, MeasuredMemory, measure_memory};
 use crate::reads::{ReadsObserver, count};
+use crate::timed_structure::{TimedBackend, TimedStructure};
 
 /// A representation with its properties and the functions that build and measure it.
 ///

@@ -13,10 +13,10 @@ mod schedule;
 mod structure_mix;
 mod table_mix;
 
-use crate::candidate::{ElementSample, Run};
 use crate::clock::{Clock, Time};
 use crate::operation::Operation;
 use crate::series::Series;
+use crate::timed_structure::{ElementSample, Run};
 
 pub use places::EditPlaceError;
 pub use route::Route;

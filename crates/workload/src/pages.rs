@@ -15,9 +15,14 @@
 //! reports this.
 
 use std::fmt;
+use std::hint::black_box;
+use std::mem::MaybeUninit;
 use std::str::FromStr;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 /// The treatment of freed pages.
@@ -120,7 +125,13 @@ fn keep() -> Result<(), String> {
         return Err("the allocator refused to keep pages".into());
     }
     // Allocates and frees a block twice. By default, its pages would be returned in between.
-    let allocate = || drop(touched_block(PROBE_BYTES));
+    let allocate = || {
+        let mut block = untouched_block(PROBE_BYTES).unwrap_or_default();
+        pages_of(&mut block).for_each(|page| {
+            page[0].write(1);
+        });
+        black_box(block);
+    };
     allocate();
     let before = faults();
     allocate();
@@ -157,15 +168,21 @@ const MAX_BLOCK_BYTES: usize = 1 << 20;
 /// their pages present. Pages that [`release_pages`] returned are taken from the kernel again.
 /// Useful only if pages are kept. O(`bytes` + bytes of freed blocks), plus one walk over the list of freed
 /// blocks for each MiB of them.
+///
+/// Pages are touched in random order, so the order of the pages in memory is random: the sets of the
+/// second-level cache that they use then do not depend on what the process did before.
 pub fn reserve(bytes: usize) {
-    let block = touched_block(bytes);
+    /// The number of calls: the seed of the order, so that each call has another one.
+    static CALLS: AtomicU64 = AtomicU64::new(0);
+    let mut random = ChaCha8Rng::seed_from_u64(CALLS.fetch_add(1, Ordering::Relaxed));
+
     // All blocks are held at the same time, so that each is a different one. Large blocks come
     // first, because small ones fit anywhere.
-    let mut blocks = Vec::new();
+    let mut blocks: Vec<Vec<u8>> = untouched_block(bytes).into_iter().collect();
     let mut size = MAX_BLOCK_BYTES;
     let mut heap = platform::heap_bytes();
     while size >= MIN_PAGE_BYTES && heap.is_some() {
-        let block = touched_block(size);
+        let block = untouched_block(size);
         let now = platform::heap_bytes();
         match block {
             Some(block) if now == heap => blocks.push(block),
@@ -173,17 +190,24 @@ pub fn reserve(bytes: usize) {
         }
         heap = now;
     }
-    drop((block, blocks));
-}
-
-/// Allocates `bytes` and writes to each page; `None` if there is too little memory.
-fn touched_block(bytes: usize) -> Option<Vec<u8>> {
-    let mut block: Vec<u8> = Vec::new();
-    block.try_reserve_exact(bytes).ok()?;
-    for page in block.spare_capacity_mut().chunks_mut(MIN_PAGE_BYTES) {
+    let mut pages: Vec<_> = blocks.iter_mut().flat_map(pages_of).collect();
+    pages.shuffle(&mut random);
+    for page in pages {
         page[0].write(1);
     }
-    Some(std::hint::black_box(block))
+    black_box(&mut blocks);
+}
+
+/// Returns the pages of an empty block.
+fn pages_of(block: &mut Vec<u8>) -> impl Iterator<Item = &mut [MaybeUninit<u8>]> {
+    block.spare_capacity_mut().chunks_mut(MIN_PAGE_BYTES)
+}
+
+/// Allocates `bytes` without touching them; `None` if there is too little memory.
+fn untouched_block(bytes: usize) -> Option<Vec<u8>> {
+    let mut block: Vec<u8> = Vec::new();
+    block.try_reserve_exact(bytes).ok()?;
+    Some(block)
 }
 
 /// Returns the pages of all freed blocks to the kernel, so that the next allocations pay for new

@@ -269,6 +269,11 @@ fn copy_count(ns: f64, bytes: usize) -> usize {
     ((MIN_TIMED_NS / ns).ceil() as usize).min(fit)
 }
 
+/// Returns whether data of this size is larger than the second-level cache.
+pub fn exceeds_second_level(bytes: usize) -> bool {
+    bytes > second_level_bytes()
+}
+
 /// Returns the size of the second-level cache in bytes.
 pub(crate) fn second_level_bytes() -> usize {
     static BYTES: OnceLock<usize> = OnceLock::new();

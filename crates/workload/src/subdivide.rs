@@ -8,10 +8,10 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use sixfold::subdivision::SubdivisionError;
 use sixfold::{Creases, Point, PolygonMesh, Representation, VertexId};
 
-use crate::candidate::{Outcome, Run};
 use crate::clock::Time;
 use crate::series::Series;
 use crate::subdivision_job::SubdivisionJob;
+use crate::timed_structure::{Outcome, Run};
 
 /// Returns the pool of the one thread that runs all subdivisions. With one thread, its processor
 /// time is that of all the work. All structures use the same thread, so that they share its heap.

@@ -207,13 +207,16 @@ fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget()
 
 #[test]
 fn untimed_runs_last_as_long_as_a_sample_may_and_are_at_least_one() {
-    assert_eq!(untimed_runs(VV, 1_000.0, 2e6), 2_000);
-    assert_eq!(untimed_runs(VV, 5e6, 2e6), 1);
-    assert_eq!(untimed_runs(VV, 11e6, 2e6), 0);
-    assert_eq!(untimed_runs(VV, 10e6, 2e6), 1);
+    assert_eq!(untimed_runs(VV, 1_000.0, 2e6, false), 2_000);
+    assert_eq!(untimed_runs(VV, 5e6, 2e6, false), 1);
+    assert_eq!(untimed_runs(VV, 11e6, 2e6, false), 0);
+    assert_eq!(untimed_runs(VV, 10e6, 2e6, false), 1);
     let grows: Operation = "flip_all".parse().expect("an operation");
-    assert_eq!(untimed_runs(grows, 11e6, 2e6), 1);
-    assert_eq!(untimed_runs(VV, 0.0, 1e12), 10_000_000);
+    assert_eq!(untimed_runs(grows, 11e6, 2e6, false), 1);
+    assert_eq!(untimed_runs(VV, 0.0, 1e12, false), 10_000_000);
+    assert_eq!(untimed_runs(VV, 1e6, 2e6, true), 4, "large");
+    assert_eq!(untimed_runs(VV, 8e6, 2e6, true), 2, "at most 20 ms");
+    assert_eq!(untimed_runs(VV, 1e5, 2e6, true), 20, "as a small one");
 }
 
 #[test]

@@ -7,8 +7,8 @@ use crate::pick::PickSettings;
 use crate::pick::measurement::Outcome;
 use crate::pick::reasons;
 use crate::pick::report::{BreakEven, Excluded, MeshRanking, PickReport, Ranked};
-use crate::report::SCHEMA;
 use crate::ranking::NO_DIFFERENCE;
+use crate::report::SCHEMA;
 use crate::timer::Timer;
 
 /// Combines the outcomes of the meshes. A backend that is excluded on one mesh is excluded from the

@@ -4,10 +4,10 @@ use std::hint::black_box;
 
 use sixfold::MeshQuery;
 
-use crate::candidate::{Outcome, Run};
 use crate::operation::{ElementKind, Operation};
 use crate::series::Series;
 use crate::sweeps::{All, Outputs, SweepResult, field_sum, sweep_kind};
+use crate::timed_structure::{Outcome, Run};
 
 /// Runs `operation` over all of `mesh` as `series` describes; the time is that of one run.
 pub(crate) fn pass_over<M: MeshQuery>(

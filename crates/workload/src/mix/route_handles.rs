@@ -5,10 +5,10 @@ use std::ops::Range;
 
 use sixfold::{MeshQuery, Point, PolygonMesh, Relation, Representation, VertexId};
 
-use crate::candidate::edge_handle;
 use crate::mix::route::Route;
 use crate::operation::ElementKind;
 use crate::sweeps::Sink;
+use crate::timed_structure::edge_handle;
 use crate::workload::Action;
 
 /// The elements of a route as handles of one structure.

@@ -10,7 +10,6 @@ use sixfold::{
 };
 
 use crate::backend::Backend;
-use crate::candidate::{ElementSample, Job, Run, TimedBackend};
 use crate::clock::{Clock, Time, timed};
 use crate::draw::Draw;
 use crate::edit_place::{EditPlace, apply_edit, prepare_place};
@@ -23,6 +22,7 @@ use crate::mix::{MixBackend, MixRun};
 use crate::operation::Operation;
 use crate::series::{ReusedCopies, Series, time_making};
 use crate::sweeps::Outputs;
+use crate::timed_structure::{ElementSample, Job, Run, TimedBackend};
 use crate::workload::{Action, Part};
 
 /// A structure ready for a mix, or the reason why it is not.

@@ -8,7 +8,6 @@ use sixfold::{
 };
 use sixfold_relation_table::{Numbering, RelationTable, TabulationError};
 
-use crate::candidate::{ElementSample, Run};
 use crate::clock::{Clock, Time, timed};
 use crate::mix::passes::pass_over;
 use crate::mix::route::Route;
@@ -18,6 +17,7 @@ use crate::mix::{MixBackend, MixRun};
 use crate::operation::Operation;
 use crate::series::{Series, time_making};
 use crate::sweeps::Outputs;
+use crate::timed_structure::{ElementSample, Run};
 use crate::workload::Action;
 
 /// Tables of the queried relations, the positions, and the element counts.

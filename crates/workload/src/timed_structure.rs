@@ -8,7 +8,7 @@ use crate::clock::Time;
 use crate::draw::{Draw, Side};
 use crate::edit_pass::EditPass;
 use crate::operation::{ElementKind, Operation};
-use crate::series::{ReusedCopies, Series, Start, second_level_bytes, time_making};
+use crate::series::{ReusedCopies, Series, Start, exceeds_second_level, time_making};
 use crate::subdivide::{patch, subdivide};
 use crate::subdivision_job::SubdivisionJob;
 use crate::sweeps::{All, Elements, Outputs, SweepResult, field_sum, sweep_kind};
@@ -174,16 +174,6 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
     fn run_whole(&mut self, operation: Operation, series: &Series<'_>) -> Run {
         fill_caches(&self.mesh, series);
         fill_caches_with_outputs(&self.mesh, &self.outputs, series);
-        let series = &Series {
-            untimed: series.untimed.max(
-                std::env::var("XU")
-                    .ok()
-                    .and_then(|x| x.parse().ok())
-                    .filter(|_| self.mesh.memory().total() > second_level_bytes())
-                    .unwrap_or(0),
-            ),
-            ..*series
-        };
         let mut results = [SweepResult::default(); 3];
         let time = series.time_together(|| {
             for &kind in operation.kinds() {
@@ -364,32 +354,18 @@ impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
     }
 }
 
-/// Reads every table of `mesh` from its start to its end, if the mesh is larger than the second-level
-/// cache and runs are to start with warm caches.
+/// Reads every table of `mesh`, if the mesh is larger than the second-level cache and runs are to
+/// start with warm caches.
 ///
 /// After another backend was measured, runs that read the tables in another order need up to ten
 /// passes until the third-level cache holds them again: `edge_edges` on a winged-edge mesh of
 /// 200,000 faces then took 8 ms instead of 3 ms. After one sequential pass it takes 3 ms at once, as
 /// in a program that runs nothing else.
 fn fill_caches<M: Representation>(mesh: &M, series: &Series<'_>) {
-    if !needs_filling(mesh, series) {
-        return;
+    if needs_filling(mesh, series) {
+        let scans = M::COSTS[Relation::VertexFaces as usize] == QueryCost::Scan;
+        read_tables(black_box(mesh), scans);
     }
-    let mesh = black_box(mesh);
-    if M::COSTS[Relation::VertexFaces as usize] != QueryCost::Scan {
-        mesh.vertices().for_each(|v| {
-            black_box((mesh.position(v), mesh.vertex_faces(v).next()));
-        });
-    }
-    // If edges are not rows, no table has them, and listing them would search.
-    if mesh.edge_rows() > 0 {
-        mesh.edges().for_each(|e| {
-            black_box(mesh.edge_vertices(e));
-        });
-    }
-    mesh.faces().for_each(|f| {
-        black_box(mesh.face_vertices(f).last());
-    });
 }
 
 /// Reads the outputs of `mesh` from their start to their end, if [`fill_caches`] reads the mesh.
@@ -398,20 +374,41 @@ fn fill_caches_with_outputs<M: Representation>(
     outputs: &Outputs<M>,
     series: &Series<'_>,
 ) {
-    if !needs_filling(mesh, series) {
-        return;
+    if needs_filling(mesh, series) {
+        mesh.vertices().for_each(|v| {
+            black_box(outputs.vertices[v]);
+        });
+        mesh.faces().for_each(|f| {
+            black_box(outputs.faces[f]);
+        });
     }
-    mesh.vertices().for_each(|v| {
-        black_box(outputs.vertices[v]);
-    });
-    mesh.faces().for_each(|f| {
-        black_box(outputs.faces[f]);
-    });
 }
 
 /// Returns whether runs start with warm caches, and `mesh` is larger than the second-level cache.
 fn needs_filling<M: Representation>(mesh: &M, series: &Series<'_>) -> bool {
-    matches!(series.start, Start::Warm) && mesh.memory().total() > second_level_bytes()
+    matches!(series.start, Start::Warm) && exceeds_second_level(mesh.memory().total())
+}
+
+/// Reads every row of every table of `mesh`, as far as possible in the order of the rows. `scans`:
+/// whether relations of vertices read all faces.
+fn read_tables<M: MeshQuery>(mesh: &M, scans: bool) {
+    mesh.faces().for_each(|f| {
+        black_box(mesh.face_vertices(f).last());
+    });
+    mesh.vertices().for_each(|v| {
+        black_box(mesh.position(v));
+    });
+    if !scans {
+        mesh.vertices().for_each(|v| {
+            black_box(mesh.vertex_faces(v).last());
+        });
+    }
+    // If edges are not rows, no table has them, and listing them would search.
+    if mesh.edge_rows() > 0 {
+        mesh.edges().for_each(|e| {
+            black_box(mesh.edge_vertices(e));
+        });
+    }
 }
 
 /// Runs a pass of edits over the mesh, or over a patch that represents the mesh.
@@ -535,5 +532,48 @@ impl<M: MeshQuery> Elements<M> for SampledElements<'_, M> {
     }
     fn faces<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Face> + 'a {
         self.pick(ElementKind::Face, &self.drawn.faces, || mesh.faces())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use sixfold::{
+        CornerTable, FaceVertexMesh, HalfEdgeMesh, IndexedFaceSet, Measured, PolygonSoup, Traced,
+        WingedEdgeMesh,
+    };
+
+    use super::*;
+
+    fn every_row_is_read<M: Measured>(polygons: &PolygonMesh) {
+        let mesh = M::from_polygons(polygons).expect("a closed manifold");
+        let bytes = mesh.memory().total();
+        let scans = M::COSTS[Relation::VertexFaces as usize] == QueryCost::Scan;
+        let probe = Traced::default();
+        read_tables(&mesh.probed(probe.clone()), scans);
+        let reads = probe.take().into_iter();
+        let rows: HashSet<_> = reads
+            .map(|read| (read.table, read.row, read.bytes))
+            .collect();
+        let read: usize = rows.iter().map(|&(_, _, bytes)| bytes).sum();
+        assert!(read * 100 >= bytes * 99, "{}: {read} of {bytes}", M::NAME);
+    }
+
+    #[test]
+    fn every_table_is_read_completely_before_samples() {
+        for polygons in [
+            sixfold::shapes::geodesic(6).expect("a small frequency"),
+            sixfold::shapes::cube(),
+        ] {
+            every_row_is_read::<PolygonSoup>(&polygons);
+            every_row_is_read::<IndexedFaceSet>(&polygons);
+            every_row_is_read::<FaceVertexMesh>(&polygons);
+            every_row_is_read::<WingedEdgeMesh>(&polygons);
+            every_row_is_read::<HalfEdgeMesh>(&polygons);
+            if polygons.face_count() > 6 {
+                every_row_is_read::<CornerTable>(&polygons);
+            }
+        }
     }
 }
