@@ -87,7 +87,7 @@ pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
 /// `first`.
 pub(crate) fn hanging_indent(first: &str, text: &str) -> String {
     let indent = first.chars().count();
-    let lines = wrap(text, WIDTH - indent);
+    let lines = wrap(text, WIDTH.saturating_sub(indent));
     let gap = format!("\n{}", " ".repeat(indent));
     format!("{first}{}", lines.join(&gap))
 }
@@ -101,5 +101,7 @@ mod tests {
         assert_eq!(wrap("one two three", 7), ["one two", "three"]);
         assert_eq!(wrap("longerthanthat a", 4), ["longerthanthat", "a"]);
         assert_eq!(hanging_indent("name  ", "reason"), "name  reason");
+        let long_name = "n".repeat(2 * WIDTH);
+        assert!(hanging_indent(&long_name, "a reason").starts_with(&format!("{long_name}a\n")));
     }
 }

@@ -13,7 +13,7 @@ use std::process::ExitCode;
 
 use sixfold::{Facts, PolygonMesh, shapes};
 use sixfold_study::{Backend, Clock, MachineClock, Operation, Policy, Series, pages};
-use sixfold_workload::{Access, Draw, Job, Route, Schedule, built_in, prepare_mix};
+use sixfold_workload::{Access, Draw, Job, MixBackend, Route, Schedule, built_in, prepare_mix};
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
 const OPERATIONS: [&str; 8] = [
@@ -98,13 +98,24 @@ fn mix(structure: &str, polygons: &PolygonMesh, rounds: usize, clock: &dyn Clock
     let Some(Ok(mut mixer)) = prepared else {
         panic!("{structure} cannot be edited");
     };
+    let turns = turns_in_a_run(&schedule, mixer.as_ref());
     let mut time = |runs| {
-        mixer.run(0, 1, 1, clock);
-        let run = mixer.run(0, 1, runs, clock);
+        mixer.run(0, turns, 1, clock);
+        let run = mixer.run(turns, turns, runs, clock);
         run.time.ns() / run.operations as f64
     };
     let ratios = (0..rounds).map(|_| time(1) / time(MANY as usize));
     (format!("mix of {name}"), median(ratios.collect()))
+}
+
+/// Returns the number of turns that `sixfold pick` runs on one copy, if no sample is long enough:
+/// as many as there are places for edits, and at most 16.
+fn turns_in_a_run(schedule: &Schedule, mixer: &dyn MixBackend) -> u64 {
+    let fits = |part: usize, turns: u64| {
+        schedule.operations_within(part, turns) <= mixer.cycle_length(part)
+    };
+    let most = schedule.edits().map(|part| (1..=16).take_while(|&turns| fits(part, turns)).count());
+    most.min().unwrap_or(1).max(1) as u64
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

@@ -1,0 +1,19 @@
+//! What the examples share: the mesh to work on.
+
+use std::error::Error;
+use std::path::Path;
+
+use sixfold::PolygonMesh;
+use sixfold::io::read_obj;
+
+/// Reads the OBJ file that is the first argument of the program, or returns `default`.
+pub fn mesh_argument(default: PolygonMesh) -> Result<PolygonMesh, Box<dyn Error>> {
+    let Some(path) = std::env::args().nth(1) else {
+        return Ok(default);
+    };
+    let (polygons, left_out) = read_obj(Path::new(&path))?.into_polygons();
+    for face in left_out {
+        eprintln!("{path}: {face}");
+    }
+    Ok(polygons)
+}

@@ -1,0 +1,55 @@
+//! Regions of nearly equal normals: starts at a face and adds neighbours while their normals differ
+//! by less than an angle from the normal of the first face.
+//!
+//! ```sh
+//! cargo run --example regions -- mesh.obj
+//! ```
+
+use std::error::Error;
+
+use sixfold::operators::face_normals;
+use sixfold::prelude::*;
+
+mod common;
+
+/// Returns the number of the region of each face, from 0, and the number of regions. The normals of
+/// a region differ by at most `degrees` from that of its first face.
+pub fn regions<M: MeshQuery>(mesh: &M, degrees: f32) -> (FaceMap<M, Option<usize>>, usize) {
+    let normals = face_normals(mesh);
+    let least_cosine = degrees.to_radians().cos();
+    let mut regions = mesh.face_map(None);
+    let mut count = 0;
+    for seed in mesh.faces() {
+        if regions[seed].is_some() {
+            continue;
+        }
+        regions[seed] = Some(count);
+        let mut stack = vec![seed];
+        while let Some(face) = stack.pop() {
+            for neighbour in mesh.face_faces(face) {
+                let is_similar = normals[seed].dot(normals[neighbour]) >= least_cosine;
+                if regions[neighbour].is_none() && is_similar {
+                    regions[neighbour] = Some(count);
+                    stack.push(neighbour);
+                }
+            }
+        }
+        count += 1;
+    }
+    (regions, count)
+}
+
+pub fn main() -> Result<(), Box<dyn Error>> {
+    let polygons = common::mesh_argument(sixfold::shapes::cube())?;
+    let mesh = HalfEdgeMesh::from_polygons(&polygons)?;
+    let (regions, count) = regions(&mesh, 20.0);
+    let mut sizes = vec![0; count];
+    for face in mesh.faces() {
+        if let Some(region) = regions[face] {
+            sizes[region] += 1;
+        }
+    }
+    sizes.sort_unstable_by(|a, b| b.cmp(a));
+    println!("{count} regions; the largest have {:?} faces", &sizes[..count.min(10)]);
+    Ok(())
+}

@@ -1,0 +1,54 @@
+//! Smoothing without shrinking (Taubin 1995): each step moves every vertex towards the mean of its
+//! neighbours, and then by a slightly larger factor away from it.
+//!
+//! ```sh
+//! cargo run --example taubin -- mesh.obj > smooth.obj
+//! ```
+
+use std::error::Error;
+
+use sixfold::io::write_obj;
+use sixfold::prelude::*;
+
+mod common;
+
+/// The published factors: towards the mean of the neighbours, and away from it.
+const FACTORS: [f32; 2] = [0.33, -0.34];
+
+/// Smooths `mesh` in `steps` steps. Vertices on a boundary do not move.
+///
+/// # Errors
+///
+/// [`MoveError`] if a vertex is its coordinates, and two corners of a face would be at one position.
+pub fn smooth<M: Representation>(mesh: &mut M, steps: usize) -> Result<(), MoveError> {
+    for factor in FACTORS.repeat(steps) {
+        let mut moved = mesh.vertex_map(Point::ZERO);
+        for v in mesh.vertices() {
+            let position = mesh.position(v);
+            moved[v] = match mean_of_neighbours(mesh, v) {
+                Some(mean) if !mesh.is_boundary_vertex(v) => position.lerp(mean, factor),
+                _ => position,
+            };
+        }
+        mesh.set_positions(&moved)?;
+    }
+    Ok(())
+}
+
+fn mean_of_neighbours<M: MeshQuery>(mesh: &M, v: M::Vertex) -> Option<Point> {
+    let mut count = 0.0;
+    let sum: Point = mesh
+        .vertex_vertices(v)
+        .inspect(|_| count += 1.0)
+        .map(|w| mesh.position(w))
+        .sum();
+    (count > 0.0).then(|| sum / count)
+}
+
+pub fn main() -> Result<(), Box<dyn Error>> {
+    let polygons = common::mesh_argument(sixfold::shapes::torus(40, 20)?)?;
+    let mut mesh = FaceVertexMesh::from_polygons(&polygons)?;
+    smooth(&mut mesh, 10)?;
+    write_obj(&mesh.to_polygons(), std::io::stdout().lock())?;
+    Ok(())
+}
