@@ -14,6 +14,7 @@ use sixfold::{Visitor, visit};
 
 /// Computes the mean valence of the vertices of a mesh with any structure.
 pub struct MeanValence<'a> {
+    /// The mesh as polygons.
     pub polygons: &'a PolygonMesh,
 }
 
@@ -27,15 +28,18 @@ impl Visitor for MeanValence<'_> {
     }
 }
 
-pub fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().unwrap_or_else(|| "half-edge".into());
     let polygons = match arguments.next() {
         Some(path) => read_obj(Path::new(&path))?.into_polygons().0,
         None => sixfold::shapes::geodesic(8)?,
     };
-    let mut task = MeanValence { polygons: &polygons };
-    let valence = visit(&name, &mut task).ok_or_else(|| format!("no structure is called {name}"))??;
+    let mut task = MeanValence {
+        polygons: &polygons,
+    };
+    let valence =
+        visit(&name, &mut task).ok_or_else(|| format!("no structure is called {name}"))??;
     println!("{name}: the mean valence is {valence:.3}");
     Ok(())
 }

@@ -36,7 +36,7 @@ pub fn distances<M: MeshQuery>(mesh: &M, source: M::Vertex) -> VertexMap<M, f64>
     distances
 }
 
-pub fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     let polygons = common::mesh_argument(sixfold::shapes::geodesic(16)?)?;
     let mesh = HalfEdgeMesh::from_polygons(&polygons)?;
     let source = mesh.vertices().next().ok_or("the mesh has no vertices")?;

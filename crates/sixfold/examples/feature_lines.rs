@@ -85,11 +85,15 @@ impl<M: MeshQuery> Lines<'_, M> {
     }
 }
 
-pub fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     let polygons = common::mesh_argument(sixfold::shapes::cube())?;
     let mesh = HalfEdgeMesh::from_polygons(&polygons)?;
     let lines = feature_lines(&mesh, 30.0);
     let closed = lines.iter().filter(|line| line.first() == line.last());
-    println!("{} feature lines, {} of them closed", lines.len(), closed.count());
+    println!(
+        "{} feature lines, {} of them closed",
+        lines.len(),
+        closed.count()
+    );
     Ok(())
 }

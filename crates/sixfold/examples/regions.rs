@@ -39,7 +39,7 @@ pub fn regions<M: MeshQuery>(mesh: &M, degrees: f32) -> (FaceMap<M, Option<usize
     (regions, count)
 }
 
-pub fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     let polygons = common::mesh_argument(sixfold::shapes::cube())?;
     let mesh = HalfEdgeMesh::from_polygons(&polygons)?;
     let (regions, count) = regions(&mesh, 20.0);
@@ -50,6 +50,9 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     sizes.sort_unstable_by(|a, b| b.cmp(a));
-    println!("{count} regions; the largest have {:?} faces", &sizes[..count.min(10)]);
+    println!(
+        "{count} regions; the largest have {:?} faces",
+        &sizes[..count.min(10)]
+    );
     Ok(())
 }

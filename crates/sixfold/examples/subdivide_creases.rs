@@ -9,7 +9,7 @@ use std::error::Error;
 
 use sixfold::io::write_obj;
 use sixfold::prelude::*;
-use sixfold::subdivision::{Scheme, Step, Subdivision};
+use sixfold::subdivision::{Scheme, Step, Subdivision, renumbered};
 use sixfold::{CreaseError, Creases, RowId};
 
 mod common;
@@ -36,7 +36,8 @@ pub fn subdivide<M: Representation>(
         let mesh = M::from_polygons(&step.polygons)?;
         let creases = match level {
             0 => scheme.control_creases(&mesh, &step.polygons, &step.creases)?,
-            _ => step.creases,
+            // A structure whose vertices are coordinates numbers them in an order of its own.
+            _ => renumbered(&mesh, &step.polygons, &step.creases),
         };
         step = scheme.gather(&mesh, &creases, level)?;
         watch(level + 1, &step);
@@ -60,7 +61,7 @@ pub fn creases_around(
     Creases::new(polygons, edges, [])
 }
 
-pub fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     let polygons = common::mesh_argument(sixfold::shapes::cube())?;
     let creases = creases_around(&polygons, FaceId::new(0), 2.0)?;
     let smooth = subdivide::<HalfEdgeMesh>(&polygons, &creases, 4, |level, step| {

@@ -7,6 +7,7 @@
 
 use std::error::Error;
 
+use sixfold::MoveError;
 use sixfold::io::write_obj;
 use sixfold::prelude::*;
 
@@ -45,7 +46,7 @@ fn mean_of_neighbours<M: MeshQuery>(mesh: &M, v: M::Vertex) -> Option<Point> {
     (count > 0.0).then(|| sum / count)
 }
 
-pub fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     let polygons = common::mesh_argument(sixfold::shapes::torus(40, 20)?)?;
     let mut mesh = FaceVertexMesh::from_polygons(&polygons)?;
     smooth(&mut mesh, 10)?;

@@ -114,7 +114,9 @@ fn turns_in_a_run(schedule: &Schedule, mixer: &dyn MixBackend) -> u64 {
     let fits = |part: usize, turns: u64| {
         schedule.operations_within(part, turns) <= mixer.cycle_length(part)
     };
-    let most = schedule.edits().map(|part| (1..=16).take_while(|&turns| fits(part, turns)).count());
+    let most = schedule
+        .edits()
+        .map(|part| (1..=16).take_while(|&turns| fits(part, turns)).count());
     most.min().unwrap_or(1).max(1) as u64
 }
 

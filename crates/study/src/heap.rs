@@ -101,10 +101,23 @@ impl Memory {
 
     /// Touches the pages of freed blocks, plus a block of `bytes`, or less if there is little room.
     pub(crate) fn reserve_for(&self, bytes: u64) {
-        if let Some(free) = free_memory().filter(|_| self.keeps_pages()) {
-            let most = free.saturating_sub(min_free_bytes()) / RESERVE_PART;
-            pages::reserve(usize::try_from(bytes.min(most)).unwrap_or(0));
+        if let Some(bytes) = self.reservable(bytes) {
+            pages::reserve(bytes);
         }
+    }
+
+    /// Touches the same pages as [`reserve_for`](Self::reserve_for), in random order.
+    pub(crate) fn reserve_in_random_order(&self, bytes: u64) {
+        if let Some(bytes) = self.reservable(bytes) {
+            pages::reserve_in_random_order(bytes);
+        }
+    }
+
+    /// Returns `bytes`, or less if there is little room; `None` if pages are not kept.
+    fn reservable(&self, bytes: u64) -> Option<usize> {
+        let free = free_memory().filter(|_| self.keeps_pages())?;
+        let most = free.saturating_sub(min_free_bytes()) / RESERVE_PART;
+        Some(usize::try_from(bytes.min(most)).unwrap_or(0))
     }
 
     /// Returns whether enough memory stays free after allocating `bytes`; true if unknown.

@@ -22,7 +22,9 @@ use crate::statistics::Median;
 use sixfold_workload::Operation;
 use sixfold_workload::pages;
 use sixfold_workload::{Clock, Time};
-use sixfold_workload::{Job, MIN_TIMED_NS, Outcome, Run, Series, Start, TimedBackend};
+use sixfold_workload::{
+    Job, MIN_TIMED_NS, Outcome, Run, Series, Start, TimedBackend, exceeds_second_level,
+};
 
 /// Largest number of rounds; more would hardly narrow the intervals.
 const MAX_ROUNDS: u32 = 200;
@@ -312,8 +314,8 @@ impl Measurement<'_, '_> {
     }
 
     /// Builds all structures again, each elsewhere in memory. If pages are kept, it first returns
-    /// them and takes new ones in random order. The addresses and the pages of the tables affect
-    /// times and do not change between two rebuilds.
+    /// them, so that the kernel chooses new ones; for large structures in random order. The addresses
+    /// and the pages of the tables affect times and do not change between two rebuilds.
     fn rebuild(&mut self) {
         let mut order: Vec<usize> = (0..self.subjects.len()).collect();
         order.shuffle(&mut self.random);
@@ -322,8 +324,10 @@ impl Measurement<'_, '_> {
                 return;
             }
             self.memory.release_pages();
-            let bytes = self.subjects[subject].bytes() as u64;
-            self.memory.reserve_for(2 * bytes);
+            let bytes = self.subjects[subject].bytes();
+            if exceeds_second_level(bytes) {
+                self.memory.reserve_in_random_order(2 * bytes as u64);
+            }
             let gap: Vec<u8> = Vec::with_capacity(self.random.random_range(0..LARGEST_GAP));
             self.subjects[subject].rebuild();
             drop(black_box(gap));

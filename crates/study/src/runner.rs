@@ -119,7 +119,7 @@ impl<'a> BackendRunner<'a> {
     fn rebuild(&mut self) {
         if self.kept {
             pages::release_pages();
-            pages::reserve(2 * self.subject.bytes());
+            pages::reserve_in_random_order(2 * self.subject.bytes());
         }
         self.samples += 1;
         let gap: Vec<u8> = Vec::with_capacity(self.samples % GAPS * GAP_STEP);

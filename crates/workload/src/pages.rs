@@ -168,14 +168,25 @@ const MAX_BLOCK_BYTES: usize = 1 << 20;
 /// their pages present. Pages that [`release_pages`] returned are taken from the kernel again.
 /// Useful only if pages are kept. O(`bytes` + bytes of freed blocks), plus one walk over the list of freed
 /// blocks for each MiB of them.
-///
-/// Pages are touched in random order, so the order of the pages in memory is random: the sets of the
-/// second-level cache that they use then do not depend on what the process did before.
 pub fn reserve(bytes: usize) {
+    touch_free_pages(bytes, |_| {});
+}
+
+/// Touches the same pages as [`reserve`], in random order: the kernel then also chooses the pages of
+/// large tables in random order. The sets of the second-level cache that the tables use then do not
+/// depend on what the process did before.
+pub fn reserve_in_random_order(bytes: usize) {
     /// The number of calls: the seed of the order, so that each call has another one.
     static CALLS: AtomicU64 = AtomicU64::new(0);
     let mut random = ChaCha8Rng::seed_from_u64(CALLS.fetch_add(1, Ordering::Relaxed));
+    touch_free_pages(bytes, |pages| pages.shuffle(&mut random));
+}
 
+/// A page that belongs to no value.
+type FreePage<'b> = &'b mut [MaybeUninit<u8>];
+
+/// Touches the pages of a block of `bytes` and of all freed blocks, after `arrange` arranged them.
+fn touch_free_pages(bytes: usize, arrange: impl FnOnce(&mut [FreePage<'_>])) {
     // All blocks are held at the same time, so that each is a different one. Large blocks come
     // first, because small ones fit anywhere.
     let mut blocks: Vec<Vec<u8>> = untouched_block(bytes).into_iter().collect();
@@ -191,7 +202,7 @@ pub fn reserve(bytes: usize) {
         heap = now;
     }
     let mut pages: Vec<_> = blocks.iter_mut().flat_map(pages_of).collect();
-    pages.shuffle(&mut random);
+    arrange(&mut pages);
     for page in pages {
         page[0].write(1);
     }
@@ -199,7 +210,7 @@ pub fn reserve(bytes: usize) {
 }
 
 /// Returns the pages of an empty block.
-fn pages_of(block: &mut Vec<u8>) -> impl Iterator<Item = &mut [MaybeUninit<u8>]> {
+fn pages_of(block: &mut Vec<u8>) -> impl Iterator<Item = FreePage<'_>> {
     block.spare_capacity_mut().chunks_mut(MIN_PAGE_BYTES)
 }
 

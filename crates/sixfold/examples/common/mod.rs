@@ -7,7 +7,7 @@ use sixfold::PolygonMesh;
 use sixfold::io::read_obj;
 
 /// Reads the OBJ file that is the first argument of the program, or returns `default`.
-pub fn mesh_argument(default: PolygonMesh) -> Result<PolygonMesh, Box<dyn Error>> {
+pub(crate) fn mesh_argument(default: PolygonMesh) -> Result<PolygonMesh, Box<dyn Error>> {
     let Some(path) = std::env::args().nth(1) else {
         return Ok(default);
     };
