@@ -7,12 +7,13 @@ use sixfold_core::{PolygonMesh, Relation, Representation};
 use crate::element::Element;
 use crate::subject::Subject;
 
-/// Returns every relation of every element, and every one-ring, as `M` answers them; `None` if `M`
-/// cannot hold `polygons`.
+/// Returns every relation of every element, every one-ring and every boundary loop, as `M` answers
+/// them; `None` if `M` cannot hold `polygons`.
 ///
 /// Elements have the numbers of the input. Sets are sorted, and cycles start at their lowest
 /// element, so that equal meshes have equal answers. The ring of a vertex has a key such as
-/// `one_ring v7`; the key is missing if the vertex has no ring.
+/// `one_ring v7`; the key is missing if the vertex has no ring. Boundary loops are lists of vertices
+/// with keys such as `boundary_loop 0`; the key of an open chain is `boundary_chain 0`.
 pub fn answers<M: Representation>(
     polygons: &PolygonMesh,
 ) -> Option<BTreeMap<String, Vec<Element>>> {
@@ -36,6 +37,12 @@ pub fn answers<M: Representation>(
             }
             answers.insert(format!("one_ring {v}"), ring);
         }
+    }
+    for (i, chain) in subject.mesh.boundary_loops().into_iter().enumerate() {
+        let kind = if chain.is_closed() { "loop" } else { "chain" };
+        let vertices = chain.vertices.into_iter();
+        let vertices = vertices.map(|v| Element::Vertex(subject.handles.vertex_id(v)));
+        answers.insert(format!("boundary_{kind} {i}"), vertices.collect());
     }
     Some(answers)
 }

@@ -7,7 +7,7 @@ mod make;
 
 use make::{
     closed_bow_tie, coincident_corners, corner_numbers, disjoint_union, expect_shape, klein_bottle,
-    mesh, negative_zero, separate_faces, voxels, with_positions,
+    mesh, negative_zero, separate_faces, touching_holes, voxels, with_positions,
 };
 pub(crate) use make::{distinct_position, double_cone, strip};
 
@@ -194,6 +194,7 @@ fn faulty() -> Vec<Named> {
             "three fans at a vertex",
             mesh(7, &[[3, 0, 1], [3, 2, 4], [5, 6, 3]]),
         ),
+        ("two holes that touch at a vertex", touching_holes()),
         (
             "faults and isolated vertices",
             mesh(8, &[[1, 2, 4], [1, 2, 5], [4, 6, 5]]),

@@ -19,11 +19,12 @@ mod structure;
 pub use corner_cases::corner_cases;
 pub use cost::{costs, memory};
 pub use edit::{edit_costs, edits, inverse_edits};
-pub use elements::{elements, maps, missing_handles, names, positions};
+pub(crate) use elements::check_numbers;
+pub use elements::{elements, maps, missing_handles, names, numbers, positions};
 pub use refine::{refine, refine_in_parallel};
 pub use relations::{
-    edge_edges, edge_faces, edge_vertices, face_edges, face_faces, face_vertices, one_ring,
-    predicates, symmetry, vertex_edges, vertex_faces, vertex_vertices,
+    boundary_loops, edge_edges, edge_faces, edge_vertices, face_edges, face_faces, face_vertices,
+    folds, one_ring, predicates, symmetry, vertex_edges, vertex_faces, vertex_vertices,
 };
 pub use structure::{invariants, probed, round_trip, set_positions, verdict};
 
@@ -39,8 +40,8 @@ macro_rules! for_each_law {
                 vertex_vertices vertex_edges vertex_faces
                 edge_vertices edge_edges edge_faces
                 face_vertices face_edges face_faces
-                symmetry one_ring predicates
-                elements names positions maps missing_handles
+                symmetry one_ring predicates boundary_loops folds
+                elements names positions maps numbers missing_handles
                 verdict round_trip set_positions invariants probed
             ]
             [corner_cases costs memory]

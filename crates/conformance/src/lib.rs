@@ -18,10 +18,12 @@
 //! This crate does not use the incidence code of `sixfold-core`, because that code is tested too.
 
 mod answers;
+mod boundary;
 mod catch_panic;
 pub mod edit;
 mod element;
 mod expected_check;
+mod folds;
 mod gallery;
 pub mod law;
 mod oracle;

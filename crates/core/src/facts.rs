@@ -36,7 +36,8 @@ pub struct Facts {
     /// Edges with one face.
     pub boundary_edges: usize,
     /// Closed boundary curves, with vertices cut apart into one per fan; `None` if there is a
-    /// non-manifold edge.
+    /// non-manifold edge. [`MeshQuery::boundary_loops`](crate::MeshQuery::boundary_loops) lists
+    /// them.
     pub boundary_loops: Option<usize>,
     /// Edges with three faces or more.
     pub non_manifold_edges: usize,

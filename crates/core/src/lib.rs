@@ -4,7 +4,10 @@
 //! - [`PolygonMesh`]: the neutral input and output; positions, and faces as index lists.
 //! - [`MeshQuery`]: the nine relations of Weiler (1985) and their contract.
 //! - [`Representation`]: one structure; its capabilities, its construction and its memory.
-//! - [`Handle`] and [`HandleMap`]: handles of elements, and data stored by handle.
+//! - [`LocalQueries`]: the bound of algorithms that refuse structures whose queries scan.
+//! - [`Handle`] and [`HandleMap`]: handles of elements, and data stored by handle; [`Numbers`]:
+//!   numbers of elements from 0.
+//! - [`BoundaryLoop`]: a chain of boundary edges.
 //! - [`BuildError`]: why a structure refuses a mesh; [`Capabilities`] checks it in one place.
 //! - [`Table`] and [`Probe`]: storage whose reads and writes can be observed.
 //! - [`Refine`] and [`Split`]: structures that split every face in their own tables.
@@ -17,6 +20,7 @@
 //!
 //! This crate does not depend on any of the six structures.
 
+mod boundary;
 mod capability;
 mod clone_by_field;
 mod creases;
@@ -32,8 +36,10 @@ mod facts;
 mod handle;
 mod holes;
 mod incidence;
+mod local_queries;
 mod measured;
 mod memory;
+mod numbering;
 mod pairing;
 mod partition;
 mod polygon_mesh;
@@ -50,6 +56,7 @@ mod short_vec;
 mod sides;
 mod table;
 
+pub use boundary::BoundaryLoop;
 pub use capability::Capabilities;
 pub use creases::{Creases, SHARPNESS_INFINITE};
 pub use distinct::{Distinct, DistinctWalk, IteratorExt};
@@ -69,8 +76,10 @@ pub use glam::Vec3 as Point;
 pub use handle::{Handle, HandleMap, HashHandleMap, Pair, RowMap};
 pub use holes::Holes;
 pub use incidence::EdgeUse;
+pub use local_queries::LocalQueries;
 pub use measured::{Counts, Measured};
 pub use memory::{MemoryFootprint, TableBytes};
+pub use numbering::Numbers;
 pub use pairing::{SideRows, TwinPairs, pair_triangle_sides};
 pub use polygon_mesh::PolygonMesh;
 pub use probe::{Access, AccessKind, Probe, Traced, Untraced};
@@ -92,7 +101,7 @@ pub use table::Table;
 /// the types in their signatures.
 pub mod prelude {
     pub use crate::{
-        BuildError, EdgeId, EdgeMap, EditError, EditLog, EditRecord, FaceId, FaceMap, MeshEdit,
-        MeshQuery, Point, PolygonMesh, Refine, Representation, VertexId, VertexMap,
+        BuildError, EdgeId, EdgeMap, EditError, EditLog, EditRecord, FaceId, FaceMap, LocalQueries,
+        MeshEdit, MeshQuery, Point, PolygonMesh, Refine, Representation, VertexId, VertexMap,
     };
 }

@@ -1,7 +1,9 @@
 //! The query trait.
 
 use crate::Point;
+use crate::boundary::{self, BoundaryLoop};
 use crate::handle::{Handle, HandleMap};
+use crate::numbering::Numbers;
 
 /// Data by vertex of `M`.
 pub type VertexMap<M, T> = <<M as MeshQuery>::Vertex as Handle>::Map<T>;
@@ -29,6 +31,8 @@ pub type FaceMap<M, T> = <<M as MeshQuery>::Face as Handle>::Map<T>;
 /// - **Symmetry.** `f ∈ VF(v)` exactly if `v ∈ FV(f)`; likewise VE/EV, EF/FE, VV, EE and FF.
 /// - **Order.** FV and FE run counter-clockwise in the order of the input, from any start; side `i`
 ///   joins corners `i` and `i + 1`. The other seven are sets, in no guaranteed order.
+/// - **Iteration.** An iterator yields the same items by `next` and by `fold`, also if the first
+///   items were taken by `next`.
 /// - **No cache.** Each result is computed from the stored tables alone; nothing is kept between
 ///   calls. If this requires a scan of all faces, the query scans.
 /// - **Handles.** A handle is valid until the next edit. A handle that is out of range, or of a
@@ -172,6 +176,65 @@ pub trait MeshQuery {
     /// Returns a map that holds `value` for every face.
     fn face_map<T: Clone>(&self, value: T) -> FaceMap<Self, T> {
         HandleMap::filled(self.face_rows(), value)
+    }
+
+    /// Numbers the vertices from 0, in the order of [`vertices`](Self::vertices); O(vertices)
+    /// expected.
+    fn vertex_numbers(&self) -> Numbers<Self::Vertex> {
+        Numbers::new(self.vertex_rows(), self.vertices())
+    }
+    /// Numbers the edges from 0, in the order of [`edges`](Self::edges); O(edges) expected.
+    fn edge_numbers(&self) -> Numbers<Self::Edge> {
+        Numbers::new(self.edge_rows(), self.edges())
+    }
+    /// Numbers the faces from 0, in the order of [`faces`](Self::faces); O(faces) expected.
+    fn face_numbers(&self) -> Numbers<Self::Face> {
+        Numbers::new(self.face_rows(), self.faces())
+    }
+
+    /// Returns the number of faces along each edge; 255 stands for 255 or more.
+    ///
+    /// This is one pass over FE. On a structure that scans for EF, it takes O(corners) time, where
+    /// one query per edge takes O(edges · corners).
+    fn edge_face_counts(&self) -> EdgeMap<Self, u8> {
+        boundary::edge_face_counts(self)
+    }
+
+    /// Returns the edges with exactly one face, in the order of [`edges`](Self::edges); the cost of
+    /// [`edge_face_counts`](Self::edge_face_counts).
+    fn boundary_edges(&self) -> Vec<Self::Edge> {
+        let counts = self.edge_face_counts();
+        self.edges().filter(|&e| counts[e] == 1).collect()
+    }
+
+    /// Returns the boundary loops: chains of boundary edges, with the hole on the left.
+    ///
+    /// ```text
+    ///    ┌───┬───┬───┐
+    ///    │   │   │   │      the vertices of a loop around a hole, in order,
+    ///    ├───d ← c───┤      are the corners of the face that fills the hole:
+    ///    │   ↓   ↑   │      a, b, c, d
+    ///    ├───a → b───┤
+    ///    │   │   │   │      the loop around the outside runs clockwise
+    ///    └───┴───┴───┘
+    /// ```
+    ///
+    /// - Every boundary edge is in exactly one loop, once.
+    /// - At a vertex, a loop continues to the other boundary edge of the same fan of faces. If loops
+    ///   touch at a vertex, each continues in its own fan; if two holes touch there, one loop runs
+    ///   around both and visits the vertex twice.
+    /// - A fan that reaches an edge with three or more faces ends there, and so does the chain. Only
+    ///   such a chain is not [closed](BoundaryLoop::is_closed).
+    /// - Each edge runs against its face. If the faces of a loop disagree in orientation, the loop
+    ///   has the direction of the edge that is first: the one whose start, and then whose end, comes
+    ///   first in [`vertices`](Self::vertices).
+    /// - A closed loop starts with this edge, and the loops are sorted by it. Structures that list
+    ///   the vertices in one order thus return the same loops.
+    ///
+    /// O(corners) expected, on every structure whose FV and FE are local; plus O(n log n) for the n
+    /// corners at boundary vertices.
+    fn boundary_loops(&self) -> Vec<BoundaryLoop<Self::Vertex, Self::Edge>> {
+        boundary::boundary_loops(self)
     }
 
     /// Returns the neighbours of a manifold vertex, counter-clockwise: from one boundary edge to

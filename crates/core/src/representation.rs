@@ -79,6 +79,20 @@ pub enum QueryCost {
     Scan,
 }
 
+impl QueryCost {
+    /// Returns whether none of `costs` is a scan.
+    pub const fn are_local(costs: &[Self; 9]) -> bool {
+        let mut i = 0;
+        while i < costs.len() {
+            if matches!(costs[i], Self::Scan) {
+                return false;
+            }
+            i += 1;
+        }
+        true
+    }
+}
+
 /// A mesh data structure: its name and capabilities, its construction, and its memory.
 ///
 /// # Contract
@@ -98,6 +112,18 @@ pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
 
     /// How much of the mesh each relation reads, in the order of [`Relation::ALL`].
     const COSTS: [QueryCost; 9];
+
+    /// Returns how much of the mesh `relation` reads.
+    fn cost(relation: Relation) -> QueryCost {
+        Self::COSTS[relation as usize]
+    }
+
+    /// Returns whether no relation scans all faces.
+    ///
+    /// The bound [`LocalQueries`](crate::LocalQueries) requires this at compile time.
+    fn is_local() -> bool {
+        QueryCost::are_local(&Self::COSTS)
+    }
 
     /// Returns the path of the type for users: `sixfold_half_edge::HalfEdgeMesh`. The crate is the
     /// first part.

@@ -7,7 +7,7 @@ use sixfold_core::{
     pair_triangle_sides,
 };
 
-use crate::mesh::{AnyCornerTable, CornerId};
+use crate::mesh::{AnyCornerTable, CornerId, CornerTable, EditableCornerTable};
 
 impl<E: Editing> Representation for AnyCornerTable<Untraced, E> {
     const NAME: &'static str = "corner-table";
@@ -104,6 +104,8 @@ impl<E: Editing> Representation for AnyCornerTable<Untraced, E> {
         crate::validate::validate(self)
     }
 }
+
+sixfold_core::local_queries!(CornerTable, EditableCornerTable);
 
 impl<E: Editing> Measured for AnyCornerTable<Untraced, E> {
     type Probed<P: Probe> = AnyCornerTable<P, E>;

@@ -6,7 +6,7 @@ use sixfold_core::{
     QueryCost, Representation, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap, row,
 };
 
-use crate::mesh::{AnyFaceVertexMesh, Fan};
+use crate::mesh::{AnyFaceVertexMesh, EditableFaceVertexMesh, FaceVertexMesh, Fan};
 
 impl<E: Editing> Representation for AnyFaceVertexMesh<Untraced, E> {
     const NAME: &'static str = "face-vertex";
@@ -102,6 +102,8 @@ impl<E: Editing> Representation for AnyFaceVertexMesh<Untraced, E> {
         self.check_invariants()
     }
 }
+
+sixfold_core::local_queries!(FaceVertexMesh, EditableFaceVertexMesh);
 
 impl<E: Editing> Measured for AnyFaceVertexMesh<Untraced, E> {
     type Probed<P: Probe> = AnyFaceVertexMesh<P, E>;

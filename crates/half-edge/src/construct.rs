@@ -6,7 +6,7 @@ use sixfold_core::{
     RowId, RowMap, SideRows, Slot, TwinPairs, Untraced, VertexId, row,
 };
 
-use crate::mesh::{AnyHalfEdgeMesh, Half, HalfEdgeId};
+use crate::mesh::{AnyHalfEdgeMesh, EditableHalfEdgeMesh, Half, HalfEdgeId, HalfEdgeMesh};
 
 impl<E: Editing> Representation for AnyHalfEdgeMesh<Untraced, E> {
     const NAME: &'static str = "half-edge";
@@ -104,6 +104,8 @@ impl<E: Editing> Representation for AnyHalfEdgeMesh<Untraced, E> {
         crate::validate::validate(self)
     }
 }
+
+sixfold_core::local_queries!(HalfEdgeMesh, EditableHalfEdgeMesh);
 
 impl<E: Editing> Measured for AnyHalfEdgeMesh<Untraced, E> {
     type Probed<P: Probe> = AnyHalfEdgeMesh<P, E>;

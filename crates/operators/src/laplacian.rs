@@ -176,16 +176,8 @@ struct BoundaryCurves<V> {
 }
 
 impl<V: Handle> BoundaryCurves<V> {
-    /// Counts the faces of every edge in one pass over the faces: no structure searches for them.
     fn new<M: MeshQuery<Vertex = V>>(mesh: &M, boundary: Boundary) -> Self {
-        let mut faces = mesh.edge_map(0_u8);
-        mesh.faces().for_each(|f| {
-            mesh.face_edges(f).for_each(|e| {
-                let count = &mut faces[e];
-                *count = count.saturating_add(1);
-            });
-        });
-        let open = mesh.edges().filter(|&e| faces[e] == 1);
+        let open = mesh.boundary_edges().into_iter();
         let edges: Vec<[V; 2]> = open.map(|e| mesh.edge_vertices(e)).collect();
         let mut ends: VertexMap<M, usize> = HandleMap::filled(mesh.vertex_rows(), 0);
         let mut vertices = Vec::new();

@@ -1,10 +1,8 @@
-//! Numbers for the elements of any mesh, and the nine relation tables that use these numbers.
+//! The nine relation tables of a mesh, and the numbers of its elements in them.
 
 use std::cell::OnceCell;
 
-use sixfold_core::{
-    EdgeId, EdgeMap, FaceId, FaceMap, MeshQuery, Point, Relation, VertexId, VertexMap, row,
-};
+use sixfold_core::{EdgeId, FaceId, MeshQuery, Numbers, Point, Relation, VertexId};
 
 use crate::table::{RelationTable, TabulationError};
 
@@ -14,9 +12,9 @@ use crate::table::{RelationTable, TabulationError};
 /// numbered when the first number of that kind is needed.
 pub struct Numbering<'m, M: MeshQuery> {
     mesh: &'m M,
-    vertices: OnceCell<VertexMap<M, VertexId>>,
-    edges: OnceCell<EdgeMap<M, EdgeId>>,
-    faces: OnceCell<FaceMap<M, FaceId>>,
+    vertices: OnceCell<Numbers<M::Vertex>>,
+    edges: OnceCell<Numbers<M::Edge>>,
+    faces: OnceCell<Numbers<M::Face>>,
 }
 
 /// Defines the method that builds one table, such as `vertex_faces`.
@@ -49,37 +47,40 @@ impl<'m, M: MeshQuery> Numbering<'m, M> {
         }
     }
 
-    /// Returns the number of `v`. O(1), except the first call, which numbers all: O(vertices).
+    /// Returns the numbers of the vertices. The first call numbers them: O(vertices).
+    #[inline]
+    pub fn vertices(&self) -> &Numbers<M::Vertex> {
+        self.vertices.get_or_init(|| self.mesh.vertex_numbers())
+    }
+
+    /// Returns the numbers of the edges. The first call numbers them: O(edges).
+    #[inline]
+    pub fn edges(&self) -> &Numbers<M::Edge> {
+        self.edges.get_or_init(|| self.mesh.edge_numbers())
+    }
+
+    /// Returns the numbers of the faces. The first call numbers them: O(faces).
+    #[inline]
+    pub fn faces(&self) -> &Numbers<M::Face> {
+        self.faces.get_or_init(|| self.mesh.face_numbers())
+    }
+
+    /// Returns the row of `v` in the tables. O(1), except the first call, which numbers all vertices.
     #[inline]
     pub fn vertex(&self, v: M::Vertex) -> VertexId {
-        self.vertices.get_or_init(|| {
-            let mut numbers = self.mesh.vertex_map(VertexId::new(0));
-            let numbered = self.mesh.vertices().enumerate();
-            numbered.for_each(|(number, v)| numbers[v] = VertexId::new(row(number)));
-            numbers
-        })[v]
+        VertexId::new(self.vertices()[v])
     }
 
-    /// Returns the number of `e`. O(1), except the first call, which numbers all: O(edges).
+    /// Returns the row of `e` in the tables. O(1), except the first call, which numbers all edges.
     #[inline]
     pub fn edge(&self, e: M::Edge) -> EdgeId {
-        self.edges.get_or_init(|| {
-            let mut numbers = self.mesh.edge_map(EdgeId::new(0));
-            let numbered = self.mesh.edges().enumerate();
-            numbered.for_each(|(number, e)| numbers[e] = EdgeId::new(row(number)));
-            numbers
-        })[e]
+        EdgeId::new(self.edges()[e])
     }
 
-    /// Returns the number of `f`. O(1), except the first call, which numbers all: O(faces).
+    /// Returns the row of `f` in the tables. O(1), except the first call, which numbers all faces.
     #[inline]
     pub fn face(&self, f: M::Face) -> FaceId {
-        self.faces.get_or_init(|| {
-            let mut numbers = self.mesh.face_map(FaceId::new(0));
-            let numbered = self.mesh.faces().enumerate();
-            numbered.for_each(|(number, f)| numbers[f] = FaceId::new(row(number)));
-            numbers
-        })[f]
+        FaceId::new(self.faces()[f])
     }
 
     /// Returns the positions of the vertices, by vertex number.

@@ -79,6 +79,7 @@ fn removed_elements_get_no_numbers() {
     check_tables(&mesh).expect("the same answers");
     let numbers = Numbering::new(&mesh);
     assert_eq!(numbers.vertex(VertexId::new(1)), VertexId::new(0));
+    assert_eq!(numbers.vertices().handle(0), VertexId::new(1));
     assert_eq!(
         numbers.edge(mesh.edges().next().expect("edges")),
         EdgeId::new(0)

@@ -218,14 +218,7 @@ impl<M: MeshEdit + Representation> Work<M> {
     /// Adds the planes of its faces to each vertex and, at a boundary, the planes perpendicular to
     /// the surface. All of them contain the vertex, which is the origin of its quadric.
     fn add_planes(&mut self, mesh: &M, boundary: Boundary) {
-        // The number of faces of each edge, by one pass over the faces: no structure needs a search
-        // for it.
-        let mut face_counts = mesh.edge_map(0_u8);
-        for f in mesh.faces() {
-            for e in mesh.face_edges(f) {
-                face_counts[e] = face_counts[e].saturating_add(1);
-            }
-        }
+        let face_counts = mesh.edge_face_counts();
         let mut quadrics = vec![Quadric::default(); self.vertices.len()];
         let mut boundary_planes: Vec<([u32; 2], Quadric)> = Vec::new();
         for f in mesh.faces() {

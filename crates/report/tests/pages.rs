@@ -5,7 +5,9 @@ use std::time::Duration;
 
 use sixfold::shapes;
 use sixfold_report::{Figure, ReportPage};
-use sixfold_study::{Collection, Operation, Report, Settings, SharedSettings, StudyMesh, study};
+use sixfold_study::{
+    Collection, Failed, FailureKind, Operation, Report, Settings, SharedSettings, StudyMesh, study,
+};
 
 const NAME_WITH_MARKUP: &str = "<script>alert('a|b')</script>&.obj";
 
@@ -110,7 +112,11 @@ fn an_interrupted_page_has_a_warning() {
 fn a_page_of_several_meshes_has_pooled_figures_and_one_section_each() {
     let mut both = collection(&["a.obj", NAME_WITH_MARKUP]);
     both.meshes.push("gone.obj".into());
-    both.add_failure("gone.obj", "no such file".into());
+    both.add_failure(Failed {
+        mesh: "gone.obj".into(),
+        reason: "no such file".into(),
+        kind: FailureKind::NotMeasured,
+    });
     let page = ReportPage::new(&both, "sixfold study a.obj");
     assert_eq!(page.meshes.len(), 2);
     assert!(page.figures.iter().any(|figure| figure.id == "heat-map"));

@@ -11,7 +11,9 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use sixfold_study::{Collection, Report, Settings, SharedSettings, StudyError, StudyMesh};
+use sixfold_study::{
+    Collection, Failed, FailureKind, Report, Settings, SharedSettings, StudyError, StudyMesh,
+};
 
 use crate::arguments::Study;
 use crate::failure::Failure;
@@ -30,7 +32,7 @@ pub(crate) use meshes::Shard;
 use folder::{Folder, StudyRecord};
 use meshes::{Mesh, find_meshes};
 
-/// The reason if a mesh loads but cannot be studied.
+/// The reason text of [`FailureKind::NoneHolds`].
 const NONE_HOLDS: &str = "none of the selected backends can hold it";
 
 /// Studies the selected meshes, except those that are finished already. Lists meshes that do not
@@ -127,8 +129,8 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
     }
     if collection.studies.is_empty() && !interrupted && arguments.shard.is_none() {
         written?;
-        let mut reasons = collection.failures.iter().map(|failed| &failed.reason);
-        return Err(match reasons.all(|reason| reason == NONE_HOLDS) {
+        let mut kinds = collection.failures.iter().map(|failed| failed.kind);
+        return Err(match kinds.all(|kind| kind == FailureKind::NoneHolds) {
             true => Failure::unsupported(format!("all meshes failed: {NONE_HOLDS}")),
             false => Failure::usage("none of the meshes could be studied"),
         });
@@ -155,18 +157,25 @@ fn shared_settings(arguments: &Study, settings: &Settings) -> SharedSettings {
     }
 }
 
-/// Returns the study of one mesh or the reason why it failed; `None` if interrupted.
+/// Returns the study of one mesh or why it failed; `None` if interrupted.
 fn measure_mesh(
     mesh: &Mesh,
     arguments: &Study,
     settings: &Settings,
     position: &str,
     stop: &AtomicBool,
-) -> Option<Result<Report, String>> {
+) -> Option<Result<Report, Failed>> {
+    let failed = |kind, reason| {
+        let mesh = mesh.name.clone();
+        Some(Err(Failed { mesh, reason, kind }))
+    };
     let study_mesh = match (load_mesh(mesh, arguments), &mesh.path) {
         (Ok(study_mesh), _) => study_mesh,
-        (Err(failure), None) => return Some(Err(failure.message)),
-        (Err(failure), Some(path)) => return Some(Err(without_path(&failure.message, path))),
+        (Err(failure), None) => return failed(FailureKind::NotMeasured, failure.message),
+        (Err(failure), Some(path)) => {
+            let reason = without_path(&failure.message, path);
+            return failed(FailureKind::NotMeasured, reason);
+        }
     };
     let bar = Bar::new();
     let report = sixfold_study::study(&study_mesh, settings, stop, &mut |at| {
@@ -183,8 +192,8 @@ fn measure_mesh(
             report.environment.command = Some(command_line());
             Some(Ok(report))
         }
-        Err(StudyError::NoneHolds { .. }) => Some(Err(NONE_HOLDS.into())),
-        Err(error) => Some(Err(error.to_string())),
+        Err(StudyError::NoneHolds { .. }) => failed(FailureKind::NoneHolds, NONE_HOLDS.into()),
+        Err(error) => failed(FailureKind::NotMeasured, error.to_string()),
     }
 }
 
@@ -207,7 +216,7 @@ fn without_path(message: &str, path: &Path) -> String {
     }
 }
 
-fn progress_line(position: &str, mesh: &Mesh, result: &Result<Report, String>) -> String {
+fn progress_line(position: &str, mesh: &Mesh, result: &Result<Report, Failed>) -> String {
     let name = sanitize(&mesh.name);
     match result {
         Ok(report) => {
@@ -217,7 +226,7 @@ fn progress_line(position: &str, mesh: &Mesh, result: &Result<Report, String>) -
             let rows = counted(report.results.len(), "figure", "figures");
             format!("{position}: {name}, {faces}, {columns}, {rows}")
         }
-        Err(reason) => hanging_indent(&format!("{position}: {name}: "), &sanitize(reason)),
+        Err(failed) => hanging_indent(&format!("{position}: {name}: "), &sanitize(&failed.reason)),
     }
 }
 

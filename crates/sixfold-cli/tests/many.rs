@@ -290,6 +290,25 @@ fn invalid_places_are_refused_before_anything_is_measured() {
     );
 }
 
+/// Also after `--resume`, which reads the failures from files.
+#[test]
+fn meshes_that_no_selected_backend_can_hold_have_their_own_exit_code() {
+    let sixfold = Sixfold::new();
+    let book = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
+    sixfold.file("a.obj", book);
+    sixfold.file("b.obj", book);
+    let mut arguments = vec!["study", "a.obj", "b.obj", "--report", "out"];
+    arguments.extend(["--backends", "half-edge"]);
+    for _ in 0..2 {
+        let run = sixfold.run(&arguments);
+        assert_eq!(run.code, Some(3), "{run:?}");
+        assert!(run.stderr.contains("all meshes failed"), "{run:?}");
+        let failures = &results(&sixfold, "out")["failures"];
+        assert_eq!(failures[1]["kind"], "none_holds", "{failures}");
+        arguments.push("--resume");
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_does_not_suppress_the_text() {

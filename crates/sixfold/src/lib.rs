@@ -2,6 +2,34 @@
 //!
 //! This crate re-exports the core types, the structures and the algorithms. It also contains the
 //! roster: the only list of all structures, which every command, test and benchmark uses.
+//!
+//! # Requiring local queries
+//!
+//! Polygon soups and indexed face sets answer most queries by a scan of all faces. An algorithm can
+//! refuse them with the bound [`LocalQueries`]:
+//!
+//! ```
+//! use sixfold::prelude::*;
+//!
+//! fn largest_valence<M: LocalQueries>(mesh: &M) -> usize {
+//!     mesh.vertices().map(|v| mesh.valence(v)).max().unwrap_or(0)
+//! }
+//!
+//! let mesh = HalfEdgeMesh::from_polygons(&sixfold::shapes::cube())?;
+//! assert_eq!(largest_valence(&mesh), 3);
+//! assert!(HalfEdgeMesh::is_local() && !PolygonSoup::is_local());
+//! # Ok::<(), BuildError>(())
+//! ```
+//!
+//! ```compile_fail,E0277
+//! # use sixfold::prelude::*;
+//! # fn largest_valence<M: LocalQueries>(mesh: &M) -> usize {
+//! #     mesh.vertices().map(|v| mesh.valence(v)).max().unwrap_or(0)
+//! # }
+//! let mesh = PolygonSoup::from_polygons(&sixfold::shapes::cube())?;
+//! largest_valence(&mesh); // queries of a polygon soup may scan all faces of the mesh
+//! # Ok::<(), BuildError>(())
+//! ```
 
 pub use sixfold_core::*;
 pub use sixfold_corner_table::{self as corner_table, CornerTable, EditableCornerTable};

@@ -77,6 +77,20 @@ pub struct Failed {
     pub mesh: String,
     /// Why it could not be studied.
     pub reason: String,
+    /// The kind of reason; older versions did not save it.
+    #[serde(default)]
+    pub kind: FailureKind,
+}
+
+/// The kind of reason why a mesh could not be studied.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FailureKind {
+    /// The mesh could not be loaded, or measuring it failed.
+    #[default]
+    NotMeasured,
+    /// The mesh is valid, but none of the selected backends can hold it.
+    NoneHolds,
 }
 
 /// One operation on one backend, over all meshes it was measured on.
@@ -183,13 +197,10 @@ impl Collection {
         self.sort_and_pool();
     }
 
-    /// Records that `mesh` could not be studied.
-    pub fn add_failure(&mut self, mesh: &str, reason: String) {
-        self.remove(mesh);
-        self.failures.push(Failed {
-            mesh: mesh.into(),
-            reason,
-        });
+    /// Records that one of the meshes could not be studied.
+    pub fn add_failure(&mut self, failed: Failed) {
+        self.remove(&failed.mesh);
+        self.failures.push(failed);
         self.sort_and_pool();
     }
 
@@ -504,6 +515,14 @@ mod tests {
         report
     }
 
+    fn failed(mesh: &str, reason: &str) -> Failed {
+        Failed {
+            mesh: mesh.into(),
+            reason: reason.into(),
+            kind: FailureKind::NotMeasured,
+        }
+    }
+
     fn names(list: &[&str]) -> Vec<String> {
         list.iter().map(|&name| name.to_owned()).collect()
     }
@@ -513,7 +532,7 @@ mod tests {
         let mut all = Collection::new(names(&["a", "b", "c", "d"]), shared_settings());
         all.add_study(report("c", 8.0));
         all.add_study(report("a", 2.0));
-        all.add_failure("d", "no faces".into());
+        all.add_failure(failed("d", "no faces"));
         assert_eq!(all.missing, ["b"]);
         all.add_study(report("b", 4.0));
         let order: Vec<&str> = all.studies.iter().map(|s| s.mesh.name.as_str()).collect();
@@ -566,8 +585,8 @@ mod tests {
             whole.add_study(study.clone());
             shard.add_study(study);
         }
-        whole.add_failure("c", "broken".into());
-        one.add_failure("c", "broken".into());
+        whole.add_failure(failed("c", "broken"));
+        one.add_failure(failed("c", "broken"));
         let written = |collection: &Collection| {
             let mut text = Vec::new();
             collection.write_json(&mut text).expect("memory");

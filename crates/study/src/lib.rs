@@ -46,7 +46,9 @@ mod warnings;
 mod why;
 
 pub use audit::{Audit, BackendAudit, OperationBytes, audit, count_allocations};
-pub use collection::{Collection, Failed, MergeError, Pooled, SecondStudy, SharedSettings};
+pub use collection::{
+    Collection, Failed, FailureKind, MergeError, Pooled, SecondStudy, SharedSettings,
+};
 pub use compare::{
     Change, Changes, CompareError, CompareSettings, DRIFT, NewWinner, SettingChange, Verdict,
     compare,

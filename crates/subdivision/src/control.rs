@@ -146,11 +146,8 @@ pub fn renumbered<M: Representation>(
     if M::CAPABILITIES.coincident_vertices || creases.is_empty() {
         return creases.clone();
     }
-    let mut numbers = mesh.vertex_map(VertexId::new(0));
-    for (number, v) in (0..).zip(mesh.vertices()) {
-        numbers[v] = VertexId::new(number);
-    }
-    let number = |v: VertexId| numbers[M::vertex_handle(polygons, v)];
+    let numbers = mesh.vertex_numbers();
+    let number = |v: VertexId| VertexId::new(numbers[M::vertex_handle(polygons, v)]);
     let mut edges: Vec<_> = creases.edges().to_vec();
     for (ends, _) in &mut edges {
         let [a, b] = ends.ends().map(number);

@@ -147,10 +147,7 @@ struct Spoke<V> {
 
 /// Returns the two spokes of every sharp edge, sorted by vertex and then by far end.
 fn spokes<M: MeshQuery>(mesh: &M, creases: &Creases) -> Vec<Spoke<M::Vertex>> {
-    let mut numbers = mesh.vertex_map(0_u32);
-    for (number, v) in (0..).zip(mesh.vertices()) {
-        numbers[v] = number;
-    }
+    let numbers = mesh.vertex_numbers();
     let crease_vertices = CreaseVertices::new(creases, mesh.vertex_count());
     let mut spokes = Vec::new();
     for e in mesh.edges() {

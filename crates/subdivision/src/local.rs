@@ -18,7 +18,7 @@
 //! angles do not keep shrinking with the levels. New points are midpoints; old points stay.
 
 use sixfold_core::{
-    EdgeMap, FaceId, FaceList, MAX_ROWS, MeshQuery, Point, PolygonError, PolygonMesh,
+    EdgeMap, FaceId, FaceList, MAX_ROWS, MeshQuery, Numbers, Point, PolygonError, PolygonMesh,
     Representation, VertexId,
 };
 
@@ -183,7 +183,7 @@ impl LocalMesh {
 struct Step<'a, M: MeshQuery> {
     before: &'a [Kind],
     mesh: &'a M,
-    numbers: sixfold_core::FaceMap<M, u32>,
+    numbers: Numbers<M::Face>,
     /// The first corner of a green face is the one that the other half does not have: (a, m, c) and
     /// (b, c, m).
     faces: Vec<Triangle<M::Vertex, M::Edge>>,
@@ -200,10 +200,9 @@ struct Step<'a, M: MeshQuery> {
 impl<'a, M: MeshQuery> Step<'a, M> {
     fn new(before: &'a LocalMesh, mesh: &'a M) -> Result<Self, LocalError> {
         let count = before.kinds.len();
-        let mut numbers = mesh.face_map(0);
+        let numbers = mesh.face_numbers();
         let mut faces = Vec::with_capacity(count);
-        for (number, f) in (0..).zip(mesh.faces()) {
-            numbers[f] = number;
+        for (number, &f) in (0..).zip(numbers.handles()) {
             let corners = triangle(mesh, f, FaceId::new(number))?;
             let mut sides = mesh.face_edges(f);
             let sides = [(); 3].map(|()| sides.next().expect("as many sides as corners"));

@@ -125,10 +125,9 @@ fn intersects_box(corners: [Point; 3], min: Point, max: Point) -> bool {
 
 /// Returns the faces along edges that bend by more than `degrees`.
 fn faces_along_folds<M: MeshQuery>(mesh: &M, degrees: f32) -> Result<Vec<FaceId>, LocalError> {
-    let mut numbers = mesh.face_map(FaceId::new(0));
-    let mut chosen = vec![false; mesh.face_count()];
-    for (number, f) in (0..).zip(mesh.faces()) {
-        numbers[f] = FaceId::new(number);
+    let numbers = mesh.face_numbers();
+    let mut chosen = vec![false; numbers.len()];
+    for (number, &f) in (0..).zip(numbers.handles()) {
         triangle(mesh, f, FaceId::new(number))?;
     }
     // The normal of a face, and whether it runs from `a` to `b`.
@@ -155,7 +154,7 @@ fn faces_along_folds<M: MeshQuery>(mesh: &M, degrees: f32) -> Result<Vec<FaceId>
         };
         if is_bent {
             for f in faces {
-                chosen[numbers[f].index()] = true;
+                chosen[numbers[f] as usize] = true;
             }
         }
     }

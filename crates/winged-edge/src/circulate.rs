@@ -219,30 +219,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    fn a_walk_continued_after_some_steps_ends_at_the_same_place() {
-        let mesh = polygon_with_neighbours(4);
-        for v in mesh.vertices() {
-            let whole: Vec<EdgeId> = mesh.vertex_edges(v).collect();
-            let mut rest = mesh.vertex_edges(v);
-            assert_eq!(rest.next(), whole.first().copied());
-            assert_eq!(rest.count(), whole.len() - 1);
-        }
-        for f in mesh.faces() {
-            let whole: Vec<EdgeId> = mesh.face_edges(f).collect();
-            let mut rest = mesh.face_edges(f);
-            assert_eq!(rest.next(), whole.first().copied());
-            assert_eq!(rest.count(), whole.len() - 1);
-        }
-        for e in mesh.edges() {
-            let whole: Vec<EdgeId> = mesh.edge_edges(e).collect();
-            for taken in 0..=whole.len() {
-                let mut rest = mesh.edge_edges(e);
-                let begun: Vec<EdgeId> = rest.by_ref().take(taken).collect();
-                assert_eq!(begun, whole[..taken]);
-                assert_eq!(rest.count(), whole.len() - taken);
-            }
-        }
-    }
 }

@@ -8,7 +8,7 @@ use sixfold_core::{
 };
 
 use crate::edge::{Edge, Run};
-use crate::mesh::AnyWingedEdgeMesh;
+use crate::mesh::{AnyWingedEdgeMesh, EditableWingedEdgeMesh, WingedEdgeMesh};
 use crate::wings::Side;
 
 impl<E: Editing> Representation for AnyWingedEdgeMesh<Untraced, E> {
@@ -105,6 +105,8 @@ impl<E: Editing> Representation for AnyWingedEdgeMesh<Untraced, E> {
         crate::validate::validate(self)
     }
 }
+
+sixfold_core::local_queries!(WingedEdgeMesh, EditableWingedEdgeMesh);
 
 impl<E: Editing> Measured for AnyWingedEdgeMesh<Untraced, E> {
     type Probed<P: Probe> = AnyWingedEdgeMesh<P, E>;

@@ -96,7 +96,7 @@ pub(crate) fn count<M: Measured>(
     for &relation in relations {
         observer.relation_started(relation);
         let elements = elements[relation as usize / 3];
-        let scans = M::COSTS[relation as usize] == QueryCost::Scan && elements > SCAN_SAMPLE;
+        let scans = M::cost(relation) == QueryCost::Scan && elements > SCAN_SAMPLE;
         let whole = if scans {
             None
         } else {

@@ -363,7 +363,7 @@ impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
 /// in a program that runs nothing else.
 fn fill_caches<M: Representation>(mesh: &M, series: &Series<'_>) {
     if needs_filling(mesh, series) {
-        let scans = M::COSTS[Relation::VertexFaces as usize] == QueryCost::Scan;
+        let scans = M::cost(Relation::VertexFaces) == QueryCost::Scan;
         read_tables(black_box(mesh), scans);
     }
 }
@@ -549,7 +549,7 @@ mod tests {
     fn every_row_is_read<M: Measured>(polygons: &PolygonMesh) {
         let mesh = M::from_polygons(polygons).expect("a closed manifold");
         let bytes = mesh.memory().total();
-        let scans = M::COSTS[Relation::VertexFaces as usize] == QueryCost::Scan;
+        let scans = M::cost(Relation::VertexFaces) == QueryCost::Scan;
         let probe = Traced::default();
         read_tables(&mesh.probed(probe.clone()), scans);
         let reads = probe.take().into_iter();

@@ -12,7 +12,10 @@ use sixfold_core::{
 use super::action::Action;
 use super::model::{Model, Rules};
 use super::relations::check_relations;
+use crate::boundary::check_boundary;
 use crate::catch_panic::catch_panic;
+use crate::folds::check_folds;
+use crate::law::check_numbers;
 use crate::subject::stored_mesh;
 use crate::weld::position_key;
 
@@ -124,14 +127,18 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
             && sorted_positions(&first) == sorted_positions(&second)
     }
 
-    /// Compares all relations of the mesh, which may have holes, with its faces. Checks that the mesh
-    /// contains its own elements, and that removed handles are invalid.
+    /// Compares all relations and the boundary of the mesh, which may have holes, with its faces.
+    /// Checks its iterators and its numbers, that the mesh contains its own elements, and that
+    /// removed handles are invalid.
     ///
     /// # Panics
     ///
     /// Panics if a relation is wrong, or if the handle of a removed element is accepted.
     pub fn check_all(&mut self) {
         check_relations(&self.mesh, M::NAME);
+        check_boundary(&self.mesh, M::NAME);
+        check_folds(&self.mesh, M::NAME);
+        check_numbers(&self.mesh, M::NAME);
         self.check_set_positions();
         self.check_into_compact();
         let mesh = &self.mesh;

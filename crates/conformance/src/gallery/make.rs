@@ -20,6 +20,15 @@ pub(super) fn klein_bottle(m: u32, n: u32) -> PolygonMesh {
     mesh(m * n, &faces.collect::<Vec<_>>())
 }
 
+/// Builds 4 × 4 quads, row by row, without two of the inner four, which have a corner in common.
+pub(super) fn touching_holes() -> PolygonMesh {
+    let cells = (0..4_u32).flat_map(|j| (0..4_u32).map(move |i| (i, j)));
+    let kept = cells.filter(|cell| ![(1, 1), (2, 2)].contains(cell));
+    let faces =
+        kept.map(|(i, j)| [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[x, y]| i + x + 5 * (j + y)));
+    mesh(25, &faces.collect::<Vec<_>>())
+}
+
 /// Builds triangles from a ring of `n` vertices to an apex above (the first vertex) and one below.
 pub(crate) fn double_cone(n: u32) -> PolygonMesh {
     let sides = (0..n).map(|i| (1 + i, 1 + (i + 1) % n));

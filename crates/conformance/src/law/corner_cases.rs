@@ -8,14 +8,15 @@ use crate::gallery::gallery;
 use crate::print::one_line;
 use crate::weld::welded;
 
-/// Expected [`answers`] for a mesh of the gallery; "none" means that the vertex has no ring.
+/// Expected [`answers`] for a mesh of the gallery; "none" means that there is no such ring or loop.
 struct Case {
     mesh: &'static str,
     answers: &'static [(&'static str, &'static str)],
 }
 
-/// The cases show three rules: an element that is adjacent twice is listed once, no element is
-/// adjacent to itself, and a vertex has no ring if its faces do not form one fan.
+/// The cases show four rules: an element that is adjacent twice is listed once, no element is
+/// adjacent to itself, a vertex has no ring if its faces do not form one fan, and a boundary loop
+/// continues in the same fan.
 const CASES: &[Case] = &[
     Case {
         mesh: "pillow of two triangles",
@@ -52,6 +53,8 @@ const CASES: &[Case] = &[
             ("face_faces f1", "f0"),
             ("one_ring v1", "v0 v2"),
             ("one_ring v0", "v4 v1 v3"),
+            ("boundary_loop 0", "v0 v3 v2 v4"),
+            ("boundary_loop 1", "none"),
         ],
     },
     Case {
@@ -63,6 +66,7 @@ const CASES: &[Case] = &[
             ("face_faces f0", ""),
             ("one_ring v0", "v1 v2"),
             ("one_ring v1", "v2 v0"),
+            ("boundary_loop 0", "v0 v2 v1"),
         ],
     },
     Case {
@@ -113,6 +117,8 @@ const CASES: &[Case] = &[
             ("face_faces f0", ""),
             ("one_ring v0", "none"),
             ("one_ring v1", "v2 v0"),
+            ("boundary_loop 0", "v0 v2 v1"),
+            ("boundary_loop 1", "v0 v4 v3"),
         ],
     },
     Case {
@@ -132,6 +138,9 @@ const CASES: &[Case] = &[
             ("vertex_vertices v0", "v1 v2 v3 v4"),
             ("one_ring v0", "none"),
             ("one_ring v2", "v0 v1"),
+            ("boundary_chain 0", "v0 v2 v1"),
+            ("boundary_chain 1", "v0 v4 v1"),
+            ("boundary_chain 2", "v1 v3 v0"),
         ],
     },
     Case {
@@ -141,6 +150,18 @@ const CASES: &[Case] = &[
             ("edge_faces v0–v1", "f0 f1"),
             ("one_ring v0", "none"),
             ("one_ring v2", "v0 v1"),
+            ("boundary_loop 0", "v0 v2 v1 v3"),
+        ],
+    },
+    Case {
+        mesh: "two holes that touch at a vertex",
+        answers: &[
+            (
+                "boundary_loop 0",
+                "v0 v5 v10 v15 v20 v21 v22 v23 v24 v19 v14 v9 v4 v3 v2 v1",
+            ),
+            ("boundary_loop 1", "v6 v7 v12 v13 v18 v17 v12 v11"),
+            ("boundary_loop 2", "none"),
         ],
     },
 ];

@@ -5,7 +5,7 @@ use sixfold_core::{Counts, Measured, MeshQuery, PolygonMesh, QueryCost, Relation
 use crate::gallery::double_cone;
 use crate::oracle::Oracle;
 
-/// `COSTS` are correct, measured in table reads.
+/// `COSTS` are correct, measured in table reads; `cost` and `is_local` agree with them.
 ///
 /// - Constant: the number of reads per item is bounded, for any size of mesh and any valence.
 /// - Local: the number of reads is bounded at a bounded valence, for any size of mesh.
@@ -15,6 +15,8 @@ use crate::oracle::Oracle;
 /// The meshes are two tori of valence six, one nine times the size of the other, and two double
 /// cones whose apexes have valence 24 and 240.
 pub fn costs<M: Measured>() {
+    let scans = M::COSTS.contains(&QueryCost::Scan);
+    assert_eq!(M::is_local(), !scans, "{}: is_local", M::NAME);
     let small = reads::<M>(&torus(6));
     let large = reads::<M>(&torus(18));
     let low = reads::<M>(&double_cone(24));
@@ -24,6 +26,7 @@ pub fn costs<M: Measured>() {
         let grows = many > 4 * few;
         let bounded = 2 * many <= 3 * few;
         let cost = M::COSTS[i];
+        assert_eq!(M::cost(relation), cost, "{}: cost of {relation}", M::NAME);
         assert!(
             if cost == QueryCost::Scan {
                 grows

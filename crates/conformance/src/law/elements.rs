@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Debug;
 use std::ops::{Index, IndexMut};
 
-use sixfold_core::{PolygonMesh, Representation};
+use sixfold_core::{Handle, MeshQuery, Numbers, PolygonMesh, Representation};
 
 use super::relations::is_rotation;
 use crate::catch_panic::catch_panic;
@@ -133,6 +133,31 @@ where
     }
     for (i, &h) in handles.iter().enumerate() {
         assert_eq!(map[h], i, "{}: a map written at {h:?}", M::NAME);
+    }
+}
+
+/// `vertex_numbers`, `edge_numbers` and `face_numbers` number the elements from 0, in their order.
+pub fn numbers<M: Representation>(polygons: &PolygonMesh) {
+    if let Some(subject) = Subject::<M>::from_polygons(polygons) {
+        check_numbers(&subject.mesh, M::NAME);
+    }
+}
+
+/// Checks the numbers of all elements of `mesh`, which may have deleted rows.
+///
+/// # Panics
+///
+/// Panics if a number or a handle is wrong.
+pub(crate) fn check_numbers<M: MeshQuery>(mesh: &M, name: &str) {
+    check_kind(name, mesh.vertices().collect(), &mesh.vertex_numbers());
+    check_kind(name, mesh.edges().collect(), &mesh.edge_numbers());
+    check_kind(name, mesh.faces().collect(), &mesh.face_numbers());
+}
+
+fn check_kind<H: Handle>(name: &str, handles: Vec<H>, numbers: &Numbers<H>) {
+    assert_eq!(numbers.handles(), handles, "{name}: handles of the numbers");
+    for (number, h) in (0..).zip(handles) {
+        assert_eq!(numbers[h], number, "{name}: number of {h:?}");
     }
 }
 

@@ -2,9 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use sixfold_core::{FaceId, PolygonMesh, Relation, Representation};
+use sixfold_core::{FaceId, Facts, PolygonMesh, Relation, Representation};
 
+use crate::boundary::check_boundary;
 use crate::element::Element;
+use crate::folds::check_folds;
 use crate::subject::Subject;
 
 /// VV(v) contains the other end of each edge at `v` once, and not `v` itself.
@@ -208,6 +210,43 @@ pub fn predicates<M: Representation>(polygons: &PolygonMesh) {
                 "{name}: opposite_vertex of {f} and {a}–{b}"
             );
         }
+    }
+}
+
+/// `boundary_edges`, `boundary_loops` and `edge_face_counts` agree with the faces; there are as many
+/// loops as [`Facts`] counts.
+pub fn boundary_loops<M: Representation>(polygons: &PolygonMesh) {
+    let Some(subject) = Subject::<M>::from_polygons(polygons) else {
+        return;
+    };
+    let mesh = &subject.mesh;
+    check_boundary(mesh, M::NAME);
+    let counts = mesh.edge_face_counts();
+    for edge in subject.oracle.edges() {
+        let expected = subject.oracle.answer(Relation::EdgeFaces, edge).len();
+        let got = counts[subject.handles.edge(edge)];
+        assert_eq!(
+            usize::from(got),
+            expected.min(255),
+            "{}: edge_face_counts of {edge}",
+            M::NAME
+        );
+    }
+    if let Some(count) = Facts::from_polygons(&subject.input).boundary_loops {
+        let loops = mesh.boundary_loops();
+        assert_eq!(loops.len(), count, "{}: number of boundary_loops", M::NAME);
+        assert!(
+            loops.iter().all(|chain| chain.is_closed()),
+            "{}: boundary_loops of a mesh with manifold edges are {loops:?}, expected closed loops",
+            M::NAME
+        );
+    }
+}
+
+/// Each iterator yields the same items by `next` and by `fold`, also after some calls of `next`.
+pub fn folds<M: Representation>(polygons: &PolygonMesh) {
+    if let Some(subject) = Subject::<M>::from_polygons(polygons) {
+        check_folds(&subject.mesh, M::NAME);
     }
 }
 

@@ -80,6 +80,12 @@ detects! {
         LastFaceNotContained => predicates, "contains_face of f";
         NoCommonFace => predicates, "common_face of v0 and v";
         OppositeVertexOfAnyFace => predicates, "opposite_vertex of f";
+        BoundaryEdgeLeftOut => boundary_loops, "boundary_edges";
+        LoopReversed => boundary_loops, "boundary_loops";
+        FaceCountOff => boundary_loops, "edge_face_counts of v";
+        FoldEndsEarly => folds, "vertex_vertices of v0 by fold after 0 times next";
+        FoldStartsAgain => folds, "vertex_vertices of v0 by fold after 1 times next";
+        NumbersReversed => numbers, "handles of the numbers";
         ContainsMissingVertex => missing_handles, "contains_vertex of v";
         ContainsMissingEdge => missing_handles, "contains_edge of e";
         ContainsMissingFace => missing_handles, "contains_face of f";
@@ -106,6 +112,8 @@ detects! {
         AllConstant => costs, "vertex_vertices is declared Constant";
         AllLocal => costs, "vertex_vertices is declared Local";
         AllScan => costs, "edge_vertices is declared Scan";
+        LocalByName => costs, "is_local";
+        CostOfAnotherRelation => costs, "cost of vertex_faces";
         MemoryTooLarge => memory, "layout_bytes is";
     }
 }

@@ -3,12 +3,16 @@
 use std::marker::PhantomData;
 
 use sixfold_core::{
-    BuildError, Capabilities, Counts, EdgeId, FaceId, InvariantError, Measured, MemoryFootprint,
-    MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation, Untraced, VertexId,
-    VertexMap,
+    BoundaryLoop, BuildError, Capabilities, Counts, EdgeId, EdgeMap, FaceId, InvariantError,
+    Measured, MemoryFootprint, MeshQuery, MoveError, Numbers, Point, PolygonMesh, Probe, QueryCost,
+    Relation, Representation, Untraced, VertexId, VertexMap,
 };
 
 use crate::face_and_edge_lists::FaceAndEdgeLists;
+
+mod items;
+
+use items::Items;
 
 /// The kind of flaw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +45,12 @@ pub(crate) enum Kind {
     ContainsMissingFace,
     NoCommonFace,
     OppositeVertexOfAnyFace,
+    BoundaryEdgeLeftOut,
+    LoopReversed,
+    FaceCountOff,
+    FoldEndsEarly,
+    FoldStartsAgain,
+    NumbersReversed,
     EdgeIteratedTwice,
     FacesOutOfOrder,
     VertexCountOff,
@@ -61,6 +71,8 @@ pub(crate) enum Kind {
     AllConstant,
     AllLocal,
     AllScan,
+    LocalByName,
+    CostOfAnotherRelation,
     MemoryTooLarge,
 }
 
@@ -141,7 +153,7 @@ impl<F: Flaw, P: Probe> MeshQuery for Flawed<F, P> {
     fn vertex_vertices(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
         if v.index() >= self.inner.vertex_rows() {
             match F::KIND {
-                Kind::EmptyForMissingRow => return Vec::new().into_iter(),
+                Kind::EmptyForMissingRow => return Items::<F, _>::new(std::iter::empty()),
                 Kind::MessageWithoutHandle => {
                     panic!("index out of bounds: the index is {}", v.index())
                 }
@@ -155,7 +167,7 @@ impl<F: Flaw, P: Probe> MeshQuery for Flawed<F, P> {
         if self.is_probed {
             ring = self.without_last(Kind::DifferentWhenProbed, ring);
         }
-        self.with_duplicate(Kind::NeighbourTwice, ring)
+        Items::new(self.with_duplicate(Kind::NeighbourTwice, ring))
     }
 
     fn vertex_edges(&self, v: VertexId) -> impl Iterator<Item = EdgeId> {
@@ -296,6 +308,40 @@ impl<F: Flaw, P: Probe> MeshQuery for Flawed<F, P> {
         }
     }
 
+    fn edge_face_counts(&self) -> EdgeMap<Self, u8> {
+        let mut counts = self.inner.edge_face_counts();
+        if let Some(e) = self.inner.edges().next()
+            && self.is(Kind::FaceCountOff)
+        {
+            counts[e] += 2;
+        }
+        counts
+    }
+
+    fn boundary_edges(&self) -> Vec<EdgeId> {
+        let edges = self.inner.boundary_edges();
+        self.without_last(Kind::BoundaryEdgeLeftOut, edges)
+    }
+
+    fn boundary_loops(&self) -> Vec<BoundaryLoop<VertexId, EdgeId>> {
+        let mut loops = self.inner.boundary_loops();
+        if self.is(Kind::LoopReversed) {
+            for chain in &mut loops {
+                chain.vertices.reverse();
+                chain.edges.reverse();
+            }
+        }
+        loops
+    }
+
+    fn vertex_numbers(&self) -> Numbers<VertexId> {
+        let mut vertices: Vec<_> = self.inner.vertices().collect();
+        if self.is(Kind::NumbersReversed) {
+            vertices.reverse();
+        }
+        Numbers::new(self.vertex_rows(), vertices.into_iter())
+    }
+
     fn vertex_rows(&self) -> usize {
         self.inner.vertex_rows()
     }
@@ -346,6 +392,17 @@ impl<F: Flaw> Representation for Flawed<F> {
         Kind::AllScan => [QueryCost::Scan; 9],
         _ => FaceAndEdgeLists::COSTS,
     };
+
+    fn cost(relation: Relation) -> QueryCost {
+        match F::KIND {
+            Kind::CostOfAnotherRelation => Self::COSTS[8 - relation as usize],
+            _ => Self::COSTS[relation as usize],
+        }
+    }
+
+    fn is_local() -> bool {
+        F::KIND == Kind::LocalByName || QueryCost::are_local(&Self::COSTS)
+    }
 
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         match F::KIND {

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use sixfold_report::ReportPage;
-use sixfold_study::{Collection, Report, Results, SharedSettings};
+use sixfold_study::{Collection, Failed, Report, Results, SharedSettings};
 
 use super::meshes::Mesh;
 use crate::failure::Failure;
@@ -38,18 +38,18 @@ pub(super) struct StudyRecord {
     content: Option<String>,
     settings: SharedSettings,
     study: Option<Report>,
-    failure: Option<String>,
+    failure: Option<Failed>,
 }
 
 impl StudyRecord {
     pub(super) fn new(
         mesh: &Mesh,
         settings: &SharedSettings,
-        result: Result<Report, String>,
+        result: Result<Report, Failed>,
     ) -> Self {
         let (study, failure) = match result {
             Ok(study) => (Some(study), None),
-            Err(reason) => (None, Some(reason)),
+            Err(failed) => (None, Some(failed)),
         };
         Self {
             schema: sixfold_study::SCHEMA,
@@ -63,9 +63,10 @@ impl StudyRecord {
 
     /// Adds it to the results.
     pub(super) fn add_to(self, collection: &mut Collection) {
-        match self.study {
-            Some(study) => collection.add_study(study),
-            None => collection.add_failure(&self.mesh, self.failure.unwrap_or_default()),
+        match (self.study, self.failure) {
+            (Some(study), _) => collection.add_study(study),
+            (None, Some(failed)) => collection.add_failure(failed),
+            (None, None) => {} // still missing
         }
     }
 }

@@ -360,7 +360,7 @@ impl<M: Representation + 'static, W: WriteAccess<M>> MixBackend for StructureMix
     }
 
     fn scans(&self) -> Vec<bool> {
-        let scans = |relation: &Relation| M::COSTS[*relation as usize] == QueryCost::Scan;
+        let scans = |relation: &Relation| M::cost(*relation) == QueryCost::Scan;
         let of_part = |part: &Part| match part.action {
             Action::Edit(edit) => W::scans(edit),
             Action::SetPosition => W::scans(Edit::SetPosition),

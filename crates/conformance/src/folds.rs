@@ -1,0 +1,63 @@
+//! Compares `next` and `fold` of the iterators that queries return.
+
+use std::fmt::Debug;
+use std::iter;
+
+use sixfold_core::MeshQuery;
+
+/// Checks that every iterator of `mesh` yields the same items by `next` and by `fold`, also if the
+/// first items were taken by `next`.
+///
+/// A structure may override `fold`, so that whole walks are faster. Most adaptors and `for_each` use
+/// `fold`, and a loop uses `next`: the two must agree.
+///
+/// # Panics
+///
+/// Panics if they differ. The message names the query and the element.
+pub(crate) fn check_folds<M: MeshQuery>(mesh: &M, name: &str) {
+    check(name, "vertices", "the mesh", || mesh.vertices());
+    check(name, "edges", "the mesh", || mesh.edges());
+    check(name, "faces", "the mesh", || mesh.faces());
+    for v in mesh.vertices() {
+        check(name, "vertex_vertices", v, || mesh.vertex_vertices(v));
+        check(name, "vertex_edges", v, || mesh.vertex_edges(v));
+        check(name, "vertex_faces", v, || mesh.vertex_faces(v));
+        check(name, "one_ring", v, || {
+            mesh.one_ring(v).into_iter().flatten()
+        });
+    }
+    for e in mesh.edges() {
+        check(name, "edge_edges", e, || mesh.edge_edges(e));
+        check(name, "edge_faces", e, || mesh.edge_faces(e));
+    }
+    for f in mesh.faces() {
+        check(name, "face_vertices", f, || mesh.face_vertices(f));
+        check(name, "face_edges", f, || mesh.face_edges(f));
+        check(name, "face_faces", f, || mesh.face_faces(f));
+    }
+}
+
+fn check<I>(name: &str, query: &str, of: impl Debug, items: impl Fn() -> I)
+where
+    I: Iterator<Item: Debug + PartialEq>,
+{
+    let mut steps = items();
+    let expected: Vec<I::Item> = iter::from_fn(|| steps.next()).collect();
+    // All numbers of steps up to 16 items, and about eight numbers for more.
+    let step = (expected.len() / 8).max(1);
+    for taken in (0..=expected.len()).step_by(step) {
+        let mut rest = items();
+        for _ in 0..taken {
+            rest.next();
+        }
+        let folded = rest.fold(Vec::new(), |mut items, item| {
+            items.push(item);
+            items
+        });
+        assert_eq!(
+            folded,
+            expected[taken..],
+            "{name}: {query} of {of:?} by fold after {taken} times next (left), and by next (right)"
+        );
+    }
+}

@@ -1,0 +1,49 @@
+//! Structures without queries that scan the mesh.
+
+use crate::representation::Representation;
+
+/// A structure whose queries never scan: none of its [`COSTS`](Representation::COSTS) is
+/// [`QueryCost::Scan`](crate::QueryCost::Scan).
+///
+/// An algorithm that queries each of n elements takes O(n) time on such a structure, and O(n²) on a
+/// structure that scans. With this bound, the compiler refuses the second. At run time,
+/// [`Representation::is_local`] and [`Representation::cost`] return the same facts.
+///
+/// ```
+/// use sixfold_core::LocalQueries;
+///
+/// /// Returns the largest number of edges at a vertex.
+/// fn largest_valence<M: LocalQueries>(mesh: &M) -> usize {
+///     mesh.vertices().map(|v| mesh.valence(v)).max().unwrap_or(0)
+/// }
+/// ```
+///
+/// Implement it with [`local_queries!`](crate::local_queries), which compares it with the costs. The
+/// law `costs` of the conformance suite compares the costs with the reads of the structure.
+#[diagnostic::on_unimplemented(
+    message = "queries of `{Self}` may scan all faces of the mesh",
+    label = "this structure does not implement `LocalQueries`",
+    note = "these never scan: FaceVertexMesh, WingedEdgeMesh, HalfEdgeMesh, CornerTable"
+)]
+pub trait LocalQueries: Representation {}
+
+/// Implements [`LocalQueries`] for structures: `local_queries!(HalfEdgeMesh, EditableHalfEdgeMesh);`
+///
+/// The build fails if the costs of a structure contain [`QueryCost::Scan`](crate::QueryCost::Scan).
+/// The check is a constant:
+///
+/// ```compile_fail,E0080
+/// use sixfold_core::QueryCost;
+/// const _: () = assert!(QueryCost::are_local(&[QueryCost::Scan; 9]));
+/// ```
+#[macro_export]
+macro_rules! local_queries {
+    ($($mesh:ty),+ $(,)?) => {$(
+        const _: () = assert!(
+            $crate::QueryCost::are_local(&<$mesh as $crate::Representation>::COSTS),
+            "a structure with QueryCost::Scan in its COSTS cannot implement LocalQueries"
+        );
+
+        impl $crate::LocalQueries for $mesh {}
+    )+};
+}
