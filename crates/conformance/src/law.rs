@@ -15,6 +15,7 @@ mod elements;
 mod refine;
 mod relations;
 mod structure;
+mod walk;
 
 pub use corner_cases::corner_cases;
 pub use cost::{costs, memory};
@@ -27,6 +28,7 @@ pub use relations::{
     folds, one_ring, predicates, symmetry, vertex_edges, vertex_faces, vertex_vertices,
 };
 pub use structure::{invariants, probed, round_trip, set_positions, verdict};
+pub use walk::{oriented_walk, oriented_walk_after_edits};
 
 /// Calls a macro with the name of every law: `for_each_law!(callback! { … })`.
 ///

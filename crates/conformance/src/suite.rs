@@ -80,6 +80,28 @@ macro_rules! edit_suite {
     };
 }
 
+/// Makes the tests of structures that step from side to side, with and without edits:
+/// `sixfold_conformance::walk_suite!(half_edge::HalfEdgeMesh, half_edge::EditableHalfEdgeMesh);`
+///
+/// The second type may be left out.
+#[macro_export]
+macro_rules! walk_suite {
+    ($mesh:ty) => {
+        #[test]
+        fn oriented_walk() {
+            $crate::check_law::<$mesh>("oriented_walk", $crate::law::oriented_walk::<$mesh>);
+        }
+    };
+    ($mesh:ty, $editable:ty) => {
+        $crate::walk_suite!($mesh);
+
+        #[test]
+        fn oriented_walk_after_edits() {
+            $crate::law::oriented_walk_after_edits::<$editable>();
+        }
+    };
+}
+
 /// Number of random meshes per law if `PROPTEST_CASES` is not set.
 const CASES: u32 = 192;
 

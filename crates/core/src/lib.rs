@@ -3,6 +3,7 @@
 //!
 //! - [`PolygonMesh`]: the neutral input and output; positions, and faces as index lists.
 //! - [`MeshQuery`]: the nine relations of Weiler (1985) and their contract.
+//! - [`OrientedWalk`]: steps from side to side, along faces and around vertices.
 //! - [`Representation`]: one structure; its capabilities, its construction and its memory.
 //! - [`LocalQueries`]: the bound of algorithms that refuse structures whose queries scan.
 //! - [`Handle`] and [`HandleMap`]: handles of elements, and data stored by handle; [`Numbers`]:
@@ -40,6 +41,7 @@ mod local_queries;
 mod measured;
 mod memory;
 mod numbering;
+mod oriented_walk;
 mod pairing;
 mod partition;
 mod polygon_mesh;
@@ -80,6 +82,7 @@ pub use local_queries::LocalQueries;
 pub use measured::{Counts, Measured};
 pub use memory::{MemoryFootprint, TableBytes};
 pub use numbering::Numbers;
+pub use oriented_walk::{OrientedWalk, SideMap};
 pub use pairing::{SideRows, TwinPairs, pair_triangle_sides};
 pub use polygon_mesh::PolygonMesh;
 pub use probe::{Access, AccessKind, Probe, Traced, Untraced};
@@ -97,11 +100,12 @@ pub use scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
 pub use short_vec::{Lookup, ShortVec};
 pub use table::Table;
 
-/// The imports of a program that uses meshes: the traits with queries, edits and refinement, and
-/// the types in their signatures.
+/// The imports of a program that uses meshes: the traits with queries, walks, edits and refinement,
+/// and the types in their signatures.
 pub mod prelude {
     pub use crate::{
         BuildError, EdgeId, EdgeMap, EditError, EditLog, EditRecord, FaceId, FaceMap, LocalQueries,
-        MeshEdit, MeshQuery, Point, PolygonMesh, Refine, Representation, VertexId, VertexMap,
+        MeshEdit, MeshQuery, OrientedWalk, Point, PolygonMesh, Refine, Representation, SideMap,
+        VertexId, VertexMap,
     };
 }

@@ -94,6 +94,7 @@ mod mesh;
 mod query;
 mod refine;
 mod validate;
+mod walk;
 
 pub use circulate::CornersAt;
 pub use mesh::{AnyCornerTable, CornerId, CornerTable, EdgeCorner, EditableCornerTable};

@@ -16,9 +16,11 @@ mod query;
 mod refine;
 mod splitting;
 mod validate;
+mod walk;
 
 pub use edge_numbers::EdgeNumbers;
 pub use mesh::{AnyFaceVertexMesh, EditableFaceVertexMesh, FaceVertexMesh, Fan};
+pub use walk::{CornerMap, FaceSide};
 
 /// The traits and types that all structures share: `PolygonMesh`, `MeshQuery`, handles, errors.
 pub use sixfold_core;

@@ -244,6 +244,6 @@ pub(crate) fn deleted_vertex(v: VertexId) -> ! {
 
 #[cold]
 #[inline(never)]
-fn deleted_face(f: FaceId) -> ! {
+pub(crate) fn deleted_face(f: FaceId) -> ! {
     panic!("no face {f}: it was deleted")
 }

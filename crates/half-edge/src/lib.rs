@@ -83,6 +83,7 @@ mod mesh;
 mod query;
 mod refine;
 mod validate;
+mod walk;
 
 pub use circulate::{AroundFace, Leaving};
 pub use mesh::{AnyHalfEdgeMesh, EditableHalfEdgeMesh, Half, HalfEdgeId, HalfEdgeMesh};

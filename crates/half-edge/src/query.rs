@@ -136,7 +136,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyHalfEdgeMesh<P, E> {
 impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
     /// Returns the records of both half-edges of `e`.
     #[inline]
-    fn pair(&self, e: EdgeId) -> &[Half; 2] {
+    pub(crate) fn pair(&self, e: EdgeId) -> &[Half; 2] {
         let pair = self.halves.read_pair(e.index());
         if E::CAN_DELETE && pair[0].is_deleted() {
             panic_deleted(e);

@@ -30,6 +30,43 @@
 //! largest_valence(&mesh); // queries of a polygon soup may scan all faces of the mesh
 //! # Ok::<(), BuildError>(())
 //! ```
+//!
+//! # Walks in order
+//!
+//! Most queries yield sets. [`OrientedWalk`] steps from side to side in order, on four of the
+//! structures: along a face, around a vertex, or along the boundary as here.
+//!
+//! ```
+//! use sixfold::prelude::*;
+//!
+//! /// Returns the boundary loops, each as its vertices in the direction of the faces.
+//! fn boundary_loops<M: OrientedWalk>(mesh: &M) -> Vec<Vec<M::Vertex>> {
+//!     let mut visited = mesh.side_map(false);
+//!     let mut loops = Vec::new();
+//!     for start in mesh.sides().filter(|&s| mesh.twin_side(s).is_none()) {
+//!         let mut vertices = Vec::new();
+//!         let mut at = start;
+//!         while !visited[at] {
+//!             visited[at] = true;
+//!             vertices.push(mesh.side_origin(at));
+//!             // The next side along the face, then clockwise up to the boundary.
+//!             at = mesh.next_side(at);
+//!             while let Some(turned) = mesh.cw_side(at) {
+//!                 at = turned;
+//!             }
+//!         }
+//!         if !vertices.is_empty() {
+//!             loops.push(vertices);
+//!         }
+//!     }
+//!     loops
+//! }
+//!
+//! let polygons = sixfold::shapes::grid_with_hole(4, 4)?;
+//! assert_eq!(boundary_loops(&HalfEdgeMesh::from_polygons(&polygons)?).len(), 2);
+//! assert_eq!(boundary_loops(&FaceVertexMesh::from_polygons(&polygons)?).len(), 2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub use sixfold_core::*;
 pub use sixfold_corner_table::{self as corner_table, CornerTable, EditableCornerTable};

@@ -91,10 +91,12 @@ mod mesh;
 mod query;
 mod refine;
 mod validate;
+mod walk;
 mod wings;
 
 pub use edge::Edge;
 pub use mesh::{AnyWingedEdgeMesh, EditableWingedEdgeMesh, WingedEdgeMesh};
+pub use walk::EdgeSide;
 
 /// The traits and types that all Sixfold structures share: `PolygonMesh`, `MeshQuery`, handles,
 /// errors.

@@ -37,20 +37,8 @@ pub fn edits<M: Representation + MeshEdit + Debug>() {
         config.cases = SCRIPTS;
     }
     let counts_by_edit = Cell::new([[0_usize; 2]; Edit::ALL.len()]);
-    let start = if M::CAPABILITIES.non_manifold_edges {
-        prop_oneof![manifold_mesh(), any_mesh()].boxed()
-    } else {
-        manifold_mesh().boxed()
-    };
-    let start = start.prop_map(|polygons| {
-        if M::CAPABILITIES.polygons {
-            polygons
-        } else {
-            polygons.fan_triangulated().expect("small")
-        }
-    });
-    let cases =
-        (start, script(&Edit::ALL, MAX_STEPS)).prop_map(|(start, steps)| Case { start, steps });
+    let cases = (start_mesh::<M>(), script(&Edit::ALL, MAX_STEPS));
+    let cases = cases.prop_map(|(start, steps)| Case { start, steps });
     let outcome = TestRunner::new(config).run(&cases, |Case { start, steps }| {
         let executed = RefCell::new(Vec::new());
         catch_panic(|| run_script::<M>(&start, &steps, &counts_by_edit, &executed))
@@ -79,6 +67,22 @@ pub fn edits<M: Representation + MeshEdit + Debug>() {
         }
         Err(TestError::Abort(reason)) => panic!("{}: the test was aborted: {reason}", M::NAME),
     }
+}
+
+/// Generates the meshes at which scripts start: meshes that `M` can hold, with few exceptions.
+pub(super) fn start_mesh<M: Representation>() -> impl Strategy<Value = PolygonMesh> {
+    let start = if M::CAPABILITIES.non_manifold_edges {
+        prop_oneof![manifold_mesh(), any_mesh()].boxed()
+    } else {
+        manifold_mesh().boxed()
+    };
+    start.prop_map(|polygons| {
+        if M::CAPABILITIES.polygons {
+            polygons
+        } else {
+            polygons.fan_triangulated().expect("small")
+        }
+    })
 }
 
 fn run_script<M: Representation + MeshEdit + Debug>(

@@ -330,7 +330,7 @@ fn items(query: impl FnOnce() -> usize) -> String {
 
 /// Builds a strip of triangles with more elements of every kind than `polygons`, at other
 /// positions.
-fn distant_strip(polygons: &PolygonMesh) -> PolygonMesh {
+pub(super) fn distant_strip(polygons: &PolygonMesh) -> PolygonMesh {
     let finite = polygons.positions().iter().filter(|p| p.is_finite());
     let x = finite.map(|p| p.x.abs()).fold(1.0, f32::max) * 4.0;
     let size = polygons.vertex_count() + polygons.corner_count() + 3;

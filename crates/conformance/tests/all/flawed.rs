@@ -1,5 +1,7 @@
 //! The correct structure with one flaw at a time.
 
+mod walk;
+
 use std::marker::PhantomData;
 
 use sixfold_core::{
@@ -33,6 +35,23 @@ pub(crate) enum Kind {
     RingFromTheMiddle,
     RingOfABowTie,
     NoRingOfAnIsolatedVertex,
+    SidesReversed,
+    SideTwiceInItsFace,
+    SideOfAnEdgeLeftOut,
+    OutgoingSideLeftOut,
+    IncomingSides,
+    NextSideSkipsOne,
+    PrevSideIsNext,
+    TwinOfABoundarySide,
+    TwinAmongSeveral,
+    TwinOfTheSameDirection,
+    NoTwin,
+    TargetIsTheOrigin,
+    FaceOfTheTwin,
+    EdgeOfTheNextSide,
+    TurnsReversed,
+    SideCountOff,
+    MissingSideStartsAtV0,
     ValenceOff,
     DegreeOff,
     NoBoundaryVertex,

@@ -3,10 +3,12 @@
 
 mod detection;
 mod face_and_edge_lists;
+mod face_and_edge_walk;
 mod flawed;
 mod strategies;
 
 /// The suite for a correct and slow structure.
 mod correct {
     sixfold_conformance::suite!(crate::face_and_edge_lists::FaceAndEdgeLists);
+    sixfold_conformance::walk_suite!(crate::face_and_edge_lists::FaceAndEdgeLists);
 }

@@ -1,0 +1,300 @@
+//! Laws about steps from side to side.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Debug;
+
+use proptest::test_runner::{Config, TestCaseError, TestRunner};
+use sixfold_core::{Edit, MeshEdit, OrientedWalk, PolygonMesh, Representation};
+
+use super::edit::start_mesh;
+use super::elements::distant_strip;
+use super::relations::is_rotation;
+use crate::catch_panic::catch_panic;
+use crate::edit::{ModelTest, Step, script};
+use crate::subject::Subject;
+
+/// Every side has the face, the edge, the ends and the neighbours that follow from the lists of
+/// corners; sides of edges and at vertices are complete. A side that does not exist panics or gives
+/// an element that does not exist.
+pub fn oriented_walk<M: Representation + OrientedWalk>(polygons: &PolygonMesh) {
+    let Some(subject) = Subject::<M>::from_polygons(polygons) else {
+        return;
+    };
+    let (oracle, handles) = (&subject.oracle, &subject.handles);
+    let faces = oracle.faces().map(|f| {
+        let corners = oracle.corners(f).iter().map(|&v| handles.vertex(v));
+        (handles.face(f), corners.collect())
+    });
+    let expected = ExpectedWalk::new(&subject.mesh, M::NAME, faces.collect());
+    expected.check();
+    let larger = M::from_polygons(&distant_strip(polygons));
+    let larger = larger.expect("an oriented manifold of triangles");
+    let missing = larger.sides().max();
+    expected.check_missing(missing.expect("the larger mesh has sides"));
+}
+
+/// Number of scripts if `PROPTEST_CASES` is not set, and maximum number of steps of a script.
+const SCRIPTS: u32 = 24;
+const MAX_STEPS: usize = 48;
+
+/// Random scripts of edits: after every few steps, and after the last one, the walk agrees with the
+/// corners of the faces, and the sides of a face that is removed then do not exist any more.
+///
+/// `PROPTEST_CASES` sets the number of scripts.
+pub fn oriented_walk_after_edits<M: Representation + MeshEdit + OrientedWalk + Debug>() {
+    let mut config = Config {
+        failure_persistence: None,
+        ..Config::default()
+    };
+    if std::env::var_os("PROPTEST_CASES").is_none() {
+        config.cases = SCRIPTS;
+    }
+    let cases = (start_mesh::<M>(), script(&Edit::ALL, MAX_STEPS));
+    let outcome = TestRunner::new(config).run(&cases, |(start, steps)| {
+        catch_panic(|| run_script::<M>(&start, &steps))
+            .map_err(|fault| TestCaseError::fail(fault.to_string()))
+    });
+    if let Err(fault) = outcome {
+        panic!("{}: oriented_walk_after_edits: {fault}", M::NAME);
+    }
+}
+
+fn run_script<M: Representation + MeshEdit + OrientedWalk + Debug>(
+    start: &PolygonMesh,
+    steps: &[Step],
+) {
+    let Some(mut test) = ModelTest::<M>::from_polygons(start) else {
+        return;
+    };
+    for (number, step) in steps.iter().enumerate() {
+        if let Some(action) = step.action(&test.model, number) {
+            test.apply(&action);
+        }
+        if number % 8 == 7 {
+            check_edited(&test.mesh);
+        }
+    }
+    check_edited(&test.mesh);
+}
+
+/// Checks the walk on a mesh that may have holes, and on the mesh without one of its faces.
+fn check_edited<M: Representation + MeshEdit + OrientedWalk>(mesh: &M) {
+    ExpectedWalk::from_mesh(mesh).check();
+    let mut without = mesh.clone();
+    let Some(f) = mesh
+        .faces()
+        .find(|&f| without.remove_face(f, &mut ()).is_ok())
+    else {
+        return;
+    };
+    let expected = ExpectedWalk::from_mesh(&without);
+    for s in mesh.face_sides(f) {
+        expected.check_missing(s);
+    }
+}
+
+/// A side, and the expected answers for it.
+struct ExpectedSide<M: OrientedWalk> {
+    side: M::Side,
+    next: M::Side,
+    prev: M::Side,
+    face: M::Face,
+    ends: [M::Vertex; 2],
+}
+
+/// The expected answers for all sides of a mesh, from the corners of its faces.
+struct ExpectedWalk<'a, M: OrientedWalk> {
+    mesh: &'a M,
+    name: &'a str,
+    sides: Vec<ExpectedSide<M>>,
+    /// The sides from one vertex to another.
+    by_ends: BTreeMap<[M::Vertex; 2], Vec<M::Side>>,
+}
+
+impl<'a, M: Representation + OrientedWalk> ExpectedWalk<'a, M> {
+    /// Takes the corners of the faces from FV, which other laws check.
+    fn from_mesh(mesh: &'a M) -> Self {
+        let faces = mesh.faces().map(|f| (f, mesh.face_vertices(f).collect()));
+        Self::new(mesh, M::NAME, faces.collect())
+    }
+}
+
+impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
+    /// Computes the answers from `faces`, each with its corners from any start. Only the handles of
+    /// the sides are from `mesh`.
+    fn new(mesh: &'a M, name: &'a str, faces: Vec<(M::Face, Vec<M::Vertex>)>) -> Self {
+        let mut sides = Vec::new();
+        let mut by_ends: BTreeMap<_, Vec<_>> = BTreeMap::new();
+        for (face, expected) in faces {
+            let corners: Vec<M::Vertex> = mesh.face_vertices(face).collect();
+            assert!(
+                is_rotation(&corners, &expected),
+                "{name}: face_vertices of {face:?} is {corners:?}, expected {expected:?}"
+            );
+            let around: Vec<M::Side> = mesh.face_sides(face).collect();
+            let degree = corners.len();
+            assert_eq!(around.len(), degree, "{name}: sides of {face:?}");
+            for i in 0..degree {
+                let [after, before] = [(i + 1) % degree, (i + degree - 1) % degree];
+                let ends = [corners[i], corners[after]];
+                by_ends.entry(ends).or_default().push(around[i]);
+                sides.push(ExpectedSide {
+                    side: around[i],
+                    next: around[after],
+                    prev: around[before],
+                    face,
+                    ends,
+                });
+            }
+        }
+        Self {
+            mesh,
+            name,
+            sides,
+            by_ends,
+        }
+    }
+
+    fn check(&self) {
+        self.check_lists();
+        for expected in &self.sides {
+            self.check_side(expected);
+            self.check_twin(expected);
+        }
+        self.check_sets();
+        self.check_map();
+    }
+
+    /// Checks that `sides` has every side once, in the order of the faces.
+    fn check_lists(&self) {
+        let (mesh, name) = (self.mesh, self.name);
+        let expected: Vec<M::Side> = self.sides.iter().map(|s| s.side).collect();
+        let distinct: BTreeSet<M::Side> = expected.iter().copied().collect();
+        assert_eq!(distinct.len(), expected.len(), "{name}: two sides are one");
+        assert!(mesh.sides().eq(expected), "{name}: sides()");
+        assert_eq!(mesh.side_count(), self.sides.len(), "{name}: side_count()");
+    }
+
+    fn check_side(&self, expected: &ExpectedSide<M>) {
+        let (mesh, name, s) = (self.mesh, self.name, expected.side);
+        let [origin, target] = expected.ends;
+        assert_eq!(mesh.side_origin(s), origin, "{name}: side_origin of {s:?}");
+        assert_eq!(mesh.side_target(s), target, "{name}: side_target of {s:?}");
+        let face = mesh.side_face(s);
+        assert_eq!(face, expected.face, "{name}: side_face of {s:?}");
+        let edge = Some(mesh.side_edge(s));
+        let between = mesh.edge_between(origin, target);
+        assert_eq!(edge, between, "{name}: side_edge of {s:?}");
+        let next = mesh.next_side(s);
+        assert_eq!(next, expected.next, "{name}: next_side of {s:?}");
+        let prev = mesh.prev_side(s);
+        assert_eq!(prev, expected.prev, "{name}: prev_side of {s:?}");
+    }
+
+    /// Checks the twin and the two sides around the origin, which follow from twins.
+    fn check_twin(&self, expected: &ExpectedSide<M>) {
+        let (mesh, name, s) = (self.mesh, self.name, expected.side);
+        let twin = self.twin(expected.ends);
+        assert_eq!(mesh.twin_side(s), twin, "{name}: twin_side of {s:?}");
+        let back = twin.and_then(|twin| mesh.twin_side(twin));
+        assert_eq!(back, twin.map(|_| s), "{name}: twin of the twin of {s:?}");
+        let cw = twin.map(|twin| mesh.next_side(twin));
+        assert_eq!(mesh.cw_side(s), cw, "{name}: cw_side of {s:?}");
+        let ccw = mesh.twin_side(expected.prev);
+        assert_eq!(mesh.ccw_side(s), ccw, "{name}: ccw_side of {s:?}");
+    }
+
+    /// Returns the twin of the sides with these ends: the side with the opposite ends, if there is
+    /// one side in each direction.
+    fn twin(&self, [from, to]: [M::Vertex; 2]) -> Option<M::Side> {
+        match (self.between([from, to]), self.between([to, from])) {
+            ([_], [twin]) => Some(*twin),
+            _ => None,
+        }
+    }
+
+    fn between(&self, ends: [M::Vertex; 2]) -> &[M::Side] {
+        self.by_ends.get(&ends).map_or(&[], Vec::as_slice)
+    }
+
+    /// Checks the sides of every edge and of every vertex.
+    fn check_sets(&self) {
+        let (mesh, name) = (self.mesh, self.name);
+        for e in mesh.edges() {
+            let [a, b] = mesh.edge_vertices(e);
+            let expected = [self.between([a, b]), self.between([b, a])].concat();
+            let got = mesh.edge_sides(e).collect();
+            assert_eq!(
+                sorted(got),
+                sorted(expected),
+                "{name}: edge_sides of {a:?}–{b:?}"
+            );
+        }
+        for v in mesh.vertices() {
+            let outgoing = self.sides.iter().filter(|s| s.ends[0] == v);
+            let expected = outgoing.map(|s| s.side).collect();
+            let got = mesh.outgoing_sides(v).collect();
+            assert_eq!(
+                sorted(got),
+                sorted(expected),
+                "{name}: outgoing_sides of {v:?}"
+            );
+        }
+    }
+
+    /// Checks that a map has one value for each side.
+    fn check_map(&self) {
+        let mut map = self.mesh.side_map(usize::MAX);
+        for s in &self.sides {
+            assert_eq!(map[s.side], usize::MAX, "{}: a new side_map", self.name);
+        }
+        for (i, s) in self.sides.iter().enumerate() {
+            map[s.side] = i;
+        }
+        for (i, s) in self.sides.iter().enumerate() {
+            assert_eq!(map[s.side], i, "{}: side_map at {:?}", self.name, s.side);
+        }
+    }
+
+    /// Checks that `s`, which is not a side of the mesh, panics or gives elements that do not exist.
+    fn check_missing(&self, s: M::Side) {
+        let mesh = self.mesh;
+        let has = |s: M::Side| self.sides.iter().any(|known| known.side == s);
+        assert!(!has(s), "{}: {s:?} exists", self.name);
+        let existing = [
+            ("next_side", exists(|| has(mesh.next_side(s)))),
+            ("prev_side", exists(|| has(mesh.prev_side(s)))),
+            ("twin_side", exists(|| mesh.twin_side(s).is_some_and(has))),
+            (
+                "side_origin",
+                exists(|| mesh.contains_vertex(mesh.side_origin(s))),
+            ),
+            (
+                "side_target",
+                exists(|| mesh.contains_vertex(mesh.side_target(s))),
+            ),
+            (
+                "side_face",
+                exists(|| mesh.contains_face(mesh.side_face(s))),
+            ),
+            (
+                "side_edge",
+                exists(|| mesh.contains_edge(mesh.side_edge(s))),
+            ),
+        ];
+        for (method, exists) in existing {
+            let name = self.name;
+            assert!(!exists, "{name}: {method} of the missing {s:?} exists");
+        }
+    }
+}
+
+/// Returns whether `element` finds an element; false if it panics.
+fn exists(element: impl FnOnce() -> bool) -> bool {
+    catch_panic(element).unwrap_or(false)
+}
+
+fn sorted<T: Ord>(mut items: Vec<T>) -> Vec<T> {
+    items.sort_unstable();
+    items
+}

@@ -1,0 +1,136 @@
+//! The walk trait: the sides of the faces, and the steps between them.
+
+use crate::handle::Handle;
+use crate::query::MeshQuery;
+
+/// Data by side of `M`.
+pub type SideMap<M, T> = <<M as OrientedWalk>::Side as Handle>::Map<T>;
+
+/// Steps from side to side. A side is an edge as one face runs along it.
+///
+/// ```text
+///      ◄── next_side(s) ── ● target
+///                         ▲│
+///                         ││               around the origin of s, the face of s on its left:
+///            face of s  s ││ twin_side(s)  ccw_side(s) is the twin of prev_side(s),
+///                         │▼               cw_side(s) is next_side of the twin of s
+///      ─── prev_side(s) ─► ● origin
+/// ```
+///
+/// Most answers of [`MeshQuery`] are sets. This trait adds their order: [`next_side`] and
+/// [`prev_side`] step along a face, [`ccw_side`] and [`cw_side`] around a vertex. The half-edge
+/// mesh, the winged-edge mesh, the corner table and the face-vertex mesh implement it. The other
+/// two structures would have to scan all faces for every step around a vertex.
+///
+/// # Contract
+///
+/// - **Sides.** A face of degree n has n sides. So a face has as many sides as corners, and an edge
+///   as many sides as faces. An edge on a boundary has one side: nothing runs along its outside.
+/// - **Order.** `face_sides(f)` has the order of FV and FE: side `i` starts at corner `i` and runs
+///   along edge `i`. The sides of an edge and those that leave a vertex are sets, in no guaranteed
+///   order.
+/// - **Twin.** Two sides are twins if they are the only sides of their edge and run in opposite
+///   directions. So the twin of the twin is the side itself. There is no twin on a boundary, at an
+///   edge with three or more faces, and between two faces that run along their edge in the same
+///   direction.
+/// - **No cache.** As in [`MeshQuery`], each result is computed from the stored tables alone.
+/// - **Handles.** A side is valid until the next edit; an [`EditLog`](crate::EditLog) does not report
+///   changes of sides. If a side is out of range, or its face was deleted, every method panics or
+///   gives an element that does not exist either.
+///
+/// # Complexity
+///
+/// | method | half-edge | winged-edge | corner table | face-vertex |
+/// |---|---|---|---|---|
+/// | `next_side`, `side_target` | O(1) | O(1) | O(1) | O(1) |
+/// | `prev_side` | O(degree) | O(1) | O(1) | O(1) |
+/// | `side_origin`, `side_face`, `side_edge` | O(1) | O(1) | O(1) | O(1) |
+/// | `twin_side`, `cw_side` | O(1) | O(1) | O(1) | O(faces at an end · degree) |
+/// | `ccw_side` | O(degree) | O(1) | O(1) | O(faces at an end · degree) |
+/// | `edge_sides` | O(1) | O(1) | O(1) | O(faces at an end · degree) |
+/// | `face_sides`, for each side | O(1) | O(1) | O(1) | O(1) |
+/// | `outgoing_sides`, for each side | O(1) | O(1) | O(1) | O(degree) |
+///
+/// The end is the one with fewer faces.
+///
+/// # Panics
+///
+/// A method that takes a vertex, an edge or a face panics as a query of [`MeshQuery`] does.
+///
+/// # Examples
+///
+/// The faces around a vertex in order, from a side that starts there.
+///
+/// ```
+/// use sixfold_core::OrientedWalk;
+///
+/// /// Returns the faces around the origin of `start`, counter-clockwise: all of them, or those up
+/// /// to the boundary.
+/// fn fan<M: OrientedWalk>(mesh: &M, start: M::Side) -> Vec<M::Face> {
+///     let mut faces = vec![mesh.side_face(start)];
+///     let mut at = mesh.ccw_side(start);
+///     while let Some(s) = at.filter(|&s| s != start) {
+///         faces.push(mesh.side_face(s));
+///         at = mesh.ccw_side(s);
+///     }
+///     faces
+/// }
+/// ```
+///
+/// [`next_side`]: Self::next_side
+/// [`prev_side`]: Self::prev_side
+/// [`ccw_side`]: Self::ccw_side
+/// [`cw_side`]: Self::cw_side
+pub trait OrientedWalk: MeshQuery {
+    /// The handle of a side.
+    type Side: Handle;
+
+    /// Yields the sides of `f`, counter-clockwise in the order of FV.
+    fn face_sides(&self, f: Self::Face) -> impl Iterator<Item = Self::Side>;
+    /// Yields the sides of `e`, one for each of its faces.
+    fn edge_sides(&self, e: Self::Edge) -> impl Iterator<Item = Self::Side>;
+    /// Yields the sides that start at `v`, one for each of its faces.
+    fn outgoing_sides(&self, v: Self::Vertex) -> impl Iterator<Item = Self::Side>;
+
+    /// Returns the side after `s` along its face; it starts at the target of `s`.
+    fn next_side(&self, s: Self::Side) -> Self::Side;
+    /// Returns the side before `s` along its face; it ends at the origin of `s`.
+    fn prev_side(&self, s: Self::Side) -> Self::Side;
+    /// Returns the side that runs along the same edge in the opposite direction. `None` unless the
+    /// edge has exactly one other side and that side runs the other way.
+    fn twin_side(&self, s: Self::Side) -> Option<Self::Side>;
+
+    /// Returns the vertex where `s` starts.
+    fn side_origin(&self, s: Self::Side) -> Self::Vertex;
+    /// Returns the vertex where `s` ends.
+    fn side_target(&self, s: Self::Side) -> Self::Vertex {
+        self.side_origin(self.next_side(s))
+    }
+    /// Returns the face that runs along `s`; it is on the left.
+    fn side_face(&self, s: Self::Side) -> Self::Face;
+    /// Returns the edge of `s`.
+    fn side_edge(&self, s: Self::Side) -> Self::Edge;
+
+    /// Returns the next side around the origin of `s`, counter-clockwise: the twin of the side
+    /// before `s`. `None` if there is no such twin, as at the end of a fan.
+    fn ccw_side(&self, s: Self::Side) -> Option<Self::Side> {
+        self.twin_side(self.prev_side(s))
+    }
+    /// Returns the next side around the origin of `s`, clockwise: the side after the twin of `s`.
+    /// `None` if there is no twin, as at the start of a fan.
+    fn cw_side(&self, s: Self::Side) -> Option<Self::Side> {
+        self.twin_side(s).map(|twin| self.next_side(twin))
+    }
+
+    /// Yields every side once, face by face.
+    fn sides(&self) -> impl Iterator<Item = Self::Side> {
+        self.faces().flat_map(|f| self.face_sides(f))
+    }
+    /// Returns the number of sides, which is also the number of corners; O(corners).
+    fn side_count(&self) -> usize {
+        self.faces().map(|f| self.degree(f)).sum()
+    }
+
+    /// Returns a map that holds `value` for every side.
+    fn side_map<T: Clone>(&self, value: T) -> SideMap<Self, T>;
+}

@@ -1,0 +1,91 @@
+//! The walk from side to side: a side is named by the corner where it starts.
+
+use sixfold_core::{Editing, FaceId, HandleMap, OrientedWalk, Probe, SideMap, VertexId};
+
+use crate::mesh::{AnyCornerTable, CornerId, EdgeCorner, NO_VERTEX};
+
+/// A side is named by the corner where it starts: the side `c` runs from `vertex(c)` to
+/// `vertex(next(c))`, and `prev(c)` is the corner that faces it.
+///
+/// Every method is O(1). The steps along a face and `side_face` read no table; all other methods
+/// read one row. `ccw_side` is [`swing`](AnyCornerTable::swing), `cw_side` is
+/// [`unswing`](AnyCornerTable::unswing).
+impl<P: Probe, E: Editing> OrientedWalk for AnyCornerTable<P, E> {
+    type Side = CornerId;
+
+    #[inline]
+    fn face_sides(&self, f: FaceId) -> impl Iterator<Item = CornerId> {
+        self.corners_of(f).into_iter()
+    }
+
+    #[inline]
+    fn edge_sides(&self, e: EdgeCorner) -> impl Iterator<Item = CornerId> {
+        let facing = [Some(e.corner()), self.across(e).get()];
+        facing.into_iter().flatten().map(CornerId::next)
+    }
+
+    /// Yields the sides counter-clockwise, starting at the boundary if `v` is on one.
+    #[inline]
+    fn outgoing_sides(&self, v: VertexId) -> impl Iterator<Item = CornerId> {
+        self.corners_at(v)
+    }
+
+    #[inline]
+    fn next_side(&self, s: CornerId) -> CornerId {
+        s.next()
+    }
+
+    #[inline]
+    fn prev_side(&self, s: CornerId) -> CornerId {
+        s.prev()
+    }
+
+    #[inline]
+    fn twin_side(&self, s: CornerId) -> Option<CornerId> {
+        self.left(s).map(CornerId::next)
+    }
+
+    #[inline]
+    fn side_origin(&self, s: CornerId) -> VertexId {
+        let origin = self.vertex(s);
+        if E::CAN_DELETE && origin == NO_VERTEX {
+            no_such_side(s);
+        }
+        origin
+    }
+
+    #[inline]
+    fn side_face(&self, s: CornerId) -> FaceId {
+        s.triangle()
+    }
+
+    #[inline]
+    fn side_edge(&self, s: CornerId) -> EdgeCorner {
+        self.edge(s.prev())
+    }
+
+    #[inline]
+    fn ccw_side(&self, s: CornerId) -> Option<CornerId> {
+        self.swing(s)
+    }
+
+    #[inline]
+    fn cw_side(&self, s: CornerId) -> Option<CornerId> {
+        self.unswing(s)
+    }
+
+    #[inline]
+    fn side_count(&self) -> usize {
+        self.corner_count()
+    }
+
+    fn side_map<T: Clone>(&self, value: T) -> SideMap<Self, T> {
+        HandleMap::filled(self.vertex.len(), value)
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn no_such_side(s: CornerId) -> ! {
+    panic!("no side {s}: the triangle of that corner was deleted")
+}

@@ -1,0 +1,143 @@
+//! The walk from side to side: a side is a half-edge with a face.
+
+use sixfold_core::{
+    EdgeId, Editing, FaceId, HandleMap, OrientedWalk, Probe, SideMap, Slot, VertexId,
+};
+
+use crate::mesh::{AnyHalfEdgeMesh, Half, HalfEdgeId};
+
+/// A side is the half-edge with its face on the left.
+///
+/// Every method is O(1) and reads one or two half-edges, except `prev_side` and `ccw_side`: `prev`
+/// is not stored, and they take O(degree). `next_side` and `twin_side` are one load each.
+///
+/// A half-edge on a boundary loop is not a side. No method yields one: at a boundary `twin_side` is
+/// `None`, whereas [`twin`](AnyHalfEdgeMesh::twin) returns the half-edge on the loop.
+impl<P: Probe, E: Editing> OrientedWalk for AnyHalfEdgeMesh<P, E> {
+    type Side = HalfEdgeId;
+
+    #[inline]
+    fn face_sides(&self, f: FaceId) -> impl Iterator<Item = HalfEdgeId> {
+        self.around_face(f)
+    }
+
+    #[inline]
+    fn edge_sides(&self, e: EdgeId) -> impl Iterator<Item = HalfEdgeId> {
+        let halves = self.halves_of(e).into_iter().zip(self.pair(e));
+        halves.filter_map(|(h, half)| half.face.get().map(|_| h))
+    }
+
+    /// Yields the sides clockwise, starting at the boundary if `v` is on one.
+    #[inline]
+    fn outgoing_sides(&self, v: VertexId) -> impl Iterator<Item = HalfEdgeId> {
+        // Each face at v has one half-edge that arrives at v; the next one leaves v.
+        let arriving = self.spokes(v).map(|(_, twin)| twin);
+        arriving.filter_map(|half| half.face.get().map(|_| half.next))
+    }
+
+    #[inline]
+    fn next_side(&self, s: HalfEdgeId) -> HalfEdgeId {
+        self.side(s).next
+    }
+
+    #[inline]
+    fn prev_side(&self, s: HalfEdgeId) -> HalfEdgeId {
+        self.prev(s)
+    }
+
+    #[inline]
+    fn twin_side(&self, s: HalfEdgeId) -> Option<HalfEdgeId> {
+        self.check_side(s);
+        let twin = s.twin();
+        self.halves.read(twin.index()).face.get().map(|_| twin)
+    }
+
+    #[inline]
+    fn side_origin(&self, s: HalfEdgeId) -> VertexId {
+        self.side(s).origin
+    }
+
+    #[inline]
+    fn side_target(&self, s: HalfEdgeId) -> VertexId {
+        self.check_side(s);
+        self.halves.read(s.twin().index()).origin
+    }
+
+    #[inline]
+    fn side_face(&self, s: HalfEdgeId) -> FaceId {
+        let face = self.halves.read(s.index()).face.get();
+        face.unwrap_or_else(|| no_such_side(s))
+    }
+
+    #[inline]
+    fn side_edge(&self, s: HalfEdgeId) -> EdgeId {
+        self.check_side(s);
+        s.edge()
+    }
+
+    fn side_map<T: Clone>(&self, value: T) -> SideMap<Self, T> {
+        HandleMap::filled(self.halves.len(), value)
+    }
+}
+
+impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
+    /// Returns the record of `s`. If elements can be deleted, panics if `s` has no face: it may have
+    /// lost it.
+    #[inline]
+    fn side(&self, s: HalfEdgeId) -> &Half {
+        let half = self.halves.read(s.index());
+        if E::CAN_DELETE && half.face == Slot::NONE {
+            no_such_side(s);
+        }
+        half
+    }
+
+    /// Does the same check; reads nothing if elements cannot be deleted.
+    #[inline]
+    fn check_side(&self, s: HalfEdgeId) {
+        if E::CAN_DELETE {
+            self.side(s);
+        }
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn no_such_side(s: HalfEdgeId) -> ! {
+    panic!("no side {s}: the half-edge has no face")
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold_core::{MeshEdit, MeshQuery, Representation};
+
+    use super::*;
+    use crate::mesh::{EditableHalfEdgeMesh, HalfEdgeMesh};
+
+    /// Returns two triangles with a common edge.
+    fn square() -> HalfEdgeMesh {
+        let polygons = sixfold_shapes::triangle_grid(1, 1).expect("a valid size");
+        HalfEdgeMesh::from_polygons(&polygons).expect("manifold")
+    }
+
+    #[test]
+    fn half_edges_of_the_boundary_are_not_sides() {
+        let mesh = square();
+        assert_eq!((mesh.half_edge_count(), mesh.side_count()), (10, 6));
+        assert!(OrientedWalk::sides(&mesh).all(|s| !mesh.is_boundary(s)));
+        let inner = OrientedWalk::sides(&mesh).filter(|&s| mesh.twin_side(s).is_some());
+        assert_eq!(inner.count(), 2);
+    }
+
+    #[test]
+    #[should_panic(expected = "the half-edge has no face")]
+    fn a_half_edge_that_lost_its_face_panics() {
+        let mut mesh: EditableHalfEdgeMesh = square().into();
+        let inner = OrientedWalk::sides(&mesh).find(|&s| mesh.twin_side(s).is_some());
+        let s = inner.expect("the diagonal");
+        let f = mesh.side_face(s);
+        mesh.remove_face(f, &mut ())
+            .expect("a face at the boundary");
+        mesh.twin_side(s);
+    }
+}
