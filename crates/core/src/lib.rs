@@ -3,13 +3,14 @@
 //!
 //! - [`PolygonMesh`]: the neutral input and output; positions, and faces as index lists.
 //! - [`MeshQuery`]: the nine relations of Weiler (1985) and their contract.
-//! - [`Representation`]: one structure; its capabilities, its construction and its memory.
+//! - [`Representation`]: one structure; its construction and its memory.
 //! - [`Handle`] and [`HandleMap`]: handles of elements, and data stored by handle.
 //! - [`BuildError`]: why a structure refuses a mesh; [`Capabilities`] checks it in one place.
 //! - [`Table`] and [`Probe`]: storage whose reads and writes can be observed.
 //! - [`Refine`] and [`Split`]: structures that split every face in their own tables.
 //! - [`MeshEdit`], [`EditRecord`] and [`EditError`]: edits in place, the record of created, removed
 //!   and renamed elements, and why an edit is refused; [`Holes`]: the rows of deleted elements.
+//! - [`MeshWithData`]: a mesh together with data by vertex, edge or face that follows its edits.
 //! - [`Compact`] and [`Editable`]: type parameters of meshes without and with deletion.
 //! - [`ScannedFaces`]: queries and edits of structures that find the faces at a vertex by a scan.
 //! - [`Creases`]: the sharpness of edges and vertices under subdivision.
@@ -23,17 +24,21 @@ mod creases;
 mod distinct;
 mod edit;
 mod edit_error;
+mod edit_kind;
 mod edit_log;
 mod editing;
+mod element_data;
 mod error;
 mod face_list;
 mod face_spans;
 mod facts;
+mod follow_edits;
 mod handle;
 mod holes;
 mod incidence;
 mod measured;
 mod memory;
+mod mesh_with_data;
 mod pairing;
 mod partition;
 mod polygon_mesh;
@@ -53,17 +58,22 @@ mod table;
 pub use capability::Capabilities;
 pub use creases::{Creases, SHARPNESS_INFINITE};
 pub use distinct::{Distinct, DistinctWalk, IteratorExt};
-pub use edit::{Edit, MeshEdit, Refusal};
+pub use edit::{MeshEdit, Refusal};
 pub use edit_error::EditError;
+pub use edit_kind::Edit;
 pub use edit_log::{Changes, EditLog, EditRecord, OldToNew};
 pub use editing::{
     Compact, EDGE_HOLES, Editable, Editing, FACE_HOLES, HoleSet, NoHoles, NoScatteredFaces,
     VERTEX_HOLES,
 };
+pub use element_data::{Created, EdgeData, ElementData, FaceData, VertexData};
+#[doc(hidden)]
+pub use element_data::{Edges, ElementKind, Faces, Vertices};
 pub use error::{BuildError, CreaseError, InvariantError, MoveError, PolygonError, RefineError};
 pub use face_list::FaceList;
 pub use face_spans::{FaceSpans, ScatteredFaces};
 pub use facts::{Distribution, Facts};
+pub use follow_edits::{AcceptedEdit, FollowEdits};
 pub use glam;
 pub use glam::Vec3 as Point;
 pub use handle::{Handle, HandleMap, HashHandleMap, Pair, RowMap};
@@ -71,6 +81,7 @@ pub use holes::Holes;
 pub use incidence::EdgeUse;
 pub use measured::{Counts, Measured};
 pub use memory::{MemoryFootprint, TableBytes};
+pub use mesh_with_data::MeshWithData;
 pub use pairing::{SideRows, TwinPairs, pair_triangle_sides};
 pub use polygon_mesh::PolygonMesh;
 pub use probe::{Access, AccessKind, Probe, Traced, Untraced};
@@ -92,7 +103,8 @@ pub use table::Table;
 /// the types in their signatures.
 pub mod prelude {
     pub use crate::{
-        BuildError, EdgeId, EdgeMap, EditError, EditLog, EditRecord, FaceId, FaceMap, MeshEdit,
-        MeshQuery, Point, PolygonMesh, Refine, Representation, VertexId, VertexMap,
+        BuildError, EdgeData, EdgeId, EdgeMap, EditError, EditLog, EditRecord, FaceData, FaceId,
+        FaceMap, MeshEdit, MeshQuery, MeshWithData, Point, PolygonMesh, Refine, Representation,
+        VertexData, VertexId, VertexMap,
     };
 }

@@ -1,6 +1,7 @@
 //! The query trait.
 
 use crate::Point;
+use crate::capability::Capabilities;
 use crate::handle::{Handle, HandleMap};
 
 /// Data by vertex of `M`.
@@ -46,6 +47,10 @@ pub trait MeshQuery {
     type Edge: Handle;
     /// The handle of a face.
     type Face: Handle;
+
+    /// The meshes that this type can hold; all meshes if it is not known. An algorithm can omit
+    /// checks for what the type cannot hold, such as non-manifold edges.
+    const CAPABILITIES: Capabilities = Capabilities::ALL;
 
     /// Yields every vertex once.
     fn vertices(&self) -> impl Iterator<Item = Self::Vertex>;
