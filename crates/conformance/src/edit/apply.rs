@@ -21,69 +21,58 @@ pub(super) fn apply_action<M: MeshEdit>(
         let edge = mesh.edge_between(a, b);
         edge.unwrap_or_else(|| panic!("{name}: no edge between {a:?} and {b:?}"))
     };
-    match action {
-        &Action::SetPosition { v, to } => {
-            let v = vertices[&v];
-            return mesh.set_position_logged(v, to, log).map(Some);
-        }
-        &Action::AddVertex { at } => return mesh.add_vertex_logged(at, log).map(Some),
+    Ok(match action {
+        &Action::SetPosition { v, to } => Some(mesh.set_position_logged(vertices[&v], to, log)?),
+        &Action::AddVertex { at } => Some(mesh.add_vertex_logged(at, log)?),
         Action::AddFace { corners } => {
-            let corners: Vec<_> = corners.iter().map(|&v| vertices[&v]).collect();
-            mesh.add_face_logged(&corners, log)?;
+            let corners: Vec<_> = corners.iter().map(|v| vertices[v]).collect();
+            mesh.add_face_logged(&corners, log).map(|_| None)?
         }
-        Action::RemoveFace { f } => mesh.remove_face_logged(faces[f], log)?,
-        &Action::RemoveVertex { v } => {
-            let v = vertices[&v];
-            mesh.remove_vertex_logged(v, log)?;
-        }
+        Action::RemoveFace { f } => mesh.remove_face_logged(faces[f], log).map(|()| None)?,
+        Action::RemoveVertex { v } => mesh.remove_vertex_logged(vertices[v], log).map(|()| None)?,
         Action::RemoveIsolatedVertices => {
-            let isolated = mesh.vertices();
-            let isolated = isolated.filter(|&v| mesh.vertex_faces(v).next().is_none());
-            let isolated = isolated.count();
-            assert_eq!(
-                mesh.remove_isolated_vertices_logged(log),
-                isolated,
-                "{name}"
-            );
+            let is_isolated = |v: &M::Vertex| mesh.vertex_faces(*v).next().is_none();
+            let isolated = mesh.vertices().filter(is_isolated).count();
+            let removed = mesh.remove_isolated_vertices_logged(log);
+            assert_eq!(removed, isolated, "{name}");
+            None
         }
         &Action::SplitEdge { ends, at } => {
-            let e = edge(mesh, ends);
-            return mesh.split_edge_logged(e, at, log).map(Some);
+            Some(mesh.split_edge_logged(edge(mesh, ends), at, log)?)
         }
         &Action::BisectEdge { ends, at } => {
-            let e = edge(mesh, ends);
-            return mesh.bisect_edge_logged(e, at, log).map(Some);
+            Some(mesh.bisect_edge_logged(edge(mesh, ends), at, log)?)
         }
-        &Action::PokeFace { f, at } => {
-            return mesh.poke_face_logged(faces[&f], at, log).map(Some);
-        }
-        &Action::SplitFace { f, ends } => {
-            let ends = ends.map(|v| vertices[&v]);
-            let e = mesh.split_face_logged(faces[&f], ends, log)?;
-            assert_eq!(mesh.edge_between(ends[0], ends[1]), Some(e), "{name}");
+        &Action::PokeFace { f, at } => Some(mesh.poke_face_logged(faces[&f], at, log)?),
+        Action::SplitFace { f, ends } => {
+            let e = mesh.split_face_logged(faces[f], ends.map(|v| vertices[&v]), log)?;
+            assert_eq!(edge(mesh, *ends), e, "{name}");
+            None
         }
         &Action::DissolveEdge { ends } => {
             let e = edge(mesh, ends);
             let along: Vec<_> = mesh.edge_faces(e).collect();
             let f = mesh.dissolve_edge_logged(e, log)?;
-            assert!(along.contains(&f), "{name}: {f:?} is not a face of {e:?}");
+            assert!(along.contains(&f), "{name}: {f:?} was not a face of {e:?}");
+            None
         }
         &Action::FlipEdge { ends } => {
-            let e = edge(mesh, ends);
-            let e = mesh.flip_edge_logged(e, log)?;
-            let ends = mesh.edge_vertices(e);
-            assert_eq!(mesh.edge_between(ends[0], ends[1]), Some(e), "{name}");
+            let e = mesh.flip_edge_logged(edge(mesh, ends), log)?;
+            let [a, b] = mesh.edge_vertices(e);
+            assert_eq!(mesh.edge_between(a, b), Some(e), "{name}");
+            None
         }
         &Action::CollapseEdge { ends, to } => {
             let (e, keep) = (edge(mesh, ends), vertices[&ends[0]]);
-            return mesh.collapse_edge_logged(e, keep, to, log).map(Some);
+            Some(mesh.collapse_edge_logged(e, keep, to, log)?)
         }
         &Action::SplitVertex { v, left, right, at } => {
             let [left, right] = [left, right].map(|side| side.map(|v| vertices[&v]));
-            let v = vertices[&v];
-            return mesh.split_vertex_logged(v, left, right, at, log).map(Some);
+            Some(mesh.split_vertex_logged(vertices[&v], left, right, at, log)?)
         }
-        Action::Compact => mesh.compact_logged(log),
-    }
-    Ok(None)
+        Action::Compact => {
+            mesh.compact_logged(log);
+            None
+        }
+    })
 }
