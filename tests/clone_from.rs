@@ -39,13 +39,12 @@ fn edit<M: MeshEdit>(mesh: &mut M) {
     let faces: Vec<M::Face> = mesh.faces().take(40).collect();
     for (i, face) in faces.into_iter().enumerate() {
         if i % 4 == 0 {
-            mesh.remove_face(face, &mut ()).ok();
+            mesh.remove_face(face).ok();
         } else {
             let mut corners = mesh.face_vertices(face);
             let at = corners.next().map(|v| mesh.position(v) * 1.01);
             drop(corners);
-            mesh.poke_face(face, at.expect("three corners"), &mut ())
-                .ok();
+            mesh.poke_face(face, at.expect("three corners")).ok();
         }
     }
 }

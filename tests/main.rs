@@ -1,5 +1,6 @@
 //! Tests that need several crates.
 
+mod edit_data;
 mod editing;
 mod equivalence;
 mod facts;

@@ -254,13 +254,13 @@ fn tables_report_all_bytes_after_edits() {
         let faces: Vec<_> = mesh.faces().step_by(2).collect();
         for (i, &f) in faces.iter().enumerate() {
             let at = Point::splat(2.0 + i as f32);
-            mesh.poke_face(f, at, &mut ()).expect("no vertex is there");
+            mesh.poke_face(f, at).expect("no vertex is there");
         }
         drop(faces);
         assert_eq!(counted(), mesh.memory().total(), "{}, poked", M::NAME);
         decimate(&mut mesh, &decimation).expect("triangles");
         assert_eq!(counted(), mesh.memory().total(), "{}, decimated", M::NAME);
-        mesh.compact(&mut ());
+        mesh.compact();
         assert_eq!(counted(), mesh.memory().total(), "{}, compact", M::NAME);
     });
 }

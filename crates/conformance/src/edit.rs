@@ -6,6 +6,7 @@
 //! failing script can be shrunk.
 
 mod action;
+mod apply;
 mod model;
 mod model_test;
 mod relations;

@@ -74,6 +74,11 @@ macro_rules! edit_suite {
         }
 
         #[test]
+        fn data_follows_edits() {
+            $crate::law::data_follows_edits::<$mesh>();
+        }
+
+        #[test]
         fn edit_costs() {
             $crate::law::edit_costs::<$mesh>();
         }

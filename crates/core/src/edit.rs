@@ -1,99 +1,11 @@
 //! The edit trait: changing a mesh in place.
 
-use std::fmt;
-
-use serde::Serialize;
-
 use crate::Point;
 use crate::edit_error::EditError;
+use crate::edit_kind::Edit;
 use crate::edit_log::{EditLog, OldToNew};
 use crate::query::{EdgeMap, FaceMap, MeshQuery, VertexMap};
 use crate::representation::QueryCost;
-
-/// One kind of edit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
-#[expect(
-    missing_docs,
-    reason = "the names are those of the methods of MeshEdit"
-)]
-pub enum Edit {
-    SetPosition,
-    AddVertex,
-    AddFace,
-    RemoveFace,
-    RemoveVertex,
-    RemoveIsolatedVertices,
-    SplitEdge,
-    BisectEdge,
-    PokeFace,
-    SplitFace,
-    DissolveEdge,
-    FlipEdge,
-    CollapseEdge,
-    SplitVertex,
-    Compact,
-}
-
-impl Edit {
-    /// All edits, in the order of [`MeshEdit::EDITS`].
-    pub const ALL: [Self; 15] = [
-        Self::SetPosition,
-        Self::AddVertex,
-        Self::AddFace,
-        Self::RemoveFace,
-        Self::RemoveVertex,
-        Self::RemoveIsolatedVertices,
-        Self::SplitEdge,
-        Self::BisectEdge,
-        Self::PokeFace,
-        Self::SplitFace,
-        Self::DissolveEdge,
-        Self::FlipEdge,
-        Self::CollapseEdge,
-        Self::SplitVertex,
-        Self::Compact,
-    ];
-
-    /// The costs of the edits in a structure that stores adjacency: O(1) for a position or a new
-    /// vertex, the whole mesh for removing isolated vertices and compacting, otherwise the faces
-    /// around.
-    pub const LOCAL_COSTS: [Option<QueryCost>; Self::ALL.len()] = {
-        let mut costs = [Some(QueryCost::Local); Self::ALL.len()];
-        costs[Self::SetPosition as usize] = Some(QueryCost::Constant);
-        costs[Self::AddVertex as usize] = Some(QueryCost::Constant);
-        costs[Self::RemoveIsolatedVertices as usize] = Some(QueryCost::Scan);
-        costs[Self::Compact as usize] = Some(QueryCost::Scan);
-        costs
-    };
-
-    /// Returns the name of the method: `flip_edge`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::SetPosition => "set_position",
-            Self::AddVertex => "add_vertex",
-            Self::AddFace => "add_face",
-            Self::RemoveFace => "remove_face",
-            Self::RemoveVertex => "remove_vertex",
-            Self::RemoveIsolatedVertices => "remove_isolated_vertices",
-            Self::SplitEdge => "split_edge",
-            Self::BisectEdge => "bisect_edge",
-            Self::PokeFace => "poke_face",
-            Self::SplitFace => "split_face",
-            Self::DissolveEdge => "dissolve_edge",
-            Self::FlipEdge => "flip_edge",
-            Self::CollapseEdge => "collapse_edge",
-            Self::SplitVertex => "split_vertex",
-            Self::Compact => "compact",
-        }
-    }
-}
-
-impl fmt::Display for Edit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
 
 /// The error of an edit that `M` refused.
 pub type Refusal<M> =
@@ -120,7 +32,22 @@ pub type Refusal<M> =
 /// - **In place.** An edit does not convert or rebuild the mesh. [`EDITS`](Self::EDITS) states how
 ///   much of the mesh an edit reads.
 ///
-/// Pass `&mut ()` as the log if you need no record: logging then costs nothing.
+/// # Two forms
+///
+/// Every edit has a short form, such as [`flip_edge`](Self::flip_edge), and a form that reports its
+/// changes of handles to a log, such as [`flip_edge_logged`](Self::flip_edge_logged). The log `()`
+/// ignores the reports and costs nothing: the short form uses it. [`EditLog`] describes when to use
+/// which. Data by vertex, edge or face follows all edits of a
+/// [`MeshWithData`](crate::MeshWithData), in both forms.
+///
+/// ```
+/// # use sixfold_core::{MeshEdit, Point, Refusal};
+/// /// Puts a vertex into the middle of `e` and returns it.
+/// fn bisect<M: MeshEdit>(mesh: &mut M, e: M::Edge) -> Result<M::Vertex, Refusal<M>> {
+///     let [a, b] = mesh.edge_vertices(e).map(|v| mesh.position(v));
+///     mesh.bisect_edge(e, (a + b) / 2.0)
+/// }
+/// ```
 pub trait MeshEdit: MeshQuery + Sized {
     /// How much of the mesh each edit reads, in the order of [`Edit::ALL`]; `None` if the structure
     /// refuses the edit on every mesh.
@@ -128,21 +55,32 @@ pub trait MeshEdit: MeshQuery + Sized {
 
     /// The same structure without deleted rows, whose queries need no check for them: its type
     /// parameter is [`Compact`](crate::Compact).
-    type Compact: MeshQuery<Vertex = Self::Vertex, Edge = Self::Edge, Face = Self::Face>
-        + Into<Self>;
+    type Compact: MeshQuery<Vertex = Self::Vertex, Edge = Self::Edge, Face = Self::Face>;
 
     /// Closes all holes and converts to a mesh that cannot have any; O(mesh) if there are holes.
     /// Handles change as in [`compact`](Self::compact), but are not reported: to keep handles, call
-    /// [`compact_with_map`](Self::compact_with_map) first. `into()` converts
-    /// [`Compact`](Self::Compact) back in O(1).
+    /// [`compact_with_map`](Self::compact_with_map) first.
     fn into_compact(self) -> Self::Compact;
+
+    /// Converts a compact mesh to one that can be edited; O(1). Handles stay the same.
+    fn from_compact(compact: Self::Compact) -> Self;
 
     /// Moves `v` to `to`; returns the handle of the vertex afterwards.
     ///
     /// # Errors
     ///
     /// [`EditError::Occupied`] if a vertex is its coordinates and another one is at `to`.
-    fn set_position(
+    #[inline]
+    fn set_position(&mut self, v: Self::Vertex, to: Point) -> Result<Self::Vertex, Refusal<Self>> {
+        self.set_position_logged(v, to, &mut ())
+    }
+
+    /// Does [`set_position`](Self::set_position), and reports all changes to `log`.
+    ///
+    /// # Errors
+    ///
+    /// The same as for [`set_position`](Self::set_position).
+    fn set_position_logged(
         &mut self,
         v: Self::Vertex,
         to: Point,
@@ -154,7 +92,17 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// # Errors
     ///
     /// [`EditError::Unsupported`] if the structure cannot hold a vertex without a face.
-    fn add_vertex(
+    #[inline]
+    fn add_vertex(&mut self, at: Point) -> Result<Self::Vertex, Refusal<Self>> {
+        self.add_vertex_logged(at, &mut ())
+    }
+
+    /// Does [`add_vertex`](Self::add_vertex), and reports all changes to `log`.
+    ///
+    /// # Errors
+    ///
+    /// The same as for [`add_vertex`](Self::add_vertex).
+    fn add_vertex_logged(
         &mut self,
         at: Point,
         log: &mut impl EditLog<Self>,
@@ -169,7 +117,17 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// allowed. If only manifolds are allowed, also refuses a side that a face already runs along
     /// in this direction, an edge that has two faces, and a corner whose faces would form more than
     /// one fan.
-    fn add_face(
+    #[inline]
+    fn add_face(&mut self, corners: &[Self::Vertex]) -> Result<Self::Face, Refusal<Self>> {
+        self.add_face_logged(corners, &mut ())
+    }
+
+    /// Does [`add_face`](Self::add_face), and reports all changes to `log`.
+    ///
+    /// # Errors
+    ///
+    /// The same as for [`add_face`](Self::add_face).
+    fn add_face_logged(
         &mut self,
         corners: &[Self::Vertex],
         log: &mut impl EditLog<Self>,
@@ -181,7 +139,17 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// # Errors
     ///
     /// [`EditError::SeveralFans`] if the faces left at a corner would form more than one fan.
-    fn remove_face(
+    #[inline]
+    fn remove_face(&mut self, f: Self::Face) -> Result<(), Refusal<Self>> {
+        self.remove_face_logged(f, &mut ())
+    }
+
+    /// Does [`remove_face`](Self::remove_face), and reports all changes to `log`.
+    ///
+    /// # Errors
+    ///
+    /// The same as for [`remove_face`](Self::remove_face).
+    fn remove_face_logged(
         &mut self,
         f: Self::Face,
         log: &mut impl EditLog<Self>,
@@ -192,14 +160,31 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// # Errors
     ///
     /// [`EditError::SeveralFans`] if the faces left at another vertex would form more than one fan.
-    fn remove_vertex(
+    #[inline]
+    fn remove_vertex(&mut self, v: Self::Vertex) -> Result<(), Refusal<Self>> {
+        self.remove_vertex_logged(v, &mut ())
+    }
+
+    /// Does [`remove_vertex`](Self::remove_vertex), and reports all changes to `log`.
+    ///
+    /// # Errors
+    ///
+    /// The same as for [`remove_vertex`](Self::remove_vertex).
+    fn remove_vertex_logged(
         &mut self,
         v: Self::Vertex,
         log: &mut impl EditLog<Self>,
     ) -> Result<(), Refusal<Self>>;
 
     /// Removes all vertices without a face; returns their number.
-    fn remove_isolated_vertices(&mut self, log: &mut impl EditLog<Self>) -> usize;
+    #[inline]
+    fn remove_isolated_vertices(&mut self) -> usize {
+        self.remove_isolated_vertices_logged(&mut ())
+    }
+
+    /// Does [`remove_isolated_vertices`](Self::remove_isolated_vertices), and reports all changes to
+    /// `log`.
+    fn remove_isolated_vertices_logged(&mut self, log: &mut impl EditLog<Self>) -> usize;
 
     /// Inserts a vertex at `at` into `e`, and so into each of its faces, whose degrees grow by one.
     ///
@@ -207,7 +192,17 @@ pub trait MeshEdit: MeshQuery + Sized {
     ///
     /// [`EditError::Unsupported`] if only triangles are allowed; [`EditError::Occupied`] if a
     /// vertex is its coordinates and another one is at `at`.
-    fn split_edge(
+    #[inline]
+    fn split_edge(&mut self, e: Self::Edge, at: Point) -> Result<Self::Vertex, Refusal<Self>> {
+        self.split_edge_logged(e, at, &mut ())
+    }
+
+    /// Does [`split_edge`](Self::split_edge), and reports all changes to `log`.
+    ///
+    /// # Errors
+    ///
+    /// The same as for [`split_edge`](Self::split_edge).
+    fn split_edge_logged(
         &mut self,
         e: Self::Edge,
         at: Point,
@@ -230,7 +225,17 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// [`EditError::NotATriangle`] if a face of `e` is not a triangle; [`EditError::SameApex`] if
     /// only manifold edges are allowed and both triangles have the same third corner;
     /// [`EditError::Occupied`].
-    fn bisect_edge(
+    #[inline]
+    fn bisect_edge(&mut self, e: Self::Edge, at: Point) -> Result<Self::Vertex, Refusal<Self>> {
+        self.bisect_edge_logged(e, at, &mut ())
+    }
+
+    /// Does [`bisect_edge`](Self::bisect_edge), and reports all changes to `log`.
+    ///
+    /// # Errors
+    ///
+    /// The same as for [`bisect_edge`](Self::bisect_edge).
+    fn bisect_edge_logged(
         &mut self,
         e: Self::Edge,
         at: Point,
@@ -243,7 +248,17 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// # Errors
     ///
     /// [`EditError::Occupied`].
-    fn poke_face(
+    #[inline]
+    fn poke_face(&mut self, f: Self::Face, at: Point) -> Result<Self::Vertex, Refusal<Self>> {
+        self.poke_face_logged(f, at, &mut ())
+    }
+
+    /// Does [`poke_face`](Self::poke_face), and reports all changes to `log`.
+    ///
+    /// # Errors
+    ///
+    /// The same as for [`poke_face`](Self::poke_face).
+    fn poke_face_logged(
         &mut self,
         f: Self::Face,
         at: Point,
@@ -257,7 +272,21 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// Refuses vertices that are not corners of `f`, or are equal or adjacent in `f`;
     /// [`EditError::EdgeExists`] if only manifold edges are allowed and the two vertices have an
     /// edge already; [`EditError::Unsupported`] if only triangles are allowed.
+    #[inline]
     fn split_face(
+        &mut self,
+        f: Self::Face,
+        ends: [Self::Vertex; 2],
+    ) -> Result<Self::Edge, Refusal<Self>> {
+        self.split_face_logged(f, ends, &mut ())
+    }
+
+    /// Does [`split_face`](Self::split_face), and reports all changes to `log`.
+    ///
+    /// # Errors
+    ///
+    /// The same as for [`split_face`](Self::split_face).
+    fn split_face_logged(
         &mut self,
         f: Self::Face,
         ends: [Self::Vertex; 2],
@@ -272,7 +301,17 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// Refuses an edge that does not have exactly two faces, or whose faces run along it in the
     /// same direction or share a vertex that is not an end of `e`; [`EditError::Unsupported`] if
     /// only triangles are allowed.
-    fn dissolve_edge(
+    #[inline]
+    fn dissolve_edge(&mut self, e: Self::Edge) -> Result<Self::Face, Refusal<Self>> {
+        self.dissolve_edge_logged(e, &mut ())
+    }
+
+    /// Does [`dissolve_edge`](Self::dissolve_edge), and reports all changes to `log`.
+    ///
+    /// # Errors
+    ///
+    /// The same as for [`dissolve_edge`](Self::dissolve_edge).
+    fn dissolve_edge_logged(
         &mut self,
         e: Self::Edge,
         log: &mut impl EditLog<Self>,
@@ -295,7 +334,17 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// same direction, a face that is not a triangle, two triangles with the same third corner, and
     /// third corners that have an edge already; [`EditError::LowValence`] if an end has just three
     /// edges and three faces.
-    fn flip_edge(
+    #[inline]
+    fn flip_edge(&mut self, e: Self::Edge) -> Result<Self::Edge, Refusal<Self>> {
+        self.flip_edge_logged(e, &mut ())
+    }
+
+    /// Does [`flip_edge`](Self::flip_edge), and reports all changes to `log`.
+    ///
+    /// # Errors
+    ///
+    /// The same as for [`flip_edge`](Self::flip_edge).
+    fn flip_edge_logged(
         &mut self,
         e: Self::Edge,
         log: &mut impl EditLog<Self>,
@@ -321,7 +370,22 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// [`EditError::CommonNeighbour`], a vertex adjacent to both ends that is not the third corner
     /// of a triangle along `e`; [`EditError::AcrossBoundary`], an inner edge between two boundary
     /// vertices; [`EditError::Pillow`], two triangles that would have the same corners.
+    #[inline]
     fn collapse_edge(
+        &mut self,
+        e: Self::Edge,
+        keep: Self::Vertex,
+        to: Point,
+    ) -> Result<Self::Vertex, Refusal<Self>> {
+        self.collapse_edge_logged(e, keep, to, &mut ())
+    }
+
+    /// Does [`collapse_edge`](Self::collapse_edge), and reports all changes to `log`.
+    ///
+    /// # Errors
+    ///
+    /// The same as for [`collapse_edge`](Self::collapse_edge).
+    fn collapse_edge_logged(
         &mut self,
         e: Self::Edge,
         keep: Self::Vertex,
@@ -350,7 +414,23 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// Refuses a vertex whose faces are not one oriented fan, a `left` or `right` that is not
     /// adjacent to `v`, equal or missing `left` and `right`, and only one of them if `v` is not on
     /// a boundary; [`EditError::Occupied`].
+    #[inline]
     fn split_vertex(
+        &mut self,
+        v: Self::Vertex,
+        left: Option<Self::Vertex>,
+        right: Option<Self::Vertex>,
+        at: Point,
+    ) -> Result<Self::Vertex, Refusal<Self>> {
+        self.split_vertex_logged(v, left, right, at, &mut ())
+    }
+
+    /// Does [`split_vertex`](Self::split_vertex), and reports all changes to `log`.
+    ///
+    /// # Errors
+    ///
+    /// The same as for [`split_vertex`](Self::split_vertex).
+    fn split_vertex_logged(
         &mut self,
         v: Self::Vertex,
         left: Option<Self::Vertex>,
@@ -362,7 +442,13 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// Closes all holes; O(mesh). The remaining elements keep their order, in rows without gaps,
     /// and every changed handle is reported. A table that is less than half used frees its spare
     /// memory.
-    fn compact(&mut self, log: &mut impl EditLog<Self>);
+    #[inline]
+    fn compact(&mut self) {
+        self.compact_logged(&mut ());
+    }
+
+    /// Does [`compact`](Self::compact), and reports all changes to `log`.
+    fn compact_logged(&mut self, log: &mut impl EditLog<Self>);
 
     /// Returns whether the structure supports `edit`.
     fn supports(edit: Edit) -> bool {
@@ -388,19 +474,7 @@ pub trait MeshEdit: MeshQuery + Sized {
             edges,
             faces,
         };
-        self.compact(&mut map);
+        self.compact_logged(&mut map);
         map
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn all_edits_are_in_the_order_of_their_numbers() {
-        for (i, edit) in Edit::ALL.into_iter().enumerate() {
-            assert_eq!(edit as usize, i, "{edit}");
-        }
     }
 }

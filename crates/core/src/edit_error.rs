@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use crate::edit::Edit;
+use crate::edit_kind::Edit;
 
 /// The reason why an edit was refused; the mesh is unchanged then. Elements are given by the
 /// handles of the structure.

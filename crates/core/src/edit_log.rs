@@ -37,6 +37,17 @@ impl<M: MeshQuery> EditLog<M> for OldToNew<M> {
 /// removed ones disappear, then all renamings happen at once (elements may exchange handles), then
 /// the created ones are added. The order of the calls within one edit is not specified. A refused
 /// edit reports nothing.
+///
+/// # When to use which
+///
+/// - Data by vertex, edge or face that must stay correct: put it into a
+///   [`MeshWithData`](crate::MeshWithData). It follows all edits, also those of algorithms that
+///   have no parameter for a log.
+/// - The list of what an edit changed, for instance to undo it or to redraw a part: pass an
+///   [`EditRecord`].
+/// - A reaction to one kind of change, such as collecting removed faces: implement this trait.
+/// - Nothing of this: use the short form of the edit. It passes the log `()`, for which the
+///   structures compute no reports.
 pub trait EditLog<M: MeshQuery> {
     /// Whether the log uses the reports; if false, structures need not compute what to report.
     const USES_REPORTS: bool = true;
@@ -73,7 +84,7 @@ impl<M: MeshQuery> EditLog<M> for () {
 /// # fn example<M: MeshEdit>(mesh: &mut M, e: M::Edge) -> Result<(), sixfold_core::Refusal<M>> {
 /// let mut sharpness = mesh.edge_map(0.0_f32);
 /// let mut record = EditRecord::new();
-/// mesh.flip_edge(e, &mut record)?;
+/// mesh.flip_edge_logged(e, &mut record)?;
 /// record.edges.apply_to(&mut sharpness, &0.0);
 /// # Ok(())
 /// # }
@@ -95,6 +106,11 @@ impl<M: MeshQuery> EditRecord<M> {
             edges: Changes::default(),
             faces: Changes::default(),
         }
+    }
+
+    /// Returns whether there are no changes.
+    pub fn is_empty(&self) -> bool {
+        self.vertices.is_empty() && self.edges.is_empty() && self.faces.is_empty()
     }
 
     /// Removes all changes but keeps the memory, for the next edit.
@@ -161,6 +177,17 @@ impl<H: Handle> Changes<H> {
     /// The record must hold the changes of one edit; after several edits, apply their records one
     /// by one.
     pub fn apply_to<T: Clone>(&self, map: &mut H::Map<T>, initial: &T) {
+        self.apply_with(map, |_, _| initial.clone());
+    }
+
+    /// Does [`apply_to`](Self::apply_to) with a value computed for each new element, from the map
+    /// and the handle of the element. The map then holds the values of all old elements under their
+    /// current handles; it may have no values for new elements.
+    pub fn apply_with<T: Clone>(
+        &self,
+        map: &mut H::Map<T>,
+        mut initial: impl FnMut(&H::Map<T>, H) -> T,
+    ) {
         for &old in &self.removed {
             map.remove(old);
         }
@@ -179,7 +206,8 @@ impl<H: Handle> Changes<H> {
             }
         }
         for &new in &self.created {
-            map.insert(new, initial.clone());
+            let value = initial(map, new);
+            map.insert(new, value);
         }
     }
 }

@@ -4,7 +4,7 @@
 //! - [`PolygonMesh`]: the neutral input and output; positions, and faces as index lists.
 //! - [`MeshQuery`]: the nine relations of Weiler (1985) and their contract.
 //! - [`OrientedWalk`]: steps from side to side, along faces and around vertices.
-//! - [`Representation`]: one structure; its capabilities, its construction and its memory.
+//! - [`Representation`]: one structure; its construction and its memory.
 //! - [`LocalQueries`]: the bound of algorithms that refuse structures whose queries scan.
 //! - [`Handle`] and [`HandleMap`]: handles of elements, and data stored by handle; [`Numbers`]:
 //!   numbers of elements from 0.
@@ -14,6 +14,7 @@
 //! - [`Refine`] and [`Split`]: structures that split every face in their own tables.
 //! - [`MeshEdit`], [`EditRecord`] and [`EditError`]: edits in place, the record of created, removed
 //!   and renamed elements, and why an edit is refused; [`Holes`]: the rows of deleted elements.
+//! - [`MeshWithData`]: a mesh together with data by vertex, edge or face that follows its edits.
 //! - [`Compact`] and [`Editable`]: type parameters of meshes without and with deletion.
 //! - [`ScannedFaces`]: queries and edits of structures that find the faces at a vertex by a scan.
 //! - [`Creases`]: the sharpness of edges and vertices under subdivision.
@@ -28,18 +29,22 @@ mod creases;
 mod distinct;
 mod edit;
 mod edit_error;
+mod edit_kind;
 mod edit_log;
 mod editing;
+mod element_data;
 mod error;
 mod face_list;
 mod face_spans;
 mod facts;
+mod follow_edits;
 mod handle;
 mod holes;
 mod incidence;
 mod local_queries;
 mod measured;
 mod memory;
+mod mesh_with_data;
 mod numbering;
 mod oriented_walk;
 mod pairing;
@@ -62,17 +67,22 @@ pub use boundary::BoundaryLoop;
 pub use capability::Capabilities;
 pub use creases::{Creases, SHARPNESS_INFINITE};
 pub use distinct::{Distinct, DistinctWalk, IteratorExt};
-pub use edit::{Edit, MeshEdit, Refusal};
+pub use edit::{MeshEdit, Refusal};
 pub use edit_error::EditError;
+pub use edit_kind::Edit;
 pub use edit_log::{Changes, EditLog, EditRecord, OldToNew};
 pub use editing::{
     Compact, EDGE_HOLES, Editable, Editing, FACE_HOLES, HoleSet, NoHoles, NoScatteredFaces,
     VERTEX_HOLES,
 };
+pub use element_data::{Created, EdgeData, ElementData, FaceData, VertexData};
+#[doc(hidden)]
+pub use element_data::{Edges, ElementKind, Faces, Vertices};
 pub use error::{BuildError, CreaseError, InvariantError, MoveError, PolygonError, RefineError};
 pub use face_list::FaceList;
 pub use face_spans::{FaceSpans, ScatteredFaces};
 pub use facts::{Distribution, Facts};
+pub use follow_edits::{AcceptedEdit, FollowEdits};
 pub use glam;
 pub use glam::Vec3 as Point;
 pub use handle::{Handle, HandleMap, HashHandleMap, Pair, RowMap};
@@ -81,6 +91,7 @@ pub use incidence::EdgeUse;
 pub use local_queries::LocalQueries;
 pub use measured::{Counts, Measured};
 pub use memory::{MemoryFootprint, TableBytes};
+pub use mesh_with_data::MeshWithData;
 pub use numbering::Numbers;
 pub use oriented_walk::{OrientedWalk, SideMap};
 pub use pairing::{SideRows, TwinPairs, pair_triangle_sides};
@@ -104,8 +115,8 @@ pub use table::Table;
 /// and the types in their signatures.
 pub mod prelude {
     pub use crate::{
-        BuildError, EdgeId, EdgeMap, EditError, EditLog, EditRecord, FaceId, FaceMap, LocalQueries,
-        MeshEdit, MeshQuery, OrientedWalk, Point, PolygonMesh, Refine, Representation, SideMap,
-        VertexId, VertexMap,
+        BuildError, EdgeData, EdgeId, EdgeMap, EditError, EditLog, EditRecord, FaceData, FaceId,
+        FaceMap, LocalQueries, MeshEdit, MeshQuery, MeshWithData, OrientedWalk, Point, PolygonMesh,
+        Refine, Representation, SideMap, VertexData, VertexId, VertexMap,
     };
 }

@@ -2,6 +2,7 @@
 
 use crate::Point;
 use crate::boundary::{self, BoundaryLoop};
+use crate::capability::Capabilities;
 use crate::handle::{Handle, HandleMap};
 use crate::numbering::Numbers;
 
@@ -50,6 +51,10 @@ pub trait MeshQuery {
     type Edge: Handle;
     /// The handle of a face.
     type Face: Handle;
+
+    /// The meshes that this type can hold; all meshes if it is not known. An algorithm can omit
+    /// checks for what the type cannot hold, such as non-manifold edges.
+    const CAPABILITIES: Capabilities = Capabilities::ALL;
 
     /// Yields every vertex once.
     fn vertices(&self) -> impl Iterator<Item = Self::Vertex>;

@@ -5,7 +5,6 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::Point;
-use crate::capability::Capabilities;
 use crate::error::{BuildError, InvariantError, MoveError};
 use crate::memory::MemoryFootprint;
 use crate::polygon_mesh::PolygonMesh;
@@ -93,12 +92,12 @@ impl QueryCost {
     }
 }
 
-/// A mesh data structure: its name and capabilities, its construction, and its memory.
+/// A mesh data structure: its name, its construction, and its memory.
 ///
 /// # Contract
 ///
-/// - `from_polygons` succeeds exactly if `CAPABILITIES.check` does, and returns the same error,
-///   except for a mesh with too many elements for its handles.
+/// - `from_polygons` succeeds exactly if [`CAPABILITIES`](MeshQuery::CAPABILITIES)`.check` does, and
+///   returns the same error, except for a mesh with too many elements for its handles.
 /// - `faces()` and `vertices()` keep the order of the input; if a vertex is its coordinates,
 ///   vertices come in the order in which faces first name them.
 /// - `to_polygons(from_polygons(m))` is `m` up to the start of each face. If a vertex is its
@@ -106,9 +105,6 @@ impl QueryCost {
 pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
     /// The name for users: `half-edge`.
     const NAME: &'static str;
-
-    /// What the structure can hold.
-    const CAPABILITIES: Capabilities;
 
     /// How much of the mesh each relation reads, in the order of [`Relation::ALL`].
     const COSTS: [QueryCost; 9];
@@ -135,7 +131,7 @@ pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
     ///
     /// # Errors
     ///
-    /// Returns the fault that [`Capabilities::check`] finds.
+    /// Returns the fault that [`Capabilities::check`](crate::Capabilities::check) finds.
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError>;
 
     /// Returns the mesh as positions and polygons; O(corners) expected.

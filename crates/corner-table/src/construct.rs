@@ -1,21 +1,15 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Capabilities, Counts, Editing, FACE_HOLES, FaceId, FaceList, HoleSet,
-    InvariantError, Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe,
-    QueryCost, Representation, RowId, RowMap, Slot, Table, Untraced, VERTEX_HOLES, VertexId,
-    pair_triangle_sides,
+    BuildError, Counts, Editing, FACE_HOLES, FaceId, FaceList, HoleSet, InvariantError, Measured,
+    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
+    RowId, RowMap, Slot, Table, Untraced, VERTEX_HOLES, VertexId, pair_triangle_sides,
 };
 
 use crate::mesh::{AnyCornerTable, CornerId, CornerTable, EditableCornerTable};
 
 impl<E: Editing> Representation for AnyCornerTable<Untraced, E> {
     const NAME: &'static str = "corner-table";
-
-    const CAPABILITIES: Capabilities = Capabilities {
-        polygons: false,
-        ..Capabilities::ORIENTED_MANIFOLDS
-    };
 
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
 

@@ -57,7 +57,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
     type Compact = CornerTable<P>;
 
     fn into_compact(mut self) -> CornerTable<P> {
-        self.compact(&mut ());
+        self.compact();
         AnyCornerTable {
             positions: self.positions,
             corner: self.corner,
@@ -68,9 +68,13 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
         }
     }
 
+    fn from_compact(compact: CornerTable<P>) -> Self {
+        compact.into()
+    }
+
     /// O(1); writes one row of `positions`.
     #[inline]
-    fn set_position(
+    fn set_position_logged(
         &mut self,
         v: VertexId,
         to: Point,
@@ -83,7 +87,11 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
 
     /// O(1) amortised.
     #[inline]
-    fn add_vertex(&mut self, at: Point, log: &mut impl EditLog<Self>) -> Result<VertexId, Refusal> {
+    fn add_vertex_logged(
+        &mut self,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal> {
         self.check_room(1, 0)?;
         let v = self.push_vertex(at, Slot::NONE);
         log.created_vertex(v);
@@ -91,7 +99,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
     }
 
     /// O(valence of the corners), amortised.
-    fn add_face(
+    fn add_face_logged(
         &mut self,
         corners: &[VertexId],
         log: &mut impl EditLog<Self>,
@@ -100,17 +108,25 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
     }
 
     /// O(1).
-    fn remove_face(&mut self, f: FaceId, log: &mut impl EditLog<Self>) -> Result<(), Refusal> {
+    fn remove_face_logged(
+        &mut self,
+        f: FaceId,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal> {
         self.remove_triangle(f, log)
     }
 
     /// O(valence).
-    fn remove_vertex(&mut self, v: VertexId, log: &mut impl EditLog<Self>) -> Result<(), Refusal> {
+    fn remove_vertex_logged(
+        &mut self,
+        v: VertexId,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal> {
         self.remove_star(v, log)
     }
 
     /// Reads `corner` once; O(vertices).
-    fn remove_isolated_vertices(&mut self, log: &mut impl EditLog<Self>) -> usize {
+    fn remove_isolated_vertices_logged(&mut self, log: &mut impl EditLog<Self>) -> usize {
         let before = self.vertex_holes.len();
         for v in (0..row(self.corner.len())).map(VertexId::new) {
             let isolated = self.corner.read(v.index()).get().is_none();
@@ -123,7 +139,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
     }
 
     /// Always returns an error: this edit makes polygons.
-    fn split_edge(
+    fn split_edge_logged(
         &mut self,
         _: EdgeCorner,
         _: Point,
@@ -133,7 +149,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
     }
 
     /// O(1) amortised.
-    fn bisect_edge(
+    fn bisect_edge_logged(
         &mut self,
         e: EdgeCorner,
         at: Point,
@@ -144,7 +160,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
 
     /// O(1) amortised.
     #[inline]
-    fn poke_face(
+    fn poke_face_logged(
         &mut self,
         f: FaceId,
         at: Point,
@@ -154,7 +170,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
     }
 
     /// Always returns an error: this edit makes polygons.
-    fn split_face(
+    fn split_face_logged(
         &mut self,
         _: FaceId,
         _: [VertexId; 2],
@@ -164,7 +180,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
     }
 
     /// Always returns an error: this edit makes polygons.
-    fn dissolve_edge(
+    fn dissolve_edge_logged(
         &mut self,
         _: EdgeCorner,
         _: &mut impl EditLog<Self>,
@@ -175,7 +191,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
     /// O(valence of a third corner) to check that the new edge does not exist; O(1) to change the
     /// rows.
     #[inline]
-    fn flip_edge(
+    fn flip_edge_logged(
         &mut self,
         e: EdgeCorner,
         log: &mut impl EditLog<Self>,
@@ -185,7 +201,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
 
     /// O(valence of both ends).
     #[inline]
-    fn collapse_edge(
+    fn collapse_edge_logged(
         &mut self,
         e: EdgeCorner,
         keep: VertexId,
@@ -196,7 +212,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
     }
 
     /// O(valence), amortised.
-    fn split_vertex(
+    fn split_vertex_logged(
         &mut self,
         v: VertexId,
         left: Option<VertexId>,
@@ -207,7 +223,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
         self.split_fan(v, [left, right], at, log)
     }
 
-    fn compact(&mut self, log: &mut impl EditLog<Self>) {
+    fn compact_logged(&mut self, log: &mut impl EditLog<Self>) {
         self.compact_tables(log);
     }
 }
@@ -371,9 +387,8 @@ mod tests {
     /// Returns two triangles and a separate third one; the third triangle and v4 are deleted.
     fn with_holes() -> EditableCornerTable {
         let mut mesh = table(8, &[[0, 1, 2], [0, 2, 3], [4, 5, 6]]);
-        mesh.remove_face(FaceId::new(2), &mut ())
-            .expect("the face exists");
-        mesh.remove_vertex(VertexId::new(4), &mut ())
+        mesh.remove_face(FaceId::new(2)).expect("the face exists");
+        mesh.remove_vertex(VertexId::new(4))
             .expect("the vertex exists");
         assert_eq!(mesh.validate(), Ok(()));
         mesh
@@ -401,18 +416,18 @@ mod tests {
         let mut mesh = with_holes();
         for row in [4, 8, u32::MAX] {
             let vertex = VertexId::new(row);
-            let refused = mesh.set_position(vertex, Point::ZERO, &mut ());
+            let refused = mesh.set_position(vertex, Point::ZERO);
             assert_eq!(refused, Err(EditError::NoSuchVertex { vertex }));
         }
         // c5 faces the same edge as c1, which names it; c7 is a deleted corner; c9 does not exist.
         for row in [5, 7, 9, u32::MAX] {
             let edge = EdgeCorner::new(row);
-            let refused = mesh.flip_edge(edge, &mut ());
+            let refused = mesh.flip_edge(edge);
             assert_eq!(refused, Err(EditError::NoSuchEdge { edge }));
         }
         for row in [2, 3, u32::MAX] {
             let face = FaceId::new(row);
-            let refused = mesh.poke_face(face, Point::ZERO, &mut ());
+            let refused = mesh.poke_face(face, Point::ZERO);
             assert_eq!(refused, Err(EditError::NoSuchFace { face }));
         }
     }

@@ -1,6 +1,8 @@
 //! The nine relations.
 
-use sixfold_core::{Editing, FaceId, HoleSet, MeshQuery, Point, Probe, Slot, VertexId, row};
+use sixfold_core::{
+    Capabilities, Editing, FaceId, HoleSet, MeshQuery, Point, Probe, Slot, VertexId, row,
+};
 
 use crate::circulate::{EdgeEdges, Neighbours, Spokes};
 use crate::mesh::{AnyCornerTable, CornerId, EdgeCorner, edge_between};
@@ -9,6 +11,11 @@ impl<P: Probe, E: Editing> MeshQuery for AnyCornerTable<P, E> {
     type Vertex = VertexId;
     type Edge = EdgeCorner;
     type Face = FaceId;
+
+    const CAPABILITIES: Capabilities = Capabilities {
+        polygons: false,
+        ..Capabilities::ORIENTED_MANIFOLDS
+    };
 
     #[inline]
     fn vertices(&self) -> impl Iterator<Item = VertexId> {

@@ -1,17 +1,15 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Capabilities, Counts, Editing, FACE_HOLES, FaceId, FaceList, FaceSpans, HoleSet,
-    InvariantError, Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe,
-    QueryCost, Representation, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap, row,
+    BuildError, Counts, Editing, FACE_HOLES, FaceId, FaceList, FaceSpans, HoleSet, InvariantError,
+    Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost,
+    Representation, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap, row,
 };
 
 use crate::mesh::{AnyFaceVertexMesh, EditableFaceVertexMesh, FaceVertexMesh, Fan};
 
 impl<E: Editing> Representation for AnyFaceVertexMesh<Untraced, E> {
     const NAME: &'static str = "face-vertex";
-
-    const CAPABILITIES: Capabilities = Capabilities::ALL;
 
     const COSTS: [QueryCost; 9] = {
         use QueryCost::{Constant, Local};

@@ -30,7 +30,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
     type Compact = FaceVertexMesh<P>;
 
     fn into_compact(mut self) -> FaceVertexMesh<P> {
-        self.compact(&mut ());
+        self.compact();
         AnyFaceVertexMesh {
             positions: self.positions,
             corners: self.corners,
@@ -42,8 +42,12 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         }
     }
 
+    fn from_compact(compact: FaceVertexMesh<P>) -> Self {
+        compact.into()
+    }
+
     #[inline]
-    fn set_position(
+    fn set_position_logged(
         &mut self,
         v: VertexId,
         to: Point,
@@ -54,7 +58,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         Ok(v)
     }
 
-    fn add_vertex(
+    fn add_vertex_logged(
         &mut self,
         at: Point,
         log: &mut impl EditLog<Self>,
@@ -65,7 +69,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         Ok(v)
     }
 
-    fn add_face(
+    fn add_face_logged(
         &mut self,
         corners: &[VertexId],
         log: &mut impl EditLog<Self>,
@@ -93,7 +97,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         Ok(f)
     }
 
-    fn remove_face(
+    fn remove_face_logged(
         &mut self,
         f: FaceId,
         log: &mut impl EditLog<Self>,
@@ -110,7 +114,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         Ok(())
     }
 
-    fn remove_vertex(
+    fn remove_vertex_logged(
         &mut self,
         v: VertexId,
         log: &mut impl EditLog<Self>,
@@ -137,7 +141,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         Ok(())
     }
 
-    fn remove_isolated_vertices(&mut self, log: &mut impl EditLog<Self>) -> usize {
+    fn remove_isolated_vertices_logged(&mut self, log: &mut impl EditLog<Self>) -> usize {
         let before = self.vertex_holes.len();
         for v in (0..row(self.fans.len())).map(VertexId::new) {
             if self.fans.read(v.index()).len == 0 {
@@ -148,7 +152,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         self.vertex_holes.len() - before
     }
 
-    fn split_edge(
+    fn split_edge_logged(
         &mut self,
         e: Edge,
         at: Point,
@@ -174,7 +178,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         Ok(m)
     }
 
-    fn bisect_edge(
+    fn bisect_edge_logged(
         &mut self,
         e: Edge,
         at: Point,
@@ -211,7 +215,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         Ok(m)
     }
 
-    fn poke_face(
+    fn poke_face_logged(
         &mut self,
         f: FaceId,
         at: Point,
@@ -247,7 +251,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
     }
 
     /// Keeps the part between the two ends in the corner order of `f`; the other part is new.
-    fn split_face(
+    fn split_face_logged(
         &mut self,
         f: FaceId,
         ends: [VertexId; 2],
@@ -285,7 +289,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
     }
 
     /// Keeps the face that runs `e` from its lower end.
-    fn dissolve_edge(
+    fn dissolve_edge_logged(
         &mut self,
         e: Edge,
         log: &mut impl EditLog<Self>,
@@ -315,7 +319,11 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         Ok(f)
     }
 
-    fn flip_edge(&mut self, e: Edge, log: &mut impl EditLog<Self>) -> Result<Edge, Refusal<Self>> {
+    fn flip_edge_logged(
+        &mut self,
+        e: Edge,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<Edge, Refusal<Self>> {
         let [f, g] = self.two_faces(e)?;
         let [low, high] = e.ends();
         let (_, c) = third_corner(self.triangle(f)?, e);
@@ -343,7 +351,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         Ok(turned)
     }
 
-    fn collapse_edge(
+    fn collapse_edge_logged(
         &mut self,
         e: Edge,
         keep: VertexId,
@@ -353,7 +361,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         self.collapse(e, keep, to, log)
     }
 
-    fn split_vertex(
+    fn split_vertex_logged(
         &mut self,
         v: VertexId,
         left: Option<VertexId>,
@@ -365,7 +373,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
     }
 
     /// Puts the fans in the order of their vertices again, and each fan in the order of its faces.
-    fn compact(&mut self, log: &mut impl EditLog<Self>) {
+    fn compact_logged(&mut self, log: &mut impl EditLog<Self>) {
         self.compact_tables(log);
     }
 }

@@ -1,6 +1,8 @@
 //! The nine relations.
 
-use sixfold_core::{Editing, FaceId, HoleSet, MeshQuery, Pair, Point, Probe, VertexId};
+use sixfold_core::{
+    Capabilities, Editing, FaceId, HoleSet, MeshQuery, Pair, Point, Probe, VertexId,
+};
 
 use crate::mesh::{AnyFaceVertexMesh, deleted_vertex};
 
@@ -8,6 +10,8 @@ impl<P: Probe, E: Editing> MeshQuery for AnyFaceVertexMesh<P, E> {
     type Vertex = VertexId;
     type Edge = Pair<VertexId>;
     type Face = FaceId;
+
+    const CAPABILITIES: Capabilities = Capabilities::ALL;
 
     #[inline]
     fn vertices(&self) -> impl Iterator<Item = VertexId> {

@@ -1,7 +1,7 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Capabilities, Counts, Editing, FaceId, FaceList, HoleSet, InvariantError, Measured,
+    BuildError, Counts, Editing, FaceId, FaceList, HoleSet, InvariantError, Measured,
     MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
     RowId, RowMap, SideRows, Slot, TwinPairs, Untraced, VertexId, row,
 };
@@ -10,8 +10,6 @@ use crate::mesh::{AnyHalfEdgeMesh, EditableHalfEdgeMesh, Half, HalfEdgeId, HalfE
 
 impl<E: Editing> Representation for AnyHalfEdgeMesh<Untraced, E> {
     const NAME: &'static str = "half-edge";
-
-    const CAPABILITIES: Capabilities = Capabilities::ORIENTED_MANIFOLDS;
 
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
 

@@ -35,7 +35,7 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
     type Compact = HalfEdgeMesh<P>;
 
     fn into_compact(mut self) -> HalfEdgeMesh<P> {
-        self.compact(&mut ());
+        self.compact();
         AnyHalfEdgeMesh {
             positions: self.positions,
             leaving: self.leaving,
@@ -47,7 +47,11 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
         }
     }
 
-    fn set_position(
+    fn from_compact(compact: HalfEdgeMesh<P>) -> Self {
+        compact.into()
+    }
+
+    fn set_position_logged(
         &mut self,
         v: VertexId,
         to: Point,
@@ -58,14 +62,18 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
         Ok(v)
     }
 
-    fn add_vertex(&mut self, at: Point, log: &mut impl EditLog<Self>) -> Result<VertexId, Refusal> {
+    fn add_vertex_logged(
+        &mut self,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal> {
         self.check_room(1, 0, 0)?;
         let v = self.push_vertex(at, Slot::NONE);
         log.created_vertex(v);
         Ok(v)
     }
 
-    fn add_face(
+    fn add_face_logged(
         &mut self,
         corners: &[VertexId],
         log: &mut impl EditLog<Self>,
@@ -73,14 +81,22 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
         self.add(corners, log)
     }
 
-    fn remove_face(&mut self, f: FaceId, log: &mut impl EditLog<Self>) -> Result<(), Refusal> {
+    fn remove_face_logged(
+        &mut self,
+        f: FaceId,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal> {
         let first = self.check_face(f)?;
         self.check_removable(first)?;
         self.unlink_face(f, first, log);
         Ok(())
     }
 
-    fn remove_vertex(&mut self, v: VertexId, log: &mut impl EditLog<Self>) -> Result<(), Refusal> {
+    fn remove_vertex_logged(
+        &mut self,
+        v: VertexId,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal> {
         self.check_vertex(v)?;
         self.check_fan_removable(v)?;
         self.unlink_fan(v, log);
@@ -89,7 +105,7 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
         Ok(())
     }
 
-    fn remove_isolated_vertices(&mut self, log: &mut impl EditLog<Self>) -> usize {
+    fn remove_isolated_vertices_logged(&mut self, log: &mut impl EditLog<Self>) -> usize {
         let before = self.vertex_holes.len();
         for v in (0..row(self.vertex_rows())).map(VertexId::new) {
             let isolated = self.leaving.read(v.index()).get().is_none();
@@ -101,7 +117,7 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
         self.vertex_holes.len() - before
     }
 
-    fn split_edge(
+    fn split_edge_logged(
         &mut self,
         e: EdgeId,
         at: Point,
@@ -110,7 +126,7 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
         self.split(e, at, log)
     }
 
-    fn bisect_edge(
+    fn bisect_edge_logged(
         &mut self,
         e: EdgeId,
         at: Point,
@@ -119,7 +135,7 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
         self.bisect(e, at, log)
     }
 
-    fn poke_face(
+    fn poke_face_logged(
         &mut self,
         f: FaceId,
         at: Point,
@@ -128,7 +144,7 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
         self.poke(f, at, log)
     }
 
-    fn split_face(
+    fn split_face_logged(
         &mut self,
         f: FaceId,
         ends: [VertexId; 2],
@@ -137,7 +153,7 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
         self.split_between(f, ends, log)
     }
 
-    fn dissolve_edge(
+    fn dissolve_edge_logged(
         &mut self,
         e: EdgeId,
         log: &mut impl EditLog<Self>,
@@ -146,12 +162,16 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
     }
 
     #[inline]
-    fn flip_edge(&mut self, e: EdgeId, _: &mut impl EditLog<Self>) -> Result<EdgeId, Refusal> {
+    fn flip_edge_logged(
+        &mut self,
+        e: EdgeId,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<EdgeId, Refusal> {
         self.flip(e)
     }
 
     #[inline]
-    fn collapse_edge(
+    fn collapse_edge_logged(
         &mut self,
         e: EdgeId,
         keep: VertexId,
@@ -161,7 +181,7 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
         self.collapse(e, keep, to, log)
     }
 
-    fn split_vertex(
+    fn split_vertex_logged(
         &mut self,
         v: VertexId,
         left: Option<VertexId>,
@@ -172,7 +192,7 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
         self.split_fan(v, left, right, at, log)
     }
 
-    fn compact(&mut self, log: &mut impl EditLog<Self>) {
+    fn compact_logged(&mut self, log: &mut impl EditLog<Self>) {
         self.compact_tables(log);
     }
 }

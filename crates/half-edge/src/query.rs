@@ -1,7 +1,7 @@
 //! The nine relations.
 
 use sixfold_core::{
-    DistinctWalk, EdgeId, Editing, FaceId, HoleSet, MeshQuery, Point, Probe, VertexId,
+    Capabilities, DistinctWalk, EdgeId, Editing, FaceId, HoleSet, MeshQuery, Point, Probe, VertexId,
 };
 
 use crate::circulate::EdgeEdges;
@@ -11,6 +11,8 @@ impl<P: Probe, E: Editing> MeshQuery for AnyHalfEdgeMesh<P, E> {
     type Vertex = VertexId;
     type Edge = EdgeId;
     type Face = FaceId;
+
+    const CAPABILITIES: Capabilities = Capabilities::ORIENTED_MANIFOLDS;
 
     #[inline]
     fn vertices(&self) -> impl Iterator<Item = VertexId> {

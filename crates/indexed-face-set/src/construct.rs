@@ -1,18 +1,15 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Capabilities, Counts, Editing, FaceId, FaceList, FaceSpans, HoleSet,
-    InvariantError, Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonError,
-    PolygonMesh, Probe, QueryCost, Representation, ScannedFaces, Table, Untraced, VERTEX_HOLES,
-    VertexId, VertexMap,
+    BuildError, Counts, Editing, FaceId, FaceList, FaceSpans, HoleSet, InvariantError, Measured,
+    MemoryFootprint, MeshQuery, MoveError, Point, PolygonError, PolygonMesh, Probe, QueryCost,
+    Representation, ScannedFaces, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap,
 };
 
 use crate::mesh::AnyIndexedFaceSet;
 
 impl<E: Editing> Representation for AnyIndexedFaceSet<Untraced, E> {
     const NAME: &'static str = "indexed-face-set";
-
-    const CAPABILITIES: Capabilities = Capabilities::ALL;
 
     const COSTS: [QueryCost; 9] = {
         use QueryCost::{Constant, Scan};

@@ -34,7 +34,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
     type Compact = IndexedFaceSet<P>;
 
     fn into_compact(mut self) -> IndexedFaceSet<P> {
-        self.compact(&mut ());
+        self.compact();
         AnyIndexedFaceSet {
             positions: self.positions,
             faces: self.faces.into_compact().expect("compacted"),
@@ -42,8 +42,12 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         }
     }
 
+    fn from_compact(compact: IndexedFaceSet<P>) -> Self {
+        compact.into()
+    }
+
     /// O(1).
-    fn set_position(
+    fn set_position_logged(
         &mut self,
         v: VertexId,
         to: Point,
@@ -55,7 +59,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
     }
 
     /// O(1).
-    fn add_vertex(
+    fn add_vertex_logged(
         &mut self,
         at: Point,
         log: &mut impl EditLog<Self>,
@@ -67,7 +71,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
     }
 
     /// O(degree); one scan if the log records events.
-    fn add_face(
+    fn add_face_logged(
         &mut self,
         corners: &[VertexId],
         log: &mut impl EditLog<Self>,
@@ -77,7 +81,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
     }
 
     /// O(degree); one scan if the log records events.
-    fn remove_face(
+    fn remove_face_logged(
         &mut self,
         f: FaceId,
         log: &mut impl EditLog<Self>,
@@ -86,7 +90,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
     }
 
     /// One scan; two if the log records events.
-    fn remove_vertex(
+    fn remove_vertex_logged(
         &mut self,
         v: VertexId,
         log: &mut impl EditLog<Self>,
@@ -99,7 +103,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
     }
 
     /// Reads all corners; uses temporary memory of one byte per vertex.
-    fn remove_isolated_vertices(&mut self, log: &mut impl EditLog<Self>) -> usize {
+    fn remove_isolated_vertices_logged(&mut self, log: &mut impl EditLog<Self>) -> usize {
         let mut used = vec![false; self.positions.len()];
         let corners = &self.faces.corners;
         for v in corners.read_range(0..corners.len()) {
@@ -119,7 +123,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
     }
 
     /// One scan.
-    fn split_edge(
+    fn split_edge_logged(
         &mut self,
         e: Pair<VertexId>,
         at: Point,
@@ -132,7 +136,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
     }
 
     /// One scan.
-    fn bisect_edge(
+    fn bisect_edge_logged(
         &mut self,
         e: Pair<VertexId>,
         at: Point,
@@ -145,7 +149,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
     }
 
     /// O(degree).
-    fn poke_face(
+    fn poke_face_logged(
         &mut self,
         f: FaceId,
         at: Point,
@@ -158,7 +162,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
     }
 
     /// O(degree); one scan if the log records events.
-    fn split_face(
+    fn split_face_logged(
         &mut self,
         f: FaceId,
         ends: [VertexId; 2],
@@ -168,7 +172,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
     }
 
     /// One scan.
-    fn dissolve_edge(
+    fn dissolve_edge_logged(
         &mut self,
         e: Pair<VertexId>,
         log: &mut impl EditLog<Self>,
@@ -177,7 +181,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
     }
 
     /// Two scans.
-    fn flip_edge(
+    fn flip_edge_logged(
         &mut self,
         e: Pair<VertexId>,
         log: &mut impl EditLog<Self>,
@@ -186,7 +190,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
     }
 
     /// One scan; two if a third corner may have no other face.
-    fn collapse_edge(
+    fn collapse_edge_logged(
         &mut self,
         e: Pair<VertexId>,
         keep: VertexId,
@@ -202,7 +206,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
     }
 
     /// One scan.
-    fn split_vertex(
+    fn split_vertex_logged(
         &mut self,
         v: VertexId,
         left: Option<VertexId>,
@@ -217,7 +221,7 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         Ok(n)
     }
 
-    fn compact(&mut self, log: &mut impl EditLog<Self>) {
+    fn compact_logged(&mut self, log: &mut impl EditLog<Self>) {
         if !self.vertex_holes.is_empty() {
             let new = self.vertex_holes.new_rows(self.positions.len());
             let new = |v: VertexId| VertexId::new(new[v.index()]);
@@ -289,7 +293,7 @@ mod tests {
     fn a_flip_changes_one_corner_per_face() {
         let mut mesh = square();
         let [a, b, c, d] = v([0, 1, 2, 3]);
-        let turned = mesh.flip_edge(Pair::new(a, c), &mut ());
+        let turned = mesh.flip_edge(Pair::new(a, c));
         assert_eq!(turned, Ok(Pair::new(b, d)));
         // The face a b c runs c→a and keeps c; the face a c d runs a→c and keeps a.
         assert_eq!(mesh.corners(), [d, b, c, a, b, d]);
@@ -300,19 +304,16 @@ mod tests {
         let mut mesh = square();
         let [a, b, c, d] = v([0, 1, 2, 3]);
         let side = Pair::new(a, c);
-        assert_eq!(mesh.dissolve_edge(side, &mut ()), Ok(FaceId::new(0)));
+        assert_eq!(mesh.dissolve_edge(side), Ok(FaceId::new(0)));
         assert_eq!(mesh.face(FaceId::new(0)), [a, b, c, d]);
         let blank = VertexId::BLANK;
         let expected = [[blank; 3].as_slice(), &[blank; 3], &[a, b, c, d]].concat();
         assert_eq!(mesh.corners(), expected);
-        assert_eq!(
-            mesh.split_face(FaceId::new(0), [b, d], &mut ()),
-            Ok(Pair::new(b, d))
-        );
+        assert_eq!(mesh.split_face(FaceId::new(0), [b, d]), Ok(Pair::new(b, d)));
         assert_eq!(mesh.face(FaceId::new(0)), [b, c, d]);
         assert_eq!(mesh.face(FaceId::new(2)), [d, a, b]);
         let full = mesh.memory().total();
-        mesh.compact(&mut ());
+        mesh.compact();
         assert_eq!(mesh.corners(), [b, c, d, d, a, b]);
         assert!(mesh.memory().total() < full);
         let sides = mesh.memory().tables.len();
@@ -323,23 +324,22 @@ mod tests {
     fn handles_of_missing_and_blank_elements_are_refused() {
         let mut mesh = square();
         let [a, c] = v([0, 2]);
-        mesh.remove_face(FaceId::new(1), &mut ())
-            .expect("f1 exists");
+        mesh.remove_face(FaceId::new(1)).expect("f1 exists");
         for vertex in [VertexId::new(4), VertexId::BLANK] {
             let refusal = Err(EditError::NoSuchVertex { vertex });
-            assert_eq!(mesh.remove_vertex(vertex, &mut ()), refusal);
+            assert_eq!(mesh.remove_vertex(vertex), refusal);
         }
         for ends in [[a, VertexId::BLANK], [VertexId::BLANK; 2], [a, a]] {
             let edge = Pair::new(ends[0], ends[1]);
             let refusal = EditError::NoSuchEdge { edge };
             let at = Point::ONE;
-            assert_eq!(mesh.split_edge(edge, at, &mut ()), Err(refusal));
-            assert_eq!(mesh.flip_edge(edge, &mut ()), Err(refusal));
-            assert_eq!(mesh.collapse_edge(edge, ends[1], at, &mut ()), Err(refusal));
+            assert_eq!(mesh.split_edge(edge, at), Err(refusal));
+            assert_eq!(mesh.flip_edge(edge), Err(refusal));
+            assert_eq!(mesh.collapse_edge(edge, ends[1], at), Err(refusal));
         }
         for face in [1, 2].map(FaceId::new) {
             let refusal = Err(EditError::NoSuchFace { face });
-            assert_eq!(mesh.split_face(face, [a, c], &mut ()), refusal);
+            assert_eq!(mesh.split_face(face, [a, c]), refusal);
         }
     }
 
@@ -348,7 +348,7 @@ mod tests {
     fn the_position_of_a_deleted_vertex_panics() {
         let mut mesh = square();
         let [v] = v([1]);
-        mesh.remove_vertex(v, &mut ()).expect("v1 exists");
+        mesh.remove_vertex(v).expect("v1 exists");
         mesh.position(v);
     }
 
@@ -357,7 +357,7 @@ mod tests {
         let mut mesh = square();
         let [a, b, c, d] = v([0, 1, 2, 3]);
         let mut record = EditRecord::new();
-        let done = mesh.collapse_edge(Pair::new(a, b), a, Point::ZERO, &mut record);
+        let done = mesh.collapse_edge_logged(Pair::new(a, b), a, Point::ZERO, &mut record);
         assert_eq!(done, Ok(a));
         assert_eq!(record.vertices.removed, [b]);
         assert_eq!(record.faces.removed, [FaceId::new(0)]);
@@ -365,12 +365,12 @@ mod tests {
         assert_eq!(record.edges.removed, gone);
         assert!(record.edges.renamed.is_empty());
         let mut record = EditRecord::new();
-        let e = mesh.split_edge(Pair::new(c, d), Point::ONE, &mut record);
+        let e = mesh.split_edge_logged(Pair::new(c, d), Point::ONE, &mut record);
         let m = e.expect("an edge");
         assert_eq!(record.edges.renamed, [[Pair::new(c, d), Pair::new(c, m)]]);
         assert_eq!(record.edges.created, [Pair::new(m, d)]);
         let mut record = EditRecord::new();
-        mesh.compact(&mut record);
+        mesh.compact_logged(&mut record);
         let names = [[c, v([1])[0]], [d, v([2])[0]], [m, v([3])[0]]];
         assert_eq!(record.vertices.renamed, names);
     }

@@ -118,7 +118,7 @@ mod tests {
             assert_eq!(broken(faces, beyond), "I3");
             let reused = |mesh: &mut EditableIndexedFaceSet| {
                 let f = FaceId::new(1);
-                mesh.remove_face(f, &mut ()).expect("f1 exists");
+                mesh.remove_face(f).expect("f1 exists");
                 assert_eq!(mesh.validate(), Ok(()));
                 mesh.faces.corners.rows_mut()[5] = VertexId::new(0);
             };

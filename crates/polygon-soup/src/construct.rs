@@ -2,9 +2,9 @@
 
 use rustc_hash::FxHashMap;
 use sixfold_core::{
-    BuildError, Capabilities, Counts, Editing, FaceId, FaceList, InvariantError, IteratorExt,
-    Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost,
-    Representation, ScannedFaces, ScannedVertex, Untraced, VertexId, VertexMap, row,
+    BuildError, Counts, Editing, FaceId, FaceList, InvariantError, IteratorExt, Measured,
+    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
+    ScannedFaces, ScannedVertex, Untraced, VertexId, VertexMap, row,
 };
 
 use crate::mesh::AnyPolygonSoup;
@@ -12,12 +12,6 @@ use crate::vertex::SoupVertex;
 
 impl<E: Editing> Representation for AnyPolygonSoup<Untraced, E> {
     const NAME: &'static str = "polygon-soup";
-
-    const CAPABILITIES: Capabilities = Capabilities {
-        isolated_vertices: false,
-        coincident_vertices: false,
-        ..Capabilities::ALL
-    };
 
     const COSTS: [QueryCost; 9] = {
         use QueryCost::{Constant, Scan};

@@ -35,14 +35,18 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
     type Compact = PolygonSoup<P>;
 
     fn into_compact(mut self) -> PolygonSoup<P> {
-        self.compact(&mut ());
+        self.compact();
         AnyPolygonSoup {
             faces: self.faces.into_compact().expect("compacted"),
         }
     }
 
+    fn from_compact(compact: PolygonSoup<P>) -> Self {
+        compact.into()
+    }
+
     /// One scan: moves every corner at the vertex. The vertex and its edges get new handles.
-    fn set_position(
+    fn set_position_logged(
         &mut self,
         v: SoupVertex,
         to: Point,
@@ -54,7 +58,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
     }
 
     /// Always returns an error: a vertex is the position of a corner.
-    fn add_vertex(
+    fn add_vertex_logged(
         &mut self,
         _: Point,
         _: &mut impl EditLog<Self>,
@@ -66,7 +70,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
     }
 
     /// O(degree); one scan if the log records events. Corners may be at positions without a vertex.
-    fn add_face(
+    fn add_face_logged(
         &mut self,
         corners: &[SoupVertex],
         log: &mut impl EditLog<Self>,
@@ -75,7 +79,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
     }
 
     /// O(degree); one scan if the log records events.
-    fn remove_face(
+    fn remove_face_logged(
         &mut self,
         f: FaceId,
         log: &mut impl EditLog<Self>,
@@ -84,7 +88,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
     }
 
     /// One scan; two if the log records events.
-    fn remove_vertex(
+    fn remove_vertex_logged(
         &mut self,
         v: SoupVertex,
         log: &mut impl EditLog<Self>,
@@ -93,12 +97,12 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
     }
 
     /// Returns 0, because no vertex is isolated.
-    fn remove_isolated_vertices(&mut self, _: &mut impl EditLog<Self>) -> usize {
+    fn remove_isolated_vertices_logged(&mut self, _: &mut impl EditLog<Self>) -> usize {
         0
     }
 
     /// One scan.
-    fn split_edge(
+    fn split_edge_logged(
         &mut self,
         e: Pair<SoupVertex>,
         at: Point,
@@ -110,7 +114,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
     }
 
     /// One scan.
-    fn bisect_edge(
+    fn bisect_edge_logged(
         &mut self,
         e: Pair<SoupVertex>,
         at: Point,
@@ -122,7 +126,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
     }
 
     /// One scan, to check that the position is free.
-    fn poke_face(
+    fn poke_face_logged(
         &mut self,
         f: FaceId,
         at: Point,
@@ -134,7 +138,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
     }
 
     /// O(degree); one scan if the log records events.
-    fn split_face(
+    fn split_face_logged(
         &mut self,
         f: FaceId,
         ends: [SoupVertex; 2],
@@ -144,7 +148,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
     }
 
     /// One scan.
-    fn dissolve_edge(
+    fn dissolve_edge_logged(
         &mut self,
         e: Pair<SoupVertex>,
         log: &mut impl EditLog<Self>,
@@ -153,7 +157,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
     }
 
     /// Two scans.
-    fn flip_edge(
+    fn flip_edge_logged(
         &mut self,
         e: Pair<SoupVertex>,
         log: &mut impl EditLog<Self>,
@@ -163,7 +167,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
 
     /// One scan; two if a third corner may have no other face. `to` may be the place of the removed
     /// end.
-    fn collapse_edge(
+    fn collapse_edge_logged(
         &mut self,
         e: Pair<SoupVertex>,
         keep: SoupVertex,
@@ -176,7 +180,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
     }
 
     /// One scan.
-    fn split_vertex(
+    fn split_vertex_logged(
         &mut self,
         v: SoupVertex,
         left: Option<SoupVertex>,
@@ -190,7 +194,7 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
     }
 
     /// Keeps the handles of vertices and edges.
-    fn compact(&mut self, log: &mut impl EditLog<Self>) {
+    fn compact_logged(&mut self, log: &mut impl EditLog<Self>) {
         self.faces.compact(log);
     }
 }
@@ -213,7 +217,7 @@ mod tests {
     fn moving_a_vertex_changes_its_handle_and_those_of_its_edges() {
         let (mut soup, [a, b, c, d]) = square();
         let mut record = EditRecord::new();
-        let to = soup.set_position(a, Point::new(5.0, -0.0, 0.0), &mut record);
+        let to = soup.set_position_logged(a, Point::new(5.0, -0.0, 0.0), &mut record);
         let to = to.expect("the position is free");
         assert_eq!(to, SoupVertex::at(Point::new(5.0, 0.0, 0.0)));
         assert_eq!(soup.validate(), Ok(()), "−0 is stored as 0");
@@ -225,18 +229,18 @@ mod tests {
         assert_eq!(renamed, expected);
         let corners = [to, b, c, to, c, d].map(SoupVertex::position);
         assert_eq!(soup.corners(), corners);
-        let occupied = soup.set_position(to, d.position(), &mut ());
+        let occupied = soup.set_position(to, d.position());
         assert_eq!(occupied, Err(EditError::Occupied { vertex: d }));
-        let gone = soup.set_position(a, a.position(), &mut ());
+        let gone = soup.set_position(a, a.position());
         assert_eq!(gone, Err(EditError::NoSuchVertex { vertex: a }));
-        assert_eq!(soup.set_position(to, to.position(), &mut ()), Ok(to));
+        assert_eq!(soup.set_position(to, to.position()), Ok(to));
     }
 
     #[test]
     fn a_collapse_to_the_position_of_the_removed_end_uses_its_handle() {
         let (mut soup, [a, b, c, d]) = square();
         let mut record = EditRecord::new();
-        let kept = soup.collapse_edge(Pair::new(a, b), a, b.position(), &mut record);
+        let kept = soup.collapse_edge_logged(Pair::new(a, b), a, b.position(), &mut record);
         assert_eq!(kept, Ok(b));
         assert_eq!(record.vertices.removed, [b]);
         assert_eq!(record.vertices.renamed, [[a, b]]);
@@ -257,26 +261,28 @@ mod tests {
         let (mut soup, [a, b, c, d]) = square();
         let mut record = EditRecord::new();
         let peak = SoupVertex::at(Point::Z);
-        let f = soup.add_face(&[b, a, peak], &mut record).expect("a face");
+        let f = soup
+            .add_face_logged(&[b, a, peak], &mut record)
+            .expect("a face");
         assert_eq!(record.vertices.created, [peak]);
         assert_eq!(record.edges.created.len(), 2);
         record.clear();
-        soup.remove_face(f, &mut record).expect("f exists");
+        soup.remove_face_logged(f, &mut record).expect("f exists");
         assert_eq!(record.vertices.removed, [peak]);
         assert_eq!(record.edges.removed.len(), 2);
         record.clear();
-        soup.remove_vertex(b, &mut record).expect("b exists");
+        soup.remove_vertex_logged(b, &mut record).expect("b exists");
         assert_eq!(record.vertices.removed, [b]);
-        soup.remove_vertex(d, &mut record).expect("d exists");
+        soup.remove_vertex_logged(d, &mut record).expect("d exists");
         assert_eq!(soup.vertex_count(), 0);
-        let gone = soup.remove_vertex(c, &mut ());
+        let gone = soup.remove_vertex(c);
         assert_eq!(gone, Err(EditError::NoSuchVertex { vertex: c }));
     }
 
     #[test]
     fn nan_coordinates_find_no_deleted_corner() {
         let (mut soup, [a, b, _, _]) = square();
-        soup.remove_face(FaceId::new(0), &mut ()).expect("a face");
+        soup.remove_face(FaceId::new(0)).expect("a face");
         let stored = soup.corners()[0];
         let nan_points = [
             stored,
@@ -288,12 +294,12 @@ mod tests {
             assert_eq!(soup.vertex_faces(nan).next(), None);
             assert_eq!(soup.vertex_edges(nan).next(), None);
             let refusal = Err(EditError::NoSuchVertex { vertex: nan });
-            assert_eq!(soup.remove_vertex(nan, &mut ()), refusal);
+            assert_eq!(soup.remove_vertex(nan), refusal);
             let edge = Pair::new(nan, a);
             assert_eq!(soup.edge_faces(edge).next(), None);
             // These positions are valid: a face may have a corner there.
             let mut soup = soup.clone();
-            let f = soup.add_face(&[a, b, nan], &mut ()).expect("valid");
+            let f = soup.add_face(&[a, b, nan]).expect("valid");
             assert_eq!(soup.validate(), Ok(()));
             assert!(soup.vertex_faces(nan).eq([f]));
             assert!(soup.face_vertices(f).eq([a, b, nan]));
@@ -303,7 +309,7 @@ mod tests {
     #[test]
     fn compaction_keeps_only_the_corners_of_faces() {
         let (mut soup, [a, b, c, d]) = square();
-        let merged = soup.dissolve_edge(Pair::new(a, c), &mut ());
+        let merged = soup.dissolve_edge(Pair::new(a, c));
         assert_eq!(merged, Ok(FaceId::new(0)));
         let names = soup.compact_with_map();
         assert_eq!(names.faces.values(), [Some(FaceId::new(0)), None]);
@@ -315,7 +321,7 @@ mod tests {
     #[should_panic(expected = "no face f0: it was deleted")]
     fn the_vertices_of_a_deleted_face_panic() {
         let (mut soup, _) = square();
-        soup.remove_face(FaceId::new(0), &mut ()).expect("a face");
+        soup.remove_face(FaceId::new(0)).expect("a face");
         let _ = soup.face_vertices(FaceId::new(0));
     }
 }

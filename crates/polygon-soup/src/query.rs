@@ -1,6 +1,8 @@
 //! The nine relations.
 
-use sixfold_core::{Editing, FaceId, HoleSet, IteratorExt, MeshQuery, Pair, Point, Probe};
+use sixfold_core::{
+    Capabilities, Editing, FaceId, HoleSet, IteratorExt, MeshQuery, Pair, Point, Probe,
+};
 
 use crate::mesh::AnyPolygonSoup;
 use crate::vertex::SoupVertex;
@@ -9,6 +11,12 @@ impl<P: Probe, E: Editing> MeshQuery for AnyPolygonSoup<P, E> {
     type Vertex = SoupVertex;
     type Edge = Pair<SoupVertex>;
     type Face = FaceId;
+
+    const CAPABILITIES: Capabilities = Capabilities {
+        isolated_vertices: false,
+        coincident_vertices: false,
+        ..Capabilities::ALL
+    };
 
     /// Lists the vertices in the order of their first corners in the faces.
     fn vertices(&self) -> impl Iterator<Item = SoupVertex> {

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use sixfold_core::{MeshEdit, Point, Representation, row};
+use sixfold_core::{MeshEdit, Point, row};
 
 use crate::Stop;
 use crate::error::RemeshError;
@@ -114,7 +114,7 @@ pub struct Decimated {
 /// O(edges log edges), plus the structure's cost of VF, VV and `collapse_edge` for each collapse.
 /// On structures that scan, this is O(faces) each. Every collapse removes a face, so the number of
 /// collapses is limited.
-pub fn decimate<M: MeshEdit + Representation>(
+pub fn decimate<M: MeshEdit>(
     mesh: &mut M,
     decimation: &Decimation,
 ) -> Result<Decimated, RemeshError> {
@@ -127,7 +127,7 @@ pub fn decimate<M: MeshEdit + Representation>(
 /// # Errors
 ///
 /// The same as for [`decimate`].
-pub fn decimate_watched<M: MeshEdit + Representation>(
+pub fn decimate_watched<M: MeshEdit>(
     mesh: &mut M,
     decimation: &Decimation,
     watch: &mut dyn FnMut(usize) -> ControlFlow<()>,
@@ -190,7 +190,7 @@ struct Work<M: MeshEdit> {
     size: f64,
 }
 
-impl<M: MeshEdit + Representation> Work<M> {
+impl<M: MeshEdit> Work<M> {
     fn new(mesh: &M, boundary: Boundary) -> Result<Self, RemeshError> {
         let numbering = Numbering::new(mesh)?;
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -352,7 +352,7 @@ impl<M: MeshEdit + Representation> Work<M> {
         if !keeps_orientation(mesh, ends, to.as_dvec3()) || !meets_link_condition(mesh, e) {
             return None;
         }
-        let kept = mesh.collapse_edge(e, ends[0], to, &mut ()).ok()?;
+        let kept = mesh.collapse_edge(e, ends[0], to).ok()?;
         self.numbering.set_handle(a, kept);
         self.numbering.remove(b);
         // The position as the structure stores it, rounded to f32.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rustc_hash::FxHashSet;
-use sixfold_core::{MeshEdit, Representation};
+use sixfold_core::MeshEdit;
 
 use crate::Stop;
 use crate::error::RemeshError;
@@ -51,9 +51,7 @@ pub struct Flipped {
 /// # Complexity
 ///
 /// O(edges log edges), plus the structure's cost of VE, EF and `flip_edge` for each flip.
-pub fn flip_to_delaunay<M: MeshEdit + Representation>(
-    mesh: &mut M,
-) -> Result<Flipped, RemeshError> {
+pub fn flip_to_delaunay<M: MeshEdit>(mesh: &mut M) -> Result<Flipped, RemeshError> {
     let numbering = Numbering::new(mesh)?;
     let mut stack = numbering.edges(mesh);
     stack.reverse();
@@ -79,7 +77,7 @@ pub fn flip_to_delaunay<M: MeshEdit + Representation>(
         let edge = numbering
             .edge(mesh, ends)
             .filter(|_| quad.flip_keeps_orientation());
-        if edge.is_none_or(|e| mesh.flip_edge(e, &mut ()).is_err()) {
+        if edge.is_none_or(|e| mesh.flip_edge(e).is_err()) {
             report.refused += 1;
             continue;
         }
@@ -102,7 +100,7 @@ struct Quad {
 impl Quad {
     /// Returns the quad of the edge between two numbers, or `None` if the edge is missing or does
     /// not have two faces.
-    fn from_edge<M: MeshEdit + Representation>(
+    fn from_edge<M: MeshEdit>(
         mesh: &M,
         numbering: &Numbering<M>,
         [a, b]: [u32; 2],

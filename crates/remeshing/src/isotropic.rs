@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use sixfold_core::{MeshEdit, Representation};
+use sixfold_core::MeshEdit;
 
 use crate::Stop;
 use crate::error::RemeshError;
@@ -92,10 +92,7 @@ pub struct Remeshed {
 /// O(edges log edges) for each iteration, plus the structure's cost of the queries and the edit for
 /// each edge. The maximum number of faces limits the splits. Each of the other passes visits once
 /// the edges that exist when it begins.
-pub fn remesh<M: MeshEdit + Representation>(
-    mesh: &mut M,
-    remeshing: &Remeshing,
-) -> Result<Remeshed, RemeshError> {
+pub fn remesh<M: MeshEdit>(mesh: &mut M, remeshing: &Remeshing) -> Result<Remeshed, RemeshError> {
     remesh_watched(mesh, remeshing, &mut |_| ControlFlow::Continue(()))
 }
 
@@ -105,7 +102,7 @@ pub fn remesh<M: MeshEdit + Representation>(
 /// # Errors
 ///
 /// The same as for [`remesh`].
-pub fn remesh_watched<M: MeshEdit + Representation>(
+pub fn remesh_watched<M: MeshEdit>(
     mesh: &mut M,
     remeshing: &Remeshing,
     watch: &mut dyn FnMut(usize) -> ControlFlow<()>,
@@ -200,7 +197,7 @@ struct Work<M: MeshEdit> {
     short: f64,
 }
 
-impl<M: MeshEdit + Representation> Work<M> {
+impl<M: MeshEdit> Work<M> {
     fn ends(&self, mesh: &M, ends: [u32; 2]) -> [DVec3; 2] {
         ends.map(|n| at(mesh, self.numbering.handle(n)))
     }
@@ -233,7 +230,7 @@ impl<M: MeshEdit + Representation> Work<M> {
             if !halves.iter().all(|&half| half < whole && half > 0.0) {
                 continue;
             }
-            let Ok(m) = mesh.bisect_edge(e, middle, &mut ()) else {
+            let Ok(m) = mesh.bisect_edge(e, middle) else {
                 continue;
             };
             let number = self.numbering.push(m);
@@ -279,7 +276,7 @@ impl<M: MeshEdit + Representation> Work<M> {
             if !place.is_finite() {
                 continue;
             }
-            if let Ok(kept) = mesh.collapse_edge(e, self.numbering.handle(keep), place, &mut ()) {
+            if let Ok(kept) = mesh.collapse_edge(e, self.numbering.handle(keep), place) {
                 self.numbering.set_handle(keep, kept);
                 let [a, b] = ends;
                 self.numbering.remove(if keep == a { b } else { a });
@@ -354,7 +351,7 @@ impl<M: MeshEdit + Representation> Work<M> {
             let after = (va - 1).pow(2) + (vb - 1).pow(2) + (vc + 1).pow(2) + (vd + 1).pow(2);
             if after < before
                 && flip_keeps_orientation(mesh, [a, b, c, d], e)
-                && mesh.flip_edge(e, &mut ()).is_ok()
+                && mesh.flip_edge(e).is_ok()
             {
                 flips += 1;
             }

@@ -28,7 +28,38 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! Data by vertex, edge or face follows if the mesh is a [`MeshWithData`]:
+//!
+//! ```
+//! use sixfold_core::{FaceData, MeshQuery, MeshWithData, Representation, VertexData};
+//! use sixfold_half_edge::EditableHalfEdgeMesh;
+//! use sixfold_remeshing::{Remeshing, remesh};
+//!
+//! let mesh = EditableHalfEdgeMesh::from_polygons(&sixfold_shapes::icosahedron())?;
+//! // The number of the original face; a part of a face keeps it.
+//! let mut origin = FaceData::new(&mesh, 0)
+//!     .with_rule(|origin, new| new.parents.first().map_or(0, |&f| origin[f]));
+//! for (number, f) in (1..).zip(mesh.faces()) {
+//!     origin[f] = number;
+//! }
+//! // A colour that is interpolated at new vertices.
+//! let mut red = VertexData::new(&mesh, 0.0).with_rule(|red, new| {
+//!     let sum: f32 = new.parents.iter().map(|&v| red[v]).sum();
+//!     sum / new.parents.len() as f32
+//! });
+//! red[mesh.vertices().next().expect("twelve")] = 1.0;
+//!
+//! let mut mesh = MeshWithData::new(mesh, (origin, red));
+//! remesh(&mut mesh, &Remeshing::with_edge_length(0.3))?;
+//! let (origin, red) = mesh.data();
+//! assert!(mesh.face_count() > 100);
+//! assert!(mesh.faces().all(|f| (1..=20).contains(&origin[f])));
+//! assert!(mesh.vertices().all(|v| (0.0..=1.0).contains(&red[v])));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! [`MeshEdit`]: sixfold_core::MeshEdit
+//! [`MeshWithData`]: sixfold_core::MeshWithData
 //! [`MeshEdit::compact`]: sixfold_core::MeshEdit::compact
 
 mod decimation;

@@ -1,6 +1,6 @@
 //! Vertex numbers, in an order that is the same on every structure.
 
-use sixfold_core::{HandleMap, MeshEdit, Point, Representation, VertexId, VertexMap, row};
+use sixfold_core::{HandleMap, MeshEdit, Point, VertexId, VertexMap, row};
 
 use crate::error::RemeshError;
 
@@ -18,7 +18,7 @@ pub(crate) struct Numbering<M: MeshEdit> {
     numbers: VertexMap<M, u32>,
 }
 
-impl<M: MeshEdit + Representation> Numbering<M> {
+impl<M: MeshEdit> Numbering<M> {
     /// Numbers the vertices of a mesh of triangles; O(corners).
     ///
     /// # Errors
@@ -95,7 +95,7 @@ impl<M: MeshEdit + Representation> Numbering<M> {
 
     /// Moves a vertex. If a vertex is its coordinates and another one is at `to`, it stays.
     pub(crate) fn set_position(&mut self, mesh: &mut M, number: u32, to: Point) {
-        if let Ok(v) = mesh.set_position(self.handle(number), to, &mut ()) {
+        if let Ok(v) = mesh.set_position(self.handle(number), to) {
             self.set_handle(number, v);
         }
     }

@@ -1,7 +1,7 @@
 //! Rules for edits beyond those of the structures.
 
 use glam::DVec3;
-use sixfold_core::{MeshEdit, Representation};
+use sixfold_core::MeshEdit;
 
 use crate::numbering::{corners, corners_from};
 
@@ -36,7 +36,7 @@ pub(crate) fn keeps_orientation<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], t
 /// Returns whether a collapse meets the link condition (Dey et al. 1999) in a mesh of triangles.
 /// Only structures that hold non-manifold edges need this test; the others refuse the collapse
 /// themselves.
-pub(crate) fn meets_link_condition<M: MeshEdit + Representation>(mesh: &M, e: M::Edge) -> bool {
+pub(crate) fn meets_link_condition<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
     if !M::CAPABILITIES.non_manifold_edges {
         return true;
     }

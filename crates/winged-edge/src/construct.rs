@@ -1,10 +1,10 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Capabilities, Counts, EDGE_HOLES, EdgeId, Editing, FACE_HOLES, FaceId, FaceList,
-    HoleSet, InvariantError, Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh,
-    Probe, QueryCost, Representation, RowMap, Slot, Table, TwinPairs, Untraced, VERTEX_HOLES,
-    VertexId, row,
+    BuildError, Counts, EDGE_HOLES, EdgeId, Editing, FACE_HOLES, FaceId, FaceList, HoleSet,
+    InvariantError, Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe,
+    QueryCost, Representation, RowMap, Slot, Table, TwinPairs, Untraced, VERTEX_HOLES, VertexId,
+    row,
 };
 
 use crate::edge::{Edge, Run};
@@ -13,8 +13,6 @@ use crate::wings::Side;
 
 impl<E: Editing> Representation for AnyWingedEdgeMesh<Untraced, E> {
     const NAME: &'static str = "winged-edge";
-
-    const CAPABILITIES: Capabilities = Capabilities::ORIENTED_MANIFOLDS;
 
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
 

@@ -31,7 +31,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
     type Compact = WingedEdgeMesh<P>;
 
     fn into_compact(mut self) -> WingedEdgeMesh<P> {
-        self.compact(&mut ());
+        self.compact();
         AnyWingedEdgeMesh {
             positions: self.positions,
             spokes: self.spokes,
@@ -43,9 +43,13 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
         }
     }
 
+    fn from_compact(compact: WingedEdgeMesh<P>) -> Self {
+        compact.into()
+    }
+
     /// O(1).
     #[inline]
-    fn set_position(
+    fn set_position_logged(
         &mut self,
         v: VertexId,
         to: Point,
@@ -58,7 +62,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
 
     /// O(1) amortised.
     #[inline]
-    fn add_vertex(
+    fn add_vertex_logged(
         &mut self,
         at: Point,
         log: &mut impl EditLog<Self>,
@@ -68,7 +72,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
     }
 
     /// O(corners), plus the valence of each corner that a new edge leaves.
-    fn add_face(
+    fn add_face_logged(
         &mut self,
         corners: &[VertexId],
         log: &mut impl EditLog<Self>,
@@ -77,7 +81,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
     }
 
     /// O(degree).
-    fn remove_face(
+    fn remove_face_logged(
         &mut self,
         f: FaceId,
         log: &mut impl EditLog<Self>,
@@ -86,7 +90,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
     }
 
     /// O(corners of its faces), times their logarithm if some faces are not triangles.
-    fn remove_vertex(
+    fn remove_vertex_logged(
         &mut self,
         v: VertexId,
         log: &mut impl EditLog<Self>,
@@ -95,12 +99,12 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
     }
 
     /// O(vertices).
-    fn remove_isolated_vertices(&mut self, log: &mut impl EditLog<Self>) -> usize {
+    fn remove_isolated_vertices_logged(&mut self, log: &mut impl EditLog<Self>) -> usize {
         self.remove_isolated(log)
     }
 
     /// O(1). The old edge keeps its start; the new edge continues to the old end.
-    fn split_edge(
+    fn split_edge_logged(
         &mut self,
         e: EdgeId,
         at: Point,
@@ -112,7 +116,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
     }
 
     /// O(1).
-    fn bisect_edge(
+    fn bisect_edge_logged(
         &mut self,
         e: EdgeId,
         at: Point,
@@ -123,7 +127,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
 
     /// O(degree).
     #[inline]
-    fn poke_face(
+    fn poke_face_logged(
         &mut self,
         f: FaceId,
         at: Point,
@@ -133,7 +137,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
     }
 
     /// O(degree), plus the valence of one end. The smaller part becomes the new face.
-    fn split_face(
+    fn split_face_logged(
         &mut self,
         f: FaceId,
         ends: [VertexId; 2],
@@ -143,7 +147,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
     }
 
     /// O(degree) of both faces. The larger face stays.
-    fn dissolve_edge(
+    fn dissolve_edge_logged(
         &mut self,
         e: EdgeId,
         log: &mut impl EditLog<Self>,
@@ -153,7 +157,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
 
     /// O(smaller valence) of the third corners.
     #[inline]
-    fn flip_edge(
+    fn flip_edge_logged(
         &mut self,
         e: EdgeId,
         _: &mut impl EditLog<Self>,
@@ -163,7 +167,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
 
     /// O(valence) of both ends; O(1) if the removed end has three triangles.
     #[inline]
-    fn collapse_edge(
+    fn collapse_edge_logged(
         &mut self,
         e: EdgeId,
         keep: VertexId,
@@ -174,7 +178,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
     }
 
     /// O(valence).
-    fn split_vertex(
+    fn split_vertex_logged(
         &mut self,
         v: VertexId,
         left: Option<VertexId>,
@@ -186,7 +190,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
     }
 
     /// O(rows).
-    fn compact(&mut self, log: &mut impl EditLog<Self>) {
+    fn compact_logged(&mut self, log: &mut impl EditLog<Self>) {
         self.compact_tables(log);
     }
 }

@@ -1,7 +1,8 @@
 //! The nine relations.
 
 use sixfold_core::{
-    DistinctWalk, EdgeId, Editing, FaceId, HoleSet, MeshQuery, Point, Probe, Slot, VertexId,
+    Capabilities, DistinctWalk, EdgeId, Editing, FaceId, HoleSet, MeshQuery, Point, Probe, Slot,
+    VertexId,
 };
 
 use crate::circulate::EdgeEdges;
@@ -11,6 +12,8 @@ impl<P: Probe, E: Editing> MeshQuery for AnyWingedEdgeMesh<P, E> {
     type Vertex = VertexId;
     type Edge = EdgeId;
     type Face = FaceId;
+
+    const CAPABILITIES: Capabilities = Capabilities::ORIENTED_MANIFOLDS;
 
     #[inline]
     fn vertices(&self) -> impl Iterator<Item = VertexId> {

@@ -437,9 +437,9 @@ mod tests {
         let mut edited = sound();
         let gone = FaceId::new(1);
         let side = between(&edited, 0, 3);
-        edited.remove_face(gone, &mut ()).expect("a legal removal");
+        edited.remove_face(gone).expect("a legal removal");
         edited
-            .remove_vertex(VertexId::new(3), &mut ())
+            .remove_vertex(VertexId::new(3))
             .expect("it is isolated");
         assert_eq!(edited.validate(), Ok(()));
         let broken = |break_it: &dyn Fn(&mut EditableWingedEdgeMesh)| {

@@ -188,7 +188,7 @@ fn split_collapse<M: MeshEdit>(mesh: &mut M) -> Edits {
         edits.elements += 1;
         let mut sum = sixfold::Point::ZERO;
         mesh.face_vertices(f).for_each(|v| sum += mesh.position(v));
-        match mesh.poke_face(f, sum * (1.0 / 3.0), &mut ()) {
+        match mesh.poke_face(f, sum * (1.0 / 3.0)) {
             Ok(middle) => middles.push(middle),
             Err(_) => edits.refused += 1,
         }
@@ -200,12 +200,12 @@ fn split_collapse<M: MeshEdit>(mesh: &mut M) -> Edits {
         let [a, b] = mesh.edge_vertices(spoke);
         let corner = if a == middle { b } else { a };
         let at = mesh.position(corner);
-        match mesh.collapse_edge(spoke, corner, at, &mut ()) {
+        match mesh.collapse_edge(spoke, corner, at) {
             Ok(_) => edits.done += 1,
             Err(_) => edits.refused += 1,
         }
     }
-    mesh.compact(&mut ());
+    mesh.compact();
     edits
 }
 
@@ -216,7 +216,7 @@ fn flip_all<M: MeshEdit>(mesh: &mut M, tracked: &mut TrackedEdges<M>) -> Edits {
         for i in 0..tracked.edges.len() {
             edits.elements += 1;
             tracked.flipping = i;
-            match mesh.flip_edge(tracked.edges[i], tracked) {
+            match mesh.flip_edge_logged(tracked.edges[i], tracked) {
                 Ok(flipped) => {
                     tracked.edges[i] = flipped;
                     tracked.apply_renames();

@@ -97,11 +97,11 @@ pub(crate) fn prepare_place<M: MeshEdit>(
     place: &mut EditPlace<M>,
 ) -> Result<(), Refusal<M>> {
     match edit {
-        Edit::AddFace | Edit::Compact => mesh.remove_face(place.face, &mut ()),
+        Edit::AddFace | Edit::Compact => mesh.remove_face(place.face),
         Edit::SplitFace => {
             let edge = place.edge.take();
             let edge = edge.expect("`EditPlace::new` looked up the edge");
-            place.face = mesh.dissolve_edge(edge, &mut ())?;
+            place.face = mesh.dissolve_edge(edge)?;
             Ok(())
         }
         _ => Ok(()),
@@ -117,22 +117,21 @@ pub(crate) fn apply_edit<M: MeshEdit>(
 ) -> Result<(), Refusal<M>> {
     let [a, b, c] = place.corners;
     let edge = || place.edge.expect("`EditPlace::new` looked up the edge");
-    let log = &mut ();
     match edit {
-        Edit::SetPosition => mesh.set_position(a, place.position, log).map(drop),
-        Edit::AddVertex => mesh.add_vertex(place.position, log).map(drop),
-        Edit::AddFace => mesh.add_face(&[a, b, c], log).map(drop),
-        Edit::RemoveFace => mesh.remove_face(place.face, log),
-        Edit::RemoveVertex => mesh.remove_vertex(a, log),
-        Edit::SplitEdge => mesh.split_edge(edge(), place.position, log).map(drop),
-        Edit::BisectEdge => mesh.bisect_edge(edge(), place.position, log).map(drop),
-        Edit::PokeFace => mesh.poke_face(place.face, place.position, log).map(drop),
-        Edit::SplitFace => mesh.split_face(place.face, [a, b], log).map(drop),
-        Edit::DissolveEdge => mesh.dissolve_edge(edge(), log).map(drop),
-        Edit::FlipEdge => mesh.flip_edge(edge(), log).map(drop),
-        Edit::CollapseEdge => mesh.collapse_edge(edge(), a, place.position, log).map(drop),
+        Edit::SetPosition => mesh.set_position(a, place.position).map(drop),
+        Edit::AddVertex => mesh.add_vertex(place.position).map(drop),
+        Edit::AddFace => mesh.add_face(&[a, b, c]).map(drop),
+        Edit::RemoveFace => mesh.remove_face(place.face),
+        Edit::RemoveVertex => mesh.remove_vertex(a),
+        Edit::SplitEdge => mesh.split_edge(edge(), place.position).map(drop),
+        Edit::BisectEdge => mesh.bisect_edge(edge(), place.position).map(drop),
+        Edit::PokeFace => mesh.poke_face(place.face, place.position).map(drop),
+        Edit::SplitFace => mesh.split_face(place.face, [a, b]).map(drop),
+        Edit::DissolveEdge => mesh.dissolve_edge(edge()).map(drop),
+        Edit::FlipEdge => mesh.flip_edge(edge()).map(drop),
+        Edit::CollapseEdge => mesh.collapse_edge(edge(), a, place.position).map(drop),
         Edit::SplitVertex => mesh
-            .split_vertex(a, Some(b), place.far_neighbour, place.position, log)
+            .split_vertex(a, Some(b), place.far_neighbour, place.position)
             .map(drop),
         // Passes over the whole mesh, and edits added later.
         _ => Ok(()),

@@ -120,11 +120,11 @@ fn apply_at_all_places<M: MeshEdit + Representation>(
     let mut edits = Edits::default();
     match edit {
         Edit::Compact => {
-            mesh.compact(&mut ());
+            mesh.compact();
             edits.done = 1;
         }
         Edit::RemoveIsolatedVertices => {
-            mesh.remove_isolated_vertices(&mut ());
+            mesh.remove_isolated_vertices();
             edits.done = 1;
         }
         edit => {

@@ -10,6 +10,7 @@ use sixfold_core::{
 };
 
 use super::action::Action;
+use super::apply::apply_action;
 use super::model::{Model, Rules};
 use super::relations::check_relations;
 use crate::boundary::check_boundary;
@@ -85,7 +86,13 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         let before = format!("{:?}", self.mesh);
         let handles = Handles::new(&self.mesh);
         let mut record = EditRecord::new();
-        let outcome = self.apply_to_mesh(action, &mut record);
+        let Self {
+            mesh,
+            vertices,
+            faces,
+            ..
+        } = self;
+        let outcome = apply_action(mesh, name, vertices, faces, action, &mut record);
         let (after, made) = match (expected, outcome) {
             (Some(after), Ok(made)) => (after, made),
             (None, Err(_)) => {
@@ -94,10 +101,10 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
                     unchanged,
                     "{name}: refused {action:?} but changed its tables"
                 );
-                let silent = record.vertices.is_empty()
-                    && record.edges.is_empty()
-                    && record.faces.is_empty();
-                assert!(silent, "{name}: refused {action:?} but recorded {record:?}");
+                assert!(
+                    record.is_empty(),
+                    "{name}: refused {action:?} but recorded {record:?}"
+                );
                 return false;
             }
             (Some(_), Err(refusal)) => {
@@ -118,6 +125,46 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
             assert_eq!(change, step, "{name}: change of χ by {action:?}");
         }
         true
+    }
+
+    /// Applies `action` to `mesh`, which must have the same handles as the mesh under test, and
+    /// reports the changes to `log`. Returns the vertex that was made or moved.
+    ///
+    /// # Errors
+    ///
+    /// Returns the error of an action that `mesh` refuses.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the result of the edit is not an element of `mesh`.
+    pub fn apply_to<N>(
+        &self,
+        mesh: &mut N,
+        action: &Action,
+        log: &mut EditRecord<N>,
+    ) -> Result<Option<N::Vertex>, Refusal<N>>
+    where
+        N: MeshEdit<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face>,
+    {
+        apply_action(mesh, M::NAME, &self.vertices, &self.faces, action, log)
+    }
+
+    /// Returns the handle of vertex `v` of the model.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the model has no such vertex.
+    pub fn vertex(&self, v: usize) -> M::Vertex {
+        self.vertices[&v]
+    }
+
+    /// Returns the handle of face `f` of the model.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the model has no such face.
+    pub fn face(&self, f: usize) -> M::Face {
+        self.faces[&f]
     }
 
     /// Returns whether both hold the same mesh: equal positions and equal faces.
@@ -155,17 +202,17 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
                 Removed::Vertex(v) => (
                     format!("{v:?}"),
                     catch_panic(|| self.mesh.vertex_faces(v).count()),
-                    self.mesh.clone().remove_vertex(v, &mut ()).is_ok(),
+                    self.mesh.clone().remove_vertex(v).is_ok(),
                 ),
                 Removed::Edge(e) => (
                     format!("{e:?}"),
                     catch_panic(|| self.mesh.edge_faces(e).count()),
-                    self.mesh.clone().flip_edge(e, &mut ()).is_ok(),
+                    self.mesh.clone().flip_edge(e).is_ok(),
                 ),
                 Removed::Face(f) => (
                     format!("{f:?}"),
                     catch_panic(|| self.mesh.face_vertices(f).count()),
-                    self.mesh.clone().remove_face(f, &mut ()).is_ok(),
+                    self.mesh.clone().remove_face(f).is_ok(),
                 ),
             };
             if self.is_reused(removed) {
@@ -240,7 +287,7 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
             "{}: holes",
             M::NAME
         );
-        let mesh: M = compact.into();
+        let mesh = M::from_compact(compact);
         if let Err(broken) = mesh.validate() {
             panic!("{}: made compact and editable again: {broken}", M::NAME);
         }
@@ -283,104 +330,6 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
                 );
             }
         }
-    }
-
-    fn vertex(&self, v: usize) -> M::Vertex {
-        self.vertices[&v]
-    }
-
-    fn edge(&self, [a, b]: [usize; 2]) -> M::Edge {
-        let [a, b] = [a, b].map(|v| self.vertex(v));
-        let edge = self.mesh.edge_between(a, b);
-        edge.unwrap_or_else(|| panic!("{}: no edge between {a:?} and {b:?}", M::NAME))
-    }
-
-    /// Applies `action` to the mesh, and returns the vertex that it made or moved.
-    fn apply_to_mesh(
-        &mut self,
-        action: &Action,
-        log: &mut EditRecord<M>,
-    ) -> Result<Option<M::Vertex>, Refusal<M>> {
-        match action {
-            &Action::SetPosition { v, to } => {
-                let v = self.vertex(v);
-                return self.mesh.set_position(v, to, log).map(Some);
-            }
-            &Action::AddVertex { at } => return self.mesh.add_vertex(at, log).map(Some),
-            Action::AddFace { corners } => {
-                let corners: Vec<_> = corners.iter().map(|&v| self.vertex(v)).collect();
-                self.mesh.add_face(&corners, log)?;
-            }
-            Action::RemoveFace { f } => self.mesh.remove_face(self.faces[f], log)?,
-            &Action::RemoveVertex { v } => {
-                let v = self.vertex(v);
-                self.mesh.remove_vertex(v, log)?;
-            }
-            Action::RemoveIsolatedVertices => {
-                let isolated = self.mesh.vertices();
-                let isolated = isolated.filter(|&v| self.mesh.vertex_faces(v).next().is_none());
-                let isolated = isolated.count();
-                assert_eq!(
-                    self.mesh.remove_isolated_vertices(log),
-                    isolated,
-                    "{}",
-                    M::NAME
-                );
-            }
-            &Action::SplitEdge { ends, at } => {
-                let e = self.edge(ends);
-                return self.mesh.split_edge(e, at, log).map(Some);
-            }
-            &Action::BisectEdge { ends, at } => {
-                let e = self.edge(ends);
-                return self.mesh.bisect_edge(e, at, log).map(Some);
-            }
-            &Action::PokeFace { f, at } => {
-                return self.mesh.poke_face(self.faces[&f], at, log).map(Some);
-            }
-            &Action::SplitFace { f, ends } => {
-                let ends = ends.map(|v| self.vertex(v));
-                let e = self.mesh.split_face(self.faces[&f], ends, log)?;
-                assert_eq!(
-                    self.mesh.edge_between(ends[0], ends[1]),
-                    Some(e),
-                    "{}",
-                    M::NAME
-                );
-            }
-            &Action::DissolveEdge { ends } => {
-                let e = self.edge(ends);
-                let faces: Vec<_> = self.mesh.edge_faces(e).collect();
-                let f = self.mesh.dissolve_edge(e, log)?;
-                assert!(
-                    faces.contains(&f),
-                    "{}: {f:?} is not a face of {e:?}",
-                    M::NAME
-                );
-            }
-            &Action::FlipEdge { ends } => {
-                let e = self.edge(ends);
-                let e = self.mesh.flip_edge(e, log)?;
-                let ends = self.mesh.edge_vertices(e);
-                assert_eq!(
-                    self.mesh.edge_between(ends[0], ends[1]),
-                    Some(e),
-                    "{}",
-                    M::NAME
-                );
-            }
-            &Action::CollapseEdge { ends, to } => {
-                let (e, keep) = (self.edge(ends), self.vertex(ends[0]));
-                return self.mesh.collapse_edge(e, keep, to, log).map(Some);
-            }
-            &Action::SplitVertex { v, left, right, at } => {
-                let [left, right] = [left, right].map(|side| side.map(|v| self.vertex(v)));
-                let v = self.vertex(v);
-                return self.mesh.split_vertex(v, left, right, at, log).map(Some);
-            }
-            Action::Compact => self.mesh.compact(log),
-        }
-        Ok(None)
     }
 
     /// Updates the map from the elements of the model to the handles after an edit.

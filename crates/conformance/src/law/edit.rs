@@ -1,22 +1,14 @@
 //! Laws about edits, which are compared with the model of [`edit`](crate::edit).
 
 use std::cell::{Cell, RefCell};
-use std::fmt::{Debug, Write};
+use std::fmt::Debug;
 
-use proptest::prelude::*;
-use proptest::test_runner::{Config, TestCaseError, TestError, TestRunner};
 use sixfold_core::{
     Edit, Measured, MeshEdit, Point, PolygonMesh, QueryCost, Representation, Traced,
 };
 
-use crate::catch_panic::catch_panic;
-use crate::edit::{Action, ModelTest, Step, script};
-use crate::print::one_line;
-use crate::strategy::{any_mesh, manifold_mesh};
-
-/// Number of scripts if `PROPTEST_CASES` is not set, and maximum number of steps of a script.
-const SCRIPTS: u32 = 64;
-const MAX_STEPS: usize = 160;
+use super::scripts::on_random_scripts;
+use crate::edit::{Action, ModelTest, Step};
 
 /// At least one step of each edit in this number must be accepted, because scripts of refused steps
 /// do not test much.
@@ -28,61 +20,11 @@ const MAX_STEPS_PER_ACCEPTED: usize = 12;
 ///
 /// `PROPTEST_CASES` sets the number of scripts.
 pub fn edits<M: Representation + MeshEdit + Debug>() {
-    let mut config = Config {
-        failure_persistence: None,
-        max_shrink_iters: 4000,
-        ..Config::default()
-    };
-    if std::env::var_os("PROPTEST_CASES").is_none() {
-        config.cases = SCRIPTS;
-    }
     let counts_by_edit = Cell::new([[0_usize; 2]; Edit::ALL.len()]);
-    let cases = (start_mesh::<M>(), script(&Edit::ALL, MAX_STEPS));
-    let cases = cases.prop_map(|(start, steps)| Case { start, steps });
-    let outcome = TestRunner::new(config).run(&cases, |Case { start, steps }| {
-        let executed = RefCell::new(Vec::new());
-        catch_panic(|| run_script::<M>(&start, &steps, &counts_by_edit, &executed))
-            .map_err(|fault| TestCaseError::fail(fault.to_string()))
+    on_random_scripts::<M>("differs from the model", |start, steps, executed| {
+        run_script::<M>(start, steps, &counts_by_edit, executed);
     });
-    match outcome {
-        Ok(()) => check_acceptance::<M>(&counts_by_edit.get()),
-        Err(TestError::Fail(_, Case { start, steps })) => {
-            let executed = RefCell::new(Vec::new());
-            let fault =
-                catch_panic(|| run_script::<M>(&start, &steps, &counts_by_edit, &executed)).err();
-            let mut script = String::new();
-            for (action, accepted) in executed.take() {
-                let _ = write!(
-                    script,
-                    "\n  {}{action:?}",
-                    if accepted { "" } else { "(refused) " }
-                );
-            }
-            let fault = fault.map_or_else(String::new, |fault| fault.to_string());
-            panic!(
-                "{} differs from the model on {}{script}\n{fault}",
-                M::NAME,
-                one_line(&start)
-            )
-        }
-        Err(TestError::Abort(reason)) => panic!("{}: the test was aborted: {reason}", M::NAME),
-    }
-}
-
-/// Generates the meshes at which scripts start: meshes that `M` can hold, with few exceptions.
-pub(super) fn start_mesh<M: Representation>() -> impl Strategy<Value = PolygonMesh> {
-    let start = if M::CAPABILITIES.non_manifold_edges {
-        prop_oneof![manifold_mesh(), any_mesh()].boxed()
-    } else {
-        manifold_mesh().boxed()
-    };
-    start.prop_map(|polygons| {
-        if M::CAPABILITIES.polygons {
-            polygons
-        } else {
-            polygons.fan_triangulated().expect("small")
-        }
-    })
+    check_acceptance::<M>(&counts_by_edit.get());
 }
 
 fn run_script<M: Representation + MeshEdit + Debug>(
@@ -335,7 +277,7 @@ where
     // The first hole allocates one bit for every row. Make a hole now, so that this is not counted.
     let last = mesh.faces().last().expect("a face");
     let n = mesh
-        .poke_face(last, Point::splat(500.0), &mut ())
+        .poke_face(last, Point::splat(500.0))
         .expect("poke_face is always legal");
     let spoke = mesh
         .vertex_edges(n)
@@ -344,7 +286,7 @@ where
     let [a, b] = mesh.edge_vertices(spoke);
     let keep = if a == n { b } else { a };
     let at = mesh.position(keep);
-    let collapsed = mesh.collapse_edge(spoke, keep, at, &mut ());
+    let collapsed = mesh.collapse_edge(spoke, keep, at);
     collapsed.expect("an inner vertex of valence three can be collapsed");
     let at = Point::new(300.0, 301.0, 302.0);
     let mut max = 0;
@@ -357,10 +299,9 @@ where
             .expect("a face");
         let [a, b, c] = triangle_corners(mesh.face_vertices(f));
         let e = mesh.edge_between(a, b).expect("a side");
-        let quad = (edit == Edit::SplitFace)
-            .then(|| mesh.dissolve_edge(e, &mut ()).expect("two triangles"));
+        let quad = (edit == Edit::SplitFace).then(|| mesh.dissolve_edge(e).expect("two triangles"));
         if edit == Edit::AddFace {
-            mesh.remove_face(f, &mut ()).expect("an inner face");
+            mesh.remove_face(f).expect("an inner face");
         }
         let neighbours: Vec<M::Vertex> = mesh.vertex_vertices(a).collect();
         let ends = quad.map(|quad| {
@@ -370,30 +311,29 @@ where
         let probe = Traced::default();
         let mut probed = mesh.probed(probe.clone());
         probe.take();
-        let log = &mut ();
         let refusal = match edit {
-            Edit::SetPosition => probed.set_position(a, at, log).err(),
-            Edit::AddVertex => probed.add_vertex(at, log).err(),
-            Edit::AddFace => probed.add_face(&[a, b, c], log).err(),
-            Edit::RemoveFace => probed.remove_face(f, log).err(),
-            Edit::RemoveVertex => probed.remove_vertex(a, log).err(),
+            Edit::SetPosition => probed.set_position(a, at).err(),
+            Edit::AddVertex => probed.add_vertex(at).err(),
+            Edit::AddFace => probed.add_face(&[a, b, c]).err(),
+            Edit::RemoveFace => probed.remove_face(f).err(),
+            Edit::RemoveVertex => probed.remove_vertex(a).err(),
             Edit::RemoveIsolatedVertices => {
-                probed.remove_isolated_vertices(log);
+                probed.remove_isolated_vertices();
                 None
             }
-            Edit::SplitEdge => probed.split_edge(e, at, log).err(),
-            Edit::BisectEdge => probed.bisect_edge(e, at, log).err(),
-            Edit::PokeFace => probed.poke_face(f, at, log).err(),
+            Edit::SplitEdge => probed.split_edge(e, at).err(),
+            Edit::BisectEdge => probed.bisect_edge(e, at).err(),
+            Edit::PokeFace => probed.poke_face(f, at).err(),
             Edit::SplitFace => {
                 let quad = quad.expect("made above");
-                probed.split_face(quad, ends.expect("a quad"), log).err()
+                probed.split_face(quad, ends.expect("a quad")).err()
             }
-            Edit::DissolveEdge => probed.dissolve_edge(e, log).err(),
-            Edit::FlipEdge => probed.flip_edge(e, log).err(),
-            Edit::CollapseEdge => probed.collapse_edge(e, a, at, log).err(),
+            Edit::DissolveEdge => probed.dissolve_edge(e).err(),
+            Edit::FlipEdge => probed.flip_edge(e).err(),
+            Edit::CollapseEdge => probed.collapse_edge(e, a, at).err(),
             Edit::SplitVertex => {
                 let other = neighbours.iter().copied().find(|&v| v != b);
-                probed.split_vertex(a, Some(b), other, at, log).err()
+                probed.split_vertex(a, Some(b), other, at).err()
             }
             Edit::Compact => None,
         };
@@ -408,21 +348,4 @@ where
 fn triangle_corners<V: Copy>(corners: impl Iterator<Item = V>) -> [V; 3] {
     let corners: Vec<V> = corners.collect();
     <[V; 3]>::try_from(corners.as_slice()).expect("a triangle")
-}
-
-/// A start mesh and a script, with a short debug output.
-struct Case {
-    start: PolygonMesh,
-    steps: Vec<Step>,
-}
-
-impl Debug for Case {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(
-            f,
-            "{} and {} steps",
-            one_line(&self.start),
-            self.steps.len()
-        )
-    }
 }

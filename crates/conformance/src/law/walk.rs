@@ -3,14 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
 
-use proptest::test_runner::{Config, TestCaseError, TestRunner};
-use sixfold_core::{Edit, MeshEdit, OrientedWalk, PolygonMesh, Representation};
+use sixfold_core::{MeshEdit, OrientedWalk, PolygonMesh, Representation};
 
-use super::edit::start_mesh;
 use super::elements::distant_strip;
 use super::relations::is_rotation;
+use super::scripts::{Executed, on_random_scripts};
 use crate::catch_panic::catch_panic;
-use crate::edit::{ModelTest, Step, script};
+use crate::edit::{ModelTest, Step};
 use crate::subject::Subject;
 
 /// Every side has the face, the edge, the ends and the neighbours that follow from the lists of
@@ -33,42 +32,26 @@ pub fn oriented_walk<M: Representation + OrientedWalk>(polygons: &PolygonMesh) {
     expected.check_missing(missing.expect("the larger mesh has sides"));
 }
 
-/// Number of scripts if `PROPTEST_CASES` is not set, and maximum number of steps of a script.
-const SCRIPTS: u32 = 24;
-const MAX_STEPS: usize = 48;
-
 /// Random scripts of edits: after every few steps, and after the last one, the walk agrees with the
 /// corners of the faces, and the sides of a face that is removed then do not exist any more.
 ///
 /// `PROPTEST_CASES` sets the number of scripts.
 pub fn oriented_walk_after_edits<M: Representation + MeshEdit + OrientedWalk + Debug>() {
-    let mut config = Config {
-        failure_persistence: None,
-        ..Config::default()
-    };
-    if std::env::var_os("PROPTEST_CASES").is_none() {
-        config.cases = SCRIPTS;
-    }
-    let cases = (start_mesh::<M>(), script(&Edit::ALL, MAX_STEPS));
-    let outcome = TestRunner::new(config).run(&cases, |(start, steps)| {
-        catch_panic(|| run_script::<M>(&start, &steps))
-            .map_err(|fault| TestCaseError::fail(fault.to_string()))
-    });
-    if let Err(fault) = outcome {
-        panic!("{}: oriented_walk_after_edits: {fault}", M::NAME);
-    }
+    on_random_scripts::<M>("walks wrongly after edits", run_script::<M>);
 }
 
 fn run_script<M: Representation + MeshEdit + OrientedWalk + Debug>(
     start: &PolygonMesh,
     steps: &[Step],
+    executed: &Executed,
 ) {
     let Some(mut test) = ModelTest::<M>::from_polygons(start) else {
         return;
     };
     for (number, step) in steps.iter().enumerate() {
         if let Some(action) = step.action(&test.model, number) {
-            test.apply(&action);
+            let accepted = test.apply(&action);
+            executed.borrow_mut().push((action, accepted));
         }
         if number % 8 == 7 {
             check_edited(&test.mesh);
@@ -83,7 +66,7 @@ fn check_edited<M: Representation + MeshEdit + OrientedWalk>(mesh: &M) {
     let mut without = mesh.clone();
     let Some(f) = mesh
         .faces()
-        .find(|&f| without.remove_face(f, &mut ()).is_ok())
+        .find(|&f| without.remove_face(f).is_ok())
     else {
         return;
     };

@@ -48,6 +48,8 @@ impl<P: Probe> MeshQuery for FaceAndEdgeLists<P> {
     type Edge = EdgeId;
     type Face = FaceId;
 
+    const CAPABILITIES: Capabilities = Capabilities::ALL;
+
     fn vertices(&self) -> impl Iterator<Item = VertexId> {
         (0..row(self.positions.len())).map(VertexId::new)
     }
@@ -136,7 +138,6 @@ impl<P: Probe> MeshQuery for FaceAndEdgeLists<P> {
 
 impl Representation for FaceAndEdgeLists {
     const NAME: &'static str = "face-and-edge-lists";
-    const CAPABILITIES: Capabilities = Capabilities::ALL;
     const COSTS: [QueryCost; 9] = {
         use QueryCost::{Constant, Scan};
         [Scan, Scan, Scan, Constant, Scan, Scan, Constant, Scan, Scan]

@@ -136,6 +136,11 @@ impl<F: Flaw, P: Probe> MeshQuery for Flawed<F, P> {
     type Edge = EdgeId;
     type Face = FaceId;
 
+    const CAPABILITIES: Capabilities = match F::KIND {
+        Kind::AcceptsEverything | Kind::WrongError => Capabilities::ORIENTED_MANIFOLDS,
+        _ => Capabilities::ALL,
+    };
+
     fn vertices(&self) -> impl Iterator<Item = VertexId> {
         self.inner.vertices()
     }
@@ -399,11 +404,6 @@ impl<F: Flaw, P: Probe> MeshQuery for Flawed<F, P> {
 
 impl<F: Flaw> Representation for Flawed<F> {
     const NAME: &'static str = "flawed";
-
-    const CAPABILITIES: Capabilities = match F::KIND {
-        Kind::AcceptsEverything | Kind::WrongError => Capabilities::ORIENTED_MANIFOLDS,
-        _ => Capabilities::ALL,
-    };
 
     const COSTS: [QueryCost; 9] = match F::KIND {
         Kind::AllConstant => [QueryCost::Constant; 9],

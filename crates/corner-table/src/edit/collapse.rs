@@ -236,7 +236,7 @@ mod tests {
             for keep in [hub, rim] {
                 let mut mesh = double_wheel(n);
                 let e = mesh.edge_between(hub, rim).expect("a spoke");
-                let done = mesh.collapse_edge(e, keep, Point::ONE, &mut ());
+                let done = mesh.collapse_edge(e, keep, Point::ONE);
                 assert_eq!(done, Ok(keep), "{n}");
                 assert_eq!(mesh.validate(), Ok(()), "{n}");
                 assert_eq!(mesh.face_count(), 2 * n as usize - 2);
@@ -244,7 +244,7 @@ mod tests {
                 let far = VertexId::new(n + 1);
                 let e = mesh.edge_between(keep, far).expect("adjacent hubs");
                 let before = format!("{mesh:?}");
-                let refused = mesh.collapse_edge(e, keep, Point::ONE, &mut ());
+                let refused = mesh.collapse_edge(e, keep, Point::ONE);
                 let refused = refused.expect_err("a rim vertex is adjacent to both");
                 let named = matches!(refused, EditError::CommonNeighbour { .. });
                 assert!(named || n == 4, "{n}: {refused}");

@@ -93,7 +93,7 @@ mod tests {
     fn compaction_releases_the_memory_of_holes() {
         let mut mesh = table(4, &[[0, 1, 2], [0, 2, 3]]);
         for _ in 0..200 {
-            let m = mesh.poke_face(FaceId::new(1), Point::ONE, &mut ());
+            let m = mesh.poke_face(FaceId::new(1), Point::ONE);
             m.expect("the face exists");
         }
         let grown = mesh.memory().total();
@@ -101,7 +101,7 @@ mod tests {
             let e = mesh.vertex_edges(m).next().expect("three edges");
             let [a, b] = mesh.edge_vertices(e);
             let keep = if a == m { b } else { a };
-            let undone = mesh.collapse_edge(e, keep, Point::ONE, &mut ());
+            let undone = mesh.collapse_edge(e, keep, Point::ONE);
             undone.expect("an inner vertex of valence three");
         }
         let names = mesh.compact_with_map();
@@ -110,7 +110,7 @@ mod tests {
         assert_eq!(names.vertices[VertexId::new(200)], None);
         assert_eq!(names.faces[FaceId::new(0)], Some(FaceId::new(0)));
         let again = format!("{mesh:?}");
-        mesh.compact(&mut ());
+        mesh.compact();
         assert_eq!(format!("{mesh:?}"), again);
     }
 }

@@ -120,7 +120,7 @@ mod tests {
         // C, A, B, D are v0, v1, v2, v3; a triangle lies across A–D, and one across B–C.
         let mut mesh = table(6, &[[0, 1, 2], [3, 2, 1], [3, 1, 4], [0, 2, 5]]);
         let mut record = EditRecord::new();
-        let e = mesh.flip_edge(EdgeCorner::new(0), &mut record);
+        let e = mesh.flip_edge_logged(EdgeCorner::new(0), &mut record);
         assert_eq!(e, Ok(EdgeCorner::new(1)));
         assert_eq!(mesh.validate(), Ok(()));
         let vertices: Vec<u32> = mesh.corner_vertices().iter().map(|v| v.row()).collect();
@@ -145,12 +145,12 @@ mod tests {
     #[test]
     fn a_flip_to_an_existing_edge_is_refused() {
         let mut mesh = table(4, &[[0, 1, 2], [0, 2, 3], [0, 3, 1]]);
-        let refused = mesh.flip_edge(EdgeCorner::new(0), &mut ());
+        let refused = mesh.flip_edge(EdgeCorner::new(0));
         assert!(matches!(
             refused,
             Err(EditError::NotTwoFaces { faces: 1, .. })
         ));
-        let refused = mesh.flip_edge(EdgeCorner::new(1), &mut ());
+        let refused = mesh.flip_edge(EdgeCorner::new(1));
         let Err(EditError::EdgeExists { ends }) = refused else {
             panic!("{refused:?}");
         };

@@ -130,7 +130,7 @@ impl<M: Representation + MeshEdit> WriteAccess<M> for ReadWrite {
     #[inline(always)]
     fn set_position(mesh: &mut M, v: M::Vertex, to: Point) {
         // Writes the current position: no structure refuses this, and the mesh does not change.
-        let _ = black_box(mesh.set_position(v, to, &mut ()).is_ok());
+        let _ = black_box(mesh.set_position(v, to).is_ok());
     }
     fn prepare_place(mesh: &mut M, edit: Edit, place: &mut EditPlace<M>) -> bool {
         prepare_place(mesh, edit, place).is_ok()

@@ -1,0 +1,203 @@
+//! Data that follows edits: algorithms run on meshes with data, with the same result on every
+//! structure, and the law of such data detects faults.
+
+use std::marker::PhantomData;
+use std::panic::catch_unwind;
+
+use sixfold::remeshing::{Decimation, Remeshing, Target, decimate, flip_to_delaunay, remesh};
+use sixfold::{
+    AcceptedEdit, Changes, EdgeMap, EditableCornerTable, EditableHalfEdgeMesh,
+    EditableIndexedFaceSet, EditablePolygonSoup, FaceData, FaceMap, FollowEdits, Handle, HandleMap,
+    MeshEdit, MeshQuery, MeshWithData, Point, PolygonMesh, Representation, VertexData, VertexMap,
+    for_each_editable, shapes,
+};
+use sixfold_conformance::law::{ElementNumbers, numbers_follow_edits};
+
+/// Each face of a mesh: the coordinates and the value of each corner, and the value of the face.
+type ValuedFaces = Vec<(Vec<[u32; 4]>, u32)>;
+
+/// Remeshes, flips and decimates `polygons`, with a value that is linear in x at the start at each
+/// vertex, and the number of the original face at each face.
+fn run<M: MeshEdit + Representation>(polygons: &PolygonMesh, length: f64) -> ValuedFaces {
+    let mesh = M::from_polygons(polygons).expect("a manifold of triangles");
+    let mut plain = mesh.clone();
+    let mut height = VertexData::new(&mesh, 0.0).with_rule(|height, new| {
+        let heights = new.parents.iter().map(|&v| height[v]);
+        heights.sum::<f32>() / new.parents.len() as f32
+    });
+    for v in mesh.vertices() {
+        height[v] = 3.0 * mesh.position(v).x;
+    }
+    let mut origin = FaceData::new(&mesh, u32::MAX)
+        .with_rule(|origin, new| new.parents.first().map_or(u32::MAX, |&f| origin[f]));
+    for (i, f) in (0..).zip(mesh.faces()) {
+        origin[f] = i;
+    }
+    let mut mesh = MeshWithData::new(mesh, (height, origin));
+    apply_all(&mut mesh, length);
+    apply_all(&mut plain, length);
+    mesh.compact();
+    plain.compact();
+
+    let (mesh, (height, origin)) = mesh.into_parts();
+    let same = mesh.to_polygons().positions() == plain.to_polygons().positions()
+        && (mesh.to_polygons().faces().iter()).eq(plain.to_polygons().faces().iter());
+    assert!(same, "{}: another mesh with data", M::NAME);
+    let mut faces: ValuedFaces = Vec::new();
+    for f in mesh.faces() {
+        let corner = |v| {
+            let [x, y, z] = (mesh.position(v) + Point::ZERO).to_array();
+            [x, y, z, height[v]].map(f32::to_bits)
+        };
+        let mut corners: Vec<[u32; 4]> = mesh.face_vertices(f).map(corner).collect();
+        corners.sort_unstable();
+        faces.push((corners, origin[f]));
+    }
+    faces.sort_unstable();
+    faces
+}
+
+fn apply_all<M: MeshEdit>(mesh: &mut M, length: f64) {
+    let remeshing = Remeshing {
+        iterations: 3,
+        ..Remeshing::with_edge_length(length)
+    };
+    let report = remesh(mesh, &remeshing).expect("triangles");
+    assert!(report.splits > 10, "{report:?}");
+    flip_to_delaunay(mesh).expect("triangles");
+    let decimation = Decimation {
+        target: Target::Ratio(0.7),
+        ..Decimation::default()
+    };
+    let report = decimate(mesh, &decimation).expect("triangles");
+    assert!(report.collapses > 10, "{report:?}");
+}
+
+#[test]
+fn data_follows_remeshing_in_the_same_way_on_all() {
+    let message = "a small shape";
+    let surfaces = [
+        (shapes::geodesic(3).expect(message), 0.25),
+        (shapes::triangle_grid(8, 8).expect(message), 0.7),
+    ];
+    for (polygons, length) in surfaces {
+        let mut first = None;
+        for_each_editable!(M => {
+            let faces = run::<M>(&polygons, length);
+            let count = polygons.face_count() as u32;
+            assert!(faces.iter().all(|&(_, origin)| origin < count), "{}", M::NAME);
+            let same = first.get_or_insert_with(|| faces.clone()) == &faces;
+            assert!(same, "{} has other data", M::NAME);
+        });
+    }
+}
+
+/// Numbers of elements that do not follow edits correctly; `F` is the fault.
+struct Faulty<M: MeshQuery, F> {
+    vertices: VertexMap<M, u32>,
+    edges: EdgeMap<M, u32>,
+    faces: FaceMap<M, u32>,
+    fault: PhantomData<F>,
+}
+
+/// A wrong update of a map after an edit.
+trait Fault {
+    fn follow<H: Handle>(changes: &Changes<H>, map: &mut H::Map<u32>);
+}
+
+impl<M: MeshQuery, F: Fault> FollowEdits<M> for Faulty<M, F> {
+    fn follow(&mut self, edit: &AcceptedEdit<'_, M>) {
+        F::follow(&edit.changes.vertices, &mut self.vertices);
+        F::follow(&edit.changes.edges, &mut self.edges);
+        F::follow(&edit.changes.faces, &mut self.faces);
+    }
+}
+
+impl<M: MeshQuery, F: Fault> ElementNumbers<M> for Faulty<M, F> {
+    fn new(mesh: &M) -> Self {
+        Self {
+            vertices: mesh.vertex_map(0),
+            edges: mesh.edge_map(0),
+            faces: mesh.face_map(0),
+            fault: PhantomData,
+        }
+    }
+    fn vertex(&mut self, v: M::Vertex) -> &mut u32 {
+        &mut self.vertices[v]
+    }
+    fn edge(&mut self, e: M::Edge) -> &mut u32 {
+        &mut self.edges[e]
+    }
+    fn face(&mut self, f: M::Face) -> &mut u32 {
+        &mut self.faces[f]
+    }
+}
+
+/// Renames elements one by one, although elements can exchange handles.
+struct RenamedOneByOne;
+
+impl Fault for RenamedOneByOne {
+    fn follow<H: Handle>(changes: &Changes<H>, map: &mut H::Map<u32>) {
+        for &old in &changes.removed {
+            map.remove(old);
+        }
+        for &[old, new] in &changes.renamed {
+            map.rename(old, new);
+        }
+        for &new in &changes.created {
+            map.insert(new, 0);
+        }
+    }
+}
+
+/// Does not rename elements.
+struct NotRenamed;
+
+impl Fault for NotRenamed {
+    fn follow<H: Handle>(changes: &Changes<H>, map: &mut H::Map<u32>) {
+        let changes = Changes {
+            renamed: vec![],
+            ..changes.clone()
+        };
+        changes.apply_to(map, &0);
+    }
+}
+
+/// Gives no values to new elements.
+struct NewLeftOut;
+
+impl Fault for NewLeftOut {
+    fn follow<H: Handle>(changes: &Changes<H>, map: &mut H::Map<u32>) {
+        let changes = Changes {
+            created: vec![],
+            ..changes.clone()
+        };
+        changes.apply_to(map, &0);
+    }
+}
+
+/// Checks that the law fails for `M` with this fault, with a message that contains `words`.
+fn assert_detected<M: Representation + MeshEdit + std::fmt::Debug, F: Fault>(words: &str) {
+    let payload = catch_unwind(numbers_follow_edits::<M, Faulty<M, F>>);
+    let payload = payload.expect_err("the law passes with the fault");
+    let message = payload.downcast_ref::<String>().expect("a message");
+    assert!(message.contains(M::NAME), "{message}");
+    assert!(message.contains(words), "“{words}” is not in:\n{message}");
+}
+
+#[test]
+fn elements_renamed_one_by_one_are_detected() {
+    assert_detected::<EditableCornerTable, RenamedOneByOne>("number of e");
+}
+
+#[test]
+fn missing_renames_are_detected() {
+    assert_detected::<EditablePolygonSoup, NotRenamed>("number of ");
+    assert_detected::<EditableIndexedFaceSet, NotRenamed>("number of ");
+    assert_detected::<EditableHalfEdgeMesh, NotRenamed>("number of ");
+}
+
+#[test]
+fn missing_values_of_new_elements_are_detected() {
+    assert_detected::<EditableHalfEdgeMesh, NewLeftOut>("in this map");
+}
