@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use serde::Serialize;
-
 use crate::Point;
 use crate::edit_error::EditError;
 use crate::edit_log::{EditLog, OldToNew};
@@ -11,8 +9,12 @@ use crate::query::{EdgeMap, FaceMap, MeshQuery, VertexMap};
 use crate::representation::QueryCost;
 
 /// One kind of edit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(rename_all = "snake_case")
+)]
 #[expect(
     missing_docs,
     reason = "the names are those of the methods of MeshEdit"
@@ -121,6 +123,10 @@ pub type Refusal<M> =
 ///   much of the mesh an edit reads.
 ///
 /// Pass `&mut ()` as the log if you need no record: logging then costs nothing.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be edited",
+    note = "convert the mesh to its editable form, for example by `EditableHalfEdgeMesh::from(mesh)`"
+)]
 pub trait MeshEdit: MeshQuery + Sized {
     /// How much of the mesh each edit reads, in the order of [`Edit::ALL`]; `None` if the structure
     /// refuses the edit on every mesh.
