@@ -28,8 +28,9 @@ use gungraun::prelude::*;
 use gungraun::{Callgrind, EventKind};
 use sixfold::{
     CornerTable, FaceId, HalfEdgeMesh, MeshQuery, Point, PolygonMesh, PolygonSoup, Representation,
-    TwinPairs, WingedEdgeMesh, shapes,
+    WingedEdgeMesh, shapes,
 };
+use sixfold_core::TwinPairs;
 
 /// Builds 5,120 triangles in random order, so that no loop profits from a regular order.
 fn polygons() -> PolygonMesh {
