@@ -10,9 +10,9 @@ use std::{env, fs};
 use peak_alloc::PeakAlloc;
 use sixfold::remeshing::{Boundary, Decimation, Target, decimate};
 use sixfold::{
-    Measured, MeshEdit, MeshQuery, Point, PolygonMesh, Representation, for_each_editable, io,
-    roster, shapes,
+    MeshEdit, MeshQuery, Point, PolygonMesh, Representation, for_each_editable, io, roster, shapes,
 };
+use sixfold_core::Measured;
 use sixfold_study::{Audit, Backend, Heap, StudyMesh, audit};
 
 #[path = "../crates/conformance/tests/all/face_and_edge_lists.rs"]

@@ -221,7 +221,7 @@ fn damaged(mesh: &PolygonMesh, removed: &[Index], reversed: &[Index]) -> Polygon
         let face = index.index(faces.len());
         faces[face].reverse();
     }
-    PolygonMesh::new(mesh.positions(), faces).expect("faces of a mesh")
+    PolygonMesh::new(mesh.positions().iter().copied(), faces).expect("faces of a mesh")
 }
 
 fn face_rows(mesh: &PolygonMesh) -> Vec<Vec<u32>> {

@@ -22,8 +22,8 @@ mod walk;
 pub use corner_cases::corner_cases;
 pub use cost::{costs, memory};
 pub use edit::{edit_costs, edits, inverse_edits};
-pub(crate) use elements::check_numbers;
 pub use edit_data::{ElementNumbers, data_follows_edits, numbers_follow_edits};
+pub(crate) use elements::check_numbers;
 pub use elements::{elements, maps, missing_handles, names, numbers, positions};
 pub use refine::{refine, refine_in_parallel};
 pub use relations::{

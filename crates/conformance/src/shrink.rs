@@ -30,7 +30,8 @@ fn without_face(polygons: &PolygonMesh, removed: usize) -> PolygonMesh {
         .iter()
         .filter(|(f, _)| f.index() != removed);
     let faces = faces.map(|(_, corners)| vertex_numbers(corners, |v| v.index() as u32));
-    PolygonMesh::new(polygons.positions(), faces).expect("the other faces are unchanged")
+    PolygonMesh::new(polygons.positions().iter().copied(), faces)
+        .expect("the other faces are unchanged")
 }
 
 fn without_isolated(polygons: &PolygonMesh) -> PolygonMesh {

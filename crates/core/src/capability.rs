@@ -2,7 +2,6 @@
 //! mesh.
 
 use rustc_hash::FxHashMap;
-use serde::{Deserialize, Serialize};
 
 use crate::Point;
 use crate::error::BuildError;
@@ -14,7 +13,8 @@ use crate::polygon_mesh::PolygonMesh;
 ///
 /// The command line prints this table, constructors take their errors from it, and the conformance
 /// suite tests every structure against it. All six structures hold boundaries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Capabilities {
     /// Faces of any degree, not only triangles.
     pub polygons: bool,
@@ -27,7 +27,8 @@ pub struct Capabilities {
     /// Vertices without a face.
     pub isolated_vertices: bool,
     /// Vertices with equal coordinates stay separate. If false, such vertices become one vertex,
-    /// and a face with two corners at one point is refused.
+    /// and a face with two corners at one point is refused. There is no tolerance: the handles of the
+    /// polygon soup explain why.
     pub coincident_vertices: bool,
 }
 

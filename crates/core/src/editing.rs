@@ -8,13 +8,14 @@ use crate::memory::TableBytes;
 use crate::probe::Probe;
 use crate::row_id::{RowId, row};
 
-/// Whether elements of a mesh can be deleted: [`Editable`] if so, otherwise [`Compact`].
+/// Whether elements of a mesh can be deleted: [`Editable`] if so, otherwise [`Compact`]. The trait
+/// is sealed: there are no other implementations.
 ///
 /// A query that checks whether elements were deleted costs a comparison for each element visited,
 /// and registers in the loops around it. Measured, this took some 10 % more time in the sweeps of a
 /// half-edge mesh, and up to 100 % more if the work per element was very small. As a type
 /// parameter, compact meshes need no check.
-pub trait Editing: Clone + Copy + Debug + Send + Sync + 'static {
+pub trait Editing: sealed::Sealed + Clone + Copy + Debug + Send + Sync + 'static {
     /// Whether there can be holes.
     const CAN_DELETE: bool;
 
@@ -44,6 +45,14 @@ pub struct Compact;
 /// Meshes in which rows may be holes, and faces may lie anywhere in the table of corners.
 #[derive(Clone, Copy, Debug)]
 pub struct Editable;
+
+mod sealed {
+    /// A trait that other crates cannot implement, because they cannot name it.
+    pub trait Sealed {}
+}
+
+impl sealed::Sealed for Compact {}
+impl sealed::Sealed for Editable {}
 
 impl Editing for Compact {
     const CAN_DELETE: bool = false;

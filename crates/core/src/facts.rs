@@ -3,8 +3,6 @@
 use std::collections::BTreeMap;
 
 use rustc_hash::FxHashSet;
-use serde::{Deserialize, Serialize};
-use serde_with::{DisplayFromStr, serde_as};
 
 use crate::error::PolygonError;
 use crate::face_list::FaceList;
@@ -21,7 +19,8 @@ use crate::polygon_mesh::{PolygonMesh, repeated};
 ///
 /// With vertices cut apart into one per fan, v − e + f = 2(c − g) − h for c components, h boundary
 /// loops and genus g (Euler–Poincaré); `genus` is computed from it.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Facts {
     /// Vertices, isolated ones included.
     pub vertices: usize,
@@ -67,8 +66,8 @@ pub struct Facts {
 }
 
 /// The distribution of a count: its extremes, its mean, and how often each value occurs.
-#[serde_as]
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Distribution {
     /// The smallest value.
     pub min: usize,
@@ -77,9 +76,13 @@ pub struct Distribution {
     /// The arithmetic mean.
     pub mean: f64,
     /// How often each value occurs; `None` if there are more than 64 values.
-    #[serde_as(as = "Option<BTreeMap<DisplayFromStr, _>>")]
+    #[cfg_attr(feature = "serde", serde(default, with = "Histogram"))]
     pub hist: Option<BTreeMap<usize, usize>>,
 }
+
+/// The form of a histogram in files: the values are texts, because keys in JSON must be.
+#[cfg(feature = "serde")]
+type Histogram = serde_with::As<Option<BTreeMap<serde_with::DisplayFromStr, serde_with::Same>>>;
 
 impl Distribution {
     /// Returns the distribution of `values`; `None` if there are no values.

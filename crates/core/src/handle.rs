@@ -1,6 +1,6 @@
 //! Handles of elements, and data stored by handle.
 
-use std::fmt::Debug;
+use std::fmt::{self, Debug};
 use std::hash::Hash;
 use std::marker::PhantomData;
 use std::ops::{Index, IndexMut};
@@ -59,6 +59,52 @@ impl<H, T> RowMap<H, T> {
     /// Returns the values by row.
     pub fn values(&self) -> &[T] {
         &self.values
+    }
+}
+
+/// Returns a map without rows.
+impl<H, T> Default for RowMap<H, T> {
+    fn default() -> Self {
+        Vec::new().into()
+    }
+}
+
+/// Uses the vector as the values by row, without copying.
+///
+/// ```
+/// use sixfold_core::{FaceId, RowMap};
+/// let areas: RowMap<FaceId, f32> = vec![0.5, 2.0].into();
+/// assert_eq!(areas[FaceId::new(1)], 2.0);
+/// ```
+impl<H, T> From<Vec<T>> for RowMap<H, T> {
+    fn from(values: Vec<T>) -> Self {
+        Self {
+            values,
+            handle: PhantomData,
+        }
+    }
+}
+
+/// Returns the values by row, without copying.
+impl<H, T> From<RowMap<H, T>> for Vec<T> {
+    fn from(map: RowMap<H, T>) -> Self {
+        map.values
+    }
+}
+
+/// Collects the values in the order of the rows.
+impl<H, T> FromIterator<T> for RowMap<H, T> {
+    fn from_iter<I: IntoIterator<Item = T>>(values: I) -> Self {
+        values.into_iter().collect::<Vec<T>>().into()
+    }
+}
+
+/// Stores the value of each handle, as [`insert`](HandleMap::insert) does.
+impl<H: RowId, T: Clone> Extend<(H, T)> for RowMap<H, T> {
+    fn extend<I: IntoIterator<Item = (H, T)>>(&mut self, values: I) {
+        for (handle, value) in values {
+            self.insert(handle, value);
+        }
     }
 }
 
@@ -122,6 +168,23 @@ pub struct HashHandleMap<H, T> {
     default: T,
 }
 
+/// Returns a map with the default value of `T` for every handle.
+impl<H, T: Default> Default for HashHandleMap<H, T> {
+    fn default() -> Self {
+        Self {
+            written: FxHashMap::default(),
+            default: T::default(),
+        }
+    }
+}
+
+/// Stores the value of each handle, as [`insert`](HandleMap::insert) does.
+impl<H: Handle, T> Extend<(H, T)> for HashHandleMap<H, T> {
+    fn extend<I: IntoIterator<Item = (H, T)>>(&mut self, values: I) {
+        self.written.extend(values);
+    }
+}
+
 impl<H: Handle, T: Clone> HandleMap<H, T> for HashHandleMap<H, T> {
     fn filled(_rows: usize, value: T) -> Self {
         Self {
@@ -160,8 +223,8 @@ impl<H: Handle, T: Clone> IndexMut<H> for HashHandleMap<H, T> {
 }
 
 /// An edge as the pair of its ends, the lower first: the handle in structures without a table of
-/// edges.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+/// edges. It prints as its ends, `v3–v7`.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Pair<V>([V; 2]);
 
 impl<V: Handle> Pair<V> {
@@ -205,6 +268,18 @@ impl<V: Handle> Handle for Pair<V> {
     type Map<T: Clone> = HashHandleMap<Self, T>;
 }
 
+impl<V: Debug> Debug for Pair<V> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}–{:?}", self.0[0], self.0[1])
+    }
+}
+
+impl<V: Debug> fmt::Display for Pair<V> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Debug::fmt(self, f)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -215,6 +290,7 @@ mod tests {
         let [a, b] = [VertexId::new(9), VertexId::new(4)];
         assert_eq!(Pair::new(a, b), Pair::new(b, a));
         assert_eq!(Pair::new(a, b).ends(), [b, a]);
+        assert_eq!(Pair::new(a, b).to_string(), "v4–v9");
         assert!(Pair::new(a, b).has(a) && !Pair::new(a, b).has(VertexId::new(5)));
     }
 
@@ -228,6 +304,18 @@ mod tests {
         pairs[Pair::new(v(0), v(1))] += 1;
         assert_eq!(pairs[Pair::new(v(1), v(0))], 8);
         assert_eq!(pairs[Pair::new(v(1), v(2))], 7);
+    }
+
+    #[test]
+    fn maps_are_extended_by_handle() {
+        let v = VertexId::new;
+        let values = [(v(0), 'x'), (v(2), 'y')];
+        let mut rows: RowMap<VertexId, char> = "abc".chars().collect();
+        rows.extend(values);
+        assert_eq!(Vec::from(rows), ['x', 'b', 'y']);
+        let mut hashed: HashHandleMap<VertexId, char> = HashHandleMap::default();
+        hashed.extend(values);
+        assert_eq!([0, 1, 2].map(|i| hashed[v(i)]), ['x', '\0', 'y']);
     }
 
     #[test]

@@ -1,5 +1,9 @@
 //! Shared vocabulary of Sixfold: the traits and types that all structures, algorithms and tools
-//! use.
+//! use. This crate does not depend on any of the six structures.
+//!
+//! # For programs
+//!
+//! The crate `sixfold` exports these.
 //!
 //! - [`PolygonMesh`]: the neutral input and output; positions, and faces as index lists.
 //! - [`MeshQuery`]: the nine relations of Weiler (1985) and their contract.
@@ -10,21 +14,38 @@
 //!   numbers of elements from 0.
 //! - [`BoundaryLoop`]: a chain of boundary edges.
 //! - [`BuildError`]: why a structure refuses a mesh; [`Capabilities`] checks it in one place.
-//! - [`Table`] and [`Probe`]: storage whose reads and writes can be observed.
 //! - [`Refine`] and [`Split`]: structures that split every face in their own tables.
 //! - [`MeshEdit`], [`EditRecord`] and [`EditError`]: edits in place, the record of created, removed
-//!   and renamed elements, and why an edit is refused; [`Holes`]: the rows of deleted elements.
+//!   and renamed elements, and why an edit is refused.
 //! - [`MeshWithData`]: a mesh together with data by vertex, edge or face that follows its edits.
-//! - [`Compact`] and [`Editable`]: type parameters of meshes without and with deletion.
-//! - [`ScannedFaces`]: queries and edits of structures that find the faces at a vertex by a scan.
 //! - [`Creases`]: the sharpness of edges and vertices under subdivision.
 //! - [`Facts`]: the exact topology of a face list, independent of any structure.
 //!
-//! This crate does not depend on any of the six structures.
+//! # For authors of structures
+//!
+//! - [`Table`], [`Slot`], [`row_id!`] and [`RowId`]: rows, and handles that are rows.
+//! - [`Compact`] and [`Editable`], the two types that are [`Editing`]: type parameters of meshes
+//!   without and with deletion; [`Holes`]: the rows of deleted elements.
+//! - [`FaceSpans`]: which corners belong to a face.
+//! - [`TwinPairs`]: pairs of sides, for building without hashing.
+//! - [`ScannedFaces`]: queries and edits of structures that find the faces at a vertex by a scan.
+//! - [`Distinct`], [`ShortVec`], [`Lookup`]: each element once, and short lists.
+//! - [`Ranks`], [`for_each_chunk`], [`map_chunks`], [`check_split`]: refinement on several threads.
+//!
+//! # For measurements
+//!
+//! - [`Measured`] and [`Counts`]: bytes by formula.
+//! - [`Probe`], [`Traced`] and [`Access`]: reads and writes of tables.
+//!
+//! # Features
+//!
+//! None is on by default. `rayon`: refinement on all threads. `serde`: reading and writing of facts,
+//! capabilities, costs and memory tables. `mint`: positions as points and vectors of that crate.
 
 mod boundary;
 mod capability;
 mod clone_by_field;
+mod convert;
 mod creases;
 mod distinct;
 mod edit;
@@ -63,53 +84,59 @@ mod short_vec;
 mod sides;
 mod table;
 
+// For programs.
 pub use boundary::BoundaryLoop;
 pub use capability::Capabilities;
 pub use creases::{Creases, SHARPNESS_INFINITE};
-pub use distinct::{Distinct, DistinctWalk, IteratorExt};
 pub use edit::{MeshEdit, Refusal};
 pub use edit_error::EditError;
 pub use edit_kind::Edit;
 pub use edit_log::{Changes, EditLog, EditRecord, OldToNew};
-pub use editing::{
-    Compact, EDGE_HOLES, Editable, Editing, FACE_HOLES, HoleSet, NoHoles, NoScatteredFaces,
-    VERTEX_HOLES,
-};
 pub use element_data::{Created, EdgeData, ElementData, FaceData, VertexData};
 #[doc(hidden)]
 pub use element_data::{Edges, ElementKind, Faces, Vertices};
 pub use error::{BuildError, CreaseError, InvariantError, MoveError, PolygonError, RefineError};
 pub use face_list::FaceList;
-pub use face_spans::{FaceSpans, ScatteredFaces};
 pub use facts::{Distribution, Facts};
 pub use follow_edits::{AcceptedEdit, FollowEdits};
 pub use glam;
 pub use glam::Vec3 as Point;
 pub use handle::{Handle, HandleMap, HashHandleMap, Pair, RowMap};
-pub use holes::Holes;
 pub use incidence::EdgeUse;
 pub use local_queries::LocalQueries;
-pub use measured::{Counts, Measured};
 pub use memory::{MemoryFootprint, TableBytes};
 pub use mesh_with_data::MeshWithData;
 pub use numbering::Numbers;
 pub use oriented_walk::{OrientedWalk, SideMap};
-pub use pairing::{SideRows, TwinPairs, pair_triangle_sides};
 pub use polygon_mesh::PolygonMesh;
-pub use probe::{Access, AccessKind, Probe, Traced, Untraced};
 pub use query::{EdgeMap, FaceMap, MeshQuery, VertexMap};
+pub use refine::{Refine, Split};
+pub use representation::{QueryCost, Relation, Representation};
+pub use row_id::{EdgeId, FaceId, VertexId};
+
+// For authors of structures.
+pub use distinct::{Distinct, DistinctWalk, IteratorExt};
+pub use editing::{
+    Compact, EDGE_HOLES, Editable, Editing, FACE_HOLES, HoleSet, NoHoles, NoScatteredFaces,
+    VERTEX_HOLES,
+};
+pub use face_spans::{FaceSpans, ScatteredFaces};
+pub use holes::Holes;
+pub use pairing::{SideRows, TwinPairs, pair_triangle_sides};
 pub use ranks::Ranks;
 pub use refine::{
-    CHUNK_ROWS, Refine, Split, all_rows, check_split, chunk_starts, for_each_chunk, map_chunks,
-    rows_of_chunk,
+    CHUNK_ROWS, all_rows, check_split, chunk_starts, for_each_chunk, map_chunks, rows_of_chunk,
 };
-pub use representation::{QueryCost, Relation, Representation};
-pub use row_id::{EdgeId, FaceId, MAX_ROWS, RowId, Slot, VertexId, row};
+pub use row_id::{MAX_ROWS, RowId, Slot, row};
 pub use scan::hits_in;
 pub use scan_edit::ScannedMesh;
 pub use scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
 pub use short_vec::{Lookup, ShortVec};
 pub use table::Table;
+
+// For measurements.
+pub use measured::{Counts, Measured};
+pub use probe::{Access, AccessKind, Probe, Traced, Untraced};
 
 /// The imports of a program that uses meshes: the traits with queries, walks, edits and refinement,
 /// and the types in their signatures.

@@ -2,10 +2,9 @@
 
 use std::borrow::Cow;
 
-use serde::{Deserialize, Serialize};
-
 /// The bytes that one table holds.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct TableBytes {
     /// The name of the table.
     pub table: Cow<'static, str>,
@@ -14,12 +13,13 @@ pub struct TableBytes {
     /// The bytes allocated for the rows, spare capacity included.
     pub bytes: usize,
     /// The bytes of one row; not part of reports.
-    #[serde(skip)]
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub row_bytes: usize,
 }
 
 /// The bytes that a structure holds on the heap, table by table, positions included.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct MemoryFootprint {
     /// All tables.
     pub tables: Vec<TableBytes>,

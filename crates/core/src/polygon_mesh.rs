@@ -1,5 +1,7 @@
 //! The neutral mesh: the input and output of every structure.
 
+use std::fmt;
+
 use crate::Point;
 use crate::distinct::IteratorExt;
 use crate::error::PolygonError;
@@ -26,7 +28,7 @@ use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
 /// let corners = [Point::ZERO, Point::X, Point::Y, Point::Z];
 /// let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
 /// let tetrahedron = PolygonMesh::new(corners, faces)?;
-/// assert_eq!(tetrahedron.face_count(), 4);
+/// assert_eq!(tetrahedron.to_string(), "4 vertices, 4 faces");
 /// assert!(PolygonMesh::new(corners, [[0, 1, 1]]).is_err());
 /// # Ok::<(), sixfold_core::PolygonError>(())
 /// ```
@@ -38,20 +40,32 @@ pub struct PolygonMesh {
 
 impl PolygonMesh {
     /// Builds a mesh from `positions` and `faces`, each a list of vertex numbers from 0;
-    /// O(corners).
+    /// O(vertices + corners).
+    ///
+    /// A position is a [`Point`], three numbers (`[f32; 3]` or a tuple), or, with the feature
+    /// `mint`, a point or vector of the crate `mint`. A [`Point`] converts back with `into()`.
+    ///
+    /// ```
+    /// # use sixfold_core::PolygonMesh;
+    /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let triangle = PolygonMesh::new(corners.clone(), [[0, 1, 2]])?;
+    /// let back = triangle.positions().iter().map(|&p| p.into());
+    /// assert_eq!(back.collect::<Vec<[f32; 3]>>(), corners);
+    /// # Ok::<(), sixfold_core::PolygonError>(())
+    /// ```
     ///
     /// # Errors
     ///
     /// Returns the first face that violates I1, or the elements whose number violates I2.
-    pub fn new<F: AsRef<[u32]>>(
-        positions: impl Into<Vec<Point>>,
+    pub fn new<P: Into<Point>, F: AsRef<[u32]>>(
+        positions: impl IntoIterator<Item = P>,
         faces: impl IntoIterator<Item = F>,
     ) -> Result<Self, PolygonError> {
         let mut list = FaceList::default();
         for face in faces {
             list.push(face.as_ref().iter().copied().map(VertexId::new))?;
         }
-        Self::from_faces(positions.into(), list)
+        Self::from_faces(positions.into_iter().map(Into::into).collect(), list)
     }
 
     /// Builds a mesh from `positions` and an existing list of faces; O(corners), without copying.
@@ -208,6 +222,22 @@ impl PolygonMesh {
             positions: self.positions.clone(),
             faces,
         })
+    }
+}
+
+/// Prints the number of vertices and faces: `8 vertices, 6 faces`.
+impl fmt::Display for PolygonMesh {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let vertices = match self.vertex_count() {
+            1 => "vertex",
+            _ => "vertices",
+        };
+        let faces = match self.face_count() {
+            1 => "face",
+            _ => "faces",
+        };
+        let (v, n) = (self.vertex_count(), self.face_count());
+        write!(f, "{v} {vertices}, {n} {faces}")
     }
 }
 

@@ -3,8 +3,6 @@
 use std::fmt;
 use std::ops::Range;
 
-use serde::Serialize;
-
 use crate::Point;
 use crate::error::RefineError;
 use crate::measured::Counts;
@@ -26,8 +24,12 @@ use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
 /// face point for each face in the order of `faces()` (not for [`Triangles`](Self::Triangles)),
 /// then the points of edges in the order of `edges()`: one for each edge, except for
 /// [`Sqrt3`](Self::Sqrt3).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum Split {
     /// Splits every face of degree n into n quads, by a face point and edge points (Catmull & Clark
     /// 1978).
@@ -126,10 +128,15 @@ impl fmt::Display for Split {
 ///   of its faces and edges; [`parent`](Self::parent) returns the parent of a face.
 /// - The tables of the child are overwritten in place if they are large enough: repeated refinement
 ///   into one mesh allocates nothing.
-/// - The work runs on the threads of the current rayon pool, and gives the same bytes on any number
-///   of them.
+/// - With the feature `rayon` the work runs on the threads of the current rayon pool, and otherwise
+///   on one thread. It gives the same bytes on any number of threads.
 /// - In addition to the two meshes it needs at most a tenth of their bytes. It uses no hash table,
 ///   no [`from_polygons`](Representation::from_polygons) and no intermediate `PolygonMesh`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot split its own tables",
+    note = "face-vertex, winged-edge, half-edge meshes and corner tables can, in their compact form: \
+            `mesh.into_compact()`"
+)]
 pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
     /// The splits that the structure supports. `Sqrt3` stands for both values of `trisect`.
     const SPLITS: &'static [Split];
@@ -241,19 +248,20 @@ pub fn rows_of_chunk(rows: usize, chunk: usize) -> Range<u32> {
 }
 
 /// Calls `work` with every chunk of `rows` and the number of its first row; chunks have `len` rows,
-/// the last may have fewer. The threads of the current rayon pool share the chunks.
+/// the last may have fewer. With the feature `rayon`, the threads of the current rayon pool share
+/// the chunks.
 ///
 /// On one thread it is a plain loop. What `work` writes must depend only on the rows, not on their
 /// chunk: then the result is the same on any number of threads.
 pub fn for_each_chunk<T: Send>(rows: &mut [T], len: usize, work: impl Fn(usize, &mut [T]) + Sync) {
-    use rayon::prelude::*;
-    if rows.len() <= len || rayon::current_num_threads() == 1 {
-        for (number, rows) in rows.chunks_mut(len).enumerate() {
-            work(number * len, rows);
-        }
-    } else {
+    #[cfg(feature = "rayon")]
+    if rows.len() > len && rayon::current_num_threads() > 1 {
+        use rayon::prelude::*;
         let chunks = rows.par_chunks_mut(len).enumerate();
-        chunks.for_each(|(number, rows)| work(number * len, rows));
+        return chunks.for_each(|(number, rows)| work(number * len, rows));
+    }
+    for (number, rows) in rows.chunks_mut(len).enumerate() {
+        work(number * len, rows);
     }
 }
 
@@ -269,7 +277,6 @@ pub fn map_chunks<T: Send, R: Send>(
     starts: &[usize],
     work: impl Fn(usize, Range<usize>, &mut [T]) -> R + Sync,
 ) -> Vec<R> {
-    use rayon::prelude::*;
     let mut chunks = Vec::with_capacity(starts.len());
     let mut rest = rows;
     for (number, bounds) in starts.windows(2).enumerate() {
@@ -283,26 +290,27 @@ pub fn map_chunks<T: Send, R: Send>(
         rest.len()
     );
     let work = |(number, range, rows)| work(number, range, rows);
-    if chunks.len() == 1 || rayon::current_num_threads() == 1 {
-        chunks.into_iter().map(work).collect()
-    } else {
-        chunks.into_par_iter().map(work).collect()
+    #[cfg(feature = "rayon")]
+    if chunks.len() > 1 && rayon::current_num_threads() > 1 {
+        use rayon::prelude::*;
+        return chunks.into_par_iter().map(work).collect();
     }
+    chunks.into_iter().map(work).collect()
 }
 
-/// Returns whether `holds` is true for all `rows`, which the threads of the current rayon pool
-/// share.
+/// Returns whether `holds` is true for all `rows`. With the feature `rayon`, the threads of the
+/// current rayon pool share them.
 ///
 /// There is no early exit inside a chunk of [`CHUNK_ROWS`] rows, so that the loop can be
 /// vectorised.
 pub fn all_rows<T: Sync>(rows: &[T], holds: impl Fn(&T) -> bool + Sync) -> bool {
-    use rayon::prelude::*;
     let all_hold = |rows: &[T]| rows.iter().fold(true, |all, row| all & holds(row));
-    if rows.len() <= CHUNK_ROWS || rayon::current_num_threads() == 1 {
-        rows.chunks(CHUNK_ROWS).all(all_hold)
-    } else {
-        rows.par_chunks(CHUNK_ROWS).all(all_hold)
+    #[cfg(feature = "rayon")]
+    if rows.len() > CHUNK_ROWS && rayon::current_num_threads() > 1 {
+        use rayon::prelude::*;
+        return rows.par_chunks(CHUNK_ROWS).all(all_hold);
     }
+    rows.chunks(CHUNK_ROWS).all(all_hold)
 }
 
 #[cfg(test)]

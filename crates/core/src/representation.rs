@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use serde::{Deserialize, Serialize};
-
 use crate::Point;
 use crate::error::{BuildError, InvariantError, MoveError};
 use crate::memory::MemoryFootprint;
@@ -12,8 +10,12 @@ use crate::query::{MeshQuery, VertexMap};
 use crate::row_id::{FaceId, VertexId};
 
 /// One of the nine relations.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize, serde::Serialize),
+    serde(rename_all = "snake_case")
+)]
 #[expect(
     missing_docs,
     reason = "the names are those of the methods of MeshQuery"
@@ -67,8 +69,12 @@ impl fmt::Display for Relation {
 }
 
 /// How much of a mesh one query reads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize, serde::Serialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum QueryCost {
     /// O(1) for each element that it yields.
     Constant,

@@ -69,6 +69,20 @@ macro_rules! row_id {
             }
         }
 
+        impl From<u32> for $name {
+            #[inline]
+            fn from(row: u32) -> Self {
+                Self(row)
+            }
+        }
+
+        impl From<$name> for u32 {
+            #[inline]
+            fn from(handle: $name) -> Self {
+                handle.0
+            }
+        }
+
         impl $crate::Handle for $name {
             type Map<T: Clone> = $crate::RowMap<Self, T>;
         }
@@ -159,6 +173,7 @@ mod tests {
         assert_eq!(size_of::<Slot<FaceId>>(), 4);
         assert_eq!(Slot::from(Some(FaceId::new(7))).get(), Some(FaceId::new(7)));
         assert_eq!(Slot::<FaceId>::from(None).get(), None);
+        assert_eq!(u32::from(FaceId::from(7)), 7);
         assert_eq!(
             format!("{:?} {}", Slot::<FaceId>::NONE, FaceId::new(7)),
             "none f7"

@@ -10,7 +10,7 @@
 
 use sixfold_core::{Editing, Probe, Slot, VertexId};
 
-use crate::mesh::{AnyCornerTable, CornerId, EdgeCorner, edge_between};
+use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
 
 /// The corners at a vertex, counter-clockwise: each step is `c → swing(c)`.
 #[derive(Clone, Debug)]
@@ -31,7 +31,7 @@ impl<P: Probe, E: Editing> Iterator for CornersAt<'_, P, E> {
     }
 }
 
-impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
+impl<P: Probe, E: Editing> CornerTable<E, P> {
     /// Returns the corners at `v`, counter-clockwise; on a boundary, from one boundary edge to the
     /// other.
     ///
@@ -58,7 +58,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
 /// opposite.
 #[derive(Clone, Debug)]
 pub(crate) struct Fan<'a, P: Probe, E: Editing> {
-    mesh: &'a AnyCornerTable<P, E>,
+    mesh: &'a CornerTable<E, P>,
     at: Option<CornerId>,
     first: Option<CornerId>,
 }
@@ -102,7 +102,7 @@ pub(crate) struct Neighbours<'a, P: Probe, E: Editing> {
 
 impl<'a, P: Probe, E: Editing> Neighbours<'a, P, E> {
     #[inline]
-    pub(crate) fn new(mesh: &'a AnyCornerTable<P, E>, v: VertexId) -> Self {
+    pub(crate) fn new(mesh: &'a CornerTable<E, P>, v: VertexId) -> Self {
         Self {
             fan: mesh.fan(v),
             last: None,
@@ -158,7 +158,7 @@ pub(crate) struct Spokes<'a, P: Probe, E: Editing> {
 
 impl<'a, P: Probe, E: Editing> Spokes<'a, P, E> {
     #[inline]
-    pub(crate) fn new(mesh: &'a AnyCornerTable<P, E>, v: VertexId) -> Self {
+    pub(crate) fn new(mesh: &'a CornerTable<E, P>, v: VertexId) -> Self {
         Self {
             fan: mesh.fan(v),
             open: false,
@@ -217,7 +217,7 @@ impl<P: Probe, E: Editing> Iterator for Spokes<'_, P, E> {
 /// ```
 #[derive(Clone, Debug)]
 pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
-    mesh: &'a AnyCornerTable<P, E>,
+    mesh: &'a CornerTable<E, P>,
     /// The corner that faces the next edge.
     at: Option<CornerId>,
     direction: Direction,
@@ -238,7 +238,7 @@ enum Direction {
 
 impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
     #[inline]
-    pub(crate) fn new(mesh: &'a AnyCornerTable<P, E>, e: EdgeCorner) -> Self {
+    pub(crate) fn new(mesh: &'a CornerTable<E, P>, e: EdgeCorner) -> Self {
         let c = e.corner();
         Self {
             mesh,
@@ -334,7 +334,7 @@ mod tests {
     use sixfold_core::{MeshQuery, Representation};
 
     use super::*;
-    use crate::mesh::CornerTable;
+    use crate::CornerTable;
 
     /// Checks that `fold` visits the items of `next`, from the start and after any number of steps.
     fn check_fold_equals_next<I>(items: I, of: impl Debug)

@@ -6,9 +6,9 @@ use sixfold_core::{
     RowId, RowMap, Slot, Table, Untraced, VERTEX_HOLES, VertexId, pair_triangle_sides,
 };
 
-use crate::mesh::{AnyCornerTable, CornerId, CornerTable, EditableCornerTable};
+use crate::mesh::{CornerId, CornerTable};
 
-impl<E: Editing> Representation for AnyCornerTable<Untraced, E> {
+impl<E: Editing> Representation for CornerTable<E> {
     const NAME: &'static str = "corner-table";
 
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
@@ -99,17 +99,17 @@ impl<E: Editing> Representation for AnyCornerTable<Untraced, E> {
     }
 }
 
-sixfold_core::local_queries!(CornerTable, EditableCornerTable);
+sixfold_core::local_queries!(crate::CornerTable, crate::EditableCornerTable);
 
-impl<E: Editing> Measured for AnyCornerTable<Untraced, E> {
-    type Probed<P: Probe> = AnyCornerTable<P, E>;
+impl<E: Editing> Measured for CornerTable<E> {
+    type Probed<P: Probe> = CornerTable<E, P>;
 
     fn layout_bytes(counts: &Counts) -> usize {
         16 * counts.vertices + 8 * counts.corners
     }
 
-    fn probed<P: Probe>(self, probe: P) -> AnyCornerTable<P, E> {
-        AnyCornerTable {
+    fn probed<P: Probe>(self, probe: P) -> CornerTable<E, P> {
+        CornerTable {
             positions: self.positions.probed(probe.clone()),
             corner: self.corner.probed(probe.clone()),
             vertex: self.vertex.probed(probe.clone()),

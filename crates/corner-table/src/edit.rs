@@ -30,13 +30,12 @@ mod flip;
 mod split;
 
 use sixfold_core::{
-    Edit, EditError, EditLog, FaceId, HoleSet, MAX_ROWS, MeshEdit, NoHoles, Point, Probe,
-    QueryCost, Representation, RowId, Slot, VertexId, row,
+    Compact, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit, NoHoles,
+    Point, Probe, QueryCost, Representation, RowId, Slot, VertexId, row,
 };
 
-use crate::mesh::{
-    AnyCornerTable, CornerId, CornerTable, EdgeCorner, EditableCornerTable, NO_VERTEX, names_edge,
-};
+use crate::EditableCornerTable;
+use crate::mesh::{CornerId, CornerTable, EdgeCorner, NO_VERTEX, names_edge};
 
 /// The error of an edit; the same type for every probe.
 type Refusal = sixfold_core::Refusal<EditableCornerTable>;
@@ -44,7 +43,7 @@ type Refusal = sixfold_core::Refusal<EditableCornerTable>;
 /// Maximum number of corners, so that the mesh can be rebuilt from its polygons.
 const MAX_CORNERS: usize = MAX_ROWS / 2;
 
-impl<P: Probe> MeshEdit for EditableCornerTable<P> {
+impl<P: Probe> MeshEdit for CornerTable<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
         let mut costs = Edit::LOCAL_COSTS;
         // These three make polygons.
@@ -54,11 +53,11 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
         costs
     };
 
-    type Compact = CornerTable<P>;
+    type Compact = CornerTable<Compact, P>;
 
-    fn into_compact(mut self) -> CornerTable<P> {
+    fn into_compact(mut self) -> CornerTable<Compact, P> {
         self.compact();
-        AnyCornerTable {
+        CornerTable {
             positions: self.positions,
             corner: self.corner,
             vertex: self.vertex,
@@ -68,7 +67,7 @@ impl<P: Probe> MeshEdit for EditableCornerTable<P> {
         }
     }
 
-    fn from_compact(compact: CornerTable<P>) -> Self {
+    fn from_compact(compact: CornerTable<Compact, P>) -> Self {
         compact.into()
     }
 
@@ -237,7 +236,7 @@ fn unsupported(edit: Edit) -> Refusal {
 }
 
 /// Checks before an edit writes.
-impl<P: Probe> EditableCornerTable<P> {
+impl<P: Probe> CornerTable<Editable, P> {
     /// Returns the corner at `v` (empty if `v` is isolated), or an error if `v` does not exist.
     #[inline]
     fn check_vertex(&self, v: VertexId) -> Result<Slot<CornerId>, Refusal> {
@@ -297,7 +296,7 @@ impl<P: Probe> EditableCornerTable<P> {
 }
 
 /// Steps that several edits share.
-impl<P: Probe> EditableCornerTable<P> {
+impl<P: Probe> CornerTable<Editable, P> {
     #[inline]
     fn push_vertex(&mut self, at: Point, corner: Slot<CornerId>) -> VertexId {
         let v = VertexId::new(row(self.positions.len()));
@@ -363,7 +362,7 @@ fn faced_by(c: CornerId) -> EdgeCorner {
 /// Reports the new handle of an edge to the log, if it changed.
 #[inline]
 fn report_renamed<P: Probe>(
-    log: &mut impl EditLog<EditableCornerTable<P>>,
+    log: &mut impl EditLog<CornerTable<Editable, P>>,
     old: EdgeCorner,
     new: EdgeCorner,
 ) {

@@ -3,7 +3,7 @@
 //! Use it for large triangle meshes with neighbour queries. It is the smallest structure that
 //! answers every query without a search of the whole mesh. Its `vertex` table is an index list that
 //! a renderer accepts unchanged. It does not hold polygons or edges with three faces: building from
-//! them returns an error. Start at [`AnyCornerTable`]; its numbered invariants define the tables.
+//! them returns an error. Start at [`generic::CornerTable`]; its numbered invariants define the tables.
 //! After Rossignac, Safonova & Szymczak, *3D compression made simple* (2001).
 //!
 //! | holds | |
@@ -97,8 +97,22 @@ mod validate;
 mod walk;
 
 pub use circulate::CornersAt;
-pub use mesh::{AnyCornerTable, CornerId, CornerTable, EdgeCorner, EditableCornerTable};
+pub use mesh::{CornerId, EdgeCorner};
 pub use refine::EdgeNumbers;
+
+/// The mesh with its type parameters, for code that is generic over them.
+///
+/// Programs use the two types of the crate root instead.
+pub mod generic {
+    pub use crate::mesh::CornerTable;
+}
+
+/// A corner table that cannot delete elements: a [`generic::CornerTable`] without holes.
+pub type CornerTable = generic::CornerTable;
+
+/// A corner table that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): a
+/// [`generic::CornerTable`] with holes.
+pub type EditableCornerTable = generic::CornerTable<sixfold_core::Editable>;
 
 /// The traits and types that all structures share: `PolygonMesh`, `MeshQuery`, handles, errors.
 pub use sixfold_core;

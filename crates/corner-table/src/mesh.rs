@@ -89,7 +89,7 @@ impl EdgeCorner {
 /// 12 bytes per vertex for its position and 4 for `corner`, 24 per triangle: 64 bytes, or 16 words,
 /// per vertex of a large closed mesh. After the first deletion, also one bit per row.
 #[derive(Debug)]
-pub struct AnyCornerTable<P: Probe, E: Editing> {
+pub struct CornerTable<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) corner: Table<Slot<CornerId>, P>,
     pub(crate) vertex: Table<VertexId, P>,
@@ -98,17 +98,11 @@ pub struct AnyCornerTable<P: Probe, E: Editing> {
     pub(crate) face_holes: E::Holes<P>,
 }
 
-sixfold_core::clone_by_field!(AnyCornerTable<P: Probe, E: Editing> { positions, corner, vertex, opposite, vertex_holes, face_holes });
+sixfold_core::clone_by_field!(CornerTable<E: Editing, P: Probe> { positions, corner, vertex, opposite, vertex_holes, face_holes });
+sixfold_core::polygon_conversions!(CornerTable);
 
-/// A corner table that cannot delete elements: an [`AnyCornerTable`] without holes.
-pub type CornerTable<P = Untraced> = AnyCornerTable<P, Compact>;
-
-/// A corner table that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an [`AnyCornerTable`]
-/// with holes.
-pub type EditableCornerTable<P = Untraced> = AnyCornerTable<P, Editable>;
-
-impl<P: Probe> From<CornerTable<P>> for EditableCornerTable<P> {
-    fn from(mesh: CornerTable<P>) -> Self {
+impl<P: Probe> From<CornerTable<Compact, P>> for CornerTable<Editable, P> {
+    fn from(mesh: CornerTable<Compact, P>) -> Self {
         let probe = mesh.positions.probe();
         Self {
             positions: mesh.positions,
@@ -127,7 +121,7 @@ pub(crate) const NO_VERTEX: VertexId = VertexId::new(u32::MAX);
 /// The operators of the corner table (Rossignac et al.), each O(1). An operator that reads a table
 /// panics with the row if the row does not exist. The operators do not check for deleted triangles:
 /// for their corners they return what I8 states.
-impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
+impl<P: Probe, E: Editing> CornerTable<E, P> {
     /// Returns the vertex at the corner `c`.
     #[inline]
     pub fn vertex(&self, c: CornerId) -> VertexId {
@@ -185,7 +179,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
 }
 
 /// Conversions between vertices, triangles, edges and corners. Each panics as the operators do.
-impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
+impl<P: Probe, E: Editing> CornerTable<E, P> {
     /// Returns a corner at `v`, the first of the fan on a boundary; `None` if `v` is isolated.
     /// O(1).
     #[inline]
@@ -226,7 +220,7 @@ impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
 }
 
 /// Rows of a triangle or an edge; each panics if the element does not exist.
-impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
+impl<P: Probe, E: Editing> CornerTable<E, P> {
     /// Returns the vertices of `t`.
     #[inline]
     pub(crate) fn vertices_of(&self, t: FaceId) -> [VertexId; 3] {
@@ -352,7 +346,7 @@ pub(crate) fn names_edge(c: CornerId, across: Slot<CornerId>) -> bool {
 
 /// The tables as they are in memory, for export and for the caller's own loops. They contain holes
 /// (I8) if something was deleted since the last [`compact`](sixfold_core::MeshEdit::compact).
-impl<P: Probe, E: Editing> AnyCornerTable<P, E> {
+impl<P: Probe, E: Editing> CornerTable<E, P> {
     /// Returns the positions by vertex.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
@@ -390,7 +384,7 @@ mod tests {
         .map(|polygons| CornerTable::from_polygons(&polygons).expect("manifold"))
     }
 
-    fn corners<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> impl Iterator<Item = CornerId> {
+    fn corners<E: Editing>(mesh: &CornerTable<E>) -> impl Iterator<Item = CornerId> {
         (0..mesh.vertex.len() as u32).map(CornerId::new)
     }
 
@@ -447,7 +441,7 @@ mod tests {
         let corners = [Point::ZERO, Point::X, Point::Y, Point::Z];
         let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
         let polygons = PolygonMesh::new(corners, triangles).expect("valid");
-        let mesh = CornerTable::from_polygons(&polygons).expect("closed");
+        let mesh: CornerTable = CornerTable::from_polygons(&polygons).expect("closed");
         let opposite: Vec<usize> = mesh
             .opposite_corners()
             .iter()

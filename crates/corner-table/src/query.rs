@@ -5,9 +5,9 @@ use sixfold_core::{
 };
 
 use crate::circulate::{EdgeEdges, Neighbours, Spokes};
-use crate::mesh::{AnyCornerTable, CornerId, EdgeCorner, edge_between};
+use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
 
-impl<P: Probe, E: Editing> MeshQuery for AnyCornerTable<P, E> {
+impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
     type Vertex = VertexId;
     type Edge = EdgeCorner;
     type Face = FaceId;

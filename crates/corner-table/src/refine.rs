@@ -43,7 +43,8 @@ use sixfold_core::{
     Split, Table, VertexId, all_rows, check_split, for_each_chunk, map_chunks, row,
 };
 
-use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
+use crate::CornerTable;
+use crate::mesh::{CornerId, EdgeCorner, edge_between};
 
 /// Number of corners in one chunk: whole triangles.
 const CHUNK_CORNERS: usize = 3 * CHUNK_ROWS;

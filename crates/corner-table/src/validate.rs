@@ -2,15 +2,13 @@
 
 use std::collections::HashSet;
 
-use sixfold_core::{Editing, HoleSet, InvariantError, MeshQuery, Slot, Untraced, VertexId, row};
+use sixfold_core::{Editing, HoleSet, InvariantError, MeshQuery, Slot, VertexId, row};
 
-use crate::mesh::{AnyCornerTable, CornerId, NO_VERTEX};
+use crate::mesh::{CornerId, CornerTable, NO_VERTEX};
 
 /// Checks the lengths of the tables, the holes, and I1 to I7 in order; later checks rely on
 /// earlier.
-pub(crate) fn validate<E: Editing>(
-    mesh: &AnyCornerTable<Untraced, E>,
-) -> Result<(), InvariantError> {
+pub(crate) fn validate<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
     check_table_lengths(mesh)?;
     check_holes(mesh)?;
     check_triangles(mesh)?;
@@ -26,13 +24,11 @@ fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> 
     Err(InvariantError::new(invariant, detail))
 }
 
-fn corners<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> impl Iterator<Item = CornerId> {
+fn corners<E: Editing>(mesh: &CornerTable<E>) -> impl Iterator<Item = CornerId> {
     mesh.faces().flat_map(|t| mesh.corners_of(t))
 }
 
-fn check_table_lengths<E: Editing>(
-    mesh: &AnyCornerTable<Untraced, E>,
-) -> Result<(), InvariantError> {
+fn check_table_lengths<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
     let (corners, opposites) = (mesh.corner_vertices().len(), mesh.opposite_corners().len());
     if !corners.is_multiple_of(3) || opposites != corners {
         let detail = format!("`vertex` has {corners} rows, `opposite` {opposites}: not 3 per face");
@@ -44,7 +40,7 @@ fn check_table_lengths<E: Editing>(
     Ok(())
 }
 
-fn check_holes<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
+fn check_holes<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
     let rows = [
         (&mesh.vertex_holes, mesh.positions().len()),
         (&mesh.face_holes, mesh.corner_vertices().len() / 3),
@@ -72,7 +68,7 @@ fn check_holes<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), Inv
     Ok(())
 }
 
-fn check_triangles<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
+fn check_triangles<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
     for t in mesh.faces() {
         let [a, b, c] = mesh.vertices_of(t);
         if a == b || b == c || c == a {
@@ -87,7 +83,7 @@ fn check_triangles<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(),
     Ok(())
 }
 
-fn check_opposites<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
+fn check_opposites<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
     for c in corners(mesh) {
         if let Some(across) = mesh.opposite(c) {
             if across.index() >= mesh.corner_vertices().len() {
@@ -104,7 +100,7 @@ fn check_opposites<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(),
     Ok(())
 }
 
-fn check_sides<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
+fn check_sides<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
     for c in corners(mesh) {
         if let Some(across) = mesh.opposite(c) {
             let here = [c.next(), c.prev()].map(|c| mesh.vertex(c));
@@ -119,9 +115,7 @@ fn check_sides<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), Inv
     Ok(())
 }
 
-fn check_vertex_corners<E: Editing>(
-    mesh: &AnyCornerTable<Untraced, E>,
-) -> Result<(), InvariantError> {
+fn check_vertex_corners<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
     let mut used = vec![false; mesh.positions().len()];
     for c in corners(mesh) {
         used[mesh.vertex(c).index()] = true;
@@ -140,9 +134,7 @@ fn check_vertex_corners<E: Editing>(
     Ok(())
 }
 
-fn check_first_corners<E: Editing>(
-    mesh: &AnyCornerTable<Untraced, E>,
-) -> Result<(), InvariantError> {
+fn check_first_corners<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
     for c in corners(mesh).filter(|&c| mesh.unswing(c).is_none()) {
         let v = mesh.vertex(c);
         let entered = mesh.corner_at(v).and_then(|first| mesh.unswing(first));
@@ -154,7 +146,7 @@ fn check_first_corners<E: Editing>(
     Ok(())
 }
 
-fn check_fans<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), InvariantError> {
+fn check_fans<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
     let mut all = vec![0_usize; mesh.positions().len()];
     for c in corners(mesh) {
         all[mesh.vertex(c).index()] += 1;
@@ -171,9 +163,7 @@ fn check_fans<E: Editing>(mesh: &AnyCornerTable<Untraced, E>) -> Result<(), Inva
     Ok(())
 }
 
-fn check_distinct_edges<E: Editing>(
-    mesh: &AnyCornerTable<Untraced, E>,
-) -> Result<(), InvariantError> {
+fn check_distinct_edges<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
     let mut ends = HashSet::new();
     for e in mesh.edges() {
         let [a, b] = mesh.edge_vertices(e);
@@ -192,7 +182,7 @@ mod tests {
     use sixfold_core::{Point, PolygonMesh, Representation, Table};
 
     use super::*;
-    use crate::mesh::EditableCornerTable;
+    use crate::EditableCornerTable;
 
     fn table<const N: usize>(vertices: u16, triangles: [[u32; 3]; N]) -> EditableCornerTable {
         let positions: Vec<_> = (0..vertices).map(|i| Point::splat(i.into())).collect();

@@ -2,15 +2,15 @@
 
 use sixfold_core::{Editing, FaceId, HandleMap, OrientedWalk, Probe, SideMap, VertexId};
 
-use crate::mesh::{AnyCornerTable, CornerId, EdgeCorner, NO_VERTEX};
+use crate::mesh::{CornerId, CornerTable, EdgeCorner, NO_VERTEX};
 
 /// A side is named by the corner where it starts: the side `c` runs from `vertex(c)` to
 /// `vertex(next(c))`, and `prev(c)` is the corner that faces it.
 ///
 /// Every method is O(1). The steps along a face and `side_face` read no table; all other methods
-/// read one row. `ccw_side` is [`swing`](AnyCornerTable::swing), `cw_side` is
-/// [`unswing`](AnyCornerTable::unswing).
-impl<P: Probe, E: Editing> OrientedWalk for AnyCornerTable<P, E> {
+/// read one row. `ccw_side` is [`swing`](CornerTable::swing), `cw_side` is
+/// [`unswing`](CornerTable::unswing).
+impl<P: Probe, E: Editing> OrientedWalk for CornerTable<E, P> {
     type Side = CornerId;
 
     #[inline]

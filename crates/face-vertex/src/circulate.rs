@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 use sixfold_core::{Editing, FaceId, IteratorExt, Pair, Probe, VertexId};
 
-use crate::mesh::AnyFaceVertexMesh;
+use crate::mesh::FaceVertexMesh;
 
 /// Maximum number of handles that a result stores inline.
 const FEW: usize = 32;
@@ -94,7 +94,7 @@ impl Ring {
     }
 }
 
-impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
+impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
     /// Returns the vertices adjacent to `v` in its faces, each once.
     ///
     /// Compares the vertices of a small fan in place; uses a hash set for a large fan, so that the

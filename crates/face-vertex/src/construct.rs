@@ -6,9 +6,9 @@ use sixfold_core::{
     Representation, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap, row,
 };
 
-use crate::mesh::{AnyFaceVertexMesh, EditableFaceVertexMesh, FaceVertexMesh, Fan};
+use crate::mesh::{FaceVertexMesh, Fan};
 
-impl<E: Editing> Representation for AnyFaceVertexMesh<Untraced, E> {
+impl<E: Editing> Representation for FaceVertexMesh<E> {
     const NAME: &'static str = "face-vertex";
 
     const COSTS: [QueryCost; 9] = {
@@ -101,10 +101,10 @@ impl<E: Editing> Representation for AnyFaceVertexMesh<Untraced, E> {
     }
 }
 
-sixfold_core::local_queries!(FaceVertexMesh, EditableFaceVertexMesh);
+sixfold_core::local_queries!(crate::FaceVertexMesh, crate::EditableFaceVertexMesh);
 
-impl<E: Editing> Measured for AnyFaceVertexMesh<Untraced, E> {
-    type Probed<P: Probe> = AnyFaceVertexMesh<P, E>;
+impl<E: Editing> Measured for FaceVertexMesh<E> {
+    type Probed<P: Probe> = FaceVertexMesh<E, P>;
 
     fn layout_bytes(counts: &Counts) -> usize {
         let by_vertex = size_of::<Point>() + size_of::<Fan>();
@@ -112,8 +112,8 @@ impl<E: Editing> Measured for AnyFaceVertexMesh<Untraced, E> {
         by_vertex * counts.vertices + by_corner * counts.corners + counts.offset_bytes()
     }
 
-    fn probed<P: Probe>(self, probe: P) -> AnyFaceVertexMesh<P, E> {
-        AnyFaceVertexMesh {
+    fn probed<P: Probe>(self, probe: P) -> FaceVertexMesh<E, P> {
+        FaceVertexMesh {
             positions: self.positions.probed(probe.clone()),
             corners: self.corners.probed(probe.clone()),
             spans: self.spans.probed(probe.clone()),
@@ -172,7 +172,7 @@ fn add_uniform<const DEGREE: usize>(corners: &[VertexId], mut add: impl FnMut(Fa
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::FaceVertexMesh;
+    use crate::FaceVertexMesh;
 
     fn build(faces: &[&[u32]]) -> FaceVertexMesh {
         let square = [Point::ZERO, Point::X, Point::ONE, Point::Y, Point::Z];

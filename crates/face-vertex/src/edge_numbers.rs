@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use sixfold_core::{CHUNK_ROWS, FaceId, FaceSpans, Pair, VertexId, row};
 
-use crate::mesh::FaceVertexMesh;
+use crate::FaceVertexMesh;
 
 /// The numbers of the edges, by corner: the edge along the side that starts at the corner. The
 /// number of an edge is its position in `edges()`.

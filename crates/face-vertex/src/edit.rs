@@ -15,23 +15,23 @@ mod split_vertex;
 mod tests;
 
 use sixfold_core::{
-    Edit, EditError, EditLog, FaceId, HoleSet, MeshEdit, NoHoles, Pair, Point, Probe, QueryCost,
-    Refusal, ShortVec, VertexId, row,
+    Compact, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MeshEdit, NoHoles, Pair, Point,
+    Probe, QueryCost, Refusal, ShortVec, VertexId, row,
 };
 
 use self::corners::{corners_from, repeated_vertex, sides, third_corner};
-use crate::mesh::{AnyFaceVertexMesh, BLANK_CORNER, EditableFaceVertexMesh, FaceVertexMesh, Fan};
+use crate::mesh::{BLANK_CORNER, FaceVertexMesh, Fan};
 
 type Edge = Pair<VertexId>;
 
-impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
+impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 
-    type Compact = FaceVertexMesh<P>;
+    type Compact = FaceVertexMesh<Compact, P>;
 
-    fn into_compact(mut self) -> FaceVertexMesh<P> {
+    fn into_compact(mut self) -> FaceVertexMesh<Compact, P> {
         self.compact();
-        AnyFaceVertexMesh {
+        FaceVertexMesh {
             positions: self.positions,
             corners: self.corners,
             spans: self.spans.into_compact().expect("compacted"),
@@ -42,7 +42,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
         }
     }
 
-    fn from_compact(compact: FaceVertexMesh<P>) -> Self {
+    fn from_compact(compact: FaceVertexMesh<Compact, P>) -> Self {
         compact.into()
     }
 
@@ -378,7 +378,7 @@ impl<P: Probe> MeshEdit for EditableFaceVertexMesh<P> {
     }
 }
 
-impl<P: Probe> EditableFaceVertexMesh<P> {
+impl<P: Probe> FaceVertexMesh<Editable, P> {
     /// Marks `f`, which is in no fan any more, as deleted.
     fn delete_face(&mut self, f: FaceId) {
         self.spans.blank(&mut self.corners, f, BLANK_CORNER);
@@ -416,12 +416,16 @@ impl<P: Probe> EditableFaceVertexMesh<P> {
 }
 
 /// Returns whether `log` records events.
-fn uses_reports<P: Probe, L: EditLog<EditableFaceVertexMesh<P>>>(_: &L) -> bool {
+fn uses_reports<P: Probe, L: EditLog<FaceVertexMesh<Editable, P>>>(_: &L) -> bool {
     L::USES_REPORTS
 }
 
 /// Reports that `m` splits `e`: `e` is renamed to its lower half, and the upper half is new.
-fn report_split<P: Probe>(e: Edge, m: VertexId, log: &mut impl EditLog<EditableFaceVertexMesh<P>>) {
+fn report_split<P: Probe>(
+    e: Edge,
+    m: VertexId,
+    log: &mut impl EditLog<FaceVertexMesh<Editable, P>>,
+) {
     let [low, high] = e.ends();
     log.created_vertex(m);
     log.renamed_edge(e, Pair::new(low, m));

@@ -5,7 +5,7 @@
 //! not stored; an edge is the [pair](sixfold_core::Pair) of its ends. FV, FE, EV and VF take O(1)
 //! per item; the other five search the faces around the element. All edits of
 //! [`MeshEdit`](sixfold_core::MeshEdit) are supported and local; only their own rules restrict
-//! them. Start at [`AnyFaceVertexMesh`]; its four invariants define the tables.
+//! them. Start at [`generic::FaceVertexMesh`]; its four invariants define the tables.
 
 mod circulate;
 mod construct;
@@ -19,8 +19,22 @@ mod validate;
 mod walk;
 
 pub use edge_numbers::EdgeNumbers;
-pub use mesh::{AnyFaceVertexMesh, EditableFaceVertexMesh, FaceVertexMesh, Fan};
+pub use mesh::Fan;
 pub use walk::{CornerMap, FaceSide};
+
+/// The mesh with its type parameters, for code that is generic over them.
+///
+/// Programs use the two types of the crate root instead.
+pub mod generic {
+    pub use crate::mesh::FaceVertexMesh;
+}
+
+/// A face-vertex mesh that cannot delete elements: a [`generic::FaceVertexMesh`] without holes.
+pub type FaceVertexMesh = generic::FaceVertexMesh;
+
+/// A face-vertex mesh that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): a
+/// [`generic::FaceVertexMesh`] with holes.
+pub type EditableFaceVertexMesh = generic::FaceVertexMesh<sixfold_core::Editable>;
 
 /// The traits and types that all structures share: `PolygonMesh`, `MeshQuery`, handles, errors.
 pub use sixfold_core;

@@ -104,7 +104,7 @@ use sixfold_core::{
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
-pub struct AnyFaceVertexMesh<P: Probe, E: Editing> {
+pub struct FaceVertexMesh<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) corners: Table<VertexId, P>,
     pub(crate) spans: FaceSpans<P, E>,
@@ -114,17 +114,11 @@ pub struct AnyFaceVertexMesh<P: Probe, E: Editing> {
     pub(crate) face_holes: E::Holes<P>,
 }
 
-sixfold_core::clone_by_field!(AnyFaceVertexMesh<P: Probe, E: Editing> { positions, corners, spans, fans, pool, vertex_holes, face_holes });
+sixfold_core::clone_by_field!(FaceVertexMesh<E: Editing, P: Probe> { positions, corners, spans, fans, pool, vertex_holes, face_holes });
+sixfold_core::polygon_conversions!(FaceVertexMesh);
 
-/// A face-vertex mesh that cannot delete elements: an [`AnyFaceVertexMesh`] without holes.
-pub type FaceVertexMesh<P = Untraced> = AnyFaceVertexMesh<P, Compact>;
-
-/// A face-vertex mesh that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an
-/// [`AnyFaceVertexMesh`] with holes.
-pub type EditableFaceVertexMesh<P = Untraced> = AnyFaceVertexMesh<P, Editable>;
-
-impl<P: Probe> From<FaceVertexMesh<P>> for EditableFaceVertexMesh<P> {
-    fn from(mesh: FaceVertexMesh<P>) -> Self {
+impl<P: Probe> From<FaceVertexMesh<Compact, P>> for FaceVertexMesh<Editable, P> {
+    fn from(mesh: FaceVertexMesh<Compact, P>) -> Self {
         let probe = mesh.positions.probe();
         Self {
             positions: mesh.positions,
@@ -169,7 +163,7 @@ impl Fan {
     }
 }
 
-impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
+impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
     /// Returns the position of each vertex, as stored.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()

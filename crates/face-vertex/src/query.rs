@@ -4,9 +4,9 @@ use sixfold_core::{
     Capabilities, Editing, FaceId, HoleSet, MeshQuery, Pair, Point, Probe, VertexId,
 };
 
-use crate::mesh::{AnyFaceVertexMesh, deleted_vertex};
+use crate::mesh::{FaceVertexMesh, deleted_vertex};
 
-impl<P: Probe, E: Editing> MeshQuery for AnyFaceVertexMesh<P, E> {
+impl<P: Probe, E: Editing> MeshQuery for FaceVertexMesh<E, P> {
     type Vertex = VertexId;
     type Edge = Pair<VertexId>;
     type Face = FaceId;
@@ -139,7 +139,7 @@ mod tests {
     use sixfold_core::{Measured, PolygonMesh, Representation, Traced};
 
     use super::*;
-    use crate::mesh::FaceVertexMesh;
+    use crate::FaceVertexMesh;
 
     fn build(faces: impl IntoIterator<Item: AsRef<[u32]>>, vertices: usize) -> FaceVertexMesh {
         let polygons = PolygonMesh::new(vec![Point::ZERO; vertices], faces).expect("valid");

@@ -27,8 +27,9 @@ use sixfold_core::{
     VertexId, check_split, row,
 };
 
+use crate::FaceVertexMesh;
 use crate::edge_numbers::EdgeNumbers;
-use crate::mesh::{FaceVertexMesh, Fan};
+use crate::mesh::Fan;
 
 impl Refine for FaceVertexMesh {
     const SPLITS: &'static [Split] = &[Split::Quads, Split::Triangles];

@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use sixfold_core::{CHUNK_ROWS, FaceId, VertexId, for_each_chunk, map_chunks, row};
 
+use crate::FaceVertexMesh;
 use crate::edge_numbers::{EdgeChunk, EdgeNumbers};
-use crate::mesh::{FaceVertexMesh, Fan};
+use crate::mesh::Fan;
 
 /// Maximum number of sides that are found before they are added to the fans. Large batches make the
 /// loops end rarely; each loop end costs a branch misprediction.

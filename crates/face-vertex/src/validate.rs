@@ -4,9 +4,9 @@ use sixfold_core::{
     Editing, FaceId, HoleSet, InvariantError, IteratorExt, MeshQuery, Probe, VertexId, row,
 };
 
-use crate::mesh::{AnyFaceVertexMesh, BLANK_CORNER, BLANK_PLACE, Fan};
+use crate::mesh::{BLANK_CORNER, BLANK_PLACE, FaceVertexMesh, Fan};
 
-impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
+impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
     pub(crate) fn check_invariants(&self) -> Result<(), InvariantError> {
         self.check_spans()?;
         self.check_faces()?;
@@ -141,7 +141,7 @@ mod tests {
     use sixfold_core::{FaceSpans, Point, PolygonMesh, Representation, Table};
 
     use super::*;
-    use crate::mesh::EditableFaceVertexMesh;
+    use crate::EditableFaceVertexMesh;
 
     const SQUARE: [Point; 4] = [Point::ZERO, Point::X, Point::ONE, Point::Y];
 

@@ -8,7 +8,7 @@ use sixfold_core::{
     row_id,
 };
 
-use crate::mesh::{AnyFaceVertexMesh, BLANK_CORNER, deleted_face};
+use crate::mesh::{BLANK_CORNER, FaceVertexMesh, deleted_face};
 
 row_id! {
     /// A row of the table of corners.
@@ -16,7 +16,7 @@ row_id! {
 }
 
 /// The handle of one side, `f3c10`: its face, and the corner where it starts, as a row of
-/// [`corners`](AnyFaceVertexMesh::corners).
+/// [`corners`](FaceVertexMesh::corners).
 ///
 /// The corner alone would name the side, but if degrees differ, its face is found by a search.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -96,7 +96,7 @@ impl<T> IndexMut<FaceSide> for CornerMap<T> {
 /// corner. Twins are not stored: `twin_side`, `cw_side`, `ccw_side` and `edge_sides` search the
 /// faces around the end of the edge that has fewer of them, as EF does; O(length · degree).
 /// `outgoing_sides` takes O(degree) for each side.
-impl<P: Probe, E: Editing> OrientedWalk for AnyFaceVertexMesh<P, E> {
+impl<P: Probe, E: Editing> OrientedWalk for FaceVertexMesh<E, P> {
     type Side = FaceSide;
 
     #[inline]
@@ -178,7 +178,7 @@ impl<P: Probe, E: Editing> OrientedWalk for AnyFaceVertexMesh<P, E> {
     }
 }
 
-impl<P: Probe, E: Editing> AnyFaceVertexMesh<P, E> {
+impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
     /// Returns the rows of the corners of `f`; panics if there is no such face.
     #[inline]
     fn range_of(&self, f: FaceId) -> Range<usize> {
@@ -205,7 +205,7 @@ mod tests {
     use sixfold_core::{MeshQuery, Point, PolygonMesh, Representation};
 
     use super::*;
-    use crate::mesh::FaceVertexMesh;
+    use crate::FaceVertexMesh;
 
     fn twins(faces: &[[u32; 3]]) -> Vec<Option<FaceSide>> {
         let polygons = PolygonMesh::new([Point::ZERO; 5], faces).expect("valid");

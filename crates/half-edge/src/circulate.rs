@@ -2,7 +2,7 @@
 
 use sixfold_core::{EdgeId, Editing, FaceId, Probe, Slot, VertexId};
 
-use crate::mesh::{AnyHalfEdgeMesh, Half, HalfEdgeId, panic_deleted};
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh, panic_deleted};
 
 /// The half-edges that leave a vertex, clockwise: each step is `h → next(twin(h))`.
 #[derive(Clone, Debug)]
@@ -30,7 +30,7 @@ impl<P: Probe, E: Editing> Iterator for AroundFace<'_, P, E> {
     }
 }
 
-impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
+impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
     /// Iterates over the half-edges that leave `v`, clockwise, starting on the boundary loop if `v`
     /// is on one.
     ///
@@ -85,7 +85,7 @@ impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
 /// spoke.
 #[derive(Clone, Debug)]
 pub(crate) struct Spokes<'a, P: Probe, E: Editing> {
-    mesh: &'a AnyHalfEdgeMesh<P, E>,
+    mesh: &'a HalfEdgeMesh<E, P>,
     at: Option<HalfEdgeId>,
     first: Option<HalfEdgeId>,
 }
@@ -122,7 +122,7 @@ impl<'a, P: Probe, E: Editing> Iterator for Spokes<'a, P, E> {
 /// The half-edges along a face, each with its record.
 #[derive(Clone, Debug)]
 pub(crate) struct Sides<'a, P: Probe, E: Editing> {
-    mesh: &'a AnyHalfEdgeMesh<P, E>,
+    mesh: &'a HalfEdgeMesh<E, P>,
     at: Option<HalfEdgeId>,
     first: HalfEdgeId,
 }
@@ -178,7 +178,7 @@ impl<P: Probe, E: Editing> Iterator for Across<'_, P, E> {
 /// at the half-edge of the edge itself.
 #[derive(Clone, Debug)]
 pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
-    mesh: &'a AnyHalfEdgeMesh<P, E>,
+    mesh: &'a HalfEdgeMesh<E, P>,
     at: HalfEdgeId,
     /// The half-edge at which the walk ends.
     stop: HalfEdgeId,
@@ -188,7 +188,7 @@ pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
 
 impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
     #[inline]
-    pub(crate) fn new(mesh: &'a AnyHalfEdgeMesh<P, E>, e: EdgeId) -> Self {
+    pub(crate) fn new(mesh: &'a HalfEdgeMesh<E, P>, e: EdgeId) -> Self {
         let [one, other] = mesh.halves_of(e);
         let half = mesh.halves.read(other.index());
         if E::CAN_DELETE && half.is_deleted() {

@@ -3,12 +3,12 @@
 use sixfold_core::{
     BuildError, Counts, Editing, FaceId, FaceList, HoleSet, InvariantError, Measured,
     MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
-    RowId, RowMap, SideRows, Slot, TwinPairs, Untraced, VertexId, row,
+    RowId, RowMap, SideRows, Slot, TwinPairs, VertexId, row,
 };
 
-use crate::mesh::{AnyHalfEdgeMesh, EditableHalfEdgeMesh, Half, HalfEdgeId, HalfEdgeMesh};
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
-impl<E: Editing> Representation for AnyHalfEdgeMesh<Untraced, E> {
+impl<E: Editing> Representation for HalfEdgeMesh<E> {
     const NAME: &'static str = "half-edge";
 
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
@@ -103,17 +103,17 @@ impl<E: Editing> Representation for AnyHalfEdgeMesh<Untraced, E> {
     }
 }
 
-sixfold_core::local_queries!(HalfEdgeMesh, EditableHalfEdgeMesh);
+sixfold_core::local_queries!(crate::HalfEdgeMesh, crate::EditableHalfEdgeMesh);
 
-impl<E: Editing> Measured for AnyHalfEdgeMesh<Untraced, E> {
-    type Probed<P: Probe> = AnyHalfEdgeMesh<P, E>;
+impl<E: Editing> Measured for HalfEdgeMesh<E> {
+    type Probed<P: Probe> = HalfEdgeMesh<E, P>;
 
     fn layout_bytes(counts: &Counts) -> usize {
         size_of::<Half>() * 2 * counts.edges + 16 * counts.vertices + 4 * counts.faces
     }
 
-    fn probed<P: Probe>(self, probe: P) -> AnyHalfEdgeMesh<P, E> {
-        AnyHalfEdgeMesh {
+    fn probed<P: Probe>(self, probe: P) -> HalfEdgeMesh<E, P> {
+        HalfEdgeMesh {
             positions: self.positions.probed(probe.clone()),
             leaving: self.leaving.probed(probe.clone()),
             halves: self.halves.probed(probe.clone()),

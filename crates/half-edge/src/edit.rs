@@ -11,11 +11,12 @@ mod split_vertex;
 mod tests;
 
 use sixfold_core::{
-    EdgeId, Edit, EditError, EditLog, FaceId, HoleSet, MAX_ROWS, MeshEdit, MeshQuery, NoHoles,
-    Point, Probe, QueryCost, Slot, VertexId, row,
+    Compact, EdgeId, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit,
+    MeshQuery, NoHoles, Point, Probe, QueryCost, Slot, VertexId, row,
 };
 
-use crate::mesh::{AnyHalfEdgeMesh, EditableHalfEdgeMesh, Half, HalfEdgeId, HalfEdgeMesh, NO_HALF};
+use crate::EditableHalfEdgeMesh;
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh, NO_HALF};
 
 /// The error of an edit; the same type for every probe.
 type Refusal = sixfold_core::Refusal<EditableHalfEdgeMesh>;
@@ -29,14 +30,14 @@ type Refusal = sixfold_core::Refusal<EditableHalfEdgeMesh>;
 ///
 /// Every edit that touches a vertex maintains `leaving` (I5): if another half-edge replaces the
 /// boundary half-edge on the boundary loop, it also replaces it in `leaving`.
-impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
+impl<P: Probe> MeshEdit for HalfEdgeMesh<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 
-    type Compact = HalfEdgeMesh<P>;
+    type Compact = HalfEdgeMesh<Compact, P>;
 
-    fn into_compact(mut self) -> HalfEdgeMesh<P> {
+    fn into_compact(mut self) -> HalfEdgeMesh<Compact, P> {
         self.compact();
-        AnyHalfEdgeMesh {
+        HalfEdgeMesh {
             positions: self.positions,
             leaving: self.leaving,
             halves: self.halves,
@@ -47,7 +48,7 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
         }
     }
 
-    fn from_compact(compact: HalfEdgeMesh<P>) -> Self {
+    fn from_compact(compact: HalfEdgeMesh<Compact, P>) -> Self {
         compact.into()
     }
 
@@ -198,7 +199,7 @@ impl<P: Probe> MeshEdit for EditableHalfEdgeMesh<P> {
 }
 
 /// Checks that elements exist and that there is room for more.
-impl<P: Probe> EditableHalfEdgeMesh<P> {
+impl<P: Probe> HalfEdgeMesh<Editable, P> {
     #[inline]
     fn check_vertex(&self, v: VertexId) -> Result<(), Refusal> {
         if v.index() < self.vertex_rows() && !self.vertex_holes.has(v.index()) {
@@ -250,7 +251,7 @@ impl<P: Probe> EditableHalfEdgeMesh<P> {
 }
 
 /// Steps that several edits share.
-impl<P: Probe> EditableHalfEdgeMesh<P> {
+impl<P: Probe> HalfEdgeMesh<Editable, P> {
     /// Returns the record of `h`.
     #[inline]
     fn record(&self, h: HalfEdgeId) -> Half {

@@ -1,7 +1,7 @@
 //! Half-edge mesh: every edge is two directed half-edges, each with a face on its left.
 //!
 //! Use it to walk around vertices and to change connectivity. It does not hold edges with three
-//! faces: building from them returns an error. Start at [`AnyHalfEdgeMesh`]; its numbered
+//! faces: building from them returns an error. Start at [`generic::HalfEdgeMesh`]; its numbered
 //! invariants define the tables. After Weiler (1985) and Mäntylä (1988); twin pairs after Campagna,
 //! Kobbelt & Seidel (1998).
 //!
@@ -86,7 +86,21 @@ mod validate;
 mod walk;
 
 pub use circulate::{AroundFace, Leaving};
-pub use mesh::{AnyHalfEdgeMesh, EditableHalfEdgeMesh, Half, HalfEdgeId, HalfEdgeMesh};
+pub use mesh::{Half, HalfEdgeId};
+
+/// The mesh with its type parameters, for code that is generic over them.
+///
+/// Programs use the two types of the crate root instead.
+pub mod generic {
+    pub use crate::mesh::HalfEdgeMesh;
+}
+
+/// A half-edge mesh that cannot delete elements: a [`generic::HalfEdgeMesh`] without holes.
+pub type HalfEdgeMesh = generic::HalfEdgeMesh;
+
+/// A half-edge mesh that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): a
+/// [`generic::HalfEdgeMesh`] with holes.
+pub type EditableHalfEdgeMesh = generic::HalfEdgeMesh<sixfold_core::Editable>;
 
 /// The traits and types that all Sixfold structures share: `PolygonMesh`, `MeshQuery`, handles,
 /// errors.

@@ -97,7 +97,7 @@ pub(crate) const NO_HALF: HalfEdgeId = HalfEdgeId::new(u32::MAX);
 /// 24 words, per vertex of a large closed triangle mesh. After the first deletion, also one bit per
 /// row up to the last hole.
 #[derive(Debug)]
-pub struct AnyHalfEdgeMesh<P: Probe, E: Editing> {
+pub struct HalfEdgeMesh<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) leaving: Table<Slot<HalfEdgeId>, P>,
     pub(crate) halves: Table<Half, P>,
@@ -107,17 +107,11 @@ pub struct AnyHalfEdgeMesh<P: Probe, E: Editing> {
     pub(crate) face_holes: E::Holes<P>,
 }
 
-sixfold_core::clone_by_field!(AnyHalfEdgeMesh<P: Probe, E: Editing> { positions, leaving, halves, first, vertex_holes, edge_holes, face_holes });
+sixfold_core::clone_by_field!(HalfEdgeMesh<E: Editing, P: Probe> { positions, leaving, halves, first, vertex_holes, edge_holes, face_holes });
+sixfold_core::polygon_conversions!(HalfEdgeMesh);
 
-/// A half-edge mesh that cannot delete elements: an [`AnyHalfEdgeMesh`] without holes.
-pub type HalfEdgeMesh<P = Untraced> = AnyHalfEdgeMesh<P, Compact>;
-
-/// A half-edge mesh that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an
-/// [`AnyHalfEdgeMesh`] with holes.
-pub type EditableHalfEdgeMesh<P = Untraced> = AnyHalfEdgeMesh<P, Editable>;
-
-impl<P: Probe> From<HalfEdgeMesh<P>> for EditableHalfEdgeMesh<P> {
-    fn from(mesh: HalfEdgeMesh<P>) -> Self {
+impl<P: Probe> From<HalfEdgeMesh<Compact, P>> for HalfEdgeMesh<Editable, P> {
+    fn from(mesh: HalfEdgeMesh<Compact, P>) -> Self {
         let probe = mesh.positions.probe();
         Self {
             positions: mesh.positions,
@@ -131,7 +125,7 @@ impl<P: Probe> From<HalfEdgeMesh<P>> for EditableHalfEdgeMesh<P> {
     }
 }
 
-impl<E: Editing> AnyHalfEdgeMesh<Untraced, E> {
+impl<E: Editing> HalfEdgeMesh<E> {
     /// Builds a mesh from these tables, without holes.
     pub(crate) fn from_tables(
         positions: Vec<Point>,
@@ -152,7 +146,7 @@ impl<E: Editing> AnyHalfEdgeMesh<Untraced, E> {
 }
 
 /// The classic operators. Each panics with the handle of the half-edge if it does not exist.
-impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
+impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
     /// Returns the next half-edge along the face or the boundary loop; O(1).
     #[inline]
     pub fn next(&self, h: HalfEdgeId) -> HalfEdgeId {
@@ -291,7 +285,7 @@ pub(crate) fn panic_deleted(handle: impl Debug) -> ! {
 
 /// The tables as they are in memory, for export and for the caller's own loops. I9 defines the rows
 /// of deleted elements.
-impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
+impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
     /// Returns the positions by vertex.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
@@ -343,7 +337,8 @@ mod tests {
             [0.0, 1.0, 2.0, 3.0, 4.0].map(Point::splat),
             [&[0, 1, 2, 3][..], &[1, 0, 4]],
         );
-        let open = HalfEdgeMesh::from_polygons(&open.expect("valid")).expect("manifold");
+        let open: HalfEdgeMesh =
+            HalfEdgeMesh::from_polygons(&open.expect("valid")).expect("manifold");
         for mesh in [cube(), open] {
             for h in (0..mesh.half_edge_count() as u32).map(HalfEdgeId::new) {
                 assert_eq!(mesh.prev(mesh.next(h)), h);

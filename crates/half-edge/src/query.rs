@@ -5,9 +5,9 @@ use sixfold_core::{
 };
 
 use crate::circulate::EdgeEdges;
-use crate::mesh::{AnyHalfEdgeMesh, Half, panic_deleted};
+use crate::mesh::{Half, HalfEdgeMesh, panic_deleted};
 
-impl<P: Probe, E: Editing> MeshQuery for AnyHalfEdgeMesh<P, E> {
+impl<P: Probe, E: Editing> MeshQuery for HalfEdgeMesh<E, P> {
     type Vertex = VertexId;
     type Edge = EdgeId;
     type Face = FaceId;
@@ -135,7 +135,7 @@ impl<P: Probe, E: Editing> MeshQuery for AnyHalfEdgeMesh<P, E> {
     }
 }
 
-impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
+impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
     /// Returns the records of both half-edges of `e`.
     #[inline]
     pub(crate) fn pair(&self, e: EdgeId) -> &[Half; 2] {

@@ -12,7 +12,8 @@ use sixfold_core::{
     VertexId, all_rows, check_split, chunk_starts, for_each_chunk, row, rows_of_chunk,
 };
 
-use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+use crate::HalfEdgeMesh;
+use crate::mesh::{Half, HalfEdgeId};
 
 /// The row of every half-edge of the child is computed from rows of the parent.
 ///

@@ -2,17 +2,13 @@
 
 use std::collections::HashSet;
 
-use sixfold_core::{
-    Editing, FaceId, HoleSet, InvariantError, MeshQuery, RowId, Untraced, VertexId,
-};
+use sixfold_core::{Editing, FaceId, HoleSet, InvariantError, MeshQuery, RowId, VertexId};
 
-use crate::mesh::{AnyHalfEdgeMesh, Half, HalfEdgeId, NO_HALF};
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh, NO_HALF};
 
 /// Checks that the half-edges are pairs, then I9, then I1 to I8; each check relies on the earlier
 /// ones.
-pub(crate) fn validate<E: Editing>(
-    mesh: &AnyHalfEdgeMesh<Untraced, E>,
-) -> Result<(), InvariantError> {
+pub(crate) fn validate<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     check_pairs(mesh)?;
     check_holes(mesh)?;
     check_handles(mesh)?;
@@ -31,11 +27,11 @@ fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> 
 }
 
 /// Iterates over the half-edges of all edges that are not deleted.
-fn halves<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> impl Iterator<Item = HalfEdgeId> {
+fn halves<E: Editing>(mesh: &HalfEdgeMesh<E>) -> impl Iterator<Item = HalfEdgeId> {
     mesh.edges().flat_map(|e| mesh.halves_of(e))
 }
 
-fn check_pairs<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_pairs<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     match mesh.half_rows().len() {
         rows if rows.is_multiple_of(2) => Ok(()),
         rows => fails("I1", format!("{rows} half-edges, expected an even number")),
@@ -43,7 +39,7 @@ fn check_pairs<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), In
 }
 
 /// Checks that exactly the rows of deleted elements are marked as deleted.
-fn check_holes<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_holes<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     let kinds = [
         (&mesh.vertex_holes, mesh.vertex_rows()),
         (&mesh.edge_holes, mesh.edge_rows()),
@@ -75,7 +71,7 @@ fn check_holes<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), In
 
 /// Checks that every handle in the tables refers to an element that exists. The other checks walk
 /// along these handles, so they rely on this check.
-fn check_handles<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_handles<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     let is_vertex =
         |v: VertexId| v.index() < mesh.vertex_rows() && !mesh.vertex_holes.has(v.index());
     let is_half = |h: HalfEdgeId| {
@@ -97,16 +93,14 @@ fn check_handles<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), 
     }
 }
 
-fn check_edge_faces<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_edge_faces<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     match halves(mesh).find(|&h| mesh.is_boundary(h) && mesh.is_boundary(h.twin())) {
         Some(h) => fails("I1", format!("{} has no face on either side", h.edge())),
         None => Ok(()),
     }
 }
 
-fn check_permutation<E: Editing>(
-    mesh: &AnyHalfEdgeMesh<Untraced, E>,
-) -> Result<(), InvariantError> {
+fn check_permutation<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     let mut reached = vec![false; mesh.half_rows().len()];
     for h in halves(mesh) {
         let next = mesh.next(h);
@@ -117,9 +111,7 @@ fn check_permutation<E: Editing>(
     Ok(())
 }
 
-fn check_cycle_faces<E: Editing>(
-    mesh: &AnyHalfEdgeMesh<Untraced, E>,
-) -> Result<(), InvariantError> {
+fn check_cycle_faces<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     match halves(mesh).find(|&h| mesh.face(mesh.next(h)) != mesh.face(h)) {
         Some(h) => fails(
             "I3",
@@ -129,14 +121,14 @@ fn check_cycle_faces<E: Editing>(
     }
 }
 
-fn check_ends<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_ends<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     match halves(mesh).find(|&h| mesh.origin(mesh.next(h)) != mesh.target(h)) {
         Some(h) => fails("I4", format!("{h} does not end where its next starts")),
         None => Ok(()),
     }
 }
 
-fn check_leaving<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_leaving<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     for h in halves(mesh) {
         let v = mesh.origin(h);
         let Some(leaving) = mesh.half_leaving(v) else {
@@ -163,7 +155,7 @@ fn check_leaving<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), 
     Ok(())
 }
 
-fn check_fans<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_fans<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     let mut leaving = vec![0_usize; mesh.vertex_rows()];
     for h in halves(mesh) {
         leaving[mesh.origin(h).index()] += 1;
@@ -181,7 +173,7 @@ fn check_fans<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), Inv
     Ok(())
 }
 
-fn check_faces<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_faces<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     let mut along = 0;
     for f in mesh.faces() {
         let h = mesh.half_along(f);
@@ -205,9 +197,7 @@ fn check_faces<E: Editing>(mesh: &AnyHalfEdgeMesh<Untraced, E>) -> Result<(), In
     Ok(())
 }
 
-fn check_distinct_edges<E: Editing>(
-    mesh: &AnyHalfEdgeMesh<Untraced, E>,
-) -> Result<(), InvariantError> {
+fn check_distinct_edges<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     let mut ends = HashSet::new();
     for e in mesh.edges() {
         let [a, b] = mesh.edge_vertices(e);
@@ -226,7 +216,7 @@ mod tests {
     use sixfold_core::{Point, PolygonMesh, Representation, Slot};
 
     use super::*;
-    use crate::mesh::EditableHalfEdgeMesh;
+    use crate::EditableHalfEdgeMesh;
 
     /// Returns a square of two triangles and an isolated vertex.
     fn sound() -> EditableHalfEdgeMesh {

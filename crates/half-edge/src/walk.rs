@@ -4,7 +4,7 @@ use sixfold_core::{
     EdgeId, Editing, FaceId, HandleMap, OrientedWalk, Probe, SideMap, Slot, VertexId,
 };
 
-use crate::mesh::{AnyHalfEdgeMesh, Half, HalfEdgeId};
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
 /// A side is the half-edge with its face on the left.
 ///
@@ -12,8 +12,8 @@ use crate::mesh::{AnyHalfEdgeMesh, Half, HalfEdgeId};
 /// is not stored, and they take O(degree). `next_side` and `twin_side` are one load each.
 ///
 /// A half-edge on a boundary loop is not a side. No method yields one: at a boundary `twin_side` is
-/// `None`, whereas [`twin`](AnyHalfEdgeMesh::twin) returns the half-edge on the loop.
-impl<P: Probe, E: Editing> OrientedWalk for AnyHalfEdgeMesh<P, E> {
+/// `None`, whereas [`twin`](HalfEdgeMesh::twin) returns the half-edge on the loop.
+impl<P: Probe, E: Editing> OrientedWalk for HalfEdgeMesh<E, P> {
     type Side = HalfEdgeId;
 
     #[inline]
@@ -80,7 +80,7 @@ impl<P: Probe, E: Editing> OrientedWalk for AnyHalfEdgeMesh<P, E> {
     }
 }
 
-impl<P: Probe, E: Editing> AnyHalfEdgeMesh<P, E> {
+impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
     /// Returns the record of `s`. If elements can be deleted, panics if `s` has no face: it may have
     /// lost it.
     #[inline]
@@ -109,10 +109,10 @@ fn no_such_side(s: HalfEdgeId) -> ! {
 
 #[cfg(test)]
 mod tests {
-    use sixfold_core::{MeshEdit, MeshQuery, Representation};
+    use sixfold_core::{MeshEdit, Representation};
 
     use super::*;
-    use crate::mesh::{EditableHalfEdgeMesh, HalfEdgeMesh};
+    use crate::{EditableHalfEdgeMesh, HalfEdgeMesh};
 
     /// Returns two triangles with a common edge.
     fn square() -> HalfEdgeMesh {
@@ -136,8 +136,7 @@ mod tests {
         let inner = OrientedWalk::sides(&mesh).find(|&s| mesh.twin_side(s).is_some());
         let s = inner.expect("the diagonal");
         let f = mesh.side_face(s);
-        mesh.remove_face(f, &mut ())
-            .expect("a face at the boundary");
+        mesh.remove_face(f).expect("a face at the boundary");
         mesh.twin_side(s);
     }
 }

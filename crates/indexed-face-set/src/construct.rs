@@ -6,9 +6,9 @@ use sixfold_core::{
     Representation, ScannedFaces, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap,
 };
 
-use crate::mesh::AnyIndexedFaceSet;
+use crate::mesh::IndexedFaceSet;
 
-impl<E: Editing> Representation for AnyIndexedFaceSet<Untraced, E> {
+impl<E: Editing> Representation for IndexedFaceSet<E> {
     const NAME: &'static str = "indexed-face-set";
 
     const COSTS: [QueryCost; 9] = {
@@ -71,16 +71,16 @@ impl<E: Editing> Representation for AnyIndexedFaceSet<Untraced, E> {
     }
 }
 
-impl<E: Editing> Measured for AnyIndexedFaceSet<Untraced, E> {
-    type Probed<P: Probe> = AnyIndexedFaceSet<P, E>;
+impl<E: Editing> Measured for IndexedFaceSet<E> {
+    type Probed<P: Probe> = IndexedFaceSet<E, P>;
 
     fn layout_bytes(counts: &Counts) -> usize {
         let by_vertex = size_of::<Point>() * counts.vertices;
         by_vertex + size_of::<VertexId>() * counts.corners + counts.offset_bytes()
     }
 
-    fn probed<P: Probe>(self, probe: P) -> AnyIndexedFaceSet<P, E> {
-        AnyIndexedFaceSet {
+    fn probed<P: Probe>(self, probe: P) -> IndexedFaceSet<E, P> {
+        IndexedFaceSet {
             positions: self.positions.probed(probe.clone()),
             vertex_holes: E::probed_holes(self.vertex_holes, probe.clone()),
             faces: self.faces.probed(probe),
@@ -88,7 +88,7 @@ impl<E: Editing> Measured for AnyIndexedFaceSet<Untraced, E> {
     }
 }
 
-impl<P: Probe, E: Editing> AnyIndexedFaceSet<P, E> {
+impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
     /// Returns the faces, with consecutive vertex numbers.
     fn faces_without_holes(&self) -> Result<FaceList, PolygonError> {
         let mut faces = FaceList::with_capacity(self.corners().len());

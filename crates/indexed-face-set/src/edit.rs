@@ -1,13 +1,13 @@
 //! Edits: [`ScannedFaces`](sixfold_core::ScannedFaces) edits the faces, this file the vertices.
 
 use sixfold_core::{
-    Edit, EditError, EditLog, FaceId, HoleSet, MAX_ROWS, MeshEdit, MeshQuery, NoHoles, Pair, Point,
-    Probe, QueryCost, Refusal, VertexId, row,
+    Compact, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit, MeshQuery,
+    NoHoles, Pair, Point, Probe, QueryCost, Refusal, VertexId, row,
 };
 
-use crate::mesh::{AnyIndexedFaceSet, EditableIndexedFaceSet, IndexedFaceSet};
+use crate::mesh::IndexedFaceSet;
 
-impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
+impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
         let constant = Some(QueryCost::Constant);
         let local = Some(QueryCost::Local);
@@ -31,18 +31,18 @@ impl<P: Probe> MeshEdit for EditableIndexedFaceSet<P> {
         ]
     };
 
-    type Compact = IndexedFaceSet<P>;
+    type Compact = IndexedFaceSet<Compact, P>;
 
-    fn into_compact(mut self) -> IndexedFaceSet<P> {
+    fn into_compact(mut self) -> IndexedFaceSet<Compact, P> {
         self.compact();
-        AnyIndexedFaceSet {
+        IndexedFaceSet {
             positions: self.positions,
             faces: self.faces.into_compact().expect("compacted"),
             vertex_holes: NoHoles,
         }
     }
 
-    fn from_compact(compact: IndexedFaceSet<P>) -> Self {
+    fn from_compact(compact: IndexedFaceSet<Compact, P>) -> Self {
         compact.into()
     }
 
@@ -252,7 +252,7 @@ fn uses_reports<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
     L::USES_REPORTS
 }
 
-impl<P: Probe> EditableIndexedFaceSet<P> {
+impl<P: Probe> IndexedFaceSet<Editable, P> {
     fn check_vertex(&self, v: VertexId) -> Result<(), Refusal<Self>> {
         match self.has(v) {
             true => Ok(()),
@@ -277,6 +277,7 @@ mod tests {
     use sixfold_core::{EditRecord, PolygonMesh, Representation, ScannedVertex};
 
     use super::*;
+    use crate::EditableIndexedFaceSet;
 
     const SQUARE: [Point; 4] = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
 

@@ -3,7 +3,7 @@
 //! Files and renderers use this form. Use it if faces are read in order, or to keep a mesh in
 //! memory without queries: no structure with shared vertices is smaller, and it holds every polygon
 //! mesh. FV, FE and EV take O(1) per item. Every query of a neighbourhood scans all corners,
-//! because no table stores neighbours. Start at [`AnyIndexedFaceSet`]; its three invariants define
+//! because no table stores neighbours. Start at [`generic::IndexedFaceSet`]; its three invariants define
 //! the tables.
 //!
 //! Edges are not stored; an edge is the [pair](sixfold_core::Pair) of its ends.
@@ -50,7 +50,19 @@ mod mesh;
 mod query;
 mod validate;
 
-pub use mesh::{AnyIndexedFaceSet, EditableIndexedFaceSet, IndexedFaceSet};
+/// The mesh with its type parameters, for code that is generic over them.
+///
+/// Programs use the two types of the crate root instead.
+pub mod generic {
+    pub use crate::mesh::IndexedFaceSet;
+}
+
+/// An indexed face set that cannot delete elements: a [`generic::IndexedFaceSet`] without holes.
+pub type IndexedFaceSet = generic::IndexedFaceSet;
+
+/// An indexed face set that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): a
+/// [`generic::IndexedFaceSet`] with holes.
+pub type EditableIndexedFaceSet = generic::IndexedFaceSet<sixfold_core::Editable>;
 
 /// The traits and types that all structures share: `PolygonMesh`, `MeshQuery`, handles, errors.
 pub use sixfold_core;

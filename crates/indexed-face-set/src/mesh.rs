@@ -67,23 +67,17 @@ use sixfold_core::{
 /// more scan, to find the sides that other faces also have. The structure holds every polygon mesh,
 /// so an edit has no restrictions besides its own rule and valid handles.
 #[derive(Debug)]
-pub struct AnyIndexedFaceSet<P: Probe, E: Editing> {
+pub struct IndexedFaceSet<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) vertex_holes: E::Holes<P>,
     pub(crate) faces: ScannedFaces<VertexId, P, E>,
 }
 
-sixfold_core::clone_by_field!(AnyIndexedFaceSet<P: Probe, E: Editing> { positions, vertex_holes, faces });
+sixfold_core::clone_by_field!(IndexedFaceSet<E: Editing, P: Probe> { positions, vertex_holes, faces });
+sixfold_core::polygon_conversions!(IndexedFaceSet);
 
-/// An indexed face set that cannot delete elements: an [`AnyIndexedFaceSet`] without holes.
-pub type IndexedFaceSet<P = Untraced> = AnyIndexedFaceSet<P, Compact>;
-
-/// An indexed face set that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an
-/// [`AnyIndexedFaceSet`] with holes.
-pub type EditableIndexedFaceSet<P = Untraced> = AnyIndexedFaceSet<P, Editable>;
-
-impl<P: Probe> From<IndexedFaceSet<P>> for EditableIndexedFaceSet<P> {
-    fn from(mesh: IndexedFaceSet<P>) -> Self {
+impl<P: Probe> From<IndexedFaceSet<Compact, P>> for IndexedFaceSet<Editable, P> {
+    fn from(mesh: IndexedFaceSet<Compact, P>) -> Self {
         let probe = mesh.positions.probe();
         Self {
             positions: mesh.positions,
@@ -93,7 +87,7 @@ impl<P: Probe> From<IndexedFaceSet<P>> for EditableIndexedFaceSet<P> {
     }
 }
 
-impl<P: Probe, E: Editing> AnyIndexedFaceSet<P, E> {
+impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
     /// Returns the position of each vertex, as stored, including deleted ones.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()

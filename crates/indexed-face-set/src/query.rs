@@ -4,9 +4,9 @@ use sixfold_core::{
     Capabilities, Editing, FaceId, HoleSet, MeshQuery, Pair, Point, Probe, VertexId,
 };
 
-use crate::mesh::AnyIndexedFaceSet;
+use crate::mesh::IndexedFaceSet;
 
-impl<P: Probe, E: Editing> MeshQuery for AnyIndexedFaceSet<P, E> {
+impl<P: Probe, E: Editing> MeshQuery for IndexedFaceSet<E, P> {
     type Vertex = VertexId;
     type Edge = Pair<VertexId>;
     type Face = FaceId;
@@ -130,7 +130,7 @@ mod tests {
     use sixfold_core::{PolygonMesh, Representation};
 
     use super::*;
-    use crate::mesh::IndexedFaceSet;
+    use crate::IndexedFaceSet;
 
     #[test]
     fn edges_of_a_vertex_with_many_faces_are_listed_once() {

@@ -2,9 +2,9 @@
 
 use sixfold_core::{Editing, HoleSet, InvariantError, IteratorExt, MeshQuery, Probe};
 
-use crate::mesh::AnyIndexedFaceSet;
+use crate::mesh::IndexedFaceSet;
 
-impl<P: Probe, E: Editing> AnyIndexedFaceSet<P, E> {
+impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
     /// Checks I1 first, then I3 and I2, which rely on it.
     pub(crate) fn check_invariants(&self) -> Result<(), InvariantError> {
         self.check_spans()?;
@@ -49,7 +49,7 @@ mod tests {
         VertexId,
     };
 
-    use crate::mesh::EditableIndexedFaceSet;
+    use crate::EditableIndexedFaceSet;
 
     const CORNERS: [Point; 5] = [Point::ZERO, Point::X, Point::ONE, Point::Y, Point::Z];
 

@@ -80,7 +80,11 @@ pub enum CreaseFileError {
 ///
 /// Fails if the file cannot be read, or if [`parse_creases`] fails. Error messages name the file by
 /// `path`.
-pub fn read_creases(path: &Path, polygons: &PolygonMesh) -> Result<Creases, CreaseFileError> {
+pub fn read_creases(
+    path: impl AsRef<Path>,
+    polygons: &PolygonMesh,
+) -> Result<Creases, CreaseFileError> {
+    let path = path.as_ref();
     let file = path.display().to_string();
     match open_file(path) {
         Ok(source) => parse_creases(&file, source, polygons),

@@ -24,7 +24,8 @@ const LOAD_OPTIONS: tobj::LoadOptions = tobj::LoadOptions {
 ///
 /// Fails if the file cannot be read, or if [`parse_obj`] fails. Error messages name the file by
 /// `path`.
-pub fn read_obj(path: &Path) -> Result<ObjMesh, ObjError> {
+pub fn read_obj(path: impl AsRef<Path>) -> Result<ObjMesh, ObjError> {
+    let path = path.as_ref();
     let file = path.display().to_string();
     match open_file(path) {
         Ok(source) => parse_obj(&file, source),

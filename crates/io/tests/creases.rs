@@ -2,7 +2,7 @@
 
 use std::env;
 use std::io::{self, BufRead, Read};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -145,13 +145,13 @@ fn reading_stops_at_a_line_that_is_too_long() {
 
 #[test]
 fn files_that_cannot_be_read_are_named() {
-    let missing = read_creases(Path::new("no/such.creases"), &squares()).expect_err("missing");
+    let missing = read_creases("no/such.creases", &squares()).expect_err("missing");
     let message = missing.to_string();
     assert!(
         message.starts_with("no/such.creases: cannot be opened"),
         "{message}"
     );
-    let folder = read_creases(Path::new("."), &squares()).expect_err("a directory");
+    let folder = read_creases(".", &squares()).expect_err("a directory");
     assert_eq!(folder.to_string(), ".: is a directory: choose a file in it");
 
     struct Broken;
@@ -370,7 +370,7 @@ fn the_torus_with_creases_is_read_completely() {
         return;
     };
     let path = folder.join("fetched/catmark_torus_creases0.obj");
-    let obj = read_obj(&path).unwrap_or_else(|error| panic!("{error}"));
+    let obj = read_obj(path).unwrap_or_else(|error| panic!("{error}"));
     let notices: Vec<String> = obj.notices.iter().map(ToString::to_string).collect();
     assert_eq!(
         notices,

@@ -34,7 +34,7 @@ fn files(folder: &Path) -> BTreeSet<String> {
 }
 
 fn load(folder: &Path, name: &str) -> ObjMesh {
-    read_obj(&folder.join(name)).unwrap_or_else(|error| panic!("{error}"))
+    read_obj(folder.join(name)).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Converts a spread to the format of `truth.json`.

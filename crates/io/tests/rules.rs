@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{self, BufReader, Read};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use sixfold_core::{FaceId, Point, VertexId};
 use sixfold_io::{LeftOutReason, ObjError, ObjMesh, parse_obj, read_obj};
@@ -325,7 +325,7 @@ fn errors_name_a_path_that_cannot_be_read() {
         error.to_string(),
         format!("{shown}: is a directory: choose a file in it")
     );
-    let error = read_obj(Path::new("no/such/mesh.obj")).expect_err("no such file");
+    let error = read_obj("no/such/mesh.obj").expect_err("no such file");
     let message = error.to_string();
     assert!(
         message.starts_with("no/such/mesh.obj: cannot be opened ("),

@@ -4,13 +4,13 @@ use rustc_hash::FxHashMap;
 use sixfold_core::{
     BuildError, Counts, Editing, FaceId, FaceList, InvariantError, IteratorExt, Measured,
     MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
-    ScannedFaces, ScannedVertex, Untraced, VertexId, VertexMap, row,
+    ScannedFaces, ScannedVertex, VertexId, VertexMap, row,
 };
 
-use crate::mesh::AnyPolygonSoup;
+use crate::mesh::PolygonSoup;
 use crate::vertex::SoupVertex;
 
-impl<E: Editing> Representation for AnyPolygonSoup<Untraced, E> {
+impl<E: Editing> Representation for PolygonSoup<E> {
     const NAME: &'static str = "polygon-soup";
 
     const COSTS: [QueryCost; 9] = {
@@ -102,15 +102,15 @@ impl<E: Editing> Representation for AnyPolygonSoup<Untraced, E> {
     }
 }
 
-impl<E: Editing> Measured for AnyPolygonSoup<Untraced, E> {
-    type Probed<P: Probe> = AnyPolygonSoup<P, E>;
+impl<E: Editing> Measured for PolygonSoup<E> {
+    type Probed<P: Probe> = PolygonSoup<E, P>;
 
     fn layout_bytes(counts: &Counts) -> usize {
         size_of::<Point>() * counts.corners + counts.offset_bytes()
     }
 
-    fn probed<P: Probe>(self, probe: P) -> AnyPolygonSoup<P, E> {
-        AnyPolygonSoup {
+    fn probed<P: Probe>(self, probe: P) -> PolygonSoup<E, P> {
+        PolygonSoup {
             faces: self.faces.probed(probe),
         }
     }
@@ -149,10 +149,12 @@ fn has_coincident_corners(face: &[Point]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::PolygonSoup;
+    use crate::PolygonSoup;
 
     fn build(positions: &[Point], faces: &[&[u32]]) -> Result<PolygonSoup, BuildError> {
-        PolygonSoup::from_polygons(&PolygonMesh::new(positions, faces).expect("valid"))
+        PolygonSoup::from_polygons(
+            &PolygonMesh::new(positions.iter().copied(), faces).expect("valid"),
+        )
     }
 
     #[test]

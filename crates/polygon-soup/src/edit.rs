@@ -1,14 +1,15 @@
 //! Edits: [`ScannedFaces`](sixfold_core::ScannedFaces) does them, because a soup has only faces.
 
 use sixfold_core::{
-    Edit, EditError, EditLog, FaceId, MeshEdit, Pair, Point, Probe, QueryCost, Refusal,
-    Representation,
+    Compact, Edit, EditError, EditLog, Editable, FaceId, MeshEdit, Pair, Point, Probe, QueryCost,
+    Refusal, Representation,
 };
 
-use crate::mesh::{AnyPolygonSoup, EditablePolygonSoup, PolygonSoup};
+use crate::EditablePolygonSoup;
+use crate::mesh::PolygonSoup;
 use crate::vertex::SoupVertex;
 
-impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
+impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
         let constant = Some(QueryCost::Constant);
         let local = Some(QueryCost::Local);
@@ -32,16 +33,16 @@ impl<P: Probe> MeshEdit for EditablePolygonSoup<P> {
         ]
     };
 
-    type Compact = PolygonSoup<P>;
+    type Compact = PolygonSoup<Compact, P>;
 
-    fn into_compact(mut self) -> PolygonSoup<P> {
+    fn into_compact(mut self) -> PolygonSoup<Compact, P> {
         self.compact();
-        AnyPolygonSoup {
+        PolygonSoup {
             faces: self.faces.into_compact().expect("compacted"),
         }
     }
 
-    fn from_compact(compact: PolygonSoup<P>) -> Self {
+    fn from_compact(compact: PolygonSoup<Compact, P>) -> Self {
         compact.into()
     }
 

@@ -2,12 +2,13 @@
 //!
 //! STL files have this form, and a renderer can use it unchanged. Use it to transfer all faces at
 //! once. Every query of a neighbourhood scans all corners, because no table stores neighbours. FV,
-//! FE and EV take O(1) per item, the other six O(corners). Start at [`AnyPolygonSoup`]; its four
+//! FE and EV take O(1) per item, the other six O(corners). Start at [`generic::PolygonSoup`]; its four
 //! invariants define the tables.
 //!
 //! A vertex *is* its coordinates here ([`SoupVertex`]). Vertices with the same coordinates
-//! therefore become one vertex, and moving a vertex changes its handle. The structure cannot hold a
-//! face with two corners at one point, or a vertex without faces.
+//! therefore become one vertex, and moving a vertex changes its handle. [`SoupVertex`] explains why
+//! there is no tolerance, and what to do with points that are nearly equal. The structure cannot
+//! hold a face with two corners at one point, or a vertex without faces.
 //!
 //! Adding and removing faces takes O(1) per corner. Nearly every other edit begins with a scan,
 //! which also checks that the position of a new vertex is free. For many edits, use another
@@ -21,8 +22,21 @@ mod query;
 mod validate;
 mod vertex;
 
-pub use mesh::{AnyPolygonSoup, EditablePolygonSoup, PolygonSoup};
 pub use vertex::SoupVertex;
+
+/// The mesh with its type parameters, for code that is generic over them.
+///
+/// Programs use the two types of the crate root instead.
+pub mod generic {
+    pub use crate::mesh::PolygonSoup;
+}
+
+/// A polygon soup that cannot delete elements: a [`generic::PolygonSoup`] without holes.
+pub type PolygonSoup = generic::PolygonSoup;
+
+/// A polygon soup that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): a
+/// [`generic::PolygonSoup`] with holes.
+pub type EditablePolygonSoup = generic::PolygonSoup<sixfold_core::Editable>;
 
 /// The traits and types that all structures share: `PolygonMesh`, `MeshQuery`, handles, errors.
 pub use sixfold_core;

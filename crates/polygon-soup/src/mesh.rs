@@ -86,28 +86,22 @@ use crate::vertex::SoupVertex;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
-pub struct AnyPolygonSoup<P: Probe, E: Editing> {
+pub struct PolygonSoup<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) faces: ScannedFaces<SoupVertex, P, E>,
 }
 
-sixfold_core::clone_by_field!(AnyPolygonSoup<P: Probe, E: Editing> { faces });
+sixfold_core::clone_by_field!(PolygonSoup<E: Editing, P: Probe> { faces });
+sixfold_core::polygon_conversions!(PolygonSoup);
 
-/// A polygon soup that cannot delete faces: an [`AnyPolygonSoup`] without holes.
-pub type PolygonSoup<P = Untraced> = AnyPolygonSoup<P, Compact>;
-
-/// A polygon soup that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an [`AnyPolygonSoup`]
-/// with holes.
-pub type EditablePolygonSoup<P = Untraced> = AnyPolygonSoup<P, Editable>;
-
-impl<P: Probe> From<PolygonSoup<P>> for EditablePolygonSoup<P> {
-    fn from(mesh: PolygonSoup<P>) -> Self {
+impl<P: Probe> From<PolygonSoup<Compact, P>> for PolygonSoup<Editable, P> {
+    fn from(mesh: PolygonSoup<Compact, P>) -> Self {
         Self {
             faces: mesh.faces.into(),
         }
     }
 }
 
-impl<P: Probe, E: Editing> AnyPolygonSoup<P, E> {
+impl<P: Probe, E: Editing> PolygonSoup<E, P> {
     /// Returns the position of each corner, face by face, as stored, including blank corners.
     pub fn corners(&self) -> &[Point] {
         self.faces.corners.rows()

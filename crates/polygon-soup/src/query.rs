@@ -4,10 +4,10 @@ use sixfold_core::{
     Capabilities, Editing, FaceId, HoleSet, IteratorExt, MeshQuery, Pair, Point, Probe,
 };
 
-use crate::mesh::AnyPolygonSoup;
+use crate::mesh::PolygonSoup;
 use crate::vertex::SoupVertex;
 
-impl<P: Probe, E: Editing> MeshQuery for AnyPolygonSoup<P, E> {
+impl<P: Probe, E: Editing> MeshQuery for PolygonSoup<E, P> {
     type Vertex = SoupVertex;
     type Edge = Pair<SoupVertex>;
     type Face = FaceId;
@@ -122,7 +122,7 @@ mod tests {
     use sixfold_core::{Measured, PolygonMesh, Representation, SearchSet, Traced, VertexId};
 
     use super::*;
-    use crate::mesh::PolygonSoup;
+    use crate::PolygonSoup;
 
     /// Returns a pentagon and its mirror image, and a triangle and a quad at one of their sides
     /// each.

@@ -2,10 +2,10 @@
 
 use sixfold_core::{Editing, InvariantError, IteratorExt, MeshQuery, Probe, ScannedVertex};
 
-use crate::mesh::AnyPolygonSoup;
+use crate::mesh::PolygonSoup;
 use crate::vertex::SoupVertex;
 
-impl<P: Probe, E: Editing> AnyPolygonSoup<P, E> {
+impl<P: Probe, E: Editing> PolygonSoup<E, P> {
     /// Checks I1 first, then I4, which relies on it, then I2 and I3.
     pub(crate) fn check_invariants(&self) -> Result<(), InvariantError> {
         self.check_spans()?;
@@ -58,7 +58,7 @@ mod tests {
         Editable, FaceId, FaceSpans, MeshEdit, Point, PolygonMesh, Representation, Table, Untraced,
     };
 
-    use crate::mesh::EditablePolygonSoup;
+    use crate::EditablePolygonSoup;
 
     const SQUARE: [Point; 4] = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
 

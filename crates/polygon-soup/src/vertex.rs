@@ -10,6 +10,36 @@ use sixfold_core::{Handle, HashHandleMap, Point, ScannedVertex};
 ///
 /// Two corners are at one vertex if and only if their coordinates are equal, bit for bit. The order
 /// of handles is that of the bits: a total order without geometric meaning.
+///
+/// # Points that are nearly equal
+///
+/// Vertices that differ only by rounding errors stay different vertices. A tolerance cannot be part
+/// of a handle: with a tolerance of 1, the points 0 and 0.8 are equal, and so are 0.8 and 1.6, but 0
+/// and 1.6 are not. This relation is not transitive, so it cannot be [`Eq`]; and a [`Hash`] that is
+/// the same for all pairs of equal points would be the same for all points. Handles need both, because
+/// they are keys of maps.
+///
+/// Therefore merge such points before you build the soup. If you round positions to a grid, points
+/// with the same rounded position are merged, and this relation is transitive. Two close points on
+/// different sides of a boundary between grid cells stay different.
+///
+/// ```
+/// use sixfold_polygon_soup::prelude::*;
+///
+/// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0],
+///                [1.0, 1e-7, 0.0], [1.0, 1.0, 0.0], [-1e-7, 1.0, 0.0]];
+/// let faces = [[0, 1, 2], [3, 4, 5]];
+/// assert_eq!(PolygonSoup::from_polygons(&PolygonMesh::new(corners, faces)?)?.vertex_count(), 6);
+///
+/// let spacing = 1e-3;
+/// let rounded = corners.map(|p| (Point::from(p) / spacing).round() * spacing);
+/// let soup = PolygonSoup::from_polygons(&PolygonMesh::new(rounded, faces)?)?;
+/// assert_eq!(soup.vertex_count(), 4);
+/// assert_eq!(soup.to_polygons().vertex_count(), 4); // with shared vertices, for any structure
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// Building returns an error if two corners of one face have the same rounded position.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SoupVertex([u32; 3]);
 
@@ -80,6 +110,20 @@ impl Hash for SoupVertex {
 
 impl Handle for SoupVertex {
     type Map<T: Clone> = HashHandleMap<Self, T>;
+}
+
+impl From<Point> for SoupVertex {
+    #[inline]
+    fn from(point: Point) -> Self {
+        Self::at(point)
+    }
+}
+
+impl From<SoupVertex> for Point {
+    #[inline]
+    fn from(vertex: SoupVertex) -> Self {
+        vertex.position()
+    }
 }
 
 impl fmt::Debug for SoupVertex {

@@ -5,12 +5,13 @@ use std::str::FromStr;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use serde_with::{DeserializeFromStr, SerializeDisplay};
 use sixfold_core::{FaceId, FaceList, Point, PolygonMesh, VertexId, row};
 
 /// An order of the vertices and faces of a mesh.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, DeserializeFromStr, SerializeDisplay,
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde_with::DeserializeFromStr, serde_with::SerializeDisplay)
 )]
 pub enum Order {
     /// The order of the mesh as it is.

@@ -10,7 +10,7 @@ use std::error::Error;
 use sixfold::io::write_obj;
 use sixfold::prelude::*;
 use sixfold::subdivision::{Scheme, Step, Subdivision, renumbered};
-use sixfold::{CreaseError, Creases, RowId};
+use sixfold::{CreaseError, Creases};
 
 mod common;
 
@@ -55,7 +55,7 @@ pub fn creases_around(
     f: FaceId,
     sharpness: f32,
 ) -> Result<Creases, CreaseError> {
-    let corners: Vec<u32> = polygons.faces().face(f).iter().map(|v| v.row()).collect();
+    let corners: Vec<u32> = polygons.faces().face(f).iter().map(|&v| v.into()).collect();
     let next = corners.iter().cycle().skip(1);
     let edges = corners.iter().zip(next).map(|(&a, &b)| ([a, b], sharpness));
     Creases::new(polygons, edges, [])

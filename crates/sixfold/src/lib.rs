@@ -1,9 +1,115 @@
-//! Six mesh data structures behind one query trait.
+//! Six mesh data structures behind one query trait, and the algorithms that run on all of them.
 //!
-//! This crate re-exports the core types, the structures and the algorithms. It also contains the
-//! roster: the only list of all structures, which every command, test and benchmark uses.
+//! Every structure has the same queries ([`MeshQuery`]), and an editable form with the same edits
+//! ([`MeshEdit`]). Meshes are built from a [`PolygonMesh`]: positions, and faces as lists of vertex
+//! numbers. Algorithms take any structure as a type parameter.
 //!
-//! # Requiring local queries
+//! | task | start at |
+//! |---|---|
+//! | [load a mesh](#load-a-mesh) | [`io::read_obj`], [`PolygonMesh::new`], [`shapes`] |
+//! | [walk around a vertex](#walk-around-a-vertex) | [`MeshQuery::vertex_vertices`], [`MeshQuery::one_ring`] |
+//! | [flip an edge](#flip-an-edge) | [`MeshEdit::flip_edge`] |
+//! | [subdivide](#subdivide) | [`subdivision::subdivide_native`], [`subdivision::Scheme`] |
+//! | [choose a structure](#choose-a-structure) | the table below, [`MeshQuery::CAPABILITIES`] |
+//! | smooth, triangulate, compute normals | [`operators`] |
+//! | simplify, remesh, make Delaunay | [`remeshing`] |
+//! | store data at vertices, edges and faces | [`MeshQuery::vertex_map`], [`MeshWithData`] |
+//! | number elements from 0, for matrices | [`MeshQuery::vertex_numbers`] |
+//! | find the boundary | [`MeshQuery::boundary_loops`] |
+//! | [refuse structures that search](#require-local-queries) | [`LocalQueries`] |
+//! | [walk from side to side](#walk-in-order) | [`OrientedWalk`] |
+//! | read the topology of a mesh | [`Facts`] |
+//!
+//! # Load a mesh
+//!
+//! ```no_run
+//! use sixfold::{HalfEdgeMesh, io};
+//!
+//! let (polygons, left_out) = io::read_obj("bunny.obj")?.into_polygons();
+//! println!("{polygons}; {} faces left out", left_out.len());
+//! let mesh = HalfEdgeMesh::try_from(&polygons)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Or from arrays. A mesh that the structure cannot hold returns an error that names the elements:
+//!
+//! ```
+//! use sixfold::prelude::*;
+//!
+//! let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+//! let polygons = PolygonMesh::new(corners, [[0, 1, 2], [0, 1, 3]])?;
+//! let error = HalfEdgeMesh::from_polygons(&polygons).unwrap_err();
+//! assert!(error.to_string().contains("f0 and f1"));
+//! let mesh = IndexedFaceSet::from_polygons(&polygons)?; // holds every mesh
+//! assert_eq!(PolygonMesh::from(&mesh), polygons);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Walk around a vertex
+//!
+//! ```
+//! use sixfold::prelude::*;
+//!
+//! /// Returns the mean of the vertices adjacent to `v`, on any structure.
+//! fn mean_of_neighbours<M: MeshQuery>(mesh: &M, v: M::Vertex) -> Point {
+//!     let sum: Point = mesh.vertex_vertices(v).map(|w| mesh.position(w)).sum();
+//!     sum / mesh.valence(v) as f32
+//! }
+//!
+//! let mesh = HalfEdgeMesh::from_polygons(&sixfold::shapes::octahedron())?;
+//! let v = VertexId::new(0);
+//! assert!(mean_of_neighbours(&mesh, v).length() < 1e-6);
+//! let ring = mesh.one_ring(v).expect("a manifold vertex"); // the same vertices, in order
+//! assert_eq!(ring.count(), 4);
+//! # Ok::<(), BuildError>(())
+//! ```
+//!
+//! # Flip an edge
+//!
+//! Edits need an editable mesh. A refused edit changes nothing, and its error says why:
+//!
+//! ```
+//! use sixfold::prelude::*;
+//!
+//! let mut mesh = EditableHalfEdgeMesh::from_polygons(&sixfold::shapes::icosahedron())?;
+//! let edge = mesh.edges().next().expect("a mesh with edges");
+//! let before = mesh.edge_vertices(edge);
+//! let edge = mesh.flip_edge(edge)?;
+//! assert!(mesh.edge_between(before[0], before[1]).is_none());
+//! assert_eq!(mesh.edge_faces(edge).count(), 2);
+//! let mesh: HalfEdgeMesh = mesh.into_compact(); // faster queries, no edits
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Subdivide
+//!
+//! ```
+//! use sixfold::subdivision::{Scheme, Subdivision, subdivide_native};
+//! use sixfold::{Creases, HalfEdgeMesh, shapes};
+//!
+//! let scheme = Subdivision::new(Scheme::CatmullClark);
+//! let smooth = Creases::default();
+//! let fine = subdivide_native::<HalfEdgeMesh>(&scheme, &shapes::cube(), &smooth, 3, |_, _| ())?;
+//! assert_eq!(fine.polygons.face_count(), 6 * 64);
+//! # Ok::<(), sixfold::subdivision::SubdivisionError>(())
+//! ```
+//!
+//! # Choose a structure
+//!
+//! | structure | holds | bytes per vertex | choose it to |
+//! |---|---|---|---|
+//! | [`HalfEdgeMesh`] | oriented manifolds | 96 | walk around vertices and edges; change connectivity |
+//! | [`CornerTable`] | oriented manifolds of triangles | 64 | walk over triangles in little memory |
+//! | [`FaceVertexMesh`] | any polygons | 68 | collect the faces at vertices: normals, matrix assembly |
+//! | [`WingedEdgeMesh`] | oriented manifolds | 120 | work on edges themselves |
+//! | [`IndexedFaceSet`] | any polygons | 36 | store, convert, visit all faces; searches for neighbours |
+//! | [`PolygonSoup`] | any polygons, vertices by coordinates | 72 | pass faces on, as STL does; searches for neighbours |
+//!
+//! The bytes are those of large closed triangle meshes. If you do not know, use [`HalfEdgeMesh`]
+//! for manifolds and [`FaceVertexMesh`] for others. The command `sixfold pick` measures a workload
+//! on your mesh. [`roster`] and [`visit`] select a structure at run time.
+//!
+//! # Require local queries
 //!
 //! Polygon soups and indexed face sets answer most queries by a scan of all faces. An algorithm can
 //! refuse them with the bound [`LocalQueries`]:
@@ -31,7 +137,7 @@
 //! # Ok::<(), BuildError>(())
 //! ```
 //!
-//! # Walks in order
+//! # Walk in order
 //!
 //! Most queries yield sets. [`OrientedWalk`] steps from side to side in order, on four of the
 //! structures: along a face, around a vertex, or along the boundary as here.
@@ -67,21 +173,72 @@
 //! assert_eq!(boundary_loops(&FaceVertexMesh::from_polygons(&polygons)?).len(), 2);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Features
+//!
+//! - `rayon` (default): native subdivision steps use all threads.
+//! - `serde`: [`Facts`], [`Capabilities`], [`MemoryFootprint`], schemes and orders can be written.
+//! - `mint`: [`PolygonMesh::new`] takes points and vectors of the crate `mint`, and a [`Point`]
+//!   converts to them.
 
-pub use sixfold_core::*;
+// A list, and not `*`: `sixfold_core` also has what only authors of structures and measurements need.
+
+// Traits: queries, walks, edits, refinement; and what a structure can hold and costs.
+#[doc(inline)]
+pub use sixfold_core::{
+    Capabilities, Edit, LocalQueries, MeshEdit, MeshQuery, OrientedWalk, QueryCost, Refine,
+    Relation, Representation, Split,
+};
+// Meshes as lists of faces; their topology, creases and memory.
+#[doc(inline)]
+pub use sixfold_core::{
+    BoundaryLoop, Creases, Distribution, EdgeUse, FaceList, Facts, MemoryFootprint, Point,
+    PolygonMesh, SHARPNESS_INFINITE, TableBytes,
+};
+// The crate of `Point`, in the version that belongs to this one.
+#[doc(no_inline)]
+pub use sixfold_core::glam;
+// Handles of elements, data by handle, and how both follow edits.
+#[doc(inline)]
+pub use sixfold_core::{
+    AcceptedEdit, Changes, Created, EdgeData, EdgeId, EdgeMap, EditLog, EditRecord, ElementData,
+    FaceData, FaceId, FaceMap, FollowEdits, Handle, HandleMap, HashHandleMap, MeshWithData,
+    Numbers, OldToNew, Pair, RowMap, SideMap, VertexData, VertexId, VertexMap,
+};
+// Errors.
+#[doc(inline)]
+pub use sixfold_core::{
+    BuildError, CreaseError, EditError, InvariantError, MoveError, PolygonError, RefineError,
+    Refusal,
+};
+
+// The six structures.
+#[doc(inline)]
 pub use sixfold_corner_table::{self as corner_table, CornerTable, EditableCornerTable};
+#[doc(inline)]
 pub use sixfold_face_vertex::{self as face_vertex, EditableFaceVertexMesh, FaceVertexMesh};
+#[doc(inline)]
 pub use sixfold_half_edge::{self as half_edge, EditableHalfEdgeMesh, HalfEdgeMesh};
+#[doc(inline)]
 pub use sixfold_indexed_face_set::{
     self as indexed_face_set, EditableIndexedFaceSet, IndexedFaceSet,
 };
-pub use sixfold_io as io;
-pub use sixfold_operators as operators;
+#[doc(inline)]
 pub use sixfold_polygon_soup::{self as polygon_soup, EditablePolygonSoup, PolygonSoup};
-pub use sixfold_remeshing as remeshing;
-pub use sixfold_shapes as shapes;
-pub use sixfold_subdivision as subdivision;
+#[doc(inline)]
 pub use sixfold_winged_edge::{self as winged_edge, EditableWingedEdgeMesh, WingedEdgeMesh};
+
+// Algorithms and files.
+#[doc(inline)]
+pub use sixfold_io as io;
+#[doc(inline)]
+pub use sixfold_operators as operators;
+#[doc(inline)]
+pub use sixfold_remeshing as remeshing;
+#[doc(inline)]
+pub use sixfold_shapes as shapes;
+#[doc(inline)]
+pub use sixfold_subdivision as subdivision;
 
 mod roster;
 mod support;

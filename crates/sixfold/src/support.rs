@@ -1,13 +1,13 @@
 //! A table of which subdivision scheme runs on which structure.
 
-use serde::Serialize;
 use sixfold_core::Refine;
 use sixfold_subdivision::{Method, Scheme};
 
 use crate::roster::{RefineVisitor, roster, visit_refinable};
 
 /// How one structure supports one scheme.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Support {
     /// Name of the structure.
     pub backend: &'static str,

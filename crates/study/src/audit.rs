@@ -9,7 +9,8 @@ use std::io;
 
 use serde::Serialize;
 use serde_with::{KeyValueMap, serde_as};
-use sixfold::{BuildError, Counts, PolygonMesh};
+use sixfold::{BuildError, PolygonMesh};
+use sixfold_core::Counts;
 use sixfold_workload::{
     AllocationCounter, Backend, Heap, MAX_SCANNED_FACES, MeasuredMemory, NotCounted, Operation,
 };
@@ -296,7 +297,8 @@ fn closed_triangles_words(backend: &Backend) -> f64 {
 mod tests {
     use std::cell::Cell;
 
-    use sixfold::{HalfEdgeMesh, IndexedFaceSet, Measured, shapes};
+    use sixfold::{HalfEdgeMesh, IndexedFaceSet, shapes};
+    use sixfold_core::Measured;
 
     use super::*;
 

@@ -25,8 +25,9 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
+use sixfold::PolygonMesh;
 use sixfold::io::write_obj;
-use sixfold::{Counts, PolygonMesh};
+use sixfold_core::Counts;
 use tempfile::TempDir;
 
 use crate::report::BackendReport;

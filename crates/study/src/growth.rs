@@ -22,7 +22,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use serde::{Deserialize, Serialize};
 use sixfold::shapes::Order;
-use sixfold::{Counts, Facts, PolygonMesh};
+use sixfold::{Facts, PolygonMesh};
+use sixfold_core::Counts;
 
 pub use fits::{CacheLimit, Fit};
 pub use settings::{GrowthError, GrowthSettings, growth_bytes};

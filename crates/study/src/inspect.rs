@@ -1,6 +1,7 @@
 //! Facts of a mesh, and the backends that can hold it.
 
-use sixfold::{BuildError, Counts, Facts, PolygonMesh};
+use sixfold::{BuildError, Facts, PolygonMesh};
+use sixfold_core::Counts;
 
 use crate::report::{BackendReport, Inspection, MeshReport, SCHEMA};
 use sixfold_workload::Backend;

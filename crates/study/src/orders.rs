@@ -17,8 +17,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use serde::{Deserialize, Serialize};
 use serde_with::{KeyValueMap, serde_as};
+use sixfold::PolygonMesh;
 use sixfold::shapes::Order;
-use sixfold::{Counts, PolygonMesh};
+use sixfold_core::Counts;
 
 pub use effects::{Comparison, Factor, Larger, OrderEffect, StructureEffect};
 

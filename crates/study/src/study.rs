@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use sixfold::{Counts, Distribution, Facts, PolygonMesh, QueryCost, Relation, roster};
+use sixfold::{Distribution, Facts, PolygonMesh, QueryCost, Relation, roster};
+use sixfold_core::Counts;
 
 use crate::agreement::compare_checksums;
 use crate::control::{measured_twice, noise};

@@ -58,8 +58,8 @@ pub fn subdivide<M: Representation>(
     Ok(without_faces(step, left_out))
 }
 
-/// Runs `levels` steps in the tables of a structure of type `M`, which is built once, on the
-/// threads of the current rayon pool. The result is that of [`subdivide`], except that faces and
+/// Runs `levels` steps in the tables of a structure of type `M`, which is built once. With the
+/// feature `rayon`, steps use the threads of the current rayon pool. The result is that of [`subdivide`], except that faces and
 /// edge points have the order of the structure.
 ///
 /// # Errors

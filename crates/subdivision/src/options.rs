@@ -1,10 +1,12 @@
 //! The options besides the scheme.
 
-use serde::Serialize;
-
 /// The treatment of the boundary of an open mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(rename_all = "kebab-case")
+)]
 #[non_exhaustive]
 pub enum Boundary {
     /// Boundary edges are infinitely sharp, and so are vertices with exactly one face.
@@ -33,8 +35,12 @@ impl Boundary {
 }
 
 /// The rule by which the halves of an edge get their sharpness.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(rename_all = "kebab-case")
+)]
 #[non_exhaustive]
 pub enum Creasing {
     /// The sharpness of the edge minus 1.
@@ -59,8 +65,12 @@ impl Creasing {
 }
 
 /// The weights of Loop's scheme for the neighbours of an extraordinary vertex.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(rename_all = "kebab-case")
+)]
 #[non_exhaustive]
 pub enum LoopWeights {
     /// Loop's (1987).

@@ -369,7 +369,7 @@ mod tests {
             expected.extend([[ab2, bc1, m], [bc2, ca1, m], [ca2, ab1, m]]);
         }
         let faces = expected.iter().map(|face| face.map(|v| v as u32));
-        let expected = PolygonMesh::new(twice.positions(), faces);
+        let expected = PolygonMesh::new(twice.positions().iter().copied(), faces);
         let expected = expected.expect("the vertices of the torus");
         assert_equivalent(&expected, &twice, twice.vertex_count());
     }

@@ -3,9 +3,9 @@
 use sixfold_core::{EdgeId, Editing, FaceId, Probe, VertexId};
 
 use crate::edge::Run;
-use crate::mesh::AnyWingedEdgeMesh;
+use crate::mesh::WingedEdgeMesh;
 
-impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
+impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
     /// Iterates over the runs that leave `v`, counter-clockwise, starting on the boundary if `v` is
     /// on one.
     #[inline]
@@ -35,7 +35,7 @@ impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
 /// The runs that leave a vertex, each with its edge. A step reads one record.
 #[derive(Clone, Debug)]
 pub(crate) struct RunsFrom<'a, P: Probe, E: Editing> {
-    mesh: &'a AnyWingedEdgeMesh<P, E>,
+    mesh: &'a WingedEdgeMesh<E, P>,
     v: VertexId,
     at: Option<EdgeId>,
     first: Option<EdgeId>,
@@ -73,7 +73,7 @@ impl<'a, P: Probe, E: Editing> Iterator for RunsFrom<'a, P, E> {
 /// The runs along a face, each with its edge. A step reads one record.
 #[derive(Clone, Debug)]
 pub(crate) struct RunsAlong<'a, P: Probe, E: Editing> {
-    mesh: &'a AnyWingedEdgeMesh<P, E>,
+    mesh: &'a WingedEdgeMesh<E, P>,
     f: FaceId,
     at: Option<EdgeId>,
     first: EdgeId,
@@ -111,7 +111,7 @@ impl<'a, P: Probe, E: Editing> Iterator for RunsAlong<'a, P, E> {
 /// starts and stops at the edge itself.
 #[derive(Clone, Debug)]
 pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
-    mesh: &'a AnyWingedEdgeMesh<P, E>,
+    mesh: &'a WingedEdgeMesh<E, P>,
     e: EdgeId,
     v: VertexId,
     at: EdgeId,
@@ -122,7 +122,7 @@ pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
 
 impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
     #[inline]
-    pub(crate) fn new(mesh: &'a AnyWingedEdgeMesh<P, E>, e: EdgeId) -> Self {
+    pub(crate) fn new(mesh: &'a WingedEdgeMesh<E, P>, e: EdgeId) -> Self {
         // The sides of e itself are known: its left run leaves its start, its right run leaves its
         // end.
         let edge = mesh.edge(e);
@@ -178,7 +178,7 @@ mod tests {
     use sixfold_core::{MeshQuery, Point, PolygonMesh, Representation};
 
     use super::*;
-    use crate::mesh::WingedEdgeMesh;
+    use crate::WingedEdgeMesh;
 
     /// Builds a polygon with `3 * count` sides, and `count` neighbours that share three sides with
     /// it each.

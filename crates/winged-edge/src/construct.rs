@@ -8,10 +8,10 @@ use sixfold_core::{
 };
 
 use crate::edge::{Edge, Run};
-use crate::mesh::{AnyWingedEdgeMesh, EditableWingedEdgeMesh, WingedEdgeMesh};
+use crate::mesh::WingedEdgeMesh;
 use crate::wings::Side;
 
-impl<E: Editing> Representation for AnyWingedEdgeMesh<Untraced, E> {
+impl<E: Editing> Representation for WingedEdgeMesh<E> {
     const NAME: &'static str = "winged-edge";
 
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
@@ -104,17 +104,17 @@ impl<E: Editing> Representation for AnyWingedEdgeMesh<Untraced, E> {
     }
 }
 
-sixfold_core::local_queries!(WingedEdgeMesh, EditableWingedEdgeMesh);
+sixfold_core::local_queries!(crate::WingedEdgeMesh, crate::EditableWingedEdgeMesh);
 
-impl<E: Editing> Measured for AnyWingedEdgeMesh<Untraced, E> {
-    type Probed<P: Probe> = AnyWingedEdgeMesh<P, E>;
+impl<E: Editing> Measured for WingedEdgeMesh<E> {
+    type Probed<P: Probe> = WingedEdgeMesh<E, P>;
 
     fn layout_bytes(counts: &Counts) -> usize {
         size_of::<Edge>() * counts.edges + 16 * counts.vertices + 4 * counts.faces
     }
 
-    fn probed<P: Probe>(self, probe: P) -> AnyWingedEdgeMesh<P, E> {
-        AnyWingedEdgeMesh {
+    fn probed<P: Probe>(self, probe: P) -> WingedEdgeMesh<E, P> {
+        WingedEdgeMesh {
             positions: self.positions.probed(probe.clone()),
             spokes: self.spokes.probed(probe.clone()),
             edges: self.edges.probed(probe.clone()),
@@ -126,7 +126,7 @@ impl<E: Editing> Measured for AnyWingedEdgeMesh<Untraced, E> {
     }
 }
 
-impl<E: Editing> AnyWingedEdgeMesh<Untraced, E> {
+impl<E: Editing> WingedEdgeMesh<E> {
     /// Builds a mesh from these tables, without holes.
     pub(crate) fn from_tables(
         positions: Vec<Point>,

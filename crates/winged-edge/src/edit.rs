@@ -8,10 +8,11 @@
 //! side where it runs from `a` to `b`.
 
 use sixfold_core::{
-    EdgeId, Edit, EditLog, FaceId, MeshEdit, NoHoles, Point, Probe, QueryCost, Refusal, VertexId,
+    Compact, EdgeId, Edit, EditLog, Editable, FaceId, MeshEdit, NoHoles, Point, Probe, QueryCost,
+    Refusal, VertexId,
 };
 
-use crate::mesh::{AnyWingedEdgeMesh, EditableWingedEdgeMesh, WingedEdgeMesh};
+use crate::mesh::WingedEdgeMesh;
 
 mod add;
 mod collapse;
@@ -25,14 +26,14 @@ mod split_vertex;
 #[cfg(test)]
 mod tests;
 
-impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
+impl<P: Probe> MeshEdit for WingedEdgeMesh<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 
-    type Compact = WingedEdgeMesh<P>;
+    type Compact = WingedEdgeMesh<Compact, P>;
 
-    fn into_compact(mut self) -> WingedEdgeMesh<P> {
+    fn into_compact(mut self) -> WingedEdgeMesh<Compact, P> {
         self.compact();
-        AnyWingedEdgeMesh {
+        WingedEdgeMesh {
             positions: self.positions,
             spokes: self.spokes,
             edges: self.edges,
@@ -43,7 +44,7 @@ impl<P: Probe> MeshEdit for EditableWingedEdgeMesh<P> {
         }
     }
 
-    fn from_compact(compact: WingedEdgeMesh<P>) -> Self {
+    fn from_compact(compact: WingedEdgeMesh<Compact, P>) -> Self {
         compact.into()
     }
 

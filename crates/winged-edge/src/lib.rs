@@ -2,7 +2,7 @@
 //!
 //! Use it if most queries are about edges, or if an edge must be one object with one record. It
 //! does not hold edges with three faces: building from them returns an error. It is the oldest
-//! structure with constant-time neighbourhoods. Start at [`AnyWingedEdgeMesh`]; its numbered
+//! structure with constant-time neighbourhoods. Start at [`generic::WingedEdgeMesh`]; its numbered
 //! invariants define the tables. After Baumgart (1972, 1975).
 //!
 //! | holds | |
@@ -95,8 +95,21 @@ mod walk;
 mod wings;
 
 pub use edge::Edge;
-pub use mesh::{AnyWingedEdgeMesh, EditableWingedEdgeMesh, WingedEdgeMesh};
 pub use walk::EdgeSide;
+
+/// The mesh with its type parameters, for code that is generic over them.
+///
+/// Programs use the two types of the crate root instead.
+pub mod generic {
+    pub use crate::mesh::WingedEdgeMesh;
+}
+
+/// A winged-edge mesh that cannot delete elements: a [`generic::WingedEdgeMesh`] without holes.
+pub type WingedEdgeMesh = generic::WingedEdgeMesh;
+
+/// A winged-edge mesh that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): a
+/// [`generic::WingedEdgeMesh`] with holes.
+pub type EditableWingedEdgeMesh = generic::WingedEdgeMesh<sixfold_core::Editable>;
 
 /// The traits and types that all Sixfold structures share: `PolygonMesh`, `MeshQuery`, handles,
 /// errors.

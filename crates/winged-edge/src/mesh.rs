@@ -51,7 +51,7 @@ use crate::edge::{Edge, NO_EDGE, Run};
 /// 30 words, per vertex of a large closed triangle mesh. After the first deletion, also one bit per
 /// row up to the last hole.
 #[derive(Debug)]
-pub struct AnyWingedEdgeMesh<P: Probe, E: Editing> {
+pub struct WingedEdgeMesh<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
     pub(crate) spokes: Table<Slot<EdgeId>, P>,
     pub(crate) edges: Table<Edge, P>,
@@ -61,17 +61,11 @@ pub struct AnyWingedEdgeMesh<P: Probe, E: Editing> {
     pub(crate) face_holes: E::Holes<P>,
 }
 
-sixfold_core::clone_by_field!(AnyWingedEdgeMesh<P: Probe, E: Editing> { positions, spokes, edges, sides, vertex_holes, edge_holes, face_holes });
+sixfold_core::clone_by_field!(WingedEdgeMesh<E: Editing, P: Probe> { positions, spokes, edges, sides, vertex_holes, edge_holes, face_holes });
+sixfold_core::polygon_conversions!(WingedEdgeMesh);
 
-/// A winged-edge mesh that cannot delete elements: an [`AnyWingedEdgeMesh`] without holes.
-pub type WingedEdgeMesh<P = Untraced> = AnyWingedEdgeMesh<P, Compact>;
-
-/// A winged-edge mesh that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): an
-/// [`AnyWingedEdgeMesh`] with holes.
-pub type EditableWingedEdgeMesh<P = Untraced> = AnyWingedEdgeMesh<P, Editable>;
-
-impl<P: Probe> From<WingedEdgeMesh<P>> for EditableWingedEdgeMesh<P> {
-    fn from(mesh: WingedEdgeMesh<P>) -> Self {
+impl<P: Probe> From<WingedEdgeMesh<Compact, P>> for WingedEdgeMesh<Editable, P> {
+    fn from(mesh: WingedEdgeMesh<Compact, P>) -> Self {
         let probe = mesh.positions.probe();
         Self {
             positions: mesh.positions,
@@ -87,7 +81,7 @@ impl<P: Probe> From<WingedEdgeMesh<P>> for EditableWingedEdgeMesh<P> {
 
 /// The fields of an edge. Each panics with the handle of the edge if it does not exist. All are
 /// O(1) and read one record.
-impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
+impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
     /// Returns the record of `e`.
     #[inline]
     pub fn edge(&self, e: EdgeId) -> &Edge {
@@ -209,7 +203,7 @@ fn no_such_face(f: FaceId) -> ! {
 /// Moves from an edge around a vertex or a face: Baumgart's ECCW, ECW and OTHER. Each panics if the
 /// vertex is not an end of the edge, or the edge is not a side of the face. All are O(1) and read
 /// one record.
-impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
+impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
     /// Returns the end of `e` that is not `v`.
     #[inline]
     pub fn other_end(&self, e: EdgeId, v: VertexId) -> VertexId {
@@ -262,7 +256,7 @@ impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
 
 /// The tables as they are in memory, for export and for the caller's own loops. I9 defines the rows
 /// of deleted elements.
-impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
+impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
     /// Returns the positions by vertex.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
@@ -296,7 +290,7 @@ mod tests {
         WingedEdgeMesh::from_polygons(&polygons).expect("manifold")
     }
 
-    fn between<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>, [a, b]: [u32; 2]) -> EdgeId {
+    fn between<E: Editing>(mesh: &WingedEdgeMesh<E>, [a, b]: [u32; 2]) -> EdgeId {
         let has = |e, v| mesh.edge(e).ends().contains(&VertexId::new(v));
         let mut edges = mesh.edges();
         edges.find(|&e| has(e, a) && has(e, b)).expect("an edge")

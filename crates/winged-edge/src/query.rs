@@ -6,9 +6,9 @@ use sixfold_core::{
 };
 
 use crate::circulate::EdgeEdges;
-use crate::mesh::{AnyWingedEdgeMesh, no_such_vertex};
+use crate::mesh::{WingedEdgeMesh, no_such_vertex};
 
-impl<P: Probe, E: Editing> MeshQuery for AnyWingedEdgeMesh<P, E> {
+impl<P: Probe, E: Editing> MeshQuery for WingedEdgeMesh<E, P> {
     type Vertex = VertexId;
     type Edge = EdgeId;
     type Face = FaceId;

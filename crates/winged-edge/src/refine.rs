@@ -43,8 +43,8 @@ use sixfold_core::{
     rows_of_chunk,
 };
 
+use crate::WingedEdgeMesh;
 use crate::edge::Edge;
-use crate::mesh::WingedEdgeMesh;
 use crate::wings::{Side, Wings};
 
 impl Refine for WingedEdgeMesh {

@@ -2,15 +2,13 @@
 
 use std::collections::HashSet;
 
-use sixfold_core::{EdgeId, Editing, HoleSet, InvariantError, MeshQuery, Slot, Untraced};
+use sixfold_core::{EdgeId, Editing, HoleSet, InvariantError, MeshQuery, Slot};
 
 use crate::edge::{Edge, NO_EDGE, Run};
-use crate::mesh::AnyWingedEdgeMesh;
+use crate::mesh::WingedEdgeMesh;
 
 /// Checks I9, then I1 to I8; each check relies on the earlier ones.
-pub(crate) fn validate<E: Editing>(
-    mesh: &AnyWingedEdgeMesh<Untraced, E>,
-) -> Result<(), InvariantError> {
+pub(crate) fn validate<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     check_holes(mesh)?;
     check_handles(mesh)?;
     check_edge_sides(mesh)?;
@@ -28,9 +26,7 @@ fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> 
 }
 
 /// Iterates over both runs of every edge that is not deleted.
-fn runs<E: Editing>(
-    mesh: &AnyWingedEdgeMesh<Untraced, E>,
-) -> impl Iterator<Item = (EdgeId, Run<'_>)> {
+fn runs<E: Editing>(mesh: &WingedEdgeMesh<E>) -> impl Iterator<Item = (EdgeId, Run<'_>)> {
     mesh.edges().flat_map(|e| {
         let edge = mesh.edge(e);
         edge.ends().map(|v| (e, Run::from(edge, v)))
@@ -38,14 +34,12 @@ fn runs<E: Editing>(
 }
 
 /// Iterates over the edges that are not deleted, with their records.
-fn records<E: Editing>(
-    mesh: &AnyWingedEdgeMesh<Untraced, E>,
-) -> impl Iterator<Item = (EdgeId, &Edge)> {
+fn records<E: Editing>(mesh: &WingedEdgeMesh<E>) -> impl Iterator<Item = (EdgeId, &Edge)> {
     mesh.edges().map(|e| (e, mesh.edge(e)))
 }
 
 /// Checks the first part of I9: exactly the rows of deleted elements are marked as deleted.
-fn check_holes<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_holes<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     let [vertices, edges, faces] = [mesh.spokes.len(), mesh.edges.len(), mesh.sides.len()];
     for (holes, rows) in [
         (&mesh.vertex_holes, vertices),
@@ -73,7 +67,7 @@ fn check_holes<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), 
 
 /// Checks the second part of I1 and of I9: every handle in the tables refers to an element that
 /// exists. The other checks walk along these handles, so they rely on this check.
-fn check_handles<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_handles<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     let [vertices, edges, faces] = [mesh.positions.len(), mesh.edges.len(), mesh.sides.len()];
     if vertices != mesh.spokes.len() {
         let spokes = mesh.spokes.len();
@@ -105,9 +99,7 @@ fn check_handles<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<()
 }
 
 /// Checks the first part of I1.
-fn check_edge_sides<E: Editing>(
-    mesh: &AnyWingedEdgeMesh<Untraced, E>,
-) -> Result<(), InvariantError> {
+fn check_edge_sides<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     for (e, edge) in records(mesh) {
         let ([start, end], [left, right]) = (edge.ends(), edge.faces());
         if start == end {
@@ -120,7 +112,7 @@ fn check_edge_sides<E: Editing>(
     Ok(())
 }
 
-fn check_ends<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_ends<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     for (e, run) in runs(mesh) {
         for (wing, v) in [(run.next(), run.target()), (run.prev(), run.origin())] {
             if !mesh.edge(wing).ends().contains(&v) {
@@ -134,9 +126,7 @@ fn check_ends<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), I
     Ok(())
 }
 
-fn check_cycle_faces<E: Editing>(
-    mesh: &AnyWingedEdgeMesh<Untraced, E>,
-) -> Result<(), InvariantError> {
+fn check_cycle_faces<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     for (e, run) in runs(mesh) {
         let next = Run::from(mesh.edge(run.next()), run.target());
         if next.face() != run.face() {
@@ -150,9 +140,7 @@ fn check_cycle_faces<E: Editing>(
     Ok(())
 }
 
-fn check_inverse_wings<E: Editing>(
-    mesh: &AnyWingedEdgeMesh<Untraced, E>,
-) -> Result<(), InvariantError> {
+fn check_inverse_wings<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     for (e, run) in runs(mesh) {
         // The previous wing arrives at the origin, and `e` is the next edge clockwise from it
         // there.
@@ -169,7 +157,7 @@ fn check_inverse_wings<E: Editing>(
     Ok(())
 }
 
-fn check_spokes<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_spokes<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     for v in mesh.vertices() {
         if let Some(e) = mesh.spoke(v).filter(|&e| !mesh.edge(e).ends().contains(&v)) {
             return fails("I5", format!("{v} is not an end of its spoke {e}"));
@@ -189,7 +177,7 @@ fn check_spokes<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(),
     Ok(())
 }
 
-fn check_fans<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_fans<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     let mut edges = vec![0_usize; mesh.vertex_rows()];
     for (_, run) in runs(mesh) {
         edges[run.origin().index()] += 1;
@@ -206,7 +194,7 @@ fn check_fans<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), I
     Ok(())
 }
 
-fn check_faces<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), InvariantError> {
+fn check_faces<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     let mut along = 0;
     for f in mesh.faces() {
         let e = mesh.side(f);
@@ -230,9 +218,7 @@ fn check_faces<E: Editing>(mesh: &AnyWingedEdgeMesh<Untraced, E>) -> Result<(), 
     Ok(())
 }
 
-fn check_distinct_edges<E: Editing>(
-    mesh: &AnyWingedEdgeMesh<Untraced, E>,
-) -> Result<(), InvariantError> {
+fn check_distinct_edges<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     let mut ends = HashSet::new();
     for e in mesh.edges() {
         let [a, b] = mesh.edge_vertices(e);
@@ -253,7 +239,7 @@ mod tests {
     };
 
     use super::*;
-    use crate::mesh::EditableWingedEdgeMesh;
+    use crate::EditableWingedEdgeMesh;
     use crate::wings::{Side, Wings};
 
     fn mesh(vertices: u16, faces: &[&[u32]]) -> EditableWingedEdgeMesh {

@@ -5,7 +5,7 @@ use sixfold_core::{
 };
 
 use crate::edge::Run;
-use crate::mesh::AnyWingedEdgeMesh;
+use crate::mesh::WingedEdgeMesh;
 use crate::wings::Side;
 
 row_id! {
@@ -41,7 +41,7 @@ impl EdgeSide {
 
 /// Every method is O(1). `next_side` and `prev_side` read two edges, because the record of the other
 /// edge states which of its sides has the face. All other methods read one edge.
-impl<P: Probe, E: Editing> OrientedWalk for AnyWingedEdgeMesh<P, E> {
+impl<P: Probe, E: Editing> OrientedWalk for WingedEdgeMesh<E, P> {
     type Side = EdgeSide;
 
     #[inline]
@@ -110,7 +110,7 @@ impl<P: Probe, E: Editing> OrientedWalk for AnyWingedEdgeMesh<P, E> {
     }
 }
 
-impl<P: Probe, E: Editing> AnyWingedEdgeMesh<P, E> {
+impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
     /// Returns the run along `s`. If elements can be deleted, panics if the side has no face: it may
     /// have lost it.
     #[inline]
@@ -141,7 +141,7 @@ mod tests {
     use sixfold_core::{MeshEdit, Representation};
 
     use super::*;
-    use crate::mesh::{EditableWingedEdgeMesh, WingedEdgeMesh};
+    use crate::{EditableWingedEdgeMesh, WingedEdgeMesh};
 
     #[test]
     #[should_panic(expected = "has no face")]
@@ -152,8 +152,7 @@ mod tests {
         let inner = mesh.sides().find(|&s| mesh.twin_side(s).is_some());
         let s = inner.expect("the diagonal");
         let f = mesh.side_face(s);
-        mesh.remove_face(f, &mut ())
-            .expect("a face at the boundary");
+        mesh.remove_face(f).expect("a face at the boundary");
         mesh.twin_side(s);
     }
 }

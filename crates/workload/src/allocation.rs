@@ -2,7 +2,8 @@
 
 use sixfold::remeshing::{Decimation, Target, decimate};
 use sixfold::subdivision::Method;
-use sixfold::{Counts, EditVisitor, FaceId, MeshEdit, PolygonMesh, Representation, visit_editable};
+use sixfold::{EditVisitor, FaceId, MeshEdit, PolygonMesh, Representation, visit_editable};
+use sixfold_core::Counts;
 
 use crate::backend::Backend;
 use crate::clock::{Clock, Time};

@@ -4,9 +4,9 @@ use std::fmt;
 use std::sync::atomic::AtomicBool;
 
 use sixfold::{
-    BackendInfo, BuildError, Counts, Measured, MemoryFootprint, PolygonMesh, Relation,
-    for_each_representation,
+    BackendInfo, BuildError, MemoryFootprint, PolygonMesh, Relation, for_each_representation,
 };
+use sixfold_core::{Counts, Measured};
 
 use crate::draw::Draw;
 use crate::heap::{Heap, MeasuredMemory, measure_memory};

@@ -21,7 +21,8 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use sixfold::{MemoryFootprint, Probe, TableBytes};
+use sixfold::{MemoryFootprint, TableBytes};
+use sixfold_core::Probe;
 
 /// Bytes of a cache line.
 pub const LINE_BYTES: usize = 64;

@@ -3,7 +3,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
-use sixfold::{Measured, MeshQuery, QueryCost, Relation};
+use sixfold::{MeshQuery, QueryCost, Relation};
+use sixfold_core::Measured;
 
 use crate::read_probe::{CountingProbe, LINE_BYTES, ReadCounts, Step};
 

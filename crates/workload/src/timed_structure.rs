@@ -540,9 +540,9 @@ mod tests {
     use std::collections::HashSet;
 
     use sixfold::{
-        CornerTable, FaceVertexMesh, HalfEdgeMesh, IndexedFaceSet, Measured, PolygonSoup, Traced,
-        WingedEdgeMesh,
+        CornerTable, FaceVertexMesh, HalfEdgeMesh, IndexedFaceSet, PolygonSoup, WingedEdgeMesh,
     };
+    use sixfold_core::{Measured, Traced};
 
     use super::*;
 

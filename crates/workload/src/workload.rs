@@ -7,7 +7,8 @@ use std::str::FromStr;
 use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize, Serializer};
 use serde_with::{DeserializeFromStr, SerializeDisplay};
-use sixfold::{Counts, Edit, Relation};
+use sixfold::{Edit, Relation};
+use sixfold_core::Counts;
 
 use crate::operation::{ElementKind, Operation};
 use crate::unknown::unknown;

@@ -175,7 +175,8 @@ fn readable_message(message: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use sixfold::{Counts, Edit, Relation};
+    use sixfold::{Edit, Relation};
+    use sixfold_core::Counts;
 
     use super::*;
     use crate::built_in::{built_in, built_ins};

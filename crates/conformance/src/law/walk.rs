@@ -64,10 +64,7 @@ fn run_script<M: Representation + MeshEdit + OrientedWalk + Debug>(
 fn check_edited<M: Representation + MeshEdit + OrientedWalk>(mesh: &M) {
     ExpectedWalk::from_mesh(mesh).check();
     let mut without = mesh.clone();
-    let Some(f) = mesh
-        .faces()
-        .find(|&f| without.remove_face(f).is_ok())
-    else {
+    let Some(f) = mesh.faces().find(|&f| without.remove_face(f).is_ok()) else {
         return;
     };
     let expected = ExpectedWalk::from_mesh(&without);

@@ -464,7 +464,8 @@ impl<F: Flaw> Representation for Flawed<F> {
         if let Some(face) = faces.last_mut() {
             face.reverse();
         }
-        PolygonMesh::new(polygons.positions(), faces).expect("the corners are the same")
+        PolygonMesh::new(polygons.positions().iter().copied(), faces)
+            .expect("the corners are the same")
     }
 
     fn vertex_handle(polygons: &PolygonMesh, v: VertexId) -> VertexId {

@@ -1,9 +1,9 @@
 //! Collapse of an edge: its two ends become one vertex.
 
-use sixfold_core::{EditError, EditLog, Lookup, Point, Probe, ShortVec, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, Editable, Lookup, Point, Probe, ShortVec, Slot, VertexId};
 
 use super::{Refusal, faced_by, report_renamed};
-use crate::mesh::{CornerId, EdgeCorner, EditableCornerTable, NO_VERTEX, edge_between};
+use crate::mesh::{CornerId, CornerTable, EdgeCorner, NO_VERTEX, edge_between};
 
 /// The fan of one end of the edge, without the triangles at the edge.
 #[derive(Clone, Copy)]
@@ -25,7 +25,7 @@ impl RemainingFan {
     }
 }
 
-impl<P: Probe> EditableCornerTable<P> {
+impl<P: Probe> CornerTable<Editable, P> {
     /// Merges the ends of `e`, if the link condition holds (Dey, Edelsbrunner, Guha & Nekhayev
     /// 1999): only C and D are adjacent to both ends, no triangle of one end would coincide with a
     /// triangle of the other, and the collapse does not join two boundaries.
@@ -220,6 +220,7 @@ mod tests {
 
     use super::super::tests::table;
     use super::*;
+    use crate::EditableCornerTable;
 
     /// Returns a wheel of `n` triangles around v0 and a second wheel around v(n + 1) with the same
     /// rim, so that both hubs have valence `n`.

@@ -1,11 +1,11 @@
 //! Compaction: removal of the deleted rows.
 
-use sixfold_core::{EditLog, FaceId, HoleSet, MeshQuery, Probe, RowId, Slot, VertexId};
+use sixfold_core::{EditLog, Editable, FaceId, HoleSet, MeshQuery, Probe, RowId, Slot, VertexId};
 
 use super::faced_by;
-use crate::mesh::{CornerId, EditableCornerTable};
+use crate::mesh::{CornerId, CornerTable};
 
-impl<P: Probe> EditableCornerTable<P> {
+impl<P: Probe> CornerTable<Editable, P> {
     /// Moves all rows down over the holes, in one pass over each table. Triangles keep their order,
     /// so the lower of two corners that face an edge stays the lower.
     pub(super) fn compact_tables(&mut self, log: &mut impl EditLog<Self>) {

@@ -1,11 +1,11 @@
 //! Adding and removing triangles.
 
-use sixfold_core::{EditError, EditLog, FaceId, Probe, ShortVec, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, Editable, FaceId, Probe, ShortVec, Slot, VertexId};
 
 use super::{Refusal, faced_by, report_renamed};
-use crate::mesh::{CornerId, EditableCornerTable, edge_between};
+use crate::mesh::{CornerId, CornerTable, edge_between};
 
-impl<P: Probe> EditableCornerTable<P> {
+impl<P: Probe> CornerTable<Editable, P> {
     /// Adds a triangle with the given vertices, beside the triangles that run its sides the other
     /// way.
     ///
@@ -252,7 +252,7 @@ struct Gap {
 
 /// Removal of adjacent triangles from the fan of a vertex. `before` is the corner across the first
 /// of them, `after` the corner across the last, counter-clockwise.
-impl<P: Probe> EditableCornerTable<P> {
+impl<P: Probe> CornerTable<Editable, P> {
     fn check_removal(
         &self,
         v: VertexId,

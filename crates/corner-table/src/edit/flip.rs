@@ -1,11 +1,11 @@
 //! Edge flip: an edge turned within its quad.
 
-use sixfold_core::{EditError, EditLog, Probe, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, Editable, Probe, Slot, VertexId};
 
 use super::{Refusal, report_renamed};
-use crate::mesh::{CornerId, EdgeCorner, EditableCornerTable, edge_between};
+use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
 
-impl<P: Probe> EditableCornerTable<P> {
+impl<P: Probe> CornerTable<Editable, P> {
     /// Turns `e` from A–B to D–C.
     ///
     /// ```text

@@ -1,11 +1,11 @@
 //! Bisecting an edge, poking a face, splitting a vertex.
 
-use sixfold_core::{EditError, EditLog, FaceId, Point, Probe, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, Editable, FaceId, Point, Probe, Slot, VertexId};
 
 use super::{Refusal, faced_by, report_renamed};
-use crate::mesh::{CornerId, EdgeCorner, EditableCornerTable, edge_between};
+use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
 
-impl<P: Probe> EditableCornerTable<P> {
+impl<P: Probe> CornerTable<Editable, P> {
     /// Puts m into `e`: T and R keep A, two new triangles have B.
     ///
     /// ```text
@@ -257,7 +257,7 @@ impl<P: Probe> EditableCornerTable<P> {
 /// Reports that `old` faces a new edge, and that `new` faces the edge it faced with `across`.
 #[inline]
 fn report_cut<P: Probe>(
-    log: &mut impl EditLog<EditableCornerTable<P>>,
+    log: &mut impl EditLog<CornerTable<Editable, P>>,
     old: CornerId,
     across: Slot<CornerId>,
     new: CornerId,

@@ -1,13 +1,15 @@
 //! Collapse of an edge into one of its ends.
 
-use sixfold_core::{EditError, EditLog, FaceId, Lookup, Pair, Point, Probe, ShortVec, VertexId};
+use sixfold_core::{
+    EditError, EditLog, Editable, FaceId, Lookup, Pair, Point, Probe, ShortVec, VertexId,
+};
 
 use super::corners::third_corner;
 use super::find::Refused;
 use super::{Edge, uses_reports};
-use crate::mesh::{BLANK_CORNER, EditableFaceVertexMesh};
+use crate::mesh::{BLANK_CORNER, FaceVertexMesh};
 
-impl<P: Probe> EditableFaceVertexMesh<P> {
+impl<P: Probe> FaceVertexMesh<Editable, P> {
     /// Implements [`collapse_edge`](sixfold_core::MeshEdit::collapse_edge).
     pub(super) fn collapse(
         &mut self,

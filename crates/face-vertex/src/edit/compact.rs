@@ -1,9 +1,9 @@
 //! Compaction: removal of the deleted rows and of the blanks.
 
-use sixfold_core::{EditLog, FaceId, HoleSet, Holes, MeshQuery, Pair, Probe, RowId, row};
+use sixfold_core::{EditLog, Editable, FaceId, HoleSet, Holes, MeshQuery, Pair, Probe, RowId, row};
 
 use super::uses_reports;
-use crate::mesh::{EditableFaceVertexMesh, Fan};
+use crate::mesh::{FaceVertexMesh, Fan};
 
 /// The new rows of vertices or faces after compaction; `None` if there are no holes.
 struct NewRows(Option<Vec<u32>>);
@@ -20,7 +20,7 @@ impl NewRows {
     }
 }
 
-impl<P: Probe> EditableFaceVertexMesh<P> {
+impl<P: Probe> FaceVertexMesh<Editable, P> {
     /// Implements [`compact`](sixfold_core::MeshEdit::compact).
     pub(super) fn compact_tables(&mut self, log: &mut impl EditLog<Self>) {
         let vertices = NewRows::from_holes(&self.vertex_holes, self.fans.len());

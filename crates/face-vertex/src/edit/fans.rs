@@ -13,12 +13,12 @@
 
 use std::ops::Range;
 
-use sixfold_core::{FaceId, Lookup, MAX_ROWS, Point, Probe, ShortVec, VertexId, row};
+use sixfold_core::{Editable, FaceId, Lookup, MAX_ROWS, Point, Probe, ShortVec, VertexId, row};
 
 use super::find::mask;
-use crate::mesh::{BLANK_PLACE, EditableFaceVertexMesh, Fan};
+use crate::mesh::{BLANK_PLACE, FaceVertexMesh, Fan};
 
-impl<P: Probe> EditableFaceVertexMesh<P> {
+impl<P: Probe> FaceVertexMesh<Editable, P> {
     /// Returns the blanks that follow a fan of `len` faces, one of them new, after its move to the
     /// end of the pool. Returns no blanks if places are short, so that
     /// [`check_room`](Self::check_room) is sufficient.

@@ -1,9 +1,11 @@
 //! Lookups before an edit changes anything: handles, faces at an edge, room for new elements.
 
-use sixfold_core::{EditError, FaceId, IteratorExt, MAX_ROWS, Pair, Probe, ShortVec, VertexId};
+use sixfold_core::{
+    EditError, Editable, FaceId, IteratorExt, MAX_ROWS, Pair, Probe, ShortVec, VertexId,
+};
 
 use crate::circulate::{has_side_between, neighbours_in};
-use crate::mesh::{BLANK_CORNER, BLANK_PLACE, EditableFaceVertexMesh, Fan};
+use crate::mesh::{BLANK_CORNER, BLANK_PLACE, FaceVertexMesh, Fan};
 
 /// The error of an edit; the same type for every probe.
 pub(super) type Refused = EditError<VertexId, Pair<VertexId>, FaceId>;
@@ -18,7 +20,7 @@ pub(super) fn mask<const N: usize>(hits: [u32; N]) -> u32 {
     (0..N).fold(0, |mask, i| mask | hits[i] << i)
 }
 
-impl<P: Probe> EditableFaceVertexMesh<P> {
+impl<P: Probe> FaceVertexMesh<Editable, P> {
     /// Returns the fan of `v`, or an error if `v` does not exist.
     #[inline]
     pub(super) fn fan_of(&self, v: VertexId) -> Result<Fan, Refused> {

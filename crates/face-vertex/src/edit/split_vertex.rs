@@ -1,11 +1,13 @@
 //! Splitting a vertex, with a triangle on each side of the new edge.
 
-use sixfold_core::{EditError, EditLog, FaceId, Pair, Point, Probe, ShortVec, VertexId, row};
+use sixfold_core::{
+    EditError, EditLog, Editable, FaceId, Pair, Point, Probe, ShortVec, VertexId, row,
+};
 
 use super::find::Refused;
 use super::uses_reports;
 use crate::circulate::neighbours_in;
-use crate::mesh::EditableFaceVertexMesh;
+use crate::mesh::FaceVertexMesh;
 
 /// A face at a vertex, with the vertices after and before that vertex in the face.
 #[derive(Clone, Copy)]
@@ -50,7 +52,7 @@ impl OrderedFan {
     }
 }
 
-impl<P: Probe> EditableFaceVertexMesh<P> {
+impl<P: Probe> FaceVertexMesh<Editable, P> {
     /// Implements [`split_vertex`](sixfold_core::MeshEdit::split_vertex); `sides`: left, right.
     pub(super) fn split_fan(
         &mut self,

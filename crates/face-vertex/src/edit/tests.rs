@@ -1,6 +1,7 @@
 //! Tests beyond the conformance suite: the tables after an edit, their size, and panics.
 
-use crate::mesh::{BLANK_PLACE, EditableFaceVertexMesh};
+use crate::EditableFaceVertexMesh;
+use crate::mesh::BLANK_PLACE;
 use sixfold_core::{EditRecord, FaceSpans, MeshQuery, PolygonMesh, Representation};
 
 use super::*;

@@ -1,10 +1,10 @@
 //! Edge collapse: merges the two ends of an edge into one vertex.
 
-use sixfold_core::{EdgeId, EditError, EditLog, FaceId, Point, Probe, Slot, VertexId};
+use sixfold_core::{EdgeId, EditError, EditLog, Editable, FaceId, Point, Probe, Slot, VertexId};
 
 use super::Refusal;
 use super::handle_set::HandleSet;
-use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
 /// The data of an edge collapse that the check has read.
 struct Collapse {
@@ -30,7 +30,7 @@ struct End {
     last_but_one: HalfEdgeId,
 }
 
-impl<P: Probe> EditableHalfEdgeMesh<P> {
+impl<P: Probe> HalfEdgeMesh<Editable, P> {
     /// Collapses `e` into `keep`. O(valence) of both ends; O(valence log valence) above 16
     /// neighbours. If the removed end has no neighbours except `keep` and the third corners, only
     /// the rows around the removed end are read.

@@ -1,10 +1,10 @@
 //! Compaction: closes the holes.
 
-use sixfold_core::{EditLog, FaceId, HoleSet, Holes, MeshQuery, Probe, RowId, VertexId};
+use sixfold_core::{EditLog, Editable, FaceId, HoleSet, Holes, MeshQuery, Probe, RowId, VertexId};
 
-use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
-impl<P: Probe> EditableHalfEdgeMesh<P> {
+impl<P: Probe> HalfEdgeMesh<Editable, P> {
     /// Moves all rows down over the holes, in order, and replaces the handles in them; O(mesh).
     pub(super) fn compact_tables<L: EditLog<Self>>(&mut self, log: &mut L) {
         if self.hole_count() > 0 {

@@ -1,12 +1,12 @@
 //! Adding and removing faces.
 
-use sixfold_core::{EditError, EditLog, FaceId, IteratorExt, Probe, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, Editable, FaceId, IteratorExt, Probe, Slot, VertexId};
 
 use super::Refusal;
 use super::handle_set::HandleSet;
-use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
-impl<P: Probe> EditableHalfEdgeMesh<P> {
+impl<P: Probe> HalfEdgeMesh<Editable, P> {
     /// Adds a face over `corners`; O(valence) of the corners.
     ///
     /// Each side of the new face uses a boundary half-edge or a new edge. All faces at a vertex

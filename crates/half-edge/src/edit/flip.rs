@@ -1,11 +1,11 @@
 //! Edge flip: turns an edge within the quad of its two triangles.
 
-use sixfold_core::{EdgeId, EditError, FaceId, Probe};
+use sixfold_core::{EdgeId, EditError, Editable, FaceId, Probe};
 
 use super::Refusal;
-use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
-impl<P: Probe> EditableHalfEdgeMesh<P> {
+impl<P: Probe> HalfEdgeMesh<Editable, P> {
     /// Flips `e`. O(valence) of `c` or `d`, whichever is smaller: reads the records of five edges,
     /// then one half-edge around each of `c` and `d` per step.
     ///

@@ -1,12 +1,14 @@
 //! Splitting edges and faces, and merging faces.
 
-use sixfold_core::{EdgeId, EditError, EditLog, FaceId, Point, Probe, Slot, VertexId, row};
+use sixfold_core::{
+    EdgeId, EditError, EditLog, Editable, FaceId, Point, Probe, Slot, VertexId, row,
+};
 
 use super::Refusal;
 use super::handle_set::HandleSet;
-use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
-impl<P: Probe> EditableHalfEdgeMesh<P> {
+impl<P: Probe> HalfEdgeMesh<Editable, P> {
     /// Splits `e` at a new vertex; O(degree) of one face of `e`.
     pub(super) fn split(
         &mut self,

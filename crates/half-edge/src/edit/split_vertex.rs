@@ -1,9 +1,9 @@
 //! Vertex split: makes two vertices out of one.
 
-use sixfold_core::{EditError, EditLog, Point, Probe, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, Editable, Point, Probe, Slot, VertexId};
 
 use super::Refusal;
-use crate::mesh::{EditableHalfEdgeMesh, Half, HalfEdgeId};
+use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
 /// A spoke of the vertex that is split, and the half-edge before it.
 #[derive(Clone, Copy)]
@@ -12,7 +12,7 @@ struct Spoke {
     before: HalfEdgeId,
 }
 
-impl<P: Probe> EditableHalfEdgeMesh<P> {
+impl<P: Probe> HalfEdgeMesh<Editable, P> {
     /// Splits `v`; O(valence).
     ///
     /// The edge to `left` moves to the new vertex, and the edge to `right` stays. So each new edge

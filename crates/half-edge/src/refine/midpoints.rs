@@ -37,7 +37,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use sixfold_core::{FaceId, MeshQuery, Slot};
 
 use super::{Corners, fill, for_each_edge_chunk, half};
-use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
+use crate::HalfEdgeMesh;
+use crate::mesh::{Half, HalfEdgeId};
 
 /// The number of steps after which [`previous`] stops: walks from all corners take O(degree²).
 const MAX_STEPS: usize = 8;

@@ -32,7 +32,8 @@
 use sixfold_core::{FaceId, MeshQuery, Slot};
 
 use super::{Corners, fill, for_each_edge_chunk, half};
-use crate::mesh::{HalfEdgeId, HalfEdgeMesh};
+use crate::HalfEdgeMesh;
+use crate::mesh::HalfEdgeId;
 
 /// Splits every triangle into three and flips the inner edges; cuts boundary edges in three if
 /// `TRISECT`.

@@ -1,7 +1,8 @@
 //! Predicts the size of a subdivision, and checks that enough memory is free.
 
 use sixfold::subdivision::{Extent, Method, Subdivision};
-use sixfold::{Counts, MAX_ROWS, Point, PolygonMesh, VertexId};
+use sixfold::{Point, PolygonMesh, VertexId};
+use sixfold_core::{Counts, MAX_ROWS};
 use sixfold_study::Backend;
 
 use crate::failure::Failure;

@@ -1,7 +1,7 @@
 //! Fits of lines to the times, and the sizes at which layouts outgrow caches.
 
 use serde::{Deserialize, Serialize};
-use sixfold::Counts;
+use sixfold_core::Counts;
 
 use super::SizeReport;
 use super::settings::scaled;

@@ -186,9 +186,9 @@ pub fn growth_bytes(settings: &GrowthSettings) -> Result<u64, GrowthError> {
 }
 
 /// Returns `counts` scaled by `factor`.
-pub(super) fn scaled(counts: &sixfold::Counts, factor: f64) -> sixfold::Counts {
+pub(super) fn scaled(counts: &sixfold_core::Counts, factor: f64) -> sixfold_core::Counts {
     let scaled = |count: usize| (count as f64 * factor).round() as usize;
-    sixfold::Counts {
+    sixfold_core::Counts {
         vertices: scaled(counts.vertices),
         edges: scaled(counts.edges),
         faces: scaled(counts.faces),

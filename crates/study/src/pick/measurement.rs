@@ -7,7 +7,8 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sixfold::subdivision::{Method, Scheme};
-use sixfold::{Counts, support};
+use sixfold::support;
+use sixfold_core::Counts;
 use sixfold_workload::{
     Action, Clock, EditPlaceError, ElementKind, ElementSample, Operation, Run, Schedule, Series,
     Start, Time,

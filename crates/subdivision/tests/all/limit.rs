@@ -370,7 +370,8 @@ fn undefined_limits_have_the_expected_reason() {
         .iter()
         .map(|v| v.index() as u32)
         .collect();
-    let single = PolygonMesh::new(polygons.positions(), [pentagon.clone()]).expect("a face");
+    let single =
+        PolygonMesh::new(polygons.positions().iter().copied(), [pentagon.clone()]).expect("a face");
     let (_, at) = limits::<IndexedFaceSet>(&scheme, &single, &Creases::default());
     let corner = at[pentagon[0] as usize];
     assert_eq!(

@@ -341,7 +341,7 @@ fn triangulated(polygons: &PolygonMesh) -> PolygonMesh {
         sorted.sort_unstable();
         known.insert(sorted).then_some(face)
     });
-    PolygonMesh::new(fans.positions(), faces).expect("as before")
+    PolygonMesh::new(fans.positions().iter().copied(), faces).expect("as before")
 }
 
 proptest! {

@@ -1,14 +1,15 @@
 //! Adding faces.
 
 use sixfold_core::{
-    EditError, EditLog, FaceId, Lookup, MeshQuery, Probe, Refusal, ShortVec, Slot, VertexId,
+    EditError, EditLog, Editable, FaceId, Lookup, MeshQuery, Probe, Refusal, ShortVec, Slot,
+    VertexId,
 };
 
 use super::primitives::runs_of;
 use crate::edge::{Edge, RunId};
-use crate::mesh::EditableWingedEdgeMesh;
+use crate::mesh::WingedEdgeMesh;
 
-impl<P: Probe> EditableWingedEdgeMesh<P> {
+impl<P: Probe> WingedEdgeMesh<Editable, P> {
     /// Adds a face over `corners`, and links it corner by corner.
     ///
     /// ```text

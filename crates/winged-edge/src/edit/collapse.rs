@@ -1,12 +1,12 @@
 //! Edge collapse: merges the two ends of an edge into one vertex.
 
 use sixfold_core::{
-    EdgeId, EditError, EditLog, FaceId, Lookup, MeshQuery, Point, Probe, Refusal, ShortVec, Slot,
-    VertexId,
+    EdgeId, EditError, EditLog, Editable, FaceId, Lookup, MeshQuery, Point, Probe, Refusal,
+    ShortVec, Slot, VertexId,
 };
 
 use crate::edge::{Run, RunId};
-use crate::mesh::EditableWingedEdgeMesh;
+use crate::mesh::WingedEdgeMesh;
 
 /// A triangle along the collapsed edge, and its other two sides.
 ///
@@ -31,7 +31,7 @@ struct Spokes {
     on_boundary: bool,
 }
 
-impl<P: Probe> EditableWingedEdgeMesh<P> {
+impl<P: Probe> WingedEdgeMesh<Editable, P> {
     #[inline]
     pub(super) fn collapse(
         &mut self,

@@ -1,11 +1,13 @@
 //! Compaction: closes the holes.
 
-use sixfold_core::{EdgeId, EditLog, FaceId, HoleSet, Holes, Probe, RowId, Slot, VertexId};
+use sixfold_core::{
+    EdgeId, EditLog, Editable, FaceId, HoleSet, Holes, Probe, RowId, Slot, VertexId,
+};
 
-use crate::mesh::EditableWingedEdgeMesh;
+use crate::mesh::WingedEdgeMesh;
 use crate::wings::Wings;
 
-impl<P: Probe> EditableWingedEdgeMesh<P> {
+impl<P: Probe> WingedEdgeMesh<Editable, P> {
     /// Moves all rows down over the holes, in order, and replaces the handles in them; O(mesh).
     pub(super) fn compact_tables<L: EditLog<Self>>(&mut self, log: &mut L) {
         let vertices = NewRows::from_holes(&self.vertex_holes, self.positions.len());

@@ -1,12 +1,12 @@
 //! Edge flip: turns an edge within the quad of its two triangles.
 
-use sixfold_core::{EdgeId, EditError, Probe, Refusal, Slot, VertexId};
+use sixfold_core::{EdgeId, EditError, Editable, Probe, Refusal, Slot, VertexId};
 
 use super::primitives::{edge_record, runs_of};
 use crate::edge::{Run, RunId};
-use crate::mesh::EditableWingedEdgeMesh;
+use crate::mesh::WingedEdgeMesh;
 
-impl<P: Probe> EditableWingedEdgeMesh<P> {
+impl<P: Probe> WingedEdgeMesh<Editable, P> {
     /// Flips `e` counter-clockwise: changes five edge records, and possibly the spokes of its ends
     /// and the sides of its faces.
     ///

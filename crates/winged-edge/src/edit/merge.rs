@@ -1,14 +1,14 @@
 //! Merging two faces.
 
 use sixfold_core::{
-    EdgeId, EditError, EditLog, FaceId, Lookup, Probe, Refusal, ShortVec, Slot, VertexId,
+    EdgeId, EditError, EditLog, Editable, FaceId, Lookup, Probe, Refusal, ShortVec, Slot, VertexId,
 };
 
 use super::primitives::runs_of;
 use crate::edge::RunId;
-use crate::mesh::EditableWingedEdgeMesh;
+use crate::mesh::WingedEdgeMesh;
 
-impl<P: Probe> EditableWingedEdgeMesh<P> {
+impl<P: Probe> WingedEdgeMesh<Editable, P> {
     /// Removes `e` and, of its two faces, the one with fewer sides.
     pub(super) fn dissolve(
         &mut self,

@@ -1,12 +1,12 @@
 //! Steps that several edits share: checks of handles, runs, links, new rows and holes.
 
 use sixfold_core::{
-    EdgeId, EditError, EditLog, FaceId, HoleSet, MAX_ROWS, Point, Probe, Refusal, Slot, VertexId,
-    row,
+    EdgeId, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, Point, Probe, Refusal, Slot,
+    VertexId, row,
 };
 
 use crate::edge::{Edge, NO_EDGE, Run, RunId};
-use crate::mesh::EditableWingedEdgeMesh;
+use crate::mesh::WingedEdgeMesh;
 use crate::wings::Side;
 
 /// Maximum number of edges, as for building from polygons, so that their corners can be numbered
@@ -14,7 +14,7 @@ use crate::wings::Side;
 const MAX_EDGES: usize = MAX_ROWS / 4;
 
 /// Checks that elements exist and that there is room for more.
-impl<P: Probe> EditableWingedEdgeMesh<P> {
+impl<P: Probe> WingedEdgeMesh<Editable, P> {
     #[inline(always)]
     pub(super) fn check_vertex(&self, vertex: VertexId) -> Result<(), Refusal<Self>> {
         let v = vertex.index();
@@ -66,7 +66,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
 }
 
 /// Runs as an edge and a side; all O(1), except the degree that `apex` returns as an error.
-impl<P: Probe> EditableWingedEdgeMesh<P> {
+impl<P: Probe> WingedEdgeMesh<Editable, P> {
     #[inline(always)]
     pub(super) fn run(&self, run: RunId) -> Run<'_> {
         Run::new(self.record(run.edge), run.side)
@@ -123,7 +123,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
 }
 
 /// Writes to single fields.
-impl<P: Probe> EditableWingedEdgeMesh<P> {
+impl<P: Probe> WingedEdgeMesh<Editable, P> {
     /// Makes `after` follow `before`.
     #[inline(always)]
     pub(super) fn link(&mut self, before: RunId, after: RunId) {
@@ -174,7 +174,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
 }
 
 /// New rows, and holes. The caller checks the room before it adds rows.
-impl<P: Probe> EditableWingedEdgeMesh<P> {
+impl<P: Probe> WingedEdgeMesh<Editable, P> {
     /// Adds a vertex without an edge.
     #[inline(always)]
     pub(super) fn push_vertex(&mut self, at: Point, log: &mut impl EditLog<Self>) -> VertexId {
@@ -230,7 +230,7 @@ impl<P: Probe> EditableWingedEdgeMesh<P> {
 }
 
 /// Steps for boundaries and polygons.
-impl<P: Probe> EditableWingedEdgeMesh<P> {
+impl<P: Probe> WingedEdgeMesh<Editable, P> {
     /// Returns the run without a face that arrives at `v`, if `v` is on a boundary.
     #[inline(always)]
     pub(super) fn boundary_into(&self, v: VertexId) -> Option<RunId> {

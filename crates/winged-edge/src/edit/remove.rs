@@ -1,11 +1,12 @@
 //! Removing one face, all faces at a vertex, and isolated vertices.
 
 use sixfold_core::{
-    EditError, EditLog, FaceId, HoleSet, Lookup, Probe, Refusal, ShortVec, Slot, VertexId, row,
+    EditError, EditLog, Editable, FaceId, HoleSet, Lookup, Probe, Refusal, ShortVec, Slot,
+    VertexId, row,
 };
 
 use crate::edge::{Run, RunId};
-use crate::mesh::EditableWingedEdgeMesh;
+use crate::mesh::WingedEdgeMesh;
 use crate::wings::Side;
 
 /// A run along the outline of the removed faces. The outline of one face is all its sides; the
@@ -37,7 +38,7 @@ struct Corner {
     out: Option<RunId>,
 }
 
-impl<P: Probe> EditableWingedEdgeMesh<P> {
+impl<P: Probe> WingedEdgeMesh<Editable, P> {
     pub(super) fn remove(
         &mut self,
         f: FaceId,

@@ -1,14 +1,15 @@
 //! Splitting edges and faces.
 
 use sixfold_core::{
-    EdgeId, EditError, EditLog, FaceId, MeshQuery, Point, Probe, Refusal, Slot, VertexId, row,
+    EdgeId, EditError, EditLog, Editable, FaceId, MeshQuery, Point, Probe, Refusal, Slot, VertexId,
+    row,
 };
 
 use super::primitives::{edge_record, runs_of};
 use crate::edge::{Run, RunId};
-use crate::mesh::EditableWingedEdgeMesh;
+use crate::mesh::WingedEdgeMesh;
 
-impl<P: Probe> EditableWingedEdgeMesh<P> {
+impl<P: Probe> WingedEdgeMesh<Editable, P> {
     /// Inserts a vertex into the existing edge `e`; returns the vertex and the new edge, which
     /// starts there.
     ///

@@ -1,12 +1,13 @@
 //! Vertex split: makes two vertices out of one.
 
 use sixfold_core::{
-    EdgeId, EditError, EditLog, MeshQuery, Point, Probe, Refusal, ShortVec, Slot, VertexId,
+    EdgeId, EditError, EditLog, Editable, MeshQuery, Point, Probe, Refusal, ShortVec, Slot,
+    VertexId,
 };
 
 use super::primitives::runs_of;
 use crate::edge::{Edge, Run, RunId};
-use crate::mesh::EditableWingedEdgeMesh;
+use crate::mesh::WingedEdgeMesh;
 
 /// The part of the fan that moves to the new vertex.
 struct Part {
@@ -28,7 +29,7 @@ struct Doubled {
     after: RunId,
 }
 
-impl<P: Probe> EditableWingedEdgeMesh<P> {
+impl<P: Probe> WingedEdgeMesh<Editable, P> {
     /// Splits `v`: adds an edge from `v` to a new vertex n, between the two parts of the fan;
     /// O(valence).
     ///

@@ -5,8 +5,8 @@ use sixfold_core::{
     VertexId,
 };
 
+use crate::EditableWingedEdgeMesh;
 use crate::edge::Edge;
-use crate::mesh::EditableWingedEdgeMesh;
 
 fn v(row: u32) -> VertexId {
     VertexId::new(row)

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use sixfold::Counts;
+use sixfold_core::Counts;
 
 use crate::workload::{Action, Part, Workload};
 

@@ -3,9 +3,10 @@
 use std::hint::black_box;
 
 use sixfold::{
-    EdgeId, FaceId, MeshQuery, Point, PolygonMesh, Relation, Representation, RowId, VertexId,
-    Visitor, visit,
+    EdgeId, FaceId, MeshQuery, Point, PolygonMesh, Relation, Representation, VertexId, Visitor,
+    visit,
 };
+use sixfold_core::RowId;
 use sixfold_relation_table::{Numbering, RelationTable, TabulationError};
 
 use crate::clock::{Clock, Time, timed};

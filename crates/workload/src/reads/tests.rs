@@ -2,9 +2,10 @@ use std::collections::HashSet;
 
 use sixfold::shapes::{self, Order};
 use sixfold::{
-    CornerTable, FaceVertexMesh, HalfEdgeMesh, Handle, IndexedFaceSet, Measured, MeshQuery, Point,
-    PolygonMesh, Relation, Representation, Traced, for_each_representation,
+    CornerTable, FaceVertexMesh, HalfEdgeMesh, Handle, IndexedFaceSet, MeshQuery, Point,
+    PolygonMesh, Relation, Representation, for_each_representation,
 };
+use sixfold_core::{Measured, Traced};
 
 use super::*;
 use crate::read_probe::LINE_BYTES;

@@ -1,0 +1,48 @@
+//! Conversions between structures and polygon meshes, under the names of the standard library.
+
+use crate::polygon_mesh::PolygonMesh;
+use crate::representation::Representation;
+
+/// Returns the mesh as [`to_polygons`](Representation::to_polygons) does.
+impl<M: Representation> From<&M> for PolygonMesh {
+    fn from(mesh: &M) -> Self {
+        mesh.to_polygons()
+    }
+}
+
+/// Implements `TryFrom<PolygonMesh>`, `TryFrom<&PolygonMesh>` and `Default` for a structure whose
+/// parameters are `E: Editing` and a probe with a default.
+///
+/// A blanket implementation in this crate is not possible: it would overlap with the one of the
+/// standard library for types with `From`.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! polygon_conversions {
+    ($mesh:ident) => {
+        /// Builds the structure as [`from_polygons`](sixfold_core::Representation::from_polygons) does.
+        impl<E: $crate::Editing> TryFrom<&$crate::PolygonMesh> for $mesh<E> {
+            type Error = $crate::BuildError;
+
+            fn try_from(polygons: &$crate::PolygonMesh) -> Result<Self, Self::Error> {
+                $crate::Representation::from_polygons(polygons)
+            }
+        }
+
+        /// Builds the structure as [`from_polygons`](sixfold_core::Representation::from_polygons) does.
+        impl<E: $crate::Editing> TryFrom<$crate::PolygonMesh> for $mesh<E> {
+            type Error = $crate::BuildError;
+
+            fn try_from(polygons: $crate::PolygonMesh) -> Result<Self, Self::Error> {
+                $crate::Representation::from_polygons(&polygons)
+            }
+        }
+
+        /// Returns a mesh without elements.
+        impl<E: $crate::Editing> Default for $mesh<E> {
+            fn default() -> Self {
+                $crate::Representation::from_polygons(&$crate::PolygonMesh::default())
+                    .expect("a mesh without elements has no fault")
+            }
+        }
+    };
+}

@@ -1,0 +1,57 @@
+//! Conversions under the names of the standard library, on all structures and their editable forms.
+
+use sixfold::{
+    BuildError, MeshQuery, PolygonMesh, Representation, for_each_editable, for_each_representation,
+    shapes,
+};
+
+/// Builds an octahedron by both conversions, converts it back, and compares with the functions of
+/// [`Representation`].
+fn converts<M>()
+where
+    M: Representation + Default + for<'a> TryFrom<&'a PolygonMesh, Error = BuildError>,
+    M: TryFrom<PolygonMesh, Error = BuildError>,
+{
+    let polygons = shapes::octahedron();
+    let mesh = M::from_polygons(&polygons).expect("every structure holds an octahedron");
+    let expected = mesh.to_polygons();
+    assert_eq!(PolygonMesh::from(&mesh), expected, "{}", M::NAME);
+    let by_reference = M::try_from(&polygons).expect("as before");
+    assert_eq!(by_reference.to_polygons(), expected, "{}", M::NAME);
+    let by_value = M::try_from(polygons).expect("as before");
+    assert_eq!(by_value.to_polygons(), expected, "{}", M::NAME);
+
+    let empty = M::default();
+    let counts = [empty.vertex_count(), empty.edge_count(), empty.face_count()];
+    assert_eq!(counts, [0; 3], "{}", M::NAME);
+    assert_eq!(empty.validate(), Ok(()), "{}", M::NAME);
+}
+
+#[test]
+fn every_structure_converts() {
+    for_each_representation!(M => { converts::<M>(); });
+    for_each_editable!(M => { converts::<M>(); });
+}
+
+#[test]
+fn a_refused_mesh_returns_the_error_of_the_structure() {
+    for_each_representation!(M => {
+        let spine = [[0, 1, 2], [1, 0, 3], [0, 1, 4]];
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]];
+        let book = PolygonMesh::new(corners, spine).expect("a valid mesh");
+        assert_eq!(M::try_from(&book).err(), M::CAPABILITIES.check(&book).err());
+    });
+}
+
+/// Compiler messages show the name of a type and omit parameters with their default values.
+#[test]
+fn the_names_of_mesh_types_are_those_of_their_aliases() {
+    for_each_representation!(M => {
+        let with_parameters = std::any::type_name::<M>();
+        let (path, _) = with_parameters.split_once('<').expect("type parameters");
+        let (_, name) = path.rsplit_once("::").expect("a path");
+        let (krate, alias) = M::type_path().split_once("::").expect("a path");
+        assert!(path.starts_with(krate), "{path}");
+        assert_eq!(name, alias);
+    });
+}
