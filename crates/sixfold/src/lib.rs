@@ -1,7 +1,8 @@
 //! Six mesh data structures behind one query trait.
 //!
 //! This crate re-exports the core types, the structures and the algorithms. It also contains the
-//! roster: the only list of all structures, which every command, test and benchmark uses.
+//! only list of all structures, which every command, test and benchmark uses:
+//! [`structures!`].
 
 pub use sixfold_core::*;
 pub use sixfold_corner_table::{self as corner_table, CornerTable, EditableCornerTable};
@@ -18,12 +19,12 @@ pub use sixfold_shapes as shapes;
 pub use sixfold_subdivision as subdivision;
 pub use sixfold_winged_edge::{self as winged_edge, EditableWingedEdgeMesh, WingedEdgeMesh};
 
-mod roster;
+mod structure_list;
 mod support;
 
-pub use roster::{
-    BackendInfo, EditVisitor, RefineVisitor, Visitor, roster, visit, visit_all, visit_editable,
-    visit_refinable,
+pub use structure_list::{
+    EditVisitor, RefineVisitor, StructureInfo, Visitor, structure_infos, visit, visit_all,
+    visit_editable, visit_refinable,
 };
 pub use support::{Support, support};
 
