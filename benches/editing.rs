@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput};
-use sixfold::{Edit, QueryCost, roster, shapes};
-use sixfold_study::{EditPass, Editor, MachineClock, Series, SingleEdit};
+use sixfold::{Edit, QueryCost, shapes};
+use sixfold_study::{Backend, EditPass, Editor, MachineClock, Series, SingleEdit};
 
 use crate::input::inputs;
 
@@ -30,8 +30,8 @@ fn edits(criterion: &mut Criterion) {
         let mut group = criterion.benchmark_group(format!("edit/{edit}"));
         for side in SIDES {
             let polygons = shapes::triangle_torus(side, side).expect("a small torus");
-            for backend in roster() {
-                let Some(cost) = backend.edits[edit as usize] else {
+            for backend in Backend::structures() {
+                let Some(cost) = backend.info.edits[edit as usize] else {
                     continue; // it does not support the edit
                 };
                 let scans = cost == QueryCost::Scan;
@@ -40,12 +40,12 @@ fn edits(criterion: &mut Criterion) {
                 }
                 let places = if scans { 8 } else { 256 };
                 let job = SingleEdit { edit, places };
-                let Some(Ok(mut editor)) = job.prepare(backend.name, &polygons) else {
+                let Some(Ok(mut editor)) = job.prepare(&backend, &polygons) else {
                     continue;
                 };
                 editor.time(&Series::once(&MachineClock::start()));
                 let edits = editor.result().elements.max(1);
-                let id = BenchmarkId::new(backend.name, polygons.face_count());
+                let id = BenchmarkId::new(backend.name(), polygons.face_count());
                 bench_editor(&mut group, id, editor.as_mut(), edits);
             }
         }
@@ -57,8 +57,8 @@ fn workloads(criterion: &mut Criterion) {
     for pass in EditPass::ALL {
         let mut group = criterion.benchmark_group(format!("editing/{pass}"));
         for input in inputs() {
-            for backend in roster() {
-                let collapse = backend.edits[Edit::CollapseEdge as usize];
+            for backend in Backend::structures() {
+                let collapse = backend.info.edits[Edit::CollapseEdge as usize];
                 let max_faces = match collapse {
                     Some(QueryCost::Scan) => MAX_WORKLOAD_SCANNED_FACES,
                     _ => usize::MAX,
@@ -66,12 +66,12 @@ fn workloads(criterion: &mut Criterion) {
                 if input.mesh.face_count() > max_faces {
                     continue;
                 }
-                let Some(Ok(mut editor)) = pass.prepare(backend.name, &input.mesh) else {
+                let Some(Ok(mut editor)) = pass.prepare(&backend, &input.mesh) else {
                     continue;
                 };
                 editor.time(&Series::once(&MachineClock::start()));
                 group.throughput(Throughput::Elements(editor.result().elements));
-                let id = BenchmarkId::new(backend.name, &input.name);
+                let id = BenchmarkId::new(backend.name(), &input.name);
                 bench_editor(&mut group, id, editor.as_mut(), 1);
             }
         }

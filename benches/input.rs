@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Throughput};
-use sixfold::{Facts, PolygonMesh, roster, shapes};
-use sixfold_study::{BackendRunner, MachineClock, Operation};
+use sixfold::{Facts, PolygonMesh, shapes};
+use sixfold_study::{Backend, BackendRunner, MachineClock, Operation};
 
 /// Frequencies of the geodesic spheres: 320, 1,280 and 5,120 triangles.
 const FREQUENCIES: [usize; 3] = [4, 8, 16];
@@ -59,13 +59,13 @@ pub(crate) fn bench_backends(
     input: &Input,
 ) {
     let clock = MachineClock::start();
-    for backend in roster() {
-        let Ok(mut runner) = BackendRunner::new(backend.name, &input.mesh) else {
+    for backend in Backend::structures() {
+        let Ok(mut runner) = BackendRunner::new(&backend, &input.mesh) else {
             continue; // it cannot hold the mesh; the conformance tests check that this is right
         };
         let elements = runner.run(operation, &clock).elements;
         group.throughput(Throughput::Elements(elements));
-        group.bench_function(BenchmarkId::new(backend.name, &input.name), |bench| {
+        group.bench_function(BenchmarkId::new(backend.name(), &input.name), |bench| {
             bench.iter_custom(|runs| {
                 let times = u32::try_from(runs).unwrap_or(u32::MAX);
                 let run = runner.run_times(operation, times, &clock);

@@ -8,8 +8,8 @@ use std::hint::black_box;
 use criterion::{BenchmarkId, Criterion, Throughput};
 use rayon::ThreadPoolBuilder;
 use sixfold::subdivision::{Method, Scheme};
-use sixfold::{Creases, roster, shapes};
-use sixfold_study::{SubdivisionJob, Way};
+use sixfold::{Creases, QueryCost, Relation, shapes};
+use sixfold_study::{Backend, SubdivisionJob, Way};
 
 /// Maximum number of levels: the last has about 300,000 triangles, or 250,000 quads.
 const LEVELS: u32 = 3;
@@ -20,12 +20,12 @@ pub(crate) fn define(criterion: &mut Criterion) {
         let mut group = criterion.benchmark_group(format!("subdivision/{scheme}"));
         for way in Way::ALL {
             for level in 1..=LEVELS {
-                for backend in roster() {
-                    if scans_faces(backend.name, way) {
+                for backend in Backend::structures() {
+                    if scans_faces(&backend, way) {
                         continue;
                     }
                     let job = SubdivisionJob::new(scheme, way, level);
-                    let ready = job.prepare(backend.name, &polygons, &Creases::default());
+                    let ready = job.prepare(&backend, &polygons, &Creases::default());
                     let Some(Ok(mut refiner)) = ready else {
                         continue;
                     };
@@ -38,7 +38,7 @@ pub(crate) fn define(criterion: &mut Criterion) {
                         }
                         let (faces, _) = refiner.result();
                         group.throughput(Throughput::Elements(faces as u64));
-                        let name = format!("{way}/{}/{threads}", backend.name);
+                        let name = format!("{way}/{}/{threads}", backend.name());
                         group.bench_function(BenchmarkId::new(name, level), |bench| {
                             bench.iter(|| black_box(pool.install(|| refiner.run().is_ok())));
                         });
@@ -52,8 +52,9 @@ pub(crate) fn define(criterion: &mut Criterion) {
 
 /// Returns whether the way makes queries for which the structure scans all faces. A run would take
 /// seconds; the report of a study shows it on a smaller mesh.
-fn scans_faces(backend: &str, way: Way) -> bool {
-    way == Way::Gather && matches!(backend, "polygon-soup" | "indexed-face-set")
+fn scans_faces(backend: &Backend, way: Way) -> bool {
+    let cost = backend.info.costs[Relation::VertexFaces as usize];
+    way == Way::Gather && cost == QueryCost::Scan
 }
 
 fn thread_counts(way: Way) -> &'static [usize] {

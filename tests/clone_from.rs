@@ -4,34 +4,28 @@
 
 use std::alloc::System;
 
-use sixfold::{EditVisitor, MeshEdit, PolygonMesh, Representation, roster, shapes, visit_editable};
+use sixfold::{MeshEdit, PolygonMesh, Representation, for_each_editable, shapes};
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
 
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-struct CheckCloneFrom<'a>(&'a PolygonMesh);
-
-impl EditVisitor for CheckCloneFrom<'_> {
-    type Output = ();
-
-    fn visit<M: Representation + MeshEdit + 'static>(&mut self) {
-        let mesh = M::from_polygons(self.0).expect("a closed triangle mesh");
-        let (before, bytes) = (mesh.to_polygons(), mesh.memory().total());
-        let mut copy = mesh.clone();
-        for round in 0..3 {
-            edit(&mut copy);
-            assert_ne!(copy.to_polygons(), before, "{}: changed", M::NAME);
-            let allocated = HEAP.stats().allocations + HEAP.stats().reallocations;
-            copy.clone_from(&mesh);
-            let blocks = HEAP.stats().allocations + HEAP.stats().reallocations - allocated;
-            assert_eq!(blocks, 0, "{}, round {round}: blocks allocated", M::NAME);
-            assert_eq!(copy.to_polygons(), before, "{}: restored", M::NAME);
-            copy.validate().expect("every invariant");
-        }
-        assert!(copy.memory().total() >= bytes, "{}", M::NAME);
-        println!("{}: restored without an allocation", M::NAME);
+fn check_clone_from<M: Representation + MeshEdit>(polygons: &PolygonMesh) {
+    let mesh = M::from_polygons(polygons).expect("a closed triangle mesh");
+    let (before, bytes) = (mesh.to_polygons(), mesh.memory().total());
+    let mut copy = mesh.clone();
+    for round in 0..3 {
+        edit(&mut copy);
+        assert_ne!(copy.to_polygons(), before, "{}: changed", M::NAME);
+        let allocated = HEAP.stats().allocations + HEAP.stats().reallocations;
+        copy.clone_from(&mesh);
+        let blocks = HEAP.stats().allocations + HEAP.stats().reallocations - allocated;
+        assert_eq!(blocks, 0, "{}, round {round}: blocks allocated", M::NAME);
+        assert_eq!(copy.to_polygons(), before, "{}: restored", M::NAME);
+        copy.validate().expect("every invariant");
     }
+    assert!(copy.memory().total() >= bytes, "{}", M::NAME);
+    println!("{}: restored without an allocation", M::NAME);
 }
 
 /// Pokes and removes faces, which makes tables longer and leaves holes in them.
@@ -51,8 +45,5 @@ fn edit<M: MeshEdit>(mesh: &mut M) {
 
 fn main() {
     let polygons = shapes::geodesic(6).expect("720 triangles");
-    for backend in roster() {
-        visit_editable(backend.name, &mut CheckCloneFrom(&polygons))
-            .expect("all six can be edited");
-    }
+    for_each_editable!(M => { check_clone_from::<M>(&polygons); });
 }

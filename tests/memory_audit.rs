@@ -10,7 +10,8 @@ use std::{env, fs};
 use peak_alloc::PeakAlloc;
 use sixfold::remeshing::{Boundary, Decimation, Target, decimate};
 use sixfold::{
-    MeshEdit, MeshQuery, Point, PolygonMesh, Representation, for_each_editable, io, roster, shapes,
+    MeshEdit, MeshQuery, Point, PolygonMesh, Representation, for_each_editable, io, shapes,
+    structure_infos,
 };
 use sixfold_core::Measured;
 use sixfold_study::{Audit, Backend, Heap, StudyMesh, audit};
@@ -69,7 +70,7 @@ fn counters_are_correct() {
 fn run_audit(name: &str, polygons: PolygonMesh) -> Audit {
     let study_mesh = StudyMesh::new(name, polygons);
     let heap = Counters::default();
-    audit(&study_mesh, &Backend::roster(), &heap, &mut |_| ())
+    audit(&study_mesh, &Backend::structures(), &heap, &mut |_| ())
 }
 
 /// Checks that the bytes agree in three ways for each structure that holds the mesh. Returns the
@@ -78,7 +79,7 @@ fn check_audit(name: &str, polygons: &PolygonMesh) -> usize {
     let audit = run_audit(name, polygons.clone());
     assert_eq!(audit.faults(), Vec::<String>::new(), "{name}");
     let mut structures = 0;
-    for (row, known) in audit.backends.iter().zip(roster()) {
+    for (row, known) in audit.backends.iter().zip(structure_infos()) {
         let backend = &row.backend.name;
         let holds = known.check(polygons).is_ok();
         assert_eq!(row.backend.holds, holds, "{backend} on {name}");

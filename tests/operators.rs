@@ -121,7 +121,7 @@ fn all_structures_are_compared() {
             face_normals(mesh),
         ))
     });
-    assert_eq!(structures, sixfold::roster().len());
+    assert_eq!(structures, sixfold::structure_infos().len());
     let welded = welded(&icosahedron).expect("distinct positions");
     let dual = compare_duals(&welded)
         .expect("a structure holds it")

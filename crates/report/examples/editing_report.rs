@@ -15,10 +15,10 @@ use std::path::Path;
 
 use common::median;
 use serde_json::json;
-use sixfold::{Edit, PolygonMesh, QueryCost, roster, shapes};
+use sixfold::{Edit, PolygonMesh, QueryCost, StructureInfo, shapes, structure_infos};
 use sixfold_report::{Panel, panels};
 use sixfold_study::{
-    EditPass, Editor, Environment, MachineClock, Policy, Series, SingleEdit, pages,
+    Backend, EditPass, Editor, Environment, MachineClock, Policy, Series, SingleEdit, pages,
 };
 
 /// Sides of the tori: 1,058, 4,232, 16,200, 64,800, 259,200 and 1,036,800 triangles.
@@ -80,8 +80,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Returns whether a workload of edits scans on the structure.
-fn scans(backend: &sixfold::BackendInfo) -> bool {
-    backend.edits[Edit::CollapseEdge as usize] == Some(QueryCost::Scan)
+fn scans(info: &StructureInfo) -> bool {
+    info.edits[Edit::CollapseEdge as usize] == Some(QueryCost::Scan)
 }
 
 /// Runs all edits and workloads on one mesh, in rounds.
@@ -92,28 +92,28 @@ fn measure(
 ) -> Result<(), Box<dyn Error>> {
     let faces = polygons.face_count();
     let mut jobs: Vec<(Line, Box<dyn Editor>)> = Vec::new();
-    for backend in roster() {
+    for backend in Backend::structures() {
         for edit in Edit::ALL {
-            let places = match backend.edits[edit as usize] {
+            let places = match backend.info.edits[edit as usize] {
                 None => continue,
                 Some(QueryCost::Scan) => PLACES_SCANNED,
                 Some(_) => PLACES,
             };
             // The soup and the face set have to search even for the places.
-            let places = if scans(&backend) {
+            let places = if scans(&backend.info) {
                 PLACES_SCANNED
             } else {
                 places
             };
             let job = SingleEdit { edit, places };
-            if let Some(editor) = job.prepare(backend.name, polygons) {
-                jobs.push(((edit.name(), backend.name), editor?));
+            if let Some(editor) = job.prepare(&backend, polygons) {
+                jobs.push(((edit.name(), backend.name()), editor?));
             }
         }
-        if faces <= MAX_SCANNED_FACES || !scans(&backend) {
+        if faces <= MAX_SCANNED_FACES || !scans(&backend.info) {
             for pass in EditPass::ALL {
-                if let Some(editor) = pass.prepare(backend.name, polygons) {
-                    jobs.push(((pass.name(), backend.name), editor?));
+                if let Some(editor) = pass.prepare(&backend, polygons) {
+                    jobs.push(((pass.name(), backend.name()), editor?));
                 }
             }
         }
@@ -239,7 +239,7 @@ fn table<const N: usize>(
     what: [&'static str; N],
     cell: impl Fn(&[(f64, f64)]) -> Option<String>,
 ) -> std::fmt::Result {
-    let backends = roster();
+    let backends = structure_infos();
     let names: Vec<&str> = backends.iter().map(|backend| backend.name).collect();
     writeln!(
         text,
@@ -271,7 +271,7 @@ fn figure(path: &Path, samples: &Samples) -> std::io::Result<()> {
         title: edit.name().into(),
         x_label: "faces of the mesh".into(),
         y_label: "ns per edit".into(),
-        lines: { roster().into_iter() }
+        lines: { structure_infos().into_iter() }
             .map(|backend| (backend.name, points(samples, (edit.name(), backend.name))))
             .collect(),
     };

@@ -19,10 +19,10 @@ use std::path::Path;
 
 use serde_json::json;
 use sixfold::subdivision::{Scheme, SubdivisionError};
-use sixfold::{Creases, PolygonMesh, roster, shapes};
+use sixfold::{Creases, PolygonMesh, shapes};
 use sixfold_report::{Panel, panels};
 use sixfold_study::{
-    Clock, Environment, MachineClock, Policy, Refiner, SubdivisionJob, Way, pages,
+    Backend, Clock, Environment, MachineClock, Policy, Refiner, SubdivisionJob, Way, pages,
 };
 
 /// The schemes of the report; both take the control mesh, of triangles.
@@ -101,11 +101,11 @@ fn measure(polygons: &PolygonMesh, rounds: usize) -> Result<Samples, Subdivision
     let clock = MachineClock::start();
     for scheme in SCHEMES {
         for way in Way::ALL {
-            for backend in roster() {
-                let line = (scheme.name(), way.name(), backend.name);
+            for backend in Backend::structures() {
+                let line = (scheme.name(), way.name(), backend.name());
                 for level in 1..=LEVELS {
                     let job = SubdivisionJob::new(scheme, way, level);
-                    let ready = job.prepare(backend.name, polygons, &Creases::default());
+                    let ready = job.prepare(&backend, polygons, &Creases::default());
                     let Some(Ok(mut refiner)) = ready else { break };
                     let start = clock.now();
                     if refiner.run().is_err() {
@@ -152,13 +152,13 @@ fn text(
         }
         writeln!(text, "{head}\n{rule}")?;
         for way in Way::ALL {
-            for backend in roster() {
-                let line = (scheme.name(), way.name(), backend.name);
+            for backend in Backend::structures() {
+                let line = (scheme.name(), way.name(), backend.name());
                 let at = |level| samples.get(&(line, level)).map(Sample::ns_per_face);
                 if at(1).is_none() {
                     continue;
                 }
-                write!(text, "| {way} | {} |", backend.name)?;
+                write!(text, "| {way} | {} |", backend.name())?;
                 for level in 1..=LEVELS {
                     match at(level) {
                         Some(ns) if ns >= 1000.0 => write!(text, " {ns:.0} |")?,
@@ -190,8 +190,8 @@ fn figure(path: &Path, samples: &Samples) -> std::io::Result<()> {
         title: format!("{scheme}, {way}"),
         x_label: "faces of the last level".into(),
         y_label: "ns per face".into(),
-        lines: { roster().into_iter() }
-            .map(|backend| line(scheme, way, backend.name))
+        lines: { Backend::structures().into_iter() }
+            .map(|backend| line(scheme, way, backend.name()))
             .collect(),
     };
     let all = SCHEMES.into_iter().flat_map(|s| ways.map(|w| (s, w)));

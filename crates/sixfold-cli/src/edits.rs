@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use comfy_table::Cell;
 use serde_json::{Value, json};
-use sixfold::{Edit, QueryCost, roster};
+use sixfold::{Edit, QueryCost, structure_infos};
 
 use crate::arguments::Edits;
 use crate::failure::Failure;
@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Edits) -> Result<ExitCode, Failure> {
 
 /// Returns the table with a row per edit and a column per backend.
 fn matrix() -> String {
-    let backends = roster();
+    let backends = structure_infos();
     let mut costs = table_of_backends("visits");
     for edit in Edit::ALL {
         let offered = backends.iter().map(|backend| backend.edits[edit as usize]);
@@ -54,7 +54,7 @@ fn word(cost: QueryCost) -> &'static str {
 
 /// Explains the words in the table, and which structures also refuse edits.
 fn legend() -> String {
-    let backends = roster();
+    let backends = structure_infos();
     let manifold = backends
         .iter()
         .filter(|backend| !backend.capabilities.non_manifold_edges);
@@ -75,7 +75,7 @@ fn legend() -> String {
 
 /// Returns the JSON of one edit.
 fn row(edit: Edit) -> Value {
-    let backends = roster().into_iter().map(|backend| {
+    let backends = structure_infos().into_iter().map(|backend| {
         let cost = backend.edits[edit as usize];
         json!({ "backend": backend.name, "looks_at": cost })
     });

@@ -33,6 +33,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     let settings = PickSettings {
         workload,
         backends: arguments.backends.clone(),
+        extra: Vec::new(),
         needs: arguments.needs.clone(),
         max_memory: arguments.max_memory,
         budget: arguments.budget,

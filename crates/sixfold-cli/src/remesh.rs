@@ -9,7 +9,8 @@ use sixfold::remeshing::{
     Boundary, Decimation, RemeshError, Remeshing, Stop, decimate_watched, remesh_watched,
 };
 use sixfold::{
-    Edit, EditVisitor, MeshEdit, PolygonMesh, QueryCost, Representation, roster, visit_editable,
+    Edit, EditVisitor, MeshEdit, PolygonMesh, QueryCost, Representation, structure_infos,
+    visit_editable,
 };
 
 use crate::arguments::{Decimate, Remesh};
@@ -60,7 +61,7 @@ fn edit_file([from, to]: [&Path; 2], backend: &str, work: &impl Work) -> Result<
     };
     let done = visit_editable(backend, &mut job);
     let (polygons, EditSummary { edits, shortfall }) =
-        done.ok_or_else(|| Failure::usage(format!("no backend is called `{backend}`")))??;
+        done.ok_or_else(|| Failure::unsupported(not_editable(backend)))??;
     output.finish(|writer| write_obj(&polygons, writer))?;
     if let Some(shortfall) = shortfall {
         print_stderr(&format!("note: {}: {shortfall}", to.display()));
@@ -74,6 +75,14 @@ fn edit_file([from, to]: [&Path; 2], backend: &str, work: &impl Work) -> Result<
     ));
     text.finish()?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Explains that `backend` has no edits, and lists the backends that have them.
+fn not_editable(backend: &str) -> String {
+    let infos = structure_infos().into_iter();
+    let editable = infos.filter(|info| info.is_editable());
+    let names: Vec<&str> = editable.map(|info| info.name).collect();
+    format!("{backend} cannot be edited: choose {}", names.join(", "))
 }
 
 /// Returns an error for the first face that is not a triangle.
@@ -119,9 +128,9 @@ fn warn_of_scans<M: MeshEdit + Representation>(faces: usize) {
     if faces < MIN_WARNED_FACES || !scans(&M::EDITS) {
         return;
     }
-    let backends = roster();
-    let others = backends.iter().filter(|backend| !scans(&backend.edits));
-    let others: Vec<&str> = others.map(|backend| backend.name).collect();
+    let infos = structure_infos().into_iter();
+    let others = infos.filter(|info| info.is_editable() && !scans(&info.edits));
+    let others: Vec<&str> = others.map(|info| info.name).collect();
     print_stderr(&format!(
         "note: {} scans all {} faces for each edit, which is slow: {} visit only the faces around the edge",
         M::NAME,

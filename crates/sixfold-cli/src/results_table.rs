@@ -341,7 +341,7 @@ fn refusal_notes(report: &Report) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use sixfold::{Facts, PolygonMesh, roster};
+    use sixfold::{Facts, PolygonMesh, structure_infos};
     use sixfold_study::{Control, Environment, MeshReport, SCHEMA};
 
     use super::*;
@@ -357,7 +357,7 @@ mod tests {
             layout_bytes_per_vertex: Some(bytes as f64 / 100.0),
             tables: Vec::new(),
             merged_vertices: Some(0),
-            capabilities: Some(roster()[0].capabilities),
+            capabilities: Some(structure_infos()[0].capabilities),
             external: None,
         }
     }

@@ -86,7 +86,7 @@ pub(crate) fn help() -> String {
 
 /// Lists the names of all backends and operations.
 pub(crate) fn name_lists() -> String {
-    let backends = sixfold::roster();
+    let backends = sixfold::structure_infos();
     let backends: Vec<&str> = backends.iter().map(|backend| backend.name).collect();
     let operations = Operation::ALL.map(Operation::name).join(", ");
     let backends = hanging_indent("Backends:    ", &backends.join(", "));

@@ -1,7 +1,7 @@
 //! Tables of words and figures.
 
 use comfy_table::{Cell, ContentArrangement, Table};
-use sixfold::roster;
+use sixfold::structure_infos;
 
 use crate::results_table::STYLE;
 
@@ -30,7 +30,7 @@ pub(crate) fn styled(header: Vec<Cell>, bold: bool) -> Table {
 
 /// Returns an empty table with a column per backend; `rows` is the heading of the first column.
 pub(crate) fn table_of_backends(rows: &str) -> Table {
-    let backends = roster();
+    let backends = structure_infos();
     let names = backends.iter().map(|backend| backend.name);
     let broken = names.map(|name| Cell::new(name.replace('-', "\n")));
     table([Cell::new(rows)].into_iter().chain(broken).collect())

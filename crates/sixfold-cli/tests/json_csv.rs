@@ -200,7 +200,7 @@ fn the_selected_rows_are_measured() {
     let rows: Vec<_> = rows
         .map(|row| (&row["operation"], &row["backend"]))
         .collect();
-    // In the order of the table and of the roster, not of the arguments.
+    // In the order of the table and of the structures, not of the arguments.
     let expected = [
         ("build", "face-vertex"),
         ("build", "half-edge"),

@@ -107,7 +107,7 @@
 //!
 //! The bytes are those of large closed triangle meshes. If you do not know, use [`HalfEdgeMesh`]
 //! for manifolds and [`FaceVertexMesh`] for others. The command `sixfold pick` measures a workload
-//! on your mesh. [`roster`] and [`visit`] select a structure at run time.
+//! on your mesh. [`structures!`] lists all structures, and [`visit`] selects one at run time.
 //!
 //! # Require local queries
 //!
@@ -240,12 +240,12 @@ pub use sixfold_shapes as shapes;
 #[doc(inline)]
 pub use sixfold_subdivision as subdivision;
 
-mod roster;
+mod structure_list;
 mod support;
 
-pub use roster::{
-    BackendInfo, EditVisitor, RefineVisitor, Visitor, roster, visit, visit_all, visit_editable,
-    visit_refinable,
+pub use structure_list::{
+    EditVisitor, RefineVisitor, StructureInfo, Visitor, structure_infos, visit, visit_all,
+    visit_editable, visit_refinable,
 };
 pub use support::{Support, support};
 

@@ -1,9 +1,9 @@
 //! A table of which subdivision scheme runs on which structure.
 
-use sixfold_core::Refine;
+use sixfold_core::Split;
 use sixfold_subdivision::{Method, Scheme};
 
-use crate::roster::{RefineVisitor, roster, visit_refinable};
+use crate::structure_list::{StructureInfo, structure_infos};
 
 /// How one structure supports one scheme.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,38 +28,31 @@ impl Support {
     }
 }
 
-/// Returns how every structure supports `scheme`, in the order of the [`roster`].
-pub fn support(scheme: Scheme) -> Vec<Support> {
-    let kind = scheme.kind();
-    let rows = roster().into_iter().map(|backend| {
+impl StructureInfo {
+    /// Returns how the structure supports `scheme`.
+    pub fn support(&self, scheme: Scheme) -> Support {
+        let kind = scheme.kind();
         let mut methods = vec![Method::Gather];
         if kind.scatter {
             methods.push(Method::Scatter);
         }
-        let native = visit_refinable(backend.name, &mut Splits(scheme));
-        if native == Some(true) {
+        let is_known = |wanted: Split| self.splits.iter().any(|s| s.name() == wanted.name());
+        if kind.split.is_some_and(is_known) {
             methods.push(Method::Native);
         }
         Support {
-            backend: backend.name,
+            backend: self.name,
             scheme,
             methods,
-            holds_result: backend.capabilities.polygons || kind.makes == "triangles",
+            holds_result: self.capabilities.polygons || kind.makes == "triangles",
         }
-    });
-    rows.collect()
+    }
 }
 
-/// A visitor that returns whether a structure can split its own tables as the scheme requires.
-struct Splits(Scheme);
-
-impl RefineVisitor for Splits {
-    type Output = bool;
-
-    fn visit<M: Refine + 'static>(&mut self) -> bool {
-        let wanted = self.0.kind().split;
-        wanted.is_some_and(|wanted| M::SPLITS.iter().any(|split| split.name() == wanted.name()))
-    }
+/// Returns how every structure supports `scheme`, in the order of [`structure_infos`].
+pub fn support(scheme: Scheme) -> Vec<Support> {
+    let infos = structure_infos().into_iter();
+    infos.map(|info| info.support(scheme)).collect()
 }
 
 #[cfg(test)]

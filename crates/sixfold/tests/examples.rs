@@ -169,7 +169,7 @@ fn every_structure_is_found_by_its_name() {
     };
     let edges = 3 * polygons.face_count() / 2;
     let expected = 2.0 * edges as f64 / polygons.vertex_count() as f64;
-    for info in sixfold::roster() {
+    for info in sixfold::structure_infos() {
         let valence = sixfold::visit(info.name, &mut task).expect("a structure");
         assert_eq!(
             valence.expect("a closed triangle mesh"),

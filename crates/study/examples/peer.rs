@@ -19,7 +19,8 @@ use sixfold::io::read_obj;
 use sixfold::subdivision::{Boundary, Scheme};
 use sixfold::{Creases, PolygonMesh};
 use sixfold_study::{
-    BackendRunner, MachineClock, Operation, Policy, SubdivisionJob, Time, Way, pages, timed,
+    Backend, BackendRunner, MachineClock, Operation, Policy, SubdivisionJob, Time, Way, pages,
+    timed,
 };
 
 /// A sample is repeated until this much time has passed.
@@ -84,14 +85,18 @@ fn arguments() -> Result<Arguments, String> {
     }
 }
 
+fn find(backend: &str) -> Result<Backend, String> {
+    Backend::find(backend).ok_or(format!("no backend is called `{backend}`"))
+}
+
 fn run(arguments: &Arguments) -> Result<(), String> {
     let path = Path::new(&arguments.mesh);
     let (polygons, _) = read_obj(path).map_err(|e| e.to_string())?.into_polygons();
     let mesh = path.file_stem().unwrap_or_default().to_string_lossy();
     let peer = format!("sixfold {}", arguments.backend);
     pages::set_policy(Policy::Kept);
-    let mut runner =
-        BackendRunner::new(&arguments.backend, &polygons).map_err(|e| e.to_string())?;
+    let backend = find(&arguments.backend)?;
+    let mut runner = BackendRunner::new(&backend, &polygons).map_err(|e| e.to_string())?;
     let wanted = |name: &str| {
         arguments.operations.is_empty() || arguments.operations.iter().any(|o| o == name)
     };
@@ -146,7 +151,8 @@ fn refined(
     let mut job = SubdivisionJob::new(scheme, arguments.way, levels);
     // The boundary rule of the other libraries.
     job.subdivision.boundary = Boundary::EdgeOnly;
-    let refiner = job.prepare(&arguments.backend, polygons, &Creases::default());
+    let backend = find(&arguments.backend)?;
+    let refiner = job.prepare(&backend, polygons, &Creases::default());
     let refiner = refiner.ok_or(format!("{name} cannot run this way on this backend"))?;
     let mut refiner = refiner.map_err(|e| e.to_string())?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads);

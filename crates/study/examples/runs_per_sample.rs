@@ -61,9 +61,9 @@ fn operations(
     rounds: usize,
     clock: &dyn Clock,
 ) -> Vec<(String, f64)> {
-    let roster = Backend::roster();
-    let backend = roster.iter().find(|backend| backend.name() == structure);
-    let built = backend.expect("a structure").prepare(polygons, None);
+    let built = Backend::find(structure)
+        .expect("a structure")
+        .prepare(polygons, None);
     let (mut subject, _) = built.expect("it holds a sphere");
     let mut lines = Vec::new();
     for name in OPERATIONS {
@@ -94,10 +94,9 @@ fn mix(structure: &str, polygons: &PolygonMesh, rounds: usize, clock: &dyn Clock
     );
     let route = Route::new(Access::Patches, polygons, 1);
     let draw = Draw::new(polygons, 1);
-    let prepared = prepare_mix(structure, polygons, &draw, &schedule, &route);
-    let Some(Ok(mut mixer)) = prepared else {
-        panic!("{structure} cannot be edited");
-    };
+    let backend = Backend::find(structure).expect("a structure");
+    let prepared = prepare_mix(&backend, polygons, &draw, &schedule, &route);
+    let mut mixer = prepared.expect("it can be edited");
     let turns = turns_in_a_run(&schedule, mixer.as_ref());
     let mut time = |runs| {
         mixer.run(0, turns, 1, clock);

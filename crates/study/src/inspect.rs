@@ -43,7 +43,7 @@ impl StudyMesh {
 /// per backend.
 pub fn inspect(study_mesh: &StudyMesh) -> Inspection {
     let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
-    let backends = Backend::roster().into_iter().map(|backend| {
+    let backends = Backend::structures().into_iter().map(|backend| {
         let verdict = backend.info.check(&study_mesh.polygons);
         unbuilt(&backend, &counts, verdict)
     });

@@ -74,7 +74,7 @@ pub struct OrdersReport {
     pub mesh: MeshReport,
     /// The orders, in the order of tables.
     pub orders: Vec<Order>,
-    /// The requested backends, in the order of the roster, built from the mesh in its given order.
+    /// The requested backends, in the order of [`Backend::structures`], built from the mesh in its given order.
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
     /// The rows, sorted by operation, then structure, then order.

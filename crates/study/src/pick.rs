@@ -21,6 +21,7 @@ use std::time::Duration;
 use sixfold_workload::pages::Policy;
 use sixfold_workload::{
     Backend, Draw, EditPlaceError, MachineClock, MixRefusal, Operation, Route, Schedule, Workload,
+    prepare_mix, tabulate,
 };
 
 pub use needs::{Need, UnknownNeed};
@@ -41,6 +42,8 @@ pub struct PickSettings {
     pub workload: Workload,
     /// Names of the backends to compare; empty for all.
     pub backends: Vec<String>,
+    /// Additional structures beside those of Sixfold.
+    pub extra: Vec<Backend>,
     /// Capabilities that the structure must have.
     pub needs: Vec<Need>,
     /// The maximum size of the structure, in bytes.
@@ -58,6 +61,7 @@ impl PickSettings {
     fn chosen_backends(&self) -> Result<Vec<Backend>, StudyError> {
         let settings = Settings {
             backends: self.backends.clone(),
+            extra: self.extra.clone(),
             ..Settings::default()
         };
         settings.chosen_backends()
@@ -239,8 +243,7 @@ fn measure_mesh(
         mesh: study_mesh.name.clone(),
         reason,
     };
-    let set_up =
-        |name: &str| sixfold_workload::prepare_mix(name, polygons, &draw, &schedule, &route);
+    let set_up = |backend: &Backend| prepare_mix(backend, polygons, &draw, &schedule, &route);
 
     let mut backends = Vec::new();
     for (i, backend) in qualifying.iter().enumerate() {
@@ -248,11 +251,10 @@ fn measure_mesh(
             0.05 * i as f64 / qualifying.len() as f64,
             &format!("building {}", backend.name()),
         );
-        match set_up(backend.name()) {
-            Some(Ok(mixer)) => backends.push(PickBackend::new(mixer)),
-            Some(Err(MixRefusal::EditPlaceError(reason))) => return Err(impossible(reason)),
-            Some(Err(refusal)) => excluded.push(Excluded::new(backend.name(), refusal.to_string())),
-            None => {}
+        match set_up(backend) {
+            Ok(mixer) => backends.push(PickBackend::with_structure(mixer, backend)),
+            Err(MixRefusal::EditPlaceError(reason)) => return Err(impossible(reason)),
+            Err(refusal) => excluded.push(Excluded::new(backend.name(), refusal.to_string())),
         }
     }
     if let Some(most) = settings.max_memory {
@@ -263,10 +265,14 @@ fn measure_mesh(
         }
         backends.retain(|backend| !too_large(backend));
     }
-    if let Some(again) = backends.iter().find(|b| !b.scans()).map(|b| b.mixer.name())
-        && let Some(Ok(mixer)) = set_up(again)
+    let again = backends.iter().find(|b| !b.scans());
+    if let Some(structure) = again.and_then(|b| b.structure)
+        && let Ok(mixer) = set_up(&structure)
     {
-        backends.push(PickBackend::control(mixer));
+        backends.push(PickBackend {
+            structure: Some(structure),
+            ..PickBackend::control(mixer)
+        });
     }
     backend::keep_common_places(&mut backends, &schedule).map_err(impossible)?;
     if settings.needs.contains(&Need::Edit) {
@@ -276,7 +282,7 @@ fn measure_mesh(
         ));
     } else {
         progress(0.05, "tabulating");
-        let tabulate = |name: &str| sixfold_workload::tabulate(name, polygons, &schedule, &route);
+        let tabulate = |backend: &Backend| tabulate(backend, polygons, &schedule, &route);
         let tables = backend::build_tables(&backends, clock, tabulate);
         match tables {
             Some(tables)

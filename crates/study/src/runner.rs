@@ -61,17 +61,12 @@ impl<'a> BackendRunner<'a> {
     ///
     /// # Errors
     ///
-    /// An unknown name, or a mesh that this backend cannot hold.
-    pub fn new(backend: &str, polygons: &'a PolygonMesh) -> Result<Self, StudyError> {
+    /// [`StudyError::NoneHolds`] if the structure cannot hold this mesh.
+    pub fn new(backend: &Backend, polygons: &'a PolygonMesh) -> Result<Self, StudyError> {
         let kept = pages::set_policy(Policy::Kept).policy == Policy::Kept;
-        let name = backend.to_owned();
-        let found = Backend::roster()
-            .into_iter()
-            .find(|found| found.name() == backend);
-        let found = found.ok_or(StudyError::UnknownBackend { name })?;
         let draw: Option<&Draw> = None;
         let counts = polygons.counts(Facts::from_polygons(polygons).edges);
-        let (report, subject) = prepare(&found, polygons, draw, &counts);
+        let (report, subject) = prepare(backend, polygons, draw, &counts);
         let refusals = || vec![(report.name, report.reason.unwrap_or_default())];
         let subject = subject.ok_or_else(|| StudyError::NoneHolds {
             refusals: refusals(),

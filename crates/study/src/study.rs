@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use sixfold::{Distribution, Facts, PolygonMesh, QueryCost, Relation, roster};
+use sixfold::{Distribution, Facts, PolygonMesh, QueryCost, Relation, structure_infos};
 use sixfold_core::Counts;
 
 use crate::agreement::compare_checksums;
@@ -41,7 +41,7 @@ const MAX_NEIGHBOURS: usize = 1000;
 pub struct Settings {
     /// The names of the backends; empty for all.
     pub backends: Vec<String>,
-    /// Additional representations beside those of the roster.
+    /// Additional structures beside those of Sixfold.
     pub extra: Vec<Backend>,
     /// External programs that take part in the study.
     pub externals: Vec<External>,
@@ -87,7 +87,7 @@ pub enum StudyError {
     /// No backend has this name.
     #[error("{}", unknown("backend", .name, &all_names()))]
     UnknownBackend { name: String },
-    /// Two representations have the same name.
+    /// Two structures have the same name.
     #[error("two backends are called `{name}`: give each a name of its own")]
     RepeatedBackend { name: String },
     /// The mesh has no faces.
@@ -105,7 +105,8 @@ pub enum StudyError {
 }
 
 fn all_names() -> Vec<&'static str> {
-    roster().iter().map(|backend| backend.name).collect()
+    let infos = structure_infos().into_iter();
+    infos.map(|info| info.name).collect()
 }
 
 fn reasons(refusals: &[(String, String)]) -> String {
@@ -117,14 +118,14 @@ fn reasons(refusals: &[(String, String)]) -> String {
 }
 
 impl Settings {
-    /// Returns the chosen backends in the order of the roster, then the extra ones.
+    /// Returns the chosen backends in the order of [`Backend::structures`], then the extra ones.
     ///
     /// # Errors
     ///
     /// [`StudyError::UnknownBackend`] for the first unknown name, and
     /// [`StudyError::RepeatedBackend`] for an extra backend with the name of another.
     pub fn chosen_backends(&self) -> Result<Vec<Backend>, StudyError> {
-        let mut all = Backend::roster();
+        let mut all = Backend::structures();
         for &extra in &self.extra {
             if all.contains(&extra) {
                 let name = extra.name().to_owned();
@@ -144,7 +145,7 @@ impl Settings {
 
     /// Refuses two columns with the same name.
     fn check_externals(&self) -> Result<(), StudyError> {
-        let ours = Backend::roster()
+        let ours = Backend::structures()
             .into_iter()
             .chain(self.extra.iter().copied());
         let mut names: Vec<String> = ours.map(|backend| backend.name().to_owned()).collect();

@@ -27,7 +27,7 @@ use crate::study::{Settings, StudyError, study};
 pub struct WhySettings {
     /// The names of the backends; empty for all.
     pub backends: Vec<String>,
-    /// Additional representations beside those of the roster.
+    /// Additional structures beside those of Sixfold.
     pub extra: Vec<Backend>,
     /// The relations; empty for all nine.
     pub relations: Vec<Relation>,
@@ -52,14 +52,14 @@ pub struct Why {
     pub schema: u32,
     /// Name and topology of the mesh.
     pub mesh: MeshReport,
-    /// The backends by name, in the order of the roster.
+    /// The backends by name, in the order of [`Backend::structures`].
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
     /// The model of memory that the counts use.
     pub model: Model,
     /// The speed of reading buffers of growing size; `None` if nothing was measured.
     pub memory: Option<Vec<BufferSpeed>>,
-    /// The results, sorted by relation, then in the order of the roster.
+    /// The results, sorted by relation, then in the order of [`Backend::structures`].
     pub rows: Vec<WhyRow>,
     /// Whether it was stopped early, so that some rows or times are missing.
     pub interrupted: bool,
@@ -215,7 +215,7 @@ pub fn why(
         return Err(StudyError::NoFaces);
     }
     let (backends, mut rows) = count_all(study_mesh, &study_settings, &relations, stop, progress)?;
-    // The sort is stable: rows of one relation stay in the order of the roster.
+    // The sort is stable: rows of one relation stay in the order of the backends.
     rows.sort_by_key(|row| row.reads.relation);
     let mut environment = None;
     if let Some(Timing { budget, memory }) = &settings.timing

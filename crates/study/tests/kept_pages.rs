@@ -101,6 +101,7 @@ fn no_sample_of_a_pick_faults(budget: Duration) -> bool {
     let settings = PickSettings {
         workload: built_in("remeshing").expect("a built-in workload"),
         backends: STRUCTURES.map(str::to_owned).to_vec(),
+        extra: Vec::new(),
         needs: Vec::new(),
         max_memory: None,
         budget,

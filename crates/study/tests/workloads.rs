@@ -4,12 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use sixfold::remeshing::{Decimation, Target, decimate};
 use sixfold::subdivision::Scheme;
-use sixfold::{
-    BackendInfo, EditableHalfEdgeMesh, Point, PolygonMesh, Relation, Representation, roster,
-    shapes, support,
-};
+use sixfold::{EditableHalfEdgeMesh, Point, PolygonMesh, Relation, Representation, shapes};
 use sixfold_conformance::edit::{Action, Model, Rules};
-use sixfold_study::{BackendRunner, EditPass, MachineClock, Operation};
+use sixfold_study::{Backend, BackendRunner, EditPass, MachineClock, Operation};
 
 /// The expected results of the operations, computed by brute force.
 struct Oracle<'a> {
@@ -310,14 +307,12 @@ fn patchwork() -> PolygonMesh {
 
 /// Returns whether the operation can run, by the table of schemes and structures and the degrees of
 /// the mesh.
-fn can_run(operation: Operation, backend: &BackendInfo, mesh: &PolygonMesh) -> bool {
+fn can_run(operation: Operation, backend: &Backend, mesh: &PolygonMesh) -> bool {
     let Some(job) = operation.subdivision_job() else {
         return !operation.creates_mesh() || mesh.faces().uniform_degree() == Some(3);
     };
     let scheme = job.subdivision.scheme;
-    let mut rows = support(scheme).into_iter();
-    let row = rows.find(|row| row.backend == backend.name);
-    let row = row.expect("a row for each backend of the roster");
+    let row = backend.info.support(scheme);
     let accepts_degrees = scheme != Scheme::Loop || mesh.faces().uniform_degree() == Some(3);
     accepts_degrees && row.holds_result && row.methods.contains(&job.way.method())
 }
@@ -332,11 +327,11 @@ fn operations_agree_with_the_face_list() {
     ];
     for (name, mesh) in &meshes {
         let oracle = Oracle::new(mesh);
-        for backend in roster() {
-            if backend.check(mesh).is_err() {
+        for backend in Backend::structures() {
+            if backend.info.check(mesh).is_err() {
                 continue;
             }
-            let mut runner = BackendRunner::new(backend.name, mesh).expect("it can hold the mesh");
+            let mut runner = BackendRunner::new(&backend, mesh).expect("it can hold the mesh");
             for operation in Operation::ALL {
                 let run = runner.run(operation, &MachineClock::start());
                 if !can_run(operation, &backend, mesh) {
@@ -345,7 +340,7 @@ fn operations_agree_with_the_face_list() {
                 }
                 let expected = oracle.checksum(operation);
                 let near = (run.checksum - expected).abs() <= 1e-5 * expected.abs();
-                let context = format!("{operation} of {name} on {}", backend.name);
+                let context = format!("{operation} of {name} on {}", backend.name());
                 assert!(near, "{context}: {}, expected {expected}", run.checksum);
                 assert_eq!(
                     run.elements as usize,

@@ -2,7 +2,7 @@
 
 use sixfold::remeshing::{Decimation, Target, decimate};
 use sixfold::subdivision::Method;
-use sixfold::{EditVisitor, FaceId, MeshEdit, PolygonMesh, Representation, visit_editable};
+use sixfold::{FaceId, MeshEdit, PolygonMesh, Representation};
 use sixfold_core::Counts;
 
 use crate::backend::Backend;
@@ -105,7 +105,7 @@ impl Backend {
     fn result_bytes(&self, operation: Operation, polygons: &PolygonMesh, counts: &Counts) -> usize {
         let counts = match operation {
             Operation::FfBfs => return size_of::<FaceId>() * counts.faces,
-            Operation::EditPass(pass) => counts_after(pass, self.name(), polygons, counts),
+            Operation::EditPass(pass) => counts_after(pass, self, polygons, counts),
             _ => match operation
                 .subdivision_job()
                 .map(|job| job.subdivision.split(0))
@@ -118,30 +118,35 @@ impl Backend {
     }
 }
 
-/// Returns the counts of the mesh after `pass` on the structure called `backend`.
-fn counts_after(pass: EditPass, backend: &str, polygons: &PolygonMesh, before: &Counts) -> Counts {
-    struct Decimated<'a>(&'a PolygonMesh, f64);
-
-    impl EditVisitor for Decimated<'_> {
-        type Output = Option<Counts>;
-
-        fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Option<Counts> {
-            let mut mesh = M::from_polygons(self.0).ok()?;
-            let job = Decimation {
-                target: Target::Ratio(self.1),
-                ..Decimation::default()
-            };
-            decimate(&mut mesh, &job).ok()?;
-            Some(mesh.to_polygons().counts(mesh.edges().count()))
-        }
-    }
-
+/// Returns the counts of the mesh after `pass` on the structure of `backend`.
+fn counts_after(
+    pass: EditPass,
+    backend: &Backend,
+    polygons: &PolygonMesh,
+    before: &Counts,
+) -> Counts {
     let ratio = match pass {
         // Neither changes the number of elements.
         EditPass::SplitCollapse | EditPass::FlipAll => return *before,
         EditPass::DecimateHalf => 0.5,
         EditPass::DecimateTenth => 0.1,
     };
-    let counts = visit_editable(backend, &mut Decimated(polygons, ratio)).flatten();
+    let edits = backend.edits;
+    let counts = edits.and_then(|edits| (edits.decimated_counts)(polygons, ratio));
     counts.unwrap_or(*before)
+}
+
+/// Returns the counts of the mesh after `M` was decimated to this ratio of the faces; `None` if
+/// that is refused.
+pub(crate) fn decimated_counts<M: Representation + MeshEdit>(
+    polygons: &PolygonMesh,
+    ratio: f64,
+) -> Option<Counts> {
+    let mut mesh = M::from_polygons(polygons).ok()?;
+    let job = Decimation {
+        target: Target::Ratio(ratio),
+        ..Decimation::default()
+    };
+    decimate(&mut mesh, &job).ok()?;
+    Some(mesh.to_polygons().counts(mesh.edges().count()))
 }

@@ -1,67 +1,169 @@
-//! A representation in the form that a study measures.
+//! A structure in the form that studies measure.
 
 use std::fmt;
 use std::sync::atomic::AtomicBool;
 
 use sixfold::{
-    BackendInfo, BuildError, MemoryFootprint, PolygonMesh, Relation, for_each_representation,
+    BuildError, Creases, MemoryFootprint, MeshEdit, PolygonMesh, Refine, Relation, Representation,
+    StructureInfo, structures,
 };
 use sixfold_core::{Counts, Measured};
 
+use crate::allocation::decimated_counts;
 use crate::draw::Draw;
+use crate::edit_pass::{EditPass, PreparedEditor, prepare_pass};
 use crate::heap::{Heap, MeasuredMemory, measure_memory};
+use crate::mix::{
+    MixBackend, MixInput, PreparedMix, Route, Schedule, prepare_edit_mix, prepare_query_mix,
+    tabulate_structure,
+};
 use crate::reads::{ReadsObserver, count};
+use crate::single_edit::{SingleEdit, prepare_single};
+use crate::subdivision_job::{PreparedRefiner, SubdivisionJob, prepare_native, prepare_rebuilt};
 use crate::timed_structure::{TimedBackend, TimedStructure};
 
-/// A representation with its properties and the functions that build and measure it.
+/// Makes a vector of [`Backend`] from the lines of [`structures!`].
+macro_rules! backends {
+    ($({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? })+) => {
+        vec![$(
+            Backend::new::<$query>()
+                $(.with_edits::<$edit>())?
+                $(.with_refinement::<$refine>())?
+        ),+]
+    };
+}
+
+/// A structure with its properties and the functions that build, run and measure it.
 ///
-/// [`Backend::roster`] returns those of Sixfold. [`Backend::new`] makes a backend from any other
-/// representation, which a study then also measures (`Settings::extra` there).
+/// [`Backend::structures`] returns those of Sixfold. [`Backend::new`] makes a backend from any other
+/// structure. Studies, `pick`, edits and subdivisions accept it like the others:
+///
+/// ```
+/// use sixfold::{EditableHalfEdgeMesh, HalfEdgeMesh, shapes};
+/// use sixfold_workload::{Backend, EditPass};
+///
+/// // In place of the half-edge mesh: types that another crate defines.
+/// let backend = Backend::new::<HalfEdgeMesh>()
+///     .with_edits::<EditableHalfEdgeMesh>()
+///     .with_refinement::<HalfEdgeMesh>();
+/// let editor = EditPass::FlipAll.prepare(&backend, &shapes::icosahedron());
+/// assert!(editor.is_some_and(|editor| editor.is_ok()));
+/// ```
 #[derive(Clone, Copy)]
 pub struct Backend {
     /// Properties that are known without building it.
-    pub info: BackendInfo,
+    pub info: StructureInfo,
     /// Computes the bytes of its layout, by formula, for a mesh with these counts.
     pub layout_bytes: fn(&Counts) -> usize,
-    pub(crate) build: Build,
+    pub(crate) queries: QueryFunctions,
+    pub(crate) edits: Option<EditFunctions>,
+    /// Sets up a subdivision in its own tables.
+    pub(crate) prepare_native: Option<PrepareRefiner>,
+}
+
+/// The functions that only need queries.
+#[derive(Clone, Copy)]
+pub(crate) struct QueryFunctions {
+    build: Build,
     pub(crate) measure_memory: fn(&PolygonMesh, &dyn Heap) -> Result<MeasuredMemory, BuildError>,
     count: Count,
+    pub(crate) prepare_mix: for<'a> fn(&MixInput<'a>) -> PreparedMix<'a>,
+    pub(crate) tabulate: Tabulate,
+    /// Sets up a subdivision that rebuilds the structure from each level.
+    pub(crate) prepare_rebuilt: PrepareRefiner,
+}
+
+/// The functions that need edits.
+#[derive(Clone, Copy)]
+pub(crate) struct EditFunctions {
+    pub(crate) prepare_mix: for<'a> fn(&MixInput<'a>) -> PreparedMix<'a>,
+    pub(crate) prepare_pass: fn(EditPass, &PolygonMesh) -> PreparedEditor,
+    pub(crate) prepare_single: fn(SingleEdit, &PolygonMesh) -> PreparedEditor,
+    pub(crate) decimated_counts: fn(&PolygonMesh, f64) -> Option<Counts>,
 }
 
 /// Builds the structure and prepares it for measurement. Its memory is read before anything is run.
-type Build = for<'a> fn(&'a PolygonMesh, Option<&'a Draw>) -> Result<Prepared<'a>, BuildError>;
+type Build =
+    for<'a> fn(&Backend, &'a PolygonMesh, Option<&'a Draw>) -> Result<Prepared<'a>, BuildError>;
 
 /// Builds the structure and counts the table reads of relations.
 type Count =
     fn(&PolygonMesh, &[Relation], &AtomicBool, &mut dyn ReadsObserver) -> Result<(), BuildError>;
 
+/// Builds tables of the relations that a schedule queries, from the structure.
+type Tabulate =
+    for<'a> fn(&'a PolygonMesh, &'a Schedule, &'a Route) -> Option<Box<dyn MixBackend + 'a>>;
+
+/// Builds the control mesh of a subdivision.
+type PrepareRefiner = fn(SubdivisionJob, &PolygonMesh, &Creases) -> PreparedRefiner;
+
 /// A structure ready to be measured, and its memory footprint.
 pub type Prepared<'a> = (Box<dyn TimedBackend + 'a>, MemoryFootprint);
 
 impl Backend {
-    /// Makes a backend from `M`.
+    /// Makes a backend from `M`, without edits and without refinement of its own tables.
     pub fn new<M: Measured + 'static>() -> Self {
         Self {
-            info: BackendInfo::new::<M>(),
+            info: StructureInfo::new::<M>(),
             layout_bytes: M::layout_bytes,
-            build: |polygons, draw| {
-                let mesh = M::from_polygons(polygons)?;
-                let memory = mesh.memory();
-                Ok((Box::new(TimedStructure::new(polygons, draw, mesh)), memory))
+            queries: QueryFunctions {
+                build: |backend, polygons, draw| {
+                    let mesh = M::from_polygons(polygons)?;
+                    let memory = mesh.memory();
+                    let timed = TimedStructure::new(backend, polygons, draw, mesh);
+                    Ok((Box::new(timed), memory))
+                },
+                measure_memory: measure_memory::<M>,
+                count: |polygons, relations, stop, observer| {
+                    count(M::from_polygons(polygons)?, relations, stop, observer);
+                    Ok(())
+                },
+                prepare_mix: prepare_query_mix::<M>,
+                tabulate: tabulate_structure::<M>,
+                prepare_rebuilt: prepare_rebuilt::<M>,
             },
-            measure_memory: measure_memory::<M>,
-            count: |polygons, relations, stop, observer| {
-                count(M::from_polygons(polygons)?, relations, stop, observer);
-                Ok(())
-            },
+            edits: None,
+            prepare_native: None,
         }
     }
 
-    /// Returns every representation of Sixfold, in the order in which tables show them.
-    pub fn roster() -> Vec<Self> {
-        let mut backends = Vec::new();
-        for_each_representation!(M => { backends.push(Self::new::<M>()); });
-        backends
+    /// Adds the edits of `M`, the type of the same structure that can be edited.
+    #[must_use]
+    pub fn with_edits<M: Representation + MeshEdit + 'static>(self) -> Self {
+        let edits = EditFunctions {
+            prepare_mix: prepare_edit_mix::<M>,
+            prepare_pass: prepare_pass::<M>,
+            prepare_single: prepare_single::<M>,
+            decimated_counts: decimated_counts::<M>,
+        };
+        Self {
+            info: self.info.with_edits::<M>(),
+            edits: Some(edits),
+            ..self
+        }
+    }
+
+    /// Adds native subdivision with `M`, the type of the same structure that refines its own
+    /// tables.
+    #[must_use]
+    pub fn with_refinement<M: Refine + 'static>(self) -> Self {
+        Self {
+            info: self.info.with_refinement::<M>(),
+            prepare_native: Some(prepare_native::<M>),
+            ..self
+        }
+    }
+
+    /// Returns a backend for each structure of Sixfold, in the order in which tables show them.
+    pub fn structures() -> Vec<Self> {
+        structures!([backends])
+    }
+
+    /// Returns the backend for the structure of Sixfold called `name`; `None` if the name is
+    /// unknown.
+    pub fn find(name: &str) -> Option<Self> {
+        let mut all = Self::structures().into_iter();
+        all.find(|backend| backend.name() == name)
     }
 
     /// Builds it from `polygons` and prepares it for measurement, with its handles of the elements
@@ -75,7 +177,7 @@ impl Backend {
         polygons: &'a PolygonMesh,
         draw: Option<&'a Draw>,
     ) -> Result<Prepared<'a>, BuildError> {
-        (self.build)(polygons, draw)
+        (self.queries.build)(self, polygons, draw)
     }
 
     /// Builds only the structure from `polygons`, and counts with `heap` the bytes that this
@@ -89,7 +191,7 @@ impl Backend {
         polygons: &PolygonMesh,
         heap: &dyn Heap,
     ) -> Result<MeasuredMemory, BuildError> {
-        (self.measure_memory)(polygons, heap)
+        (self.queries.measure_memory)(polygons, heap)
     }
 
     /// Builds it from `polygons` and counts the table reads of `relations`, until `stop` is true.
@@ -104,7 +206,7 @@ impl Backend {
         stop: &AtomicBool,
         observer: &mut dyn ReadsObserver,
     ) -> Result<(), BuildError> {
-        (self.count)(polygons, relations, stop, observer)
+        (self.queries.count)(polygons, relations, stop, observer)
     }
 
     /// Returns its name, as users write it.

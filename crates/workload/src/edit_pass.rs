@@ -3,11 +3,9 @@
 use std::fmt;
 
 use sixfold::remeshing::{Decimation, Target, decimate};
-use sixfold::{
-    EdgeMap, EditLog, EditVisitor, HandleMap, MeshEdit, MeshQuery, PolygonMesh, Representation,
-    visit_editable,
-};
+use sixfold::{EdgeMap, EditLog, HandleMap, MeshEdit, MeshQuery, PolygonMesh, Representation};
 
+use crate::backend::Backend;
 use crate::clock::Time;
 use crate::series::{ReusedCopies, Series};
 
@@ -45,44 +43,39 @@ impl EditPass {
         }
     }
 
-    /// Sets it up on the structure called `backend`. Returns `None` if there is no such structure,
-    /// or it cannot be edited.
+    /// Sets it up on the structure of `backend`. Returns `None` if the structure cannot be edited.
     ///
     /// # Errors
     ///
     /// Returns the reason if the structure cannot hold `polygons`, or a face is not a triangle.
-    pub fn prepare(
-        self,
-        backend: &str,
-        polygons: &PolygonMesh,
-    ) -> Option<Result<Box<dyn Editor>, String>> {
-        struct Builder<'a>(EditPass, &'a PolygonMesh);
-
-        impl EditVisitor for Builder<'_> {
-            type Output = Result<Box<dyn Editor>, String>;
-
-            fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output {
-                let &mut Self(pass, polygons) = self;
-                if let Some((f, degree)) = polygons.first_polygon() {
-                    return Err(format!(
-                        "face {f} has {degree} corners, and {pass} needs triangles: triangulate the mesh"
-                    ));
-                }
-                let mesh = M::from_polygons(polygons).map_err(|refusal| refusal.to_string())?;
-                Ok(Box::new(EditPassRun {
-                    pass,
-                    edges: match pass {
-                        EditPass::FlipAll => edges_in_face_order(&mesh),
-                        _ => Vec::new(),
-                    },
-                    mesh,
-                    copies: ReusedCopies::default(),
-                }))
-            }
-        }
-
-        visit_editable(backend, &mut Builder(self, polygons))
+    pub fn prepare(self, backend: &Backend, polygons: &PolygonMesh) -> Option<PreparedEditor> {
+        Some((backend.edits?.prepare_pass)(self, polygons))
     }
+}
+
+/// Edits ready to be run, or the reason why they are not.
+pub type PreparedEditor = Result<Box<dyn Editor>, String>;
+
+/// Sets `pass` up on `M`.
+pub(crate) fn prepare_pass<M: Representation + MeshEdit + 'static>(
+    pass: EditPass,
+    polygons: &PolygonMesh,
+) -> PreparedEditor {
+    if let Some((f, degree)) = polygons.first_polygon() {
+        return Err(format!(
+            "face {f} has {degree} corners, and {pass} needs triangles: triangulate the mesh"
+        ));
+    }
+    let mesh = M::from_polygons(polygons).map_err(|refusal| refusal.to_string())?;
+    Ok(Box::new(EditPassRun {
+        pass,
+        edges: match pass {
+            EditPass::FlipAll => edges_in_face_order(&mesh),
+            _ => Vec::new(),
+        },
+        mesh,
+        copies: ReusedCopies::default(),
+    }))
 }
 
 impl fmt::Display for EditPass {
@@ -340,7 +333,7 @@ impl<M: MeshEdit> EditLog<M> for TrackedEdges<M> {
 
 #[cfg(test)]
 mod tests {
-    use sixfold::{roster, shapes};
+    use sixfold::shapes;
 
     use super::*;
     use crate::clock::MachineClock;
@@ -350,15 +343,15 @@ mod tests {
         let polygons = shapes::geodesic(3).expect("small");
         for pass in EditPass::ALL {
             let mut results = Vec::new();
-            for backend in roster() {
-                let editor = pass.prepare(backend.name, &polygons);
+            for backend in Backend::structures() {
+                let editor = pass.prepare(&backend, &polygons);
                 let mut editor = editor.expect("all six").expect("triangles");
                 let clock = MachineClock::start();
                 editor.time(&Series::once(&clock));
                 let once = editor.result();
                 editor.time(&Series::with_runs(3, &clock).with_untimed(1));
-                assert_eq!(editor.result(), once, "{pass} on {}, again", backend.name);
-                results.push((backend.name, once));
+                assert_eq!(editor.result(), once, "{pass} on {}, again", backend.name());
+                results.push((backend.name(), once));
             }
             let (_, first) = results[0];
             assert!(first.done > 0 && first.checksum > 0.0);
@@ -379,17 +372,14 @@ mod tests {
 
     #[test]
     fn polygons_are_refused_with_the_first_such_face() {
+        let half_edge = Backend::find("half-edge").expect("one of six");
         let refused = EditPass::FlipAll
-            .prepare("half-edge", &shapes::cube())
-            .expect("one of six");
+            .prepare(&half_edge, &shapes::cube())
+            .expect("it can be edited");
         let Err(refusal) = refused else {
             panic!("quads were accepted")
         };
         assert!(refusal.contains("face f0 has 4 corners"), "{refusal}");
-        assert!(
-            EditPass::FlipAll
-                .prepare("abacus", &shapes::cube())
-                .is_none()
-        );
+        assert!(Backend::find("abacus").is_none());
     }
 }

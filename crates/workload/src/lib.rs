@@ -1,7 +1,7 @@
 //! The work that is run on a structure and timed: queries, whole-mesh operations, edits,
 //! subdivisions.
 //!
-//! [`Backend::new`] makes any representation measurable as a [`TimedBackend`], which runs a [`Job`]
+//! [`Backend::new`] makes any structure measurable as a [`TimedBackend`], which runs a [`Job`]
 //! and returns its time and its result. This crate contains everything that is compiled once for each
 //! structure. The crates above it measure and evaluate, without any mesh type.
 
@@ -36,7 +36,7 @@ pub use built_in::{built_in, built_ins};
 pub use caches::{Cache, caches, last_level_bytes};
 pub use clock::{Clock, MachineClock, Time, timed};
 pub use draw::{Draw, Side};
-pub use edit_pass::{EditPass, Editor, Edits};
+pub use edit_pass::{EditPass, Editor, Edits, PreparedEditor};
 pub use heap::{Heap, MeasuredMemory};
 pub use memory_speed::{BufferSpeed, MemorySpeed};
 pub use mix::{
@@ -48,7 +48,7 @@ pub use read_probe::{CACHE_LINES, LINE_BYTES, REACH};
 pub use reads::{MAX_READS, Reads, ReadsObserver, SCAN_SAMPLE, TableReads};
 pub use series::{CacheFlusher, MIN_TIMED_NS, Series, Start, exceeds_second_level};
 pub use single_edit::SingleEdit;
-pub use subdivision_job::{Refiner, SubdivisionJob, Way};
+pub use subdivision_job::{PreparedRefiner, Refiner, SubdivisionJob, Way};
 pub use sweeps::field_sum;
 pub use timed_structure::{ElementSample, Job, Outcome, Run, TimedBackend};
 pub use unknown::unknown;

@@ -21,8 +21,10 @@ use crate::timed_structure::{ElementSample, Run};
 pub use places::EditPlaceError;
 pub use route::Route;
 pub use schedule::Schedule;
+pub(crate) use structure_mix::{MixInput, prepare_edit_mix, prepare_query_mix};
 pub use structure_mix::{MixRefusal, PreparedMix, prepare_mix};
 pub use table_mix::tabulate;
+pub(crate) use table_mix::tabulate_structure;
 
 /// The time and the counts of some operations of a mix.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,9 +1,10 @@
 //! One edit alone, at places that do not affect each other.
 
-use sixfold::{Edit, EditVisitor, MeshEdit, PolygonMesh, Representation, visit_editable};
+use sixfold::{Edit, MeshEdit, PolygonMesh, Representation};
 
+use crate::backend::Backend;
 use crate::clock::Time;
-use crate::edit_pass::{Editor, Edits};
+use crate::edit_pass::{Editor, Edits, PreparedEditor};
 use crate::edit_place::{EditPlace, apply_edit, independent_faces, prepare_place};
 use crate::series::{ReusedCopies, Series};
 
@@ -20,37 +21,29 @@ pub struct SingleEdit {
 }
 
 impl SingleEdit {
-    /// Sets it up on the structure called `backend`. Returns `None` if there is no such structure,
-    /// or it does not support the edit.
+    /// Sets it up on the structure of `backend`. Returns `None` if the structure does not support
+    /// the edit.
     ///
     /// # Errors
     ///
     /// Returns the reason if the structure cannot hold `polygons`, or the edit is refused there.
-    pub fn prepare(
-        self,
-        backend: &str,
-        polygons: &PolygonMesh,
-    ) -> Option<Result<Box<dyn Editor>, String>> {
-        struct Builder<'a>(SingleEdit, &'a PolygonMesh);
-
-        impl EditVisitor for Builder<'_> {
-            type Output = Option<Result<Box<dyn Editor>, String>>;
-
-            fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output {
-                let &mut Self(job, polygons) = self;
-                let edits =
-                    || SingleEditRun::<M>::new(job, polygons).map(|edits| Box::new(edits) as _);
-                M::supports(job.edit).then(edits)
-            }
-        }
-
-        visit_editable(backend, &mut Builder(self, polygons)).flatten()
+    pub fn prepare(self, backend: &Backend, polygons: &PolygonMesh) -> Option<PreparedEditor> {
+        backend.info.edits[self.edit as usize]?;
+        Some((backend.edits?.prepare_single)(self, polygons))
     }
 
     /// Returns whether it is one pass over the whole mesh, independent of places.
     pub const fn is_pass(self) -> bool {
         matches!(self.edit, Edit::Compact | Edit::RemoveIsolatedVertices)
     }
+}
+
+/// Sets `job` up on `M`.
+pub(crate) fn prepare_single<M: Representation + MeshEdit + 'static>(
+    job: SingleEdit,
+    polygons: &PolygonMesh,
+) -> PreparedEditor {
+    Ok(Box::new(SingleEditRun::<M>::new(job, polygons)?))
 }
 
 /// An edit at places of a mesh that is prepared for it.
@@ -142,7 +135,7 @@ fn apply_at_all_places<M: MeshEdit + Representation>(
 
 #[cfg(test)]
 mod tests {
-    use sixfold::{roster, shapes};
+    use sixfold::shapes;
 
     use super::*;
     use crate::clock::MachineClock;
@@ -153,10 +146,10 @@ mod tests {
         for edit in Edit::ALL {
             let job = SingleEdit { edit, places: 20 };
             let mut results = Vec::new();
-            for backend in roster() {
-                let is_supported = backend.edits[edit as usize].is_some();
-                let Some(editor) = job.prepare(backend.name, &torus) else {
-                    assert!(!is_supported, "{edit} on {}", backend.name);
+            for backend in Backend::structures() {
+                let is_supported = backend.info.edits[edit as usize].is_some();
+                let Some(editor) = job.prepare(&backend, &torus) else {
+                    assert!(!is_supported, "{edit} on {}", backend.name());
                     continue;
                 };
                 let mut editor = editor.expect("a closed triangle mesh");
@@ -167,7 +160,7 @@ mod tests {
                     (edits.done, edits.refused),
                     (places, 0),
                     "{edit} on {}",
-                    backend.name
+                    backend.name()
                 );
                 results.push(edits);
             }

@@ -6,9 +6,9 @@ use std::sync::OnceLock;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use sixfold::subdivision::SubdivisionError;
-use sixfold::{Creases, Point, PolygonMesh, Representation, VertexId};
+use sixfold::{Creases, Point, PolygonMesh, VertexId};
 
-use crate::clock::Time;
+use crate::backend::Backend;
 use crate::series::Series;
 use crate::subdivision_job::SubdivisionJob;
 use crate::timed_structure::{Outcome, Run};
@@ -24,34 +24,33 @@ fn one_thread_pool() -> Result<&'static ThreadPool, String> {
     POOL.get_or_init(start).as_ref().map_err(Clone::clone)
 }
 
-/// Sets `job` up on a structure of type `M` built from `polygons`, and runs it as `series`
+/// Sets `job` up on the structure of `backend`, built from `polygons`, and runs it as `series`
 /// describes.
 ///
 /// Set-up is outside the timing. In native subdivisions, the untimed runs make the tables that all
 /// later runs reuse. The other methods build their structures within the timing.
-pub(crate) fn subdivide<M: Representation + 'static>(
+pub(crate) fn subdivide(
+    backend: &Backend,
     job: SubdivisionJob,
     polygons: &PolygonMesh,
     series: &Series<'_>,
 ) -> Run {
     // Everything runs on that thread, so clock, caches and page faults are those of the thread.
-    let on_thread = |pool: &ThreadPool| pool.install(|| set_up_and_run::<M>(job, polygons, series));
+    let on_thread =
+        |pool: &ThreadPool| pool.install(|| set_up_and_run(backend, job, polygons, series));
     one_thread_pool()
         .and_then(on_thread)
-        .unwrap_or_else(|refusal| Run {
-            time: Time::zero_like(series.clock.now()),
-            outcome: None,
-            refusal: Some(refusal),
-        })
+        .unwrap_or_else(|refusal| Run::refused(refusal, series))
 }
 
-fn set_up_and_run<M: Representation + 'static>(
+fn set_up_and_run(
+    backend: &Backend,
     job: SubdivisionJob,
     polygons: &PolygonMesh,
     series: &Series<'_>,
 ) -> Result<Run, String> {
     check_degrees(job, polygons).map_err(|error| error.to_string())?;
-    let refiner = job.prepare_on::<M>(polygons, &Creases::default());
+    let refiner = job.prepare(backend, polygons, &Creases::default());
     let refiner = refiner.ok_or("it has no native method: it cannot split its own tables")?;
     let mut refiner = refiner.map_err(|error| error.to_string())?;
     let mut done = Ok(());
@@ -132,7 +131,7 @@ fn submesh(polygons: &PolygonMesh, faces: &[&[VertexId]]) -> PolygonMesh {
 
 #[cfg(test)]
 mod tests {
-    use sixfold::{HalfEdgeMesh, shapes};
+    use sixfold::{HalfEdgeMesh, Representation, shapes};
 
     use super::*;
 

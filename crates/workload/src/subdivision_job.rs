@@ -6,10 +6,9 @@ use serde::{Serialize, Serializer};
 use sixfold::subdivision::{
     Method, Scheme, Subdivision, SubdivisionError, build_level, renumbered,
 };
-use sixfold::{
-    Creases, Point, PolygonMesh, Refine, RefineVisitor, Representation, Visitor, visit,
-    visit_refinable,
-};
+use sixfold::{Creases, Point, PolygonMesh, Refine, Representation};
+
+use crate::backend::Backend;
 
 /// The method that computes the levels, and the memory that stores them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -96,92 +95,69 @@ impl SubdivisionJob {
         }
     }
 
-    /// Sets it up on the structure called `backend`. Returns `None` if there is no such structure,
-    /// or it does not support this way.
+    /// Sets it up on the structure of `backend`. Returns `None` if the structure does not support
+    /// this way.
     ///
     /// # Errors
     ///
     /// Returns the reason if the structure cannot hold `polygons`, or the scheme refuses `creases`.
     pub fn prepare(
         self,
-        backend: &str,
+        backend: &Backend,
         polygons: &PolygonMesh,
         creases: &Creases,
-    ) -> Option<Result<Box<dyn Refiner>, SubdivisionError>> {
-        let mut builder = self.builder(polygons, creases);
-        match self.way {
-            Way::Gather | Way::Scatter => visit(backend, &mut builder),
-            Way::NativeFresh | Way::Native => visit_refinable(backend, &mut builder),
-        }
+    ) -> Option<PreparedRefiner> {
+        let prepare = match self.way.method() {
+            Method::Native => backend.prepare_native?,
+            _ => backend.queries.prepare_rebuilt,
+        };
+        Some(prepare(self, polygons, creases))
     }
 
-    /// Sets it up like [`prepare`](Self::prepare), on a structure of type `M`. If the way rebuilds
-    /// the structure from each level, `M` need not be in the roster.
-    pub(crate) fn prepare_on<M: Representation + 'static>(
-        self,
+    /// Builds the control mesh, and converts the creases to it.
+    fn control_mesh<M: Representation>(
+        &self,
         polygons: &PolygonMesh,
         creases: &Creases,
-    ) -> Option<Result<Box<dyn Refiner>, SubdivisionError>> {
-        match self.way.method() {
-            Method::Native => self.prepare(M::NAME, polygons, creases),
-            _ => Some(Visitor::visit::<M>(&mut self.builder(polygons, creases))),
-        }
-    }
-
-    fn builder<'a>(self, polygons: &'a PolygonMesh, creases: &'a Creases) -> Builder<'a> {
-        Builder {
-            job: self,
-            polygons,
-            creases,
-        }
-    }
-}
-
-/// Builds the control mesh in a structure chosen at run time.
-struct Builder<'a> {
-    job: SubdivisionJob,
-    polygons: &'a PolygonMesh,
-    creases: &'a Creases,
-}
-
-impl Builder<'_> {
-    fn control_mesh<M: Representation>(&self) -> Result<(M, Creases), SubdivisionError> {
-        let mesh = build_level::<M>(self.polygons, 0)?;
-        let creases = self
-            .job
-            .subdivision
-            .control_creases(&mesh, self.polygons, self.creases)?;
+    ) -> Result<(M, Creases), SubdivisionError> {
+        let mesh = build_level::<M>(polygons, 0)?;
+        let creases = self.subdivision.control_creases(&mesh, polygons, creases)?;
         Ok((mesh, creases))
     }
 }
 
-impl Visitor for Builder<'_> {
-    type Output = Result<Box<dyn Refiner>, SubdivisionError>;
+/// A subdivision ready to be run, or the reason why it is not.
+pub type PreparedRefiner = Result<Box<dyn Refiner>, SubdivisionError>;
 
-    fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
-        let (mesh, creases) = self.control_mesh::<M>()?;
-        Ok(Box::new(Rebuilt {
-            job: self.job,
-            mesh,
-            creases,
-            last: PolygonMesh::default(),
-        }))
-    }
+/// Sets `job` up on `M`, which is rebuilt from each level.
+pub(crate) fn prepare_rebuilt<M: Representation + 'static>(
+    job: SubdivisionJob,
+    polygons: &PolygonMesh,
+    creases: &Creases,
+) -> PreparedRefiner {
+    let (mesh, creases) = job.control_mesh::<M>(polygons, creases)?;
+    Ok(Box::new(Rebuilt {
+        job,
+        mesh,
+        creases,
+        last: PolygonMesh::default(),
+    }))
 }
 
-impl RefineVisitor for Builder<'_> {
-    type Output = Result<Box<dyn Refiner>, SubdivisionError>;
-
-    fn visit<M: Refine + 'static>(&mut self) -> Self::Output {
-        let (mesh, creases) = self.control_mesh::<M>()?;
-        Ok(Box::new(InPlace {
-            job: self.job,
-            mesh,
-            creases,
-            levels: Vec::new(),
-            numbers: M::EdgeNumbers::default(),
-        }))
-    }
+/// Sets `job` up in the tables of `M`.
+pub(crate) fn prepare_native<M: Refine + 'static>(
+    job: SubdivisionJob,
+    polygons: &PolygonMesh,
+    creases: &Creases,
+) -> PreparedRefiner {
+    let (mesh, creases) = job.control_mesh::<M>(polygons, creases)?;
+    Ok(Box::new(InPlace {
+        job,
+        mesh,
+        creases,
+        levels: Vec::new(),
+        numbers: M::EdgeNumbers::default(),
+    }))
 }
 
 /// A subdivision that computes each level as polygons and builds the structure from them.
@@ -266,7 +242,7 @@ fn checksum(points: impl Iterator<Item = Point>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sixfold::{roster, shapes};
+    use sixfold::shapes;
 
     #[test]
     fn every_way_does_the_same_work() {
@@ -275,15 +251,15 @@ mod tests {
         for (scheme, levels) in [(Scheme::Loop, 2), (Scheme::CatmullClark, 1)] {
             let mut results = Vec::new();
             for way in Way::ALL {
-                for backend in roster() {
+                for backend in Backend::structures() {
                     let job = SubdivisionJob::new(scheme, way, levels);
-                    let Some(Ok(mut refiner)) = job.prepare(backend.name, &polygons, &none) else {
+                    let Some(Ok(mut refiner)) = job.prepare(&backend, &polygons, &none) else {
                         continue;
                     };
                     match refiner.run() {
                         Ok(()) => results.push(refiner.result()),
                         // A corner table cannot hold quads.
-                        Err(_) => assert_eq!(backend.name, "corner-table"),
+                        Err(_) => assert_eq!(backend.name(), "corner-table"),
                     }
                     if refiner.run().is_ok() {
                         assert_eq!(results.last(), Some(&refiner.result()), "a second run");

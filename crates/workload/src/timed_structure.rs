@@ -4,6 +4,7 @@ use std::hint::black_box;
 
 use sixfold::{MeshQuery, PolygonMesh, QueryCost, Relation, Representation};
 
+use crate::backend::Backend;
 use crate::clock::Time;
 use crate::draw::{Draw, Side};
 use crate::edit_pass::EditPass;
@@ -52,6 +53,15 @@ impl Run {
             refusal: None,
         }
     }
+
+    /// Makes a run that was refused.
+    pub(crate) fn refused(reason: String, series: &Series<'_>) -> Self {
+        Self {
+            time: Time::zero_like(series.clock.now()),
+            outcome: None,
+            refusal: Some(reason),
+        }
+    }
 }
 
 /// The result of an operation.
@@ -91,6 +101,7 @@ pub trait TimedBackend {
 /// A structure built from `polygons`, with storage for outputs and its handles of the drawn
 /// elements.
 pub(crate) struct TimedStructure<'a, M: Representation> {
+    backend: Backend,
     polygons: &'a PolygonMesh,
     draw: Option<&'a Draw>,
     mesh: M,
@@ -100,9 +111,15 @@ pub(crate) struct TimedStructure<'a, M: Representation> {
 }
 
 impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
-    /// Prepares `mesh`, which was built from `polygons`, for measurement.
-    pub(crate) fn new(polygons: &'a PolygonMesh, draw: Option<&'a Draw>, mesh: M) -> Self {
+    /// Prepares `mesh`, the structure of `backend` built from `polygons`, for measurement.
+    pub(crate) fn new(
+        backend: &Backend,
+        polygons: &'a PolygonMesh,
+        draw: Option<&'a Draw>,
+        mesh: M,
+    ) -> Self {
         Self {
+            backend: *backend,
             polygons,
             draw,
             outputs: Outputs::for_mesh(&mesh),
@@ -258,11 +275,11 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         series: &Series<'_>,
     ) -> Run {
         let Some(ElementSample { size, .. }) = sample else {
-            return subdivide::<M>(subdivision, self.polygons, series);
+            return subdivide(&self.backend, subdivision, self.polygons, series);
         };
         let patch = patch(self.polygons, size);
         let scale = self.polygons.face_count() as f64 / patch.face_count() as f64;
-        let run = subdivide::<M>(subdivision, &patch, series);
+        let run = subdivide(&self.backend, subdivision, &patch, series);
         Run {
             time: run.time.scaled(scale),
             ..run
@@ -311,7 +328,7 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
 
 impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
     fn name(&self) -> &str {
-        M::NAME
+        self.backend.name()
     }
 
     fn costs(&self) -> [QueryCost; 9] {
@@ -337,7 +354,7 @@ impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
         let subdivision = job.operation.subdivision_job();
         let run = match (job.operation, job.sample, subdivision) {
             (Operation::EditPass(pass), sample, _) => {
-                run_edit_pass::<M>(pass, self.polygons, sample, series)
+                run_edit_pass(&self.backend, pass, self.polygons, sample, series)
             }
             (_, sample, Some(subdivision)) => self.subdivide(subdivision, sample, series),
             (Operation::Build, ..) => self.build(series),
@@ -412,7 +429,8 @@ fn read_tables<M: MeshQuery>(mesh: &M, scans: bool) {
 }
 
 /// Runs a pass of edits over the mesh, or over a patch that represents the mesh.
-fn run_edit_pass<M: Representation>(
+fn run_edit_pass(
+    backend: &Backend,
     pass: EditPass,
     polygons: &PolygonMesh,
     sample: Option<ElementSample>,
@@ -420,17 +438,11 @@ fn run_edit_pass<M: Representation>(
 ) -> Run {
     let piece = sample.map(|sample| patch(polygons, sample.size));
     let input = piece.as_ref().unwrap_or(polygons);
-    let editor = pass.prepare(M::NAME, input);
+    let editor = pass.prepare(backend, input);
     let editor = editor.unwrap_or_else(|| Err("it cannot be edited".into()));
     let mut editor = match editor {
         Ok(editor) => editor,
-        Err(refusal) => {
-            return Run {
-                time: Time::zero_like(series.clock.now()),
-                outcome: None,
-                refusal: Some(refusal),
-            };
-        }
+        Err(refusal) => return Run::refused(refusal, series),
     };
     let time = editor.time(series);
     let outcome = series.check.then(|| {

@@ -1,9 +1,9 @@
 //! Checks that a mix does the same work on every structure, for all routes, edits and handle types.
 
-use sixfold::{PolygonMesh, roster, shapes};
+use sixfold::{PolygonMesh, shapes};
 use sixfold_workload::{
-    Access, Action, Draw, MachineClock, MixBackend, MixRefusal, MixRun, Operation, Route, Schedule,
-    Series, Workload, built_in, built_ins, prepare_mix, tabulate,
+    Access, Action, Backend, Draw, MachineClock, MixBackend, MixRefusal, MixRun, Operation, Route,
+    Schedule, Series, Workload, built_in, built_ins, prepare_mix, tabulate,
 };
 
 /// A mesh with the inputs of a mix on it.
@@ -27,16 +27,16 @@ impl Fixture {
 
     /// Returns all backends that can run the mix, with only the places that all of them accept.
     fn backends(&self) -> Vec<Box<dyn MixBackend + '_>> {
-        let prepare = |name: &str| {
+        let prepare = |backend: Backend| {
             prepare_mix(
-                name,
+                &backend,
                 &self.polygons,
                 &self.draw,
                 &self.schedule,
                 &self.route,
             )
         };
-        let prepared = roster().into_iter().filter_map(|row| prepare(row.name));
+        let prepared = Backend::structures().into_iter().map(prepare);
         let mut backends: Vec<Box<dyn MixBackend + '_>> = prepared.filter_map(Result::ok).collect();
         let accepted: Vec<Vec<Vec<bool>>> =
             backends.iter_mut().map(|m| m.accepted_places()).collect();
@@ -50,13 +50,17 @@ impl Fixture {
             .iter_mut()
             .for_each(|backend| backend.keep_places(&common));
         backends.extend(tabulate(
-            "half-edge",
+            &find("half-edge"),
             &self.polygons,
             &self.schedule,
             &self.route,
         ));
         backends
     }
+}
+
+fn find(name: &str) -> Backend {
+    Backend::find(name).expect("one of six")
 }
 
 fn parsed(text: &str) -> Workload {
@@ -201,7 +205,7 @@ fn workloads_that_change_connectivity_have_no_tables() {
         let torus = shapes::triangle_torus(30, 20).expect("small");
         let fixture = Fixture::new(&workload, torus);
         let tables = tabulate(
-            "half-edge",
+            &find("half-edge"),
             &fixture.polygons,
             &fixture.schedule,
             &fixture.route,
@@ -247,16 +251,24 @@ fn backends_that_cannot_run_the_mix_give_the_reason() {
             schedule,
             route,
         } = fixture;
-        prepare_mix(name, polygons, draw, schedule, route).map(|backend| backend.err())
+        prepare_mix(&find(name), polygons, draw, schedule, route).err()
     };
-    let refusal = refusal_of(&fixture, "corner-table").expect("it is in the roster");
+    let refusal = refusal_of(&fixture, "corner-table");
     assert!(
         matches!(refusal, Some(MixRefusal::UnsupportedEdit(_))),
         "{refusal:?}"
     );
-    assert!(refusal_of(&fixture, "abacus").is_none());
+    let unedited = Backend::new::<sixfold::HalfEdgeMesh>();
+    let Fixture {
+        polygons,
+        draw,
+        schedule,
+        route,
+    } = &fixture;
+    let refusal = prepare_mix(&unedited, polygons, draw, schedule, route).err();
+    assert_eq!(refusal, Some(MixRefusal::NotEditable));
     let smoothing = built_in("smoothing").expect("it is built in");
     let quads = Fixture::new(&smoothing, shapes::grid(4, 4).expect("small"));
-    let refusal = refusal_of(&quads, "corner-table").expect("it is in the roster");
+    let refusal = refusal_of(&quads, "corner-table");
     assert!(matches!(refusal, Some(MixRefusal::Build(_))), "{refusal:?}");
 }

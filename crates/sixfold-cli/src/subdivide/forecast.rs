@@ -138,7 +138,6 @@ fn polygon_bytes(counts: &Counts) -> usize {
 
 /// Returns the bytes of the structure with the name `backend`.
 fn structure_bytes(backend: &str, counts: &Counts) -> usize {
-    let mut roster = Backend::roster().into_iter();
-    let found = roster.find(|found| found.name() == backend);
+    let found = Backend::find(backend);
     found.map_or(0, |found| (found.layout_bytes)(counts))
 }

@@ -169,7 +169,7 @@ mod tests {
         let sizes: Vec<SizeReport> = [1e3, 1e4, 1e5, 1e6, 1e7]
             .map(|n| size(n as usize, 10 * n as usize, time(n), n == 1e7))
             .into();
-        let backends = Backend::roster();
+        let backends = Backend::structures();
         let backends: Vec<&Backend> = backends.iter().collect();
         let fit =
             |last_level_bytes| fits(&sizes, &backends, &[Operation::Boundary], last_level_bytes);
@@ -199,8 +199,8 @@ mod tests {
             bytes: 512 << 10,
             shared_by: None,
         };
-        let roster = Backend::roster();
-        let backends: Vec<&Backend> = roster.iter().collect();
+        let structures = Backend::structures();
+        let backends: Vec<&Backend> = structures.iter().collect();
         let ends = cache_limits(
             &backends,
             &counts,

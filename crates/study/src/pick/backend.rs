@@ -1,11 +1,15 @@
 //! The backends that are measured on a mesh, with their samples.
 
 use sixfold::Edit;
-use sixfold_workload::{Action, Clock, EditPlaceError, MixBackend, Schedule, Series, Time};
+use sixfold_workload::{
+    Action, Backend, Clock, EditPlaceError, MixBackend, Schedule, Series, Time,
+};
 
 /// A structure or relation tables, with its samples.
 pub(crate) struct PickBackend<'a> {
     pub(crate) mixer: Box<dyn MixBackend + 'a>,
+    /// The structure; `None` for relation tables.
+    pub(crate) structure: Option<Backend>,
     /// The structure from which the tables were made; `None` for a structure.
     pub(crate) made_from: Option<&'static str>,
     /// Whether it is the second copy of a backend, for the control.
@@ -47,6 +51,7 @@ impl<'a> PickBackend<'a> {
         let parts = mixer.scans().len();
         Self {
             mixer,
+            structure: None,
             made_from: None,
             control: false,
             passes: vec![PassPlan::default(); parts],
@@ -57,6 +62,13 @@ impl<'a> PickBackend<'a> {
             first_builds: Vec::new(),
             parts: vec![Vec::new(); parts],
             results: vec![None; parts],
+        }
+    }
+
+    pub(crate) fn with_structure(mixer: Box<dyn MixBackend + 'a>, structure: &Backend) -> Self {
+        Self {
+            structure: Some(*structure),
+            ..Self::new(mixer)
         }
     }
 
@@ -118,13 +130,15 @@ pub(crate) fn keep_common_places(
 pub(crate) fn build_tables<'a>(
     backends: &[PickBackend<'a>],
     clock: &dyn Clock,
-    tabulate: impl Fn(&str) -> Option<Box<dyn MixBackend + 'a>>,
+    tabulate: impl Fn(&Backend) -> Option<Box<dyn MixBackend + 'a>>,
 ) -> Option<PickBackend<'a>> {
     let usable = backends.iter().filter(|b| !b.control && !b.scans());
     let mut best: Option<(f64, PickBackend<'a>)> = None;
     for backend in usable {
-        let structure = backend.mixer.name();
-        let Some(tables) = tabulate(structure) else {
+        let Some(structure) = backend.structure else {
+            continue;
+        };
+        let Some(tables) = tabulate(&structure) else {
             continue;
         };
         let ns = tables.build(&Series::once(clock)).ns();
@@ -132,7 +146,7 @@ pub(crate) fn build_tables<'a>(
             best = Some((
                 ns,
                 PickBackend {
-                    made_from: Some(structure),
+                    made_from: Some(structure.name()),
                     ..PickBackend::new(tables)
                 },
             ));

@@ -7,11 +7,10 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sixfold::subdivision::{Method, Scheme};
-use sixfold::support;
 use sixfold_core::Counts;
 use sixfold_workload::{
-    Action, Clock, EditPlaceError, ElementKind, ElementSample, Operation, Run, Schedule, Series,
-    Start, Time,
+    Action, Backend, Clock, EditPlaceError, ElementKind, ElementSample, Operation, Run, Schedule,
+    Series, Start, Time,
 };
 
 use crate::agreement::agree;
@@ -206,12 +205,11 @@ impl PickMeasurement<'_> {
         for part in self.schedule.passes() {
             let operation = match self.schedule.parts[part].action {
                 Action::Pass(operation) => operation,
-                _ => self.subdivision(backend.mixer.name()),
+                _ => self.subdivision(backend.structure.as_ref()),
             };
             let scans = backend.mixer.scans()[part];
-            let costs = sixfold::roster();
-            let costs = costs.iter().find(|row| row.name == backend.mixer.name());
-            let scanned = costs.map_or([false; 3], |row| operation.scans(&row.costs));
+            let scans_kinds = |structure: Backend| operation.scans(&structure.info.costs);
+            let scanned = backend.structure.map_or([false; 3], scans_kinds);
             let mut plan = PassPlan {
                 operation: Some(operation),
                 runs: 1,
@@ -291,18 +289,15 @@ impl PickMeasurement<'_> {
         }
     }
 
-    /// Returns one step of subdivision by the best method of a backend.
-    fn subdivision(&self, backend: &str) -> Operation {
+    /// Returns one step of subdivision by the best method of a structure, or of tables if `None`.
+    fn subdivision(&self, structure: Option<&Backend>) -> Operation {
         let triangles = self.study_mesh.polygons.first_polygon().is_none();
         let scheme = match triangles {
             true => Scheme::Loop,
             false => Scheme::CatmullClark,
         };
-        let rows = support(scheme);
-        let row = rows.iter().find(|row| row.backend == backend);
-        let method = row
-            .and_then(sixfold::Support::default_method)
-            .unwrap_or(Method::Scatter);
+        let method = structure.and_then(|s| s.info.support(scheme).default_method());
+        let method = method.unwrap_or(Method::Scatter);
         match triangles {
             true => Operation::Loop(method),
             false => Operation::CatmullClark(method),

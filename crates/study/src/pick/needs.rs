@@ -4,8 +4,6 @@ use std::fmt;
 use std::str::FromStr;
 
 use serde_with::{DeserializeFromStr, SerializeDisplay};
-use sixfold::subdivision::{Method, Scheme};
-use sixfold::support;
 use sixfold_workload::{Backend, unknown};
 
 /// A required capability of a structure.
@@ -58,8 +56,7 @@ impl Need {
     pub(crate) fn unmet_reason(self, backend: &Backend) -> Option<String> {
         let can = backend.info.capabilities;
         let (has, lacks) = match self {
-            // Only the roster lists the edits: `Backend::new` leaves them out.
-            Self::Edit => (edits(backend.name()), "it cannot be edited"),
+            Self::Edit => (backend.info.is_editable(), "it cannot be edited"),
             Self::NonManifold => (
                 can.non_manifold_edges && can.non_manifold_vertices,
                 "it holds manifolds only",
@@ -74,24 +71,13 @@ impl Need {
                 can.coincident_vertices,
                 "it merges vertices that share coordinates",
             ),
-            Self::Refine => (refines(backend.name()), "it cannot split its own tables"),
+            Self::Refine => (
+                !backend.info.splits.is_empty(),
+                "it cannot split its own tables",
+            ),
         };
         (!has).then(|| format!("{lacks} (--needs {self})"))
     }
-}
-
-fn edits(name: &str) -> bool {
-    let found = sixfold::roster().into_iter().find(|row| row.name == name);
-    found.is_some_and(|row| row.edits.iter().any(Option::is_some))
-}
-
-fn refines(name: &str) -> bool {
-    let splits = |scheme| {
-        support(scheme)
-            .iter()
-            .any(|row| row.backend == name && row.default_method() == Some(Method::Native))
-    };
-    [Scheme::Loop, Scheme::CatmullClark].into_iter().any(splits)
 }
 
 impl fmt::Display for Need {

@@ -93,6 +93,7 @@ fn settings(budget: Duration) -> PickSettings {
     PickSettings {
         workload: built_in("geodesic-dijkstra").expect("a built-in workload"),
         backends: Vec::new(),
+        extra: Vec::new(),
         needs: Vec::new(),
         max_memory: None,
         budget,

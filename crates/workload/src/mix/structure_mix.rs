@@ -5,8 +5,7 @@ use std::marker::PhantomData;
 use std::ops::Range;
 
 use sixfold::{
-    BuildError, Edit, EditVisitor, FaceId, MeshEdit, Point, PolygonMesh, QueryCost, Relation,
-    Representation, Visitor, visit, visit_editable,
+    BuildError, Edit, FaceId, MeshEdit, Point, PolygonMesh, QueryCost, Relation, Representation,
 };
 
 use crate::backend::Backend;
@@ -35,6 +34,9 @@ pub enum MixRefusal {
     /// The structure cannot hold the mesh.
     #[error(transparent)]
     Build(#[from] BuildError),
+    /// The structure does not support any edit.
+    #[error("it cannot be edited")]
+    NotEditable,
     /// The structure does not support the edit.
     #[error("it does not support {0}")]
     UnsupportedEdit(Edit),
@@ -43,59 +45,64 @@ pub enum MixRefusal {
     EditPlaceError(#[from] EditPlaceError),
 }
 
-/// Builds the structure called `backend` from `polygons` and prepares it for `schedule` along
-/// `route`. The mesh is editable if the schedule needs it. Returns `None` if there is no such
-/// structure.
+/// The input of a mix on one backend.
+pub(crate) struct MixInput<'a> {
+    pub(crate) backend: Backend,
+    pub(crate) polygons: &'a PolygonMesh,
+    pub(crate) draw: &'a Draw,
+    pub(crate) schedule: &'a Schedule,
+    pub(crate) route: &'a Route,
+}
+
+/// Builds the structure of `backend` from `polygons` and prepares it for `schedule` along `route`.
+/// The mesh is editable if the schedule needs it.
+///
+/// # Errors
+///
+/// Returns the reason if the structure cannot hold `polygons`, cannot be edited as the schedule
+/// needs, or if there is no place for an edit.
 pub fn prepare_mix<'a>(
-    backend: &str,
+    backend: &Backend,
     polygons: &'a PolygonMesh,
     draw: &'a Draw,
     schedule: &'a Schedule,
     route: &'a Route,
-) -> Option<PreparedMix<'a>> {
-    let mut builder = Builder {
+) -> PreparedMix<'a> {
+    let input = MixInput {
+        backend: *backend,
         polygons,
         draw,
         schedule,
         route,
     };
-    match schedule.editable {
-        true => visit_editable(backend, &mut builder),
-        false => visit(backend, &mut builder),
+    if !schedule.editable {
+        return (backend.queries.prepare_mix)(&input);
+    }
+    let edits = backend.edits.ok_or(MixRefusal::NotEditable)?;
+    let mut needed = schedule.parts.iter().filter_map(|part| match part.action {
+        Action::Edit(edit) => Some(edit),
+        _ => None,
+    });
+    match needed.find(|&edit| backend.info.edits[edit as usize].is_none()) {
+        Some(edit) => Err(MixRefusal::UnsupportedEdit(edit)),
+        None => (edits.prepare_mix)(&input),
     }
 }
 
-/// Builds a [`StructureMix`] of a structure chosen at run time.
-struct Builder<'a> {
-    polygons: &'a PolygonMesh,
-    draw: &'a Draw,
-    schedule: &'a Schedule,
-    route: &'a Route,
+/// Prepares a mix without edits on `M`.
+pub(crate) fn prepare_query_mix<'a, M: Representation + 'static>(
+    input: &MixInput<'a>,
+) -> PreparedMix<'a> {
+    let mix: StructureMix<'a, M, ReadOnly> = StructureMix::new(input)?;
+    Ok(Box::new(mix))
 }
 
-impl<'a> Visitor for Builder<'a> {
-    type Output = PreparedMix<'a>;
-
-    fn visit<M: Representation + 'static>(&mut self) -> PreparedMix<'a> {
-        let mix: StructureMix<'a, M, ReadOnly> = StructureMix::new(self)?;
-        Ok(Box::new(mix))
-    }
-}
-
-impl<'a> EditVisitor for Builder<'a> {
-    type Output = PreparedMix<'a>;
-
-    fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> PreparedMix<'a> {
-        for part in &self.schedule.parts {
-            if let Action::Edit(edit) = part.action
-                && !M::supports(edit)
-            {
-                return Err(MixRefusal::UnsupportedEdit(edit));
-            }
-        }
-        let mix: StructureMix<'a, M, ReadWrite> = StructureMix::new(self)?;
-        Ok(Box::new(mix))
-    }
+/// Prepares a mix with edits on `M`.
+pub(crate) fn prepare_edit_mix<'a, M: Representation + MeshEdit + 'static>(
+    input: &MixInput<'a>,
+) -> PreparedMix<'a> {
+    let mix: StructureMix<'a, M, ReadWrite> = StructureMix::new(input)?;
+    Ok(Box::new(mix))
 }
 
 /// The write access to a mesh.
@@ -220,6 +227,7 @@ impl<M: Representation, W: WriteAccess<M>> Task<'_, M, W> {
 
 /// A structure and the work of a mix on it.
 struct StructureMix<'a, M: Representation, W> {
+    backend: Backend,
     mesh: M,
     polygons: &'a PolygonMesh,
     draw: &'a Draw,
@@ -235,26 +243,22 @@ struct StructureMix<'a, M: Representation, W> {
 }
 
 impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> {
-    fn new(builder: &Builder<'a>) -> Result<Self, MixRefusal> {
-        let mesh = M::from_polygons(builder.polygons)?;
-        let faces = EditPlaces::new(builder.schedule, builder.polygons)?;
+    fn new(input: &MixInput<'a>) -> Result<Self, MixRefusal> {
+        let mesh = M::from_polygons(input.polygons)?;
+        let faces = EditPlaces::new(input.schedule, input.polygons)?;
         let task = Task {
-            schedule: builder.schedule,
-            handles: RouteHandles::from_route(
-                builder.route,
-                &mesh,
-                builder.polygons,
-                &faces.occupied,
-            ),
+            schedule: input.schedule,
+            handles: RouteHandles::from_route(input.route, &mesh, input.polygons, &faces.occupied),
             faces,
             places: Vec::new(),
             write_access: PhantomData,
         };
         let mut mix = Self {
+            backend: input.backend,
             outputs: Outputs::for_mesh(&mesh),
             mesh,
-            polygons: builder.polygons,
-            draw: builder.draw,
+            polygons: input.polygons,
+            draw: input.draw,
             task,
             prepared: None,
             copies: ReusedCopies::default(),
@@ -343,7 +347,7 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
 
 impl<M: Representation + 'static, W: WriteAccess<M>> MixBackend for StructureMix<'_, M, W> {
     fn name(&self) -> &'static str {
-        M::NAME
+        self.backend.name()
     }
 
     fn type_paths(&self) -> Vec<&'static str> {
@@ -400,19 +404,15 @@ impl<M: Representation + 'static, W: WriteAccess<M>> MixBackend for StructureMix
         if sample.is_none() && !operation.creates_mesh() && operation != Operation::VvSmooth {
             return pass_over(&self.mesh, &mut self.outputs, operation, series);
         }
-        if self.timed_backend.is_none() {
-            let roster = Backend::roster();
-            let backend = roster.iter().find(|backend| backend.name() == M::NAME);
-            let built = backend.map(|b| b.prepare(self.polygons, Some(self.draw)));
-            self.timed_backend = built.and_then(Result::ok).map(|(backend, _)| backend);
-        }
-        match &mut self.timed_backend {
-            Some(backend) => backend.run(&Job { operation, sample }, series),
-            None => Run {
-                refusal: Some("no such structure is in the roster".into()),
-                ..Run::done(Time::zero_like(series.clock.now()), None)
+        let timed_backend = match self.timed_backend.take() {
+            Some(known) => known,
+            None => match self.backend.prepare(self.polygons, Some(self.draw)) {
+                Ok((built, _)) => built,
+                Err(refusal) => return Run::refused(refusal.to_string(), series),
             },
-        }
+        };
+        let timed_backend = self.timed_backend.insert(timed_backend);
+        timed_backend.run(&Job { operation, sample }, series)
     }
 
     fn accepted_places(&mut self) -> Vec<Vec<bool>> {

@@ -2,13 +2,11 @@
 
 use std::hint::black_box;
 
-use sixfold::{
-    EdgeId, FaceId, MeshQuery, Point, PolygonMesh, Relation, Representation, VertexId, Visitor,
-    visit,
-};
+use sixfold::{EdgeId, FaceId, MeshQuery, Point, PolygonMesh, Relation, Representation, VertexId};
 use sixfold_core::RowId;
 use sixfold_relation_table::{Numbering, RelationTable, TabulationError};
 
+use crate::backend::Backend;
 use crate::clock::{Clock, Time, timed};
 use crate::mix::passes::pass_over;
 use crate::mix::route::Route;
@@ -153,56 +151,42 @@ impl MeshQuery for Tables {
     }
 }
 
-/// Builds tables of the relations that `schedule` queries, from the structure called `backend`,
-/// which is built from `polygons`. Returns `None` if there is no such structure, it cannot hold
-/// `polygons`, or the schedule changes connectivity.
+/// Builds tables of the relations that `schedule` queries, from the structure of `backend`, which is
+/// built from `polygons`. Returns `None` if the structure cannot hold `polygons`, or the schedule
+/// changes connectivity.
 pub fn tabulate<'a>(
-    backend: &str,
+    backend: &Backend,
     polygons: &'a PolygonMesh,
     schedule: &'a Schedule,
     route: &'a Route,
 ) -> Option<Box<dyn MixBackend + 'a>> {
-    struct Builder<'a> {
-        polygons: &'a PolygonMesh,
-        schedule: &'a Schedule,
-        route: &'a Route,
+    let mut actions = schedule.parts.iter().map(|part| part.action);
+    match actions.any(|action| action.changes_connectivity()) {
+        true => None,
+        false => (backend.queries.tabulate)(polygons, schedule, route),
     }
+}
 
-    impl<'a> Visitor for Builder<'a> {
-        type Output = Option<Box<dyn MixBackend + 'a>>;
-
-        fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
-            let mesh = M::from_polygons(self.polygons).ok()?;
-            let relations = relations(self.schedule);
-            let tables = Tables::new(&mesh, &relations).ok()?;
-            let handles = route_handles(&mesh, self.polygons, self.route);
-            Some(Box::new(TableMix {
-                outputs: Outputs::for_mesh(&tables),
-                moved: tables.positions.clone(),
-                merged: self.polygons.vertex_count() - tables.positions.len(),
-                tables,
-                schedule: self.schedule,
-                handles,
-                polygons: self.polygons,
-                build: build::<M>,
-                structure_type: M::type_path(),
-            }))
-        }
-    }
-
-    if schedule
-        .parts
-        .iter()
-        .any(|part| part.action.changes_connectivity())
-    {
-        return None;
-    }
-    let mut builder = Builder {
-        polygons,
+/// Builds the tables from `M`, like [`tabulate`].
+pub(crate) fn tabulate_structure<'a, M: Representation + 'static>(
+    polygons: &'a PolygonMesh,
+    schedule: &'a Schedule,
+    route: &'a Route,
+) -> Option<Box<dyn MixBackend + 'a>> {
+    let mesh = M::from_polygons(polygons).ok()?;
+    let tables = Tables::new(&mesh, &relations(schedule)).ok()?;
+    let handles = route_handles(&mesh, polygons, route);
+    Some(Box::new(TableMix {
+        outputs: Outputs::for_mesh(&tables),
+        moved: tables.positions.clone(),
+        merged: polygons.vertex_count() - tables.positions.len(),
+        tables,
         schedule,
-        route,
-    };
-    visit(backend, &mut builder).flatten()
+        handles,
+        polygons,
+        build: build::<M>,
+        structure_type: M::type_path(),
+    }))
 }
 
 /// Returns the relations that a schedule queries; a relation may occur several times.

@@ -1,0 +1,278 @@
+//! The list of all structures.
+
+use sixfold_core::{
+    BuildError, Capabilities, Edit, MeshEdit, PolygonMesh, QueryCost, Refine, Representation, Split,
+};
+
+/// Calls a macro with the list of all structures: `structures!([callback] arguments…)`.
+///
+/// This list is the only one. A seventh structure is added with one line here. The line has the
+/// type for queries, then the types for two optional capabilities: `edit`, the type that can be
+/// edited, and `refine`, the type that splits its own tables. All types of a line have the same
+/// name ([`Representation::NAME`](sixfold_core::Representation::NAME)).
+///
+/// The callback gets its arguments, followed by the lines. Use one of the macros
+/// [`for_each_representation!`](crate::for_each_representation),
+/// [`for_each_editable!`](crate::for_each_editable) and
+/// [`for_each_refinable!`](crate::for_each_refinable) if one capability is enough.
+#[macro_export]
+macro_rules! structures {
+    ([$($callback:tt)+] $($arguments:tt)*) => {
+        $($callback)+! { $($arguments)*
+            { query: $crate::PolygonSoup, edit: $crate::EditablePolygonSoup }
+            { query: $crate::IndexedFaceSet, edit: $crate::EditableIndexedFaceSet }
+            { query: $crate::FaceVertexMesh, edit: $crate::EditableFaceVertexMesh, refine: $crate::FaceVertexMesh }
+            { query: $crate::WingedEdgeMesh, edit: $crate::EditableWingedEdgeMesh, refine: $crate::WingedEdgeMesh }
+            { query: $crate::HalfEdgeMesh, edit: $crate::EditableHalfEdgeMesh, refine: $crate::HalfEdgeMesh }
+            { query: $crate::CornerTable, edit: $crate::EditableCornerTable, refine: $crate::CornerTable }
+        }
+    };
+}
+
+/// The callback of the `for_each_…` macros: repeats a body for one type of each line that has it.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! repeat_for_structures {
+    (query $mesh:ident $body:block
+        $({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? })+) => {
+        $({
+            type $mesh = $query;
+            $body
+        })+
+    };
+    (edit $mesh:ident $body:block
+        $({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? })+) => {
+        $($({
+            type $mesh = $edit;
+            $body
+        })?)+
+    };
+    (refine $mesh:ident $body:block
+        $({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? })+) => {
+        $($({
+            type $mesh = $refine;
+            $body
+        })?)+
+    };
+}
+
+/// Repeats a macro body for each structure: `for_each_representation!(M => { … })`.
+///
+/// The body is compiled once for each structure, with `M` as an alias of its type.
+#[macro_export]
+macro_rules! for_each_representation {
+    ($mesh:ident => $body:block) => {
+        $crate::structures! { [$crate::repeat_for_structures] query $mesh $body }
+    };
+}
+
+/// Repeats a macro body for each structure that can be edited, with `M` as an alias of its
+/// [`Editable`](sixfold_core::Editable) type, like
+/// [`for_each_representation!`](crate::for_each_representation).
+#[macro_export]
+macro_rules! for_each_editable {
+    ($mesh:ident => $body:block) => {
+        $crate::structures! { [$crate::repeat_for_structures] edit $mesh $body }
+    };
+}
+
+/// Repeats a macro body for each structure that refines its own tables, like
+/// [`for_each_representation!`](crate::for_each_representation).
+#[macro_export]
+macro_rules! for_each_refinable {
+    ($mesh:ident => $body:block) => {
+        $crate::structures! { [$crate::repeat_for_structures] refine $mesh $body }
+    };
+}
+
+/// A generic function for any structure that is selected at run time.
+///
+/// One call selects the type; everything inside uses static dispatch.
+pub trait Visitor {
+    /// Result of a visit.
+    type Output;
+
+    /// Visits the structure `M`.
+    fn visit<M: Representation + 'static>(&mut self) -> Self::Output;
+}
+
+/// A generic function for any structure that can be edited and is selected at run time.
+pub trait EditVisitor {
+    /// Result of a visit.
+    type Output;
+
+    /// Visits the structure `M`.
+    fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output;
+}
+
+/// A generic function for any structure that refines its own tables and is selected at run time.
+pub trait RefineVisitor {
+    /// Result of a visit.
+    type Output;
+
+    /// Visits the structure `M`.
+    fn visit<M: Refine + 'static>(&mut self) -> Self::Output;
+}
+
+/// Properties of one structure that do not depend on a mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct StructureInfo {
+    /// Name for users.
+    pub name: &'static str,
+    /// The meshes that it can hold.
+    pub capabilities: Capabilities,
+    /// How much of the mesh each relation reads.
+    pub costs: [QueryCost; 9],
+    /// How much of the mesh each edit reads, in the order of [`Edit::ALL`]; `None` if the edit is
+    /// not available.
+    pub edits: [Option<QueryCost>; Edit::ALL.len()],
+    /// The splits of its own tables ([`Refine::SPLITS`]); empty if it does not refine them.
+    pub splits: &'static [Split],
+}
+
+impl StructureInfo {
+    /// Returns the properties of `M`, without edits and without refinement.
+    pub const fn new<M: Representation>() -> Self {
+        Self {
+            name: M::NAME,
+            capabilities: M::CAPABILITIES,
+            costs: M::COSTS,
+            edits: [None; Edit::ALL.len()],
+            splits: &[],
+        }
+    }
+
+    /// Adds the edits of `M`, the type of the same structure that can be edited.
+    #[must_use]
+    pub const fn with_edits<M: MeshEdit>(self) -> Self {
+        Self {
+            edits: M::EDITS,
+            ..self
+        }
+    }
+
+    /// Adds the splits of `M`, the type of the same structure that refines its own tables.
+    #[must_use]
+    pub const fn with_refinement<M: Refine>(self) -> Self {
+        Self {
+            splits: M::SPLITS,
+            ..self
+        }
+    }
+
+    /// Returns whether at least one edit is available.
+    pub fn is_editable(&self) -> bool {
+        self.edits.iter().any(Option::is_some)
+    }
+
+    /// Checks whether the structure can hold `polygons`, without building it.
+    ///
+    /// # Errors
+    ///
+    /// Returns the error that building the structure would return.
+    pub fn check(&self, polygons: &PolygonMesh) -> Result<(), BuildError> {
+        self.capabilities.check(polygons)
+    }
+}
+
+/// Makes a vector of [`StructureInfo`] from the lines of [`structures!`](crate::structures).
+macro_rules! infos {
+    ($({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? })+) => {
+        vec![$(
+            StructureInfo::new::<$query>()
+                $(.with_edits::<$edit>())?
+                $(.with_refinement::<$refine>())?
+        ),+]
+    };
+}
+
+/// Returns the properties of all structures, in the order in which tables show them.
+pub fn structure_infos() -> Vec<StructureInfo> {
+    structures!([infos])
+}
+
+/// Calls `visitor` for every structure, in the order of [`structure_infos`].
+pub fn visit_all<V: Visitor>(visitor: &mut V) -> Vec<V::Output> {
+    let mut outputs = Vec::new();
+    for_each_representation!(M => { outputs.push(visitor.visit::<M>()); });
+    outputs
+}
+
+/// Calls `visitor` for the structure called `name`; `None` if the name is unknown.
+pub fn visit<V: Visitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
+    for_each_representation!(M => {
+        if name == M::NAME {
+            return Some(visitor.visit::<M>());
+        }
+    });
+    None
+}
+
+/// Calls `visitor` for the structure called `name`; `None` if the name is unknown or the structure
+/// does not refine its own tables.
+pub fn visit_refinable<V: RefineVisitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
+    for_each_refinable!(M => {
+        if name == M::NAME {
+            return Some(visitor.visit::<M>());
+        }
+    });
+    None
+}
+
+/// Calls `visitor` for the structure called `name`; `None` if the name is unknown or the structure
+/// cannot be edited.
+pub fn visit_editable<V: EditVisitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
+    for_each_editable!(M => {
+        if name == M::NAME {
+            return Some(visitor.visit::<M>());
+        }
+    });
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Name;
+
+    impl Visitor for Name {
+        type Output = &'static str;
+
+        fn visit<M: Representation + 'static>(&mut self) -> &'static str {
+            M::NAME
+        }
+    }
+
+    impl EditVisitor for Name {
+        type Output = &'static str;
+
+        fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> &'static str {
+            M::NAME
+        }
+    }
+
+    impl RefineVisitor for Name {
+        type Output = &'static str;
+
+        fn visit<M: Refine + 'static>(&mut self) -> &'static str {
+            M::NAME
+        }
+    }
+
+    #[test]
+    fn every_structure_is_found_by_its_name() {
+        let infos = structure_infos();
+        let names: Vec<_> = infos.iter().map(|info| info.name).collect();
+        assert_eq!(visit_all(&mut Name), names);
+        for info in infos {
+            let name = info.name;
+            assert_eq!(visit(name, &mut Name), Some(name));
+            let edits = visit_editable(name, &mut Name);
+            assert_eq!(edits, info.is_editable().then_some(name), "{name}");
+            let refines = visit_refinable(name, &mut Name);
+            assert_eq!(refines, (!info.splits.is_empty()).then_some(name), "{name}");
+        }
+        assert_eq!(visit("abacus", &mut Name), None);
+    }
+}
