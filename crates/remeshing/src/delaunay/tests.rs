@@ -1,5 +1,5 @@
 use proptest::prelude::*;
-use sixfold_core::{MeshQuery, Point, PolygonMesh};
+use sixfold_core::{MeshQuery, Point, PolygonMesh, Representation};
 use sixfold_half_edge::EditableHalfEdgeMesh;
 
 use super::*;

@@ -1,4 +1,4 @@
-use sixfold_core::{MeshQuery, Point, PolygonMesh};
+use sixfold_core::{MeshQuery, Point, PolygonMesh, Representation};
 use sixfold_half_edge::EditableHalfEdgeMesh;
 use sixfold_indexed_face_set::EditableIndexedFaceSet;
 
