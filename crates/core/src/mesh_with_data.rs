@@ -23,7 +23,7 @@ use crate::representation::QueryCost;
 /// The mesh cannot be changed except by edits of this type.
 ///
 /// ```
-/// use sixfold_core::{EdgeData, FaceData, MeshEdit, MeshWithData, Point, Refusal};
+/// use sixfold_core::{EdgeData, FaceData, MeshEdit, MeshQuery, MeshWithData, Point, Refusal};
 ///
 /// /// Splits an edge of a mesh with sharp edges and materials of faces.
 /// fn example<M: MeshEdit>(mesh: M, e: M::Edge) -> Result<(), Refusal<M>> {
