@@ -27,12 +27,15 @@ LINES = ROOT / "benches/instructions.txt"
 LIMIT = 1.005
 PLAIN_FUNCTIONS = "glibc.cpu.hwcaps=-AVX_Fast_Unaligned_Load,-AVX2,-AVX512F,-AVX512VL,-ERMS,-FSRM"
 
+# Rust's default release profile, which programs that depend on Sixfold use.
+DEFAULT_PROFILE = {"CARGO_PROFILE_RELEASE_LTO": "false", "CARGO_PROFILE_RELEASE_CODEGEN_UNITS": "16"}
+
 
 def counted(profile):
     """Runs the benchmarks; returns the instructions of each line of `instructions.txt`."""
     command = ["cargo", "bench", "-p", "sixfold-benches", "--bench", "instructions", "--locked", "--profile", profile,
                "--", "--output-format=json"]
-    environment = {**os.environ, "GLIBC_TUNABLES": PLAIN_FUNCTIONS}
+    environment = {**os.environ, "GLIBC_TUNABLES": PLAIN_FUNCTIONS, **(DEFAULT_PROFILE if profile == "release" else {})}
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False, env=environment)
     if done.returncode != 0:
         sys.exit(f"{' '.join(command)} failed:\n{done.stderr[-4000:]}")
