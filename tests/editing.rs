@@ -9,7 +9,7 @@ use proptest::test_runner::{Config, TestCaseError, TestRunner};
 use sixfold::for_each_editable;
 use sixfold_conformance::edit::{Action, Model, ModelTest, Rules, Step, script};
 use sixfold_conformance::strategy::{any_mesh, manifold_mesh};
-use sixfold_core::{Capabilities, Edit, MeshEdit, PolygonMesh, Representation};
+use sixfold_core::{Capabilities, Edit, MeshEdit, MeshQuery, PolygonMesh, Representation};
 
 /// Number of scripts for each kind of initial mesh.
 const SCRIPTS: u32 = 40;
