@@ -2,13 +2,15 @@
 
 use std::fmt;
 
-use serde::Serialize;
-
 use crate::representation::QueryCost;
 
 /// One kind of edit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(rename_all = "snake_case")
+)]
 #[expect(
     missing_docs,
     reason = "the names are those of the methods of MeshEdit"

@@ -1,8 +1,8 @@
 //! The examples give the same results on every structure, and the expected ones on simple meshes.
 
-use sixfold::for_each_representation;
 use sixfold::prelude::*;
 use sixfold::shapes::{cube, geodesic, tetrahedron, torus};
+use sixfold::{for_each_editable, for_each_representation};
 
 /// Includes an example as a module, so that tests can call its functions.
 macro_rules! example {
@@ -19,6 +19,8 @@ example!(regions, "../examples/regions.rs");
 example!(feature_lines, "../examples/feature_lines.rs");
 example!(subdivide_creases, "../examples/subdivide_creases.rs");
 example!(choose_structure, "../examples/choose_structure.rs");
+example!(laplacian, "../examples/laplacian.rs");
+example!(remesh, "../examples/remesh.rs");
 
 fn build<M: Representation>(polygons: &PolygonMesh) -> M {
     M::from_polygons(polygons).expect("a closed oriented triangle mesh")
@@ -179,4 +181,54 @@ fn every_structure_is_found_by_its_name() {
         );
     }
     assert!(sixfold::visit("quad-edge", &mut task).is_none());
+}
+
+#[test]
+fn the_laplacian_of_constants_is_zero_and_that_of_coordinates_points_inwards() {
+    let polygons = geodesic(6).expect("a small frequency");
+    for_each_representation!(M => {
+        let mesh: M = build(&polygons);
+        let (numbers, triplets) = laplacian::laplacian(&mesh).expect("triangles");
+        let ones = vec![1.0; numbers.len()];
+        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+        assert!(largest(&laplacian::multiply(&triplets, &ones)) < 1e-9, "{}", M::NAME);
+        let handles = numbers.handles();
+        let heights: Vec<f64> = handles.iter().map(|&v| mesh.position(v).z.into()).collect();
+        let product = laplacian::multiply(&triplets, &heights);
+        for (&v, (&l, &z)) in handles.iter().zip(product.iter().zip(&heights)) {
+            assert!(l * z <= 1e-9, "{}: {v:?}", M::NAME);
+        }
+        // Half the integral of |grad z|² over the sphere: 4π/3.
+        let energy: f64 = product.iter().zip(&heights).map(|(l, z)| -l * z).sum::<f64>() / 2.0;
+        let exact = 4.0 / 3.0 * std::f64::consts::PI;
+        assert!((energy / exact - 1.0).abs() < 0.05, "{}: {energy}", M::NAME);
+    });
+    let mesh: HalfEdgeMesh = build(&cube());
+    assert!(laplacian::laplacian(&mesh).is_err(), "a cube has quads");
+}
+
+#[test]
+fn remeshing_makes_edges_of_one_length_and_faces_keep_their_material() {
+    let polygons = geodesic(3).expect("a small frequency");
+    let height = |corners: &mut dyn Iterator<Item = Point>| corners.map(|p| p.z).sum::<f32>();
+    let mut counts = Vec::new();
+    for_each_editable!(M => {
+        let mesh: M = build(&polygons);
+        let is_upper = |mesh: &M, f| {
+            let mut corners = mesh.face_vertices(f).map(|v| mesh.position(v));
+            u32::from(height(&mut corners) > 0.0)
+        };
+        let upper = mesh.faces().filter(|&f| is_upper(&mesh, f) == 1).count();
+        let mut mesh = remesh::with_materials(mesh, is_upper);
+        let [cut, _] = remesh::remesh(&mut mesh, 0.25);
+        assert!(cut > polygons.face_count() / 2, "{}: {cut}", M::NAME);
+        let (mesh, materials) = mesh.into_parts();
+        assert_eq!(mesh.validate(), Ok(()), "{}", M::NAME);
+        let after = mesh.faces().filter(|&f| materials[f] == 1).count();
+        let [before, after] =
+            [(upper, polygons.face_count()), (after, mesh.face_count())].map(|(n, all)| n as f64 / all as f64);
+        assert!((before - after).abs() < 0.05, "{}: {before} and {after}", M::NAME);
+        counts.push(mesh.face_count());
+    });
+    assert_eq!(counts.len(), 6);
 }

@@ -1,0 +1,86 @@
+//! The cotangent Laplacian of a triangle mesh as a sparse matrix of triplets (Pinkall and Polthier
+//! 1993).
+//!
+//! ```sh
+//! cargo run --example laplacian -- mesh.obj
+//! ```
+
+use std::error::Error;
+
+use sixfold::Numbers;
+use sixfold::prelude::*;
+
+mod common;
+
+/// An entry of a sparse matrix: row, column and value. Values of equal places are added.
+pub type Triplet = (u32, u32, f64);
+
+/// Returns the numbers of the vertices, and the matrix L in these numbers: the row of vertex i has
+/// (cot α + cot β) / 2 in the column of a neighbour j, where α and β are the angles opposite the edge
+/// between them, and the negative sum of these values on the diagonal.
+///
+/// # Errors
+///
+/// Returns the first face that is not a triangle.
+pub fn laplacian<M: MeshQuery>(mesh: &M) -> Result<(Numbers<M::Vertex>, Vec<Triplet>), M::Face> {
+    let numbers = mesh.vertex_numbers();
+    let mut triplets = Vec::with_capacity(12 * mesh.face_count());
+    for f in mesh.faces() {
+        let corners: Vec<_> = mesh.face_vertices(f).collect();
+        let [a, b, c] = corners[..] else {
+            return Err(f);
+        };
+        for [apex, i, j] in [[a, b, c], [b, c, a], [c, a, b]] {
+            let weight = cotangent(mesh, apex, i, j) / 2.0;
+            let (i, j) = (numbers[i], numbers[j]);
+            triplets.extend([
+                (i, j, weight),
+                (j, i, weight),
+                (i, i, -weight),
+                (j, j, -weight),
+            ]);
+        }
+    }
+    Ok((numbers, triplets))
+}
+
+/// Returns the cotangent of the angle at `apex` between the directions to `v` and `w`.
+fn cotangent<M: MeshQuery>(mesh: &M, apex: M::Vertex, v: M::Vertex, w: M::Vertex) -> f64 {
+    let origin = mesh.position(apex).as_dvec3();
+    let [to_v, to_w] = [v, w].map(|end| mesh.position(end).as_dvec3() - origin);
+    to_v.dot(to_w) / to_v.cross(to_w).length()
+}
+
+/// Returns the product of the matrix and a vector.
+pub fn multiply(triplets: &[Triplet], vector: &[f64]) -> Vec<f64> {
+    let mut product = vec![0.0; vector.len()];
+    for &(row, column, value) in triplets {
+        product[row as usize] += value * vector[column as usize];
+    }
+    product
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let polygons = common::mesh_argument(sixfold::shapes::geodesic(16)?)?;
+    let mesh = HalfEdgeMesh::from_polygons(&polygons)?;
+    let (numbers, triplets) =
+        laplacian(&mesh).map_err(|f| format!("face {f:?} is not a triangle"))?;
+    let heights: Vec<f64> = numbers
+        .handles()
+        .iter()
+        .map(|&v| mesh.position(v).z.into())
+        .collect();
+    // The product with the coordinates is the mean curvature normal, times twice the area.
+    let energy: f64 = multiply(&triplets, &heights)
+        .iter()
+        .zip(&heights)
+        .map(|(l, z)| -l * z)
+        .sum();
+    println!(
+        "{} vertices, {} triplets; the Dirichlet energy of z is {:.4}",
+        numbers.len(),
+        triplets.len(),
+        energy / 2.0
+    );
+    Ok(())
+}
