@@ -76,6 +76,8 @@ pub use glam::Vec3 as Point;
 pub use handle::{Handle, HandleMap, HashHandleMap, Pair, RowMap};
 pub use holes::Holes;
 pub use incidence::EdgeUse;
+#[doc(hidden)]
+pub use local_queries::CostsAreLocal;
 pub use local_queries::LocalQueries;
 pub use measured::{Counts, Measured};
 pub use memory::{MemoryFootprint, TableBytes};
