@@ -103,6 +103,8 @@ pub use glam;
 pub use glam::Vec3 as Point;
 pub use handle::{Handle, HandleMap, HashHandleMap, Pair, RowMap};
 pub use incidence::EdgeUse;
+#[doc(hidden)]
+pub use local_queries::CostsAreLocal;
 pub use local_queries::LocalQueries;
 pub use memory::{MemoryFootprint, TableBytes};
 pub use mesh_with_data::MeshWithData;

@@ -1,9 +1,9 @@
 //! Structures without queries that scan the mesh.
 
-use crate::representation::Representation;
+use crate::representation::{QueryCost, Representation};
 
 /// A structure whose queries never scan: none of its [`COSTS`](Representation::COSTS) is
-/// [`QueryCost::Scan`](crate::QueryCost::Scan).
+/// [`QueryCost::Scan`].
 ///
 /// An algorithm that queries each of n elements takes O(n) time on such a structure, and O(n²) on a
 /// structure that scans. With this bound, the compiler refuses the second. At run time,
@@ -25,12 +25,35 @@ use crate::representation::Representation;
     label = "this structure does not implement `LocalQueries`",
     note = "these never scan: FaceVertexMesh, WingedEdgeMesh, HalfEdgeMesh, CornerTable"
 )]
-pub trait LocalQueries: Representation {}
+pub trait LocalQueries: Representation {
+    /// Shows that the costs were compared; only [`local_queries!`](crate::local_queries) makes it.
+    #[doc(hidden)]
+    const COSTS_ARE_LOCAL: CostsAreLocal;
+}
+
+/// The result of comparing the costs of a structure.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct CostsAreLocal(());
+
+impl CostsAreLocal {
+    /// Compares the costs of `M`.
+    ///
+    /// # Panics
+    ///
+    /// Panics if one of them is a scan. In a constant, the build fails.
+    pub const fn check<M: Representation>() -> Self {
+        assert!(
+            QueryCost::are_local(&M::COSTS),
+            "a structure with QueryCost::Scan in its COSTS cannot implement LocalQueries"
+        );
+        Self(())
+    }
+}
 
 /// Implements [`LocalQueries`] for structures: `local_queries!(HalfEdgeMesh, EditableHalfEdgeMesh);`
 ///
-/// The build fails if the costs of a structure contain [`QueryCost::Scan`](crate::QueryCost::Scan).
-/// The check is a constant:
+/// The build fails if the costs of a structure contain [`QueryCost::Scan`]. The check is a constant:
 ///
 /// ```compile_fail,E0080
 /// use sixfold_core::QueryCost;
@@ -39,11 +62,12 @@ pub trait LocalQueries: Representation {}
 #[macro_export]
 macro_rules! local_queries {
     ($($mesh:ty),+ $(,)?) => {$(
-        const _: () = assert!(
-            $crate::QueryCost::are_local(&<$mesh as $crate::Representation>::COSTS),
-            "a structure with QueryCost::Scan in its COSTS cannot implement LocalQueries"
-        );
+        // The compiler evaluates this constant even if nothing uses it, unlike that of the trait.
+        const _: $crate::CostsAreLocal = $crate::CostsAreLocal::check::<$mesh>();
 
-        impl $crate::LocalQueries for $mesh {}
+        impl $crate::LocalQueries for $mesh {
+            const COSTS_ARE_LOCAL: $crate::CostsAreLocal =
+                $crate::CostsAreLocal::check::<Self>();
+        }
     )+};
 }
