@@ -109,7 +109,7 @@ fn no_such_side(s: HalfEdgeId) -> ! {
 
 #[cfg(test)]
 mod tests {
-    use sixfold_core::{MeshEdit, MeshQuery, Representation};
+    use sixfold_core::{MeshEdit, Representation};
 
     use super::*;
     use crate::mesh::{EditableHalfEdgeMesh, HalfEdgeMesh};
