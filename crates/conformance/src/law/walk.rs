@@ -141,6 +141,9 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
             self.check_side(expected);
             self.check_twin(expected);
         }
+        for expected in &self.sides {
+            self.check_turns(expected);
+        }
         self.check_sets();
         self.check_map();
     }
@@ -171,14 +174,18 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
         assert_eq!(prev, expected.prev, "{name}: prev_side of {s:?}");
     }
 
-    /// Checks the twin and the two sides around the origin, which follow from twins.
     fn check_twin(&self, expected: &ExpectedSide<M>) {
         let (mesh, name, s) = (self.mesh, self.name, expected.side);
         let twin = self.twin(expected.ends);
         assert_eq!(mesh.twin_side(s), twin, "{name}: twin_side of {s:?}");
         let back = twin.and_then(|twin| mesh.twin_side(twin));
         assert_eq!(back, twin.map(|_| s), "{name}: twin of the twin of {s:?}");
-        let cw = twin.map(|twin| mesh.next_side(twin));
+    }
+
+    /// Checks the two sides around the origin, which follow from twins.
+    fn check_turns(&self, expected: &ExpectedSide<M>) {
+        let (mesh, name, s) = (self.mesh, self.name, expected.side);
+        let cw = self.twin(expected.ends).map(|twin| mesh.next_side(twin));
         assert_eq!(mesh.cw_side(s), cw, "{name}: cw_side of {s:?}");
         let ccw = mesh.twin_side(expected.prev);
         assert_eq!(mesh.ccw_side(s), ccw, "{name}: ccw_side of {s:?}");
