@@ -19,7 +19,7 @@ use std::hint::black_box;
 
 use gungraun::prelude::*;
 use sixfold::shapes;
-use sixfold_study::{BackendRun, BackendRunner, MachineClock, Operation};
+use sixfold_study::{Backend, BackendRun, BackendRunner, MachineClock, Operation};
 
 /// An operation that is ready to run.
 struct Prepared {
@@ -32,10 +32,11 @@ struct Prepared {
 /// because freeing would be counted too.
 fn prepare(line: String) -> Prepared {
     let (structure, operation) = line.split_once(' ').expect("a structure and an operation");
+    let backend = Backend::find(structure).expect("a structure");
     let sphere = shapes::geodesic(10).expect("a small frequency");
     let polygons = Box::leak(Box::new(shapes::shuffled(&sphere, 1)));
     Prepared {
-        runner: BackendRunner::new(structure, polygons).expect("a closed manifold of triangles"),
+        runner: BackendRunner::new(&backend, polygons).expect("a closed manifold of triangles"),
         operation: operation.parse().expect("an operation"),
         clock: MachineClock::start(),
     }

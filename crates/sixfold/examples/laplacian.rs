@@ -15,14 +15,22 @@ mod common;
 /// An entry of a sparse matrix: row, column and value. Values of equal places are added.
 pub type Triplet = (u32, u32, f64);
 
-/// Returns the numbers of the vertices, and the matrix L in these numbers: the row of vertex i has
-/// (cot α + cot β) / 2 in the column of a neighbour j, where α and β are the angles opposite the edge
-/// between them, and the negative sum of these values on the diagonal.
+/// A matrix, and the numbers of the vertices: its rows and columns.
+pub struct Laplacian<M: MeshQuery> {
+    /// The number of each vertex.
+    pub numbers: Numbers<M::Vertex>,
+    /// The entries.
+    pub triplets: Vec<Triplet>,
+}
+
+/// Returns the matrix L. The row of vertex i has (cot α + cot β) / 2 in the column of a neighbour j,
+/// where α and β are the angles opposite the edge between them. The diagonal has the negative sum of
+/// these values.
 ///
 /// # Errors
 ///
 /// Returns the first face that is not a triangle.
-pub fn laplacian<M: MeshQuery>(mesh: &M) -> Result<(Numbers<M::Vertex>, Vec<Triplet>), M::Face> {
+pub fn laplacian<M: MeshQuery>(mesh: &M) -> Result<Laplacian<M>, M::Face> {
     let numbers = mesh.vertex_numbers();
     let mut triplets = Vec::with_capacity(12 * mesh.face_count());
     for f in mesh.faces() {
@@ -41,7 +49,7 @@ pub fn laplacian<M: MeshQuery>(mesh: &M) -> Result<(Numbers<M::Vertex>, Vec<Trip
             ]);
         }
     }
-    Ok((numbers, triplets))
+    Ok(Laplacian { numbers, triplets })
 }
 
 /// Returns the cotangent of the angle at `apex` between the directions to `v` and `w`.
@@ -63,7 +71,7 @@ pub fn multiply(triplets: &[Triplet], vector: &[f64]) -> Vec<f64> {
 fn main() -> Result<(), Box<dyn Error>> {
     let polygons = common::mesh_argument(sixfold::shapes::geodesic(16)?)?;
     let mesh = HalfEdgeMesh::from_polygons(&polygons)?;
-    let (numbers, triplets) =
+    let Laplacian { numbers, triplets } =
         laplacian(&mesh).map_err(|f| format!("face {f:?} is not a triangle"))?;
     let heights: Vec<f64> = numbers
         .handles()

@@ -8,7 +8,12 @@ use sixfold::{for_each_editable, for_each_representation};
 macro_rules! example {
     ($name:ident, $file:literal) => {
         #[path = $file]
-        #[allow(dead_code, reason = "a test calls some functions of an example")]
+        #[allow(
+            clippy::duplicate_mod,
+            dead_code,
+            unreachable_pub,
+            reason = "a test calls some functions of an example, and examples share a module"
+        )]
         mod $name;
     };
 }
@@ -188,7 +193,8 @@ fn the_laplacian_of_constants_is_zero_and_that_of_coordinates_points_inwards() {
     let polygons = geodesic(6).expect("a small frequency");
     for_each_representation!(M => {
         let mesh: M = build(&polygons);
-        let (numbers, triplets) = laplacian::laplacian(&mesh).expect("triangles");
+        let matrix = laplacian::laplacian(&mesh).map_err(|f| format!("{f:?}"));
+        let laplacian::Laplacian { numbers, triplets } = matrix.expect("triangles");
         let ones = vec![1.0; numbers.len()];
         let largest = |values: &[f64]| values.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
         assert!(largest(&laplacian::multiply(&triplets, &ones)) < 1e-9, "{}", M::NAME);
