@@ -40,8 +40,9 @@ fn run<M: MeshEdit + Representation>(polygons: &PolygonMesh, length: f64) -> Val
     plain.compact();
 
     let (mesh, (height, origin)) = mesh.into_parts();
-    let same = mesh.to_polygons().positions() == plain.to_polygons().positions()
-        && (mesh.to_polygons().faces().iter()).eq(plain.to_polygons().faces().iter());
+    let [with_data, without] = [mesh.to_polygons(), plain.to_polygons()];
+    let same = with_data.positions() == without.positions()
+        && with_data.faces().iter().eq(without.faces().iter());
     assert!(same, "{}: another mesh with data", M::NAME);
     let mut faces: ValuedFaces = Vec::new();
     for f in mesh.faces() {

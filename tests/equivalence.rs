@@ -2,7 +2,7 @@
 //! and the others refuse it with the reason that the contract defines.
 
 use proptest::prelude::*;
-use sixfold::{PolygonMesh, Representation, for_each_representation};
+use sixfold::{MeshQuery, PolygonMesh, Representation, for_each_representation};
 use sixfold_conformance::strategy::{any_mesh, faulty_mesh, manifold_mesh};
 use sixfold_conformance::{answers, expected_check, gallery, one_line, welded};
 

@@ -7,7 +7,7 @@
 use std::path::PathBuf;
 use std::{env, fs};
 
-use sixfold::{PolygonMesh, Representation, for_each_representation, io};
+use sixfold::{MeshQuery, PolygonMesh, Representation, for_each_representation, io};
 
 use crate::equivalence::compare_structures;
 
