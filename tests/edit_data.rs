@@ -31,7 +31,7 @@ fn run<M: MeshEdit + Representation>(
         heights.sum::<f32>() / new.parents.len() as f32
     });
     for v in mesh.vertices() {
-        height[v] = 3.0 * mesh.position(v).x;
+        height[v] = 3.0 * (mesh.position(v).x + 0.0); // 0 for −0
     }
     let mut origin = FaceData::new(&mesh, u32::MAX)
         .with_rule(|origin, new| new.parents.first().map_or(u32::MAX, |&f| origin[f]));
