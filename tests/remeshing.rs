@@ -9,7 +9,7 @@ use sixfold_core::{MeshEdit, Point, PolygonMesh, Representation};
 
 /// Returns closed and open surfaces. One is a rough surface with corners, where collapses near the
 /// boundary are among the cheapest.
-fn surfaces() -> [PolygonMesh; 4] {
+pub(crate) fn surfaces() -> [PolygonMesh; 4] {
     let message = "a small shape";
     let flat = shapes::triangle_grid(12, 12).expect(message);
     let rough = flat.positions().iter().map(|p| {
@@ -44,29 +44,29 @@ fn faces(polygons: &PolygonMesh) -> Vec<Vec<[u32; 3]>> {
     faces
 }
 
-/// An operator that can be run on any structure.
-trait Operator {
-    fn run<M: MeshEdit + Representation>(&self, mesh: &mut M);
+/// An operator that can be run on any structure, and on a mesh with data.
+pub(crate) trait Operator {
+    fn run<M: MeshEdit>(&self, mesh: &mut M);
 }
 
 impl Operator for Decimation {
-    fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) {
+    fn run<M: MeshEdit>(&self, mesh: &mut M) {
         let report = decimate(mesh, self).expect("triangles");
         assert!(report.collapses > 10, "{report:?}");
     }
 }
 
 impl Operator for Remeshing {
-    fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) {
+    fn run<M: MeshEdit>(&self, mesh: &mut M) {
         let report = remesh(mesh, self).expect("triangles");
         assert!(report.splits + report.collapses > 10, "{report:?}");
     }
 }
 
-struct Delaunay;
+pub(crate) struct Delaunay;
 
 impl Operator for Delaunay {
-    fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) {
+    fn run<M: MeshEdit>(&self, mesh: &mut M) {
         flip_to_delaunay(mesh).expect("triangles");
     }
 }
