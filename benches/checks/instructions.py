@@ -51,10 +51,16 @@ def counted(profile):
 
 def instructions(summary):
     """Returns the number of executed instructions of one benchmark."""
-    (callgrind,) = [profile for profile in summary["profiles"] if profile["tool"] == "Callgrind"]
-    metrics = callgrind["summaries"]["total"]["summary"]["Callgrind"]["Ir"]["metrics"]
-    value = metrics.get("Left", metrics.get("Both", [None])[0] if "Both" in metrics else None)
-    return value["Int"] if isinstance(value, dict) else value
+    (callgrind,) = [profile for profile in summary["profiles"] if profile["tool"].lower() == "callgrind"]
+    return new_count(callgrind["data"]["total"]["metrics"]["Ir"])
+
+
+def new_count(value):
+    """Returns the count of this run; a value may also have that of the run before."""
+    if isinstance(value, dict):
+        inner = next((value[key] for key in ("new", "New", "both", "Both") if key in value), None)
+        return new_count(next(iter(value.values())) if inner is None else inner)
+    return new_count(value[0]) if isinstance(value, list) else value
 
 
 def compiler():

@@ -25,7 +25,7 @@ pub struct Inspection {
     pub schema: u32,
     /// Name and topology of the mesh.
     pub mesh: MeshReport,
-    /// The backends by name, in the order of [`Backend::structures`].
+    /// The backends by name, in the order of [`Backend::structures`](crate::Backend::structures).
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
 }
@@ -38,10 +38,10 @@ pub struct Report {
     pub schema: u32,
     /// Name and topology of the mesh.
     pub mesh: MeshReport,
-    /// The backends by name, in the order of [`Backend::structures`].
+    /// The backends by name, in the order of [`Backend::structures`](crate::Backend::structures).
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
-    /// The results, sorted by operation, then in the order of [`Backend::structures`].
+    /// The results, sorted by operation, then in the order of [`Backend::structures`](crate::Backend::structures).
     pub results: Vec<ResultRow>,
     /// The operations that a backend cannot do, in the same order.
     pub refusals: Vec<Refusal>,
