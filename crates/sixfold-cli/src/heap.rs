@@ -42,17 +42,23 @@ impl AllocationCounter for Counters {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::{Mutex, PoisonError};
+
     use super::*;
 
     const BYTES: usize = 256 << 20;
 
     /// The tolerance is so large that allocations of concurrent tests do not matter.
+    /// Held by each test: the counters are those of the whole process.
+    static COUNTERS: Mutex<()> = Mutex::new(());
+
     fn about(figure: usize, expected: usize) -> bool {
         figure.abs_diff(expected) < BYTES / 8
     }
 
     #[test]
     fn blocks_are_counted_when_they_are_allocated_grow_shrink_and_are_freed() {
+        let _counters = COUNTERS.lock().unwrap_or_else(PoisonError::into_inner);
         let before = Counters.live();
         Counters.restart_peak();
         let live = || Counters.live().saturating_sub(before);
@@ -74,6 +80,7 @@ mod tests {
 
     #[test]
     fn freed_blocks_stay_counted_and_growth_counts_once() {
+        let _counters = COUNTERS.lock().unwrap_or_else(PoisonError::into_inner);
         let before = Counters.allocated();
         let allocated = || Counters.allocated() - before;
         drop(Vec::<u8>::with_capacity(BYTES));
