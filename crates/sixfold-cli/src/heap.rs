@@ -48,10 +48,10 @@ mod tests {
 
     const BYTES: usize = 256 << 20;
 
-    /// The tolerance is so large that allocations of concurrent tests do not matter.
     /// Held by each test: the counters are those of the whole process.
     static COUNTERS: Mutex<()> = Mutex::new(());
 
+    /// Compares with a tolerance so large that small allocations of other tests do not matter.
     fn about(figure: usize, expected: usize) -> bool {
         figure.abs_diff(expected) < BYTES / 8
     }
