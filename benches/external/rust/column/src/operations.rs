@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use cpu_time::ThreadTime;
 
-use crate::{Response, Column, Input};
+use crate::{Column, Input, Response};
 
 type Vector = [f32; 3];
 
@@ -81,7 +81,9 @@ impl<C: Column> Runner<C> {
             ("face_vertices", corners, faces),
             ("face_edges", corners, faces),
         ] {
-            let found = self.query_relation(relation).ok_or("a relation is missing")?;
+            let found = self
+                .query_relation(relation)
+                .ok_or("a relation is missing")?;
             if found != (answers as u64, elements as u64) {
                 let (wrong, of) = found;
                 return Err(format!(
@@ -243,7 +245,10 @@ impl<C: Column> Runner<C> {
             let by = if length > 0.0 { 1.0 / length } else { 1.0 };
             self.vertex_values[structure.vertex_index(v)] = sum.map(|x| x * by);
         }
-        (field_sum(&self.vertex_values), self.vertex_values.len() as u64)
+        (
+            field_sum(&self.vertex_values),
+            self.vertex_values.len() as u64,
+        )
     }
 
     fn vv_smooth(&mut self) -> RunResult {
@@ -260,7 +265,10 @@ impl<C: Column> Runner<C> {
             };
         }
         self.structure.set_positions(&self.vertex_values);
-        (field_sum(&self.vertex_values), self.vertex_values.len() as u64)
+        (
+            field_sum(&self.vertex_values),
+            self.vertex_values.len() as u64,
+        )
     }
 
     fn edge_length(&self) -> RunResult {
