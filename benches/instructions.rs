@@ -8,7 +8,8 @@
 //! ```
 //!
 //! The benchmarks are the lines of `instructions.txt`: a structure and an operation. Each runs the
-//! operation twice on 2,000 triangles in random order, so that no loop profits from a regular order.
+//! operation on 2,000 triangles in random order, so that no loop profits from a regular order.
+//! Subdivisions run once, others twice.
 //!
 //! The program builds on every platform and runs on those that valgrind supports. A plain `cargo
 //! bench` leaves it out (`bench = false`), because it does not understand the options of criterion.
@@ -17,44 +18,54 @@
 
 use std::hint::black_box;
 
-use gungraun::prelude::*;
-use sixfold::shapes;
-use sixfold_study::{Backend, BackendRun, BackendRunner, MachineClock, Operation};
+use gungraun::{Callgrind, prelude::*};
+use rayon::ThreadPoolBuilder;
+use sixfold::{Creases, shapes};
+use sixfold_study::{Backend, BackendRunner, MachineClock, Operation};
 
 /// An operation that is ready to run.
-struct Prepared {
-    runner: BackendRunner<'static>,
-    operation: Operation,
-    clock: MachineClock,
-}
+type Prepared = Box<dyn FnMut()>;
 
-/// Builds the structure of a line such as `half-edge vertex_vertices`. The mesh is never freed,
+/// Prepares the operation of a line such as `half-edge vertex_vertices`. The mesh is never freed,
 /// because freeing would be counted too.
 fn prepare(line: String) -> Prepared {
     let (structure, operation) = line.split_once(' ').expect("a structure and an operation");
     let backend = Backend::find(structure).expect("a structure");
+    let operation: Operation = operation.parse().expect("an operation");
     let sphere = shapes::geodesic(10).expect("a small frequency");
     let polygons = Box::leak(Box::new(shapes::shuffled(&sphere, 1)));
-    Prepared {
-        runner: BackendRunner::new(&backend, polygons).expect("a closed manifold of triangles"),
-        operation: operation.parse().expect("an operation"),
-        clock: MachineClock::start(),
+    // Only the thread of the benchmark is counted. With a pool of one thread, subdivisions run on
+    // the thread that calls them.
+    let pool = ThreadPoolBuilder::new().num_threads(1).build_global();
+    pool.expect("the only pool");
+    if let Some(job) = operation.subdivision_job() {
+        let refiner = job.prepare(&backend, polygons, &Creases::default());
+        let refiner = refiner.expect("a way of this structure");
+        let mut refiner = refiner.expect("a closed manifold of triangles");
+        refiner.run().expect("a triangle mesh");
+        return Box::new(move || refiner.run().expect("a triangle mesh"));
     }
+    let runner = BackendRunner::new(&backend, polygons);
+    let mut runner = runner.expect("a closed manifold of triangles");
+    let clock = MachineClock::start();
+    let mut run = move || {
+        black_box(runner.run_times(operation, 1, &clock));
+    };
+    // The first run also reads the sizes of the caches from the system.
+    run();
+    Box::new(run)
 }
 
 #[library_benchmark]
 #[benches::study(file = "benches/instructions.txt", setup = prepare)]
-fn operation(prepared: Prepared) -> (BackendRun, Prepared) {
-    let mut prepared = black_box(prepared);
-    let Prepared {
-        runner,
-        operation,
-        clock,
-    } = &mut prepared;
-    let run = runner.run_times(*operation, 1, clock);
-    black_box((run, prepared))
+fn operation(mut run: Prepared) -> Prepared {
+    run();
+    run
 }
 
 library_benchmark_group!(name = operations, benchmarks = [operation]);
 
-main!(library_benchmark_groups = operations);
+main!(
+    config = LibraryBenchmarkConfig::default().tool(Callgrind::with_args(["--cache-sim=no"])),
+    library_benchmark_groups = operations
+);

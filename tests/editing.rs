@@ -172,8 +172,8 @@ fn is_offered_to_triangles(action: &Action, rules: &Rules) -> bool {
 
 /// Runs random scripts on meshes from `starts`. Checks that `structures` of them take part in
 /// more than a fifth of the scripts, and that all of them accept more than one step in
-/// `steps_per_accepted` of each edit. (A third of the scripts was too much: it was missed by chance,
-/// with 13 of 40.)
+/// `steps_per_accepted` of each edit. (A limit of a third was too strict: the random scripts
+/// missed it, with 13 of 40.)
 fn run_scripts(
     starts: impl Strategy<Value = PolygonMesh>,
     edits: &[Edit],

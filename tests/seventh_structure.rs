@@ -12,7 +12,7 @@ use sixfold::{
 use sixfold_study::{
     Agreement, Backend, BackendRunner, EditPass, Editor, MachineClock, Need, Operation, PickReport,
     PickSettings, Policy, Refiner, Series, Settings, SingleEdit, Standing, StudyError, StudyMesh,
-    SubdivisionJob, Way, built_in, pick, study,
+    SubdivisionJob, Way, built_in, inspect, pick, study,
 };
 
 // The file in which the conformance suite tests itself with faults; ARCHITECTURE.md explains it.
@@ -26,9 +26,9 @@ fn lists() -> Backend {
     Backend::new::<FaceAndEdgeLists>()
 }
 
-/// Returns the seventh structure with edits and refinement of its own tables. It has neither, so
-/// types of two other structures do the work in its name: edits and refinement must come from what
-/// was registered, not from a list of names.
+/// Returns the seventh structure with edits and refinement of its own tables. It implements
+/// neither, so types of two other structures are registered for it: this shows that the registered
+/// types are used, not a list of names.
 fn lists_with_all() -> Backend {
     let backend = lists().with_edits::<EditableIndexedFaceSet>();
     backend.with_refinement::<FaceVertexMesh>()
@@ -78,6 +78,22 @@ fn a_study_measures_a_seventh_structure() {
 #[test]
 fn a_study_measures_the_edits_and_the_refinement_of_a_seventh_structure() {
     check_study(lists_with_all(), 0);
+}
+
+#[test]
+fn an_inspection_and_an_error_name_a_seventh_structure() {
+    let inspection = inspect(&StudyMesh::new("torus", torus()), &[lists()]);
+    assert_eq!(inspection.backends.len(), 1);
+    assert!(inspection.backends[0].holds, "{inspection:?}");
+    let misspelt = format!("{}s", lists().name());
+    let settings = Settings {
+        backends: vec![misspelt],
+        extra: vec![lists()],
+        ..Settings::default()
+    };
+    let refusal = settings.chosen_backends().expect_err("a misspelt name");
+    let suggestion = format!("(did you mean `{}`?)", lists().name());
+    assert!(refusal.to_string().contains(&suggestion), "{refusal}");
 }
 
 #[test]

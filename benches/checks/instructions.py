@@ -1,15 +1,21 @@
 #!/usr/bin/env python3
 """Compares the instruction counts of the operations with the committed baseline.
 
-Usage: instructions.py [--write] [--profile NAME] [--against FILE]
+Usage: instructions.py [--write]
 
-Builds and runs the benchmarks of `benches/instructions.rs` under callgrind in a few minutes; needs valgrind and
-gungraun-runner. The exit code is 1 if a count is more than 0.5 % above the baseline, or a benchmark has none.
-`--write` replaces the baseline. `--profile` builds with another profile of Cargo.toml, and `--against FILE` prints the
-ratio of each count to that of another file written by `--write-to`.
+Builds the benchmarks of `benches/instructions.rs` with the profile `release`, which programs that depend on
+Sixfold use, and runs them under callgrind. Needs valgrind and gungraun-runner. The exit code is 1 if
 
-Counts depend on the compiler: with another rustc than that of the baseline they are printed and not compared. The C
-library chooses its copying functions by processor; the script makes it choose those that every x86-64 processor has.
+- a count is more than 0.5 % above the baseline, or has no baseline;
+- a count is more than 10 % above that of the profile `dist`, which has link-time optimisation; or the
+  geometric mean of these ratios is above 1.02. So the structures do not rely on link-time optimisation.
+
+`--write` counts with both profiles, replaces the baseline and prints the ratios. Otherwise the counts of
+`dist` are those of the baseline.
+
+Counts depend on the compiler. With another rustc than that of the baseline, they are printed and not
+compared. The C library chooses its copying functions by processor; the script makes it choose those that
+every x86-64 processor has.
 """
 
 import argparse
@@ -25,81 +31,85 @@ BASELINE = ROOT / "benches/checks/instructions.json"
 LINES = ROOT / "benches/instructions.txt"
 # The largest count, relative to the baseline.
 LIMIT = 1.005
+# The largest count and geometric mean with the profile `release`, relative to `dist`.
+LIMIT_TO_DIST, MEAN_LIMIT_TO_DIST = 1.10, 1.02
 PLAIN_FUNCTIONS = "glibc.cpu.hwcaps=-AVX_Fast_Unaligned_Load,-AVX2,-AVX512F,-AVX512VL,-ERMS,-FSRM"
-
-# Rust's default release profile, which programs that depend on Sixfold use.
-DEFAULT_PROFILE = {"CARGO_PROFILE_RELEASE_LTO": "false", "CARGO_PROFILE_RELEASE_CODEGEN_UNITS": "16"}
 
 
 def counted(profile):
     """Runs the benchmarks; returns the instructions of each line of `instructions.txt`."""
     command = ["cargo", "bench", "-p", "sixfold-benches", "--bench", "instructions", "--locked", "--profile", profile,
                "--", "--output-format=json"]
-    environment = {**os.environ, "GLIBC_TUNABLES": PLAIN_FUNCTIONS, **(DEFAULT_PROFILE if profile == "release" else {})}
+    environment = {**os.environ, "GLIBC_TUNABLES": PLAIN_FUNCTIONS}
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False, env=environment)
     if done.returncode != 0:
         sys.exit(f"{' '.join(command)} failed:\n{done.stderr[-4000:]}")
-    counts = {}
-    lines = LINES.read_text().split("\n")
-    for text in done.stdout.splitlines():
-        if text.startswith("{"):
-            summary = json.loads(text)
-            number = int(summary["id"].rsplit("_", 1)[1])
-            counts[lines[number]] = instructions(summary)
+    lines = LINES.read_text().splitlines()
+    summaries = [json.loads(text) for text in done.stdout.splitlines() if text.startswith("{")]
+    counts = {lines[int(summary["id"].rsplit("_", 1)[1])]: instructions(summary) for summary in summaries}
+    if counts.keys() != set(lines) or not all(counts.values()):
+        sys.exit(f"not counted: {[line for line in lines if not counts.get(line)]}")
     return counts
 
 
 def instructions(summary):
     """Returns the number of executed instructions of one benchmark."""
     (callgrind,) = [profile for profile in summary["profiles"] if profile["tool"].lower() == "callgrind"]
-    return new_count(callgrind["data"]["total"]["metrics"]["Ir"])
+    return callgrind["data"]["total"]["metrics"]["Ir"]["values"]["new"]
 
 
-def new_count(value):
-    """Returns the count of this run; a value may also have that of the run before."""
-    if isinstance(value, dict):
-        inner = next((value[key] for key in ("new", "New", "both", "Both") if key in value), None)
-        return new_count(next(iter(value.values())) if inner is None else inner)
-    return new_count(value[0]) if isinstance(value, list) else value
+def faults_of_ratios(release, dist):
+    """Prints how much more instructions `release` has than `dist`; returns what exceeds the limits."""
+    ratios = {name: count / dist[name] for name, count in release.items() if name in dist}
+    mean = math.exp(sum(map(math.log, ratios.values())) / len(ratios))
+    worst = max(ratios, key=ratios.get)
+    print(f"release relative to dist: geometric mean {mean:.3f}, at most {ratios[worst]:.3f} ({worst})")
+    faults = [f"{name}: {ratio:.3f} times the instructions of the profile dist"
+              for name, ratio in ratios.items() if ratio > LIMIT_TO_DIST]
+    if mean > MEAN_LIMIT_TO_DIST:
+        faults.append(f"geometric mean: {mean:.3f} times the instructions of the profile dist")
+    return faults, ratios
 
 
-def compiler():
-    return subprocess.run(["rustc", "--version"], capture_output=True, text=True, check=True).stdout.strip()
+def write(rustc):
+    """Counts with both profiles and replaces the baseline."""
+    dist, release = counted("dist"), counted("release")
+    BASELINE.write_text(json.dumps({"rustc": rustc, "release": release, "dist": dist}, indent=1) + "\n")
+    faults, ratios = faults_of_ratios(release, dist)
+    for name, ratio in sorted(ratios.items(), key=lambda item: -item[1]):
+        print(f"{ratio:6.3f}  {release[name]:>12,}  {name}")
+    return faults
+
+
+def compare(rustc):
+    """Counts with the profile `release`, and compares the counts with the baseline."""
+    counts, baseline = counted("release"), json.loads(BASELINE.read_text())
+    if baseline["rustc"] != rustc:
+        for name, count in counts.items():
+            print(f"{count:>12,}  {name}")
+        print(f"not compared: the baseline is of {baseline['rustc']}, this is {rustc}")
+        return []
+    faults, _ = faults_of_ratios(counts, baseline["dist"])
+    for name, count in counts.items():
+        known = baseline["release"].get(name)
+        if known is None:
+            faults.append(f"{name}: {count:,} instructions, without a baseline")
+        elif count > LIMIT * known:
+            faults.append(f"{name}: {count:,} instructions, {100 * (count / known - 1):.2f} % more than {known:,}")
+    if not faults:
+        print(f"{len(counts)} operations, each at most {100 * (LIMIT - 1):.1f} % above the baseline")
+    return faults
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--write", action="store_true", help="replace the baseline")
-    parser.add_argument("--write-to", type=pathlib.Path, help="also write the counts to this file")
-    parser.add_argument("--profile", default="release")
-    parser.add_argument("--against", type=pathlib.Path, help="print the ratio of each count to this file")
+    parser.add_argument("--write", action="store_true", help="count with both profiles and replace the baseline")
     chosen = parser.parse_args()
-    counts = counted(chosen.profile)
-    document = {"rustc": compiler(), "profile": chosen.profile, "instructions": counts}
-    for path in [BASELINE] * chosen.write + [chosen.write_to] * bool(chosen.write_to):
-        path.write_text(json.dumps(document, indent=1) + "\n")
-    if chosen.against:
-        other = json.loads(chosen.against.read_text())["instructions"]
-        ratios = {name: count / other[name] for name, count in counts.items() if name in other}
-        for name, ratio in sorted(ratios.items(), key=lambda item: -item[1]):
-            print(f"{ratio:6.3f}  {counts[name]:>12,}  {name}")
-        mean = math.exp(sum(map(math.log, ratios.values())) / len(ratios))
-        print(f"geometric mean {mean:.3f} over {len(ratios)} operations, largest {max(ratios.values()):.3f}")
-        return
-    if chosen.write or chosen.write_to:
-        return
-    baseline = json.loads(BASELINE.read_text())
-    if baseline["rustc"] != document["rustc"]:
-        print(f"not compared: the baseline is of {baseline['rustc']}, this is {document['rustc']}")
-        return
-    known = baseline["instructions"]
-    faults = [f"{name}: {count:,}, without a baseline" for name, count in counts.items() if name not in known]
-    faults += [f"{name}: {counts[name]:,} instructions, {100 * (counts[name] / known[name] - 1):.2f} % more than {known[name]:,}"
-               for name in counts.keys() & known.keys() if counts[name] > LIMIT * known[name]]
+    version = subprocess.run(["rustc", "--version"], capture_output=True, text=True, check=True).stdout.strip()
+    faults = write(version) if chosen.write else compare(version)
     if faults:
-        sys.exit("more instructions than the baseline:\n" + "\n".join(sorted(faults))
-                 + "\nIf this is intended, run `python3 benches/checks/instructions.py --write`.")
-    print(f"{len(counts)} operations, each at most {100 * (LIMIT - 1):.1f} % above the baseline")
+        sys.exit("too many instructions:\n" + "\n".join(sorted(faults))
+                 + "\nIf a count may be above the baseline, run `python3 benches/checks/instructions.py --write`.")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 //! Records the commit, the compiler and its flags for the report.
 
 use std::env;
+use std::ffi::OsStr;
 use std::path::Path;
 use std::process::Command;
 
@@ -23,7 +24,8 @@ fn main() {
     {
         println!("cargo::rerun-if-changed={log}");
     }
-    for name in ["PROFILE", "OPT_LEVEL", "TARGET"] {
+    println!("cargo::rustc-env=STUDY_PROFILE={}", profile());
+    for name in ["OPT_LEVEL", "TARGET"] {
         let value = env::var(name).unwrap_or_else(|_| "unknown".into());
         println!("cargo::rustc-env=STUDY_{name}={value}");
     }
@@ -34,6 +36,18 @@ fn main() {
         flags.replace('\u{1f}', " ")
     );
     println!("cargo::rerun-if-changed=build.rs");
+}
+
+/// Returns the name of the profile: `release`, `dist` or `debug`. Cargo passes to build scripts
+/// only whether a profile inherits from `release`, but it writes each profile into a separate
+/// folder.
+fn profile() -> String {
+    let inherits = env::var("PROFILE").unwrap_or_else(|_| "unknown".into());
+    let out = env::var("OUT_DIR").unwrap_or_default();
+    // `…/target/dist/build/sixfold-study-0123456789abcdef/out`
+    let folder = Path::new(&out).ancestors().nth(3);
+    let name = folder.and_then(Path::file_name).and_then(OsStr::to_str);
+    name.map_or(inherits, str::to_owned)
 }
 
 /// Returns the output of git, on one line; `None` without git or a repository.

@@ -179,9 +179,10 @@ impl Level {
     /// Returns whether the next step with Chaikin creases cannot be compared with OpenSubdiv:
     ///
     /// - An edge of sharpness above 1 has a half that is not sharp any more. OpenSubdiv then
-    ///   extrapolates beyond the midpoint, but its own masks, and ours, make a full crease.
-    /// - The sharpness of a half is so near to zero that rounding decides whether it is sharp: both
-    ///   programs add in 32 bits, but in different orders.
+    ///   extrapolates beyond the midpoint, but its own masks and those of Sixfold make a full
+    ///   crease.
+    /// - The sharpness of a half is so near to zero that rounding determines whether it is sharp:
+    ///   both programs add in 32 bits, but in different orders.
     pub(crate) fn is_incomparable(&self, creasing: Creasing) -> bool {
         creasing == Creasing::Chaikin
             && self.semi_sharp().any(|(ends, s)| {

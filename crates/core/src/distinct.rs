@@ -91,7 +91,7 @@ where
     }
 }
 
-/// The number of steps from which on a hash set is used instead of repeating the walk.
+/// From this number of steps on, a hash set is used instead of repeating the walk.
 const SET_STEPS: usize = 32;
 
 /// The distinct items of a walk that can be repeated, each at its first occurrence; empty slots are

@@ -113,7 +113,9 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
     #[error("vertex {vertex:?} is not on a boundary: give both neighbours")]
     NotOnBoundary { vertex: V },
     /// More elements than a handle can name.
-    #[error("more than {limit} {elements}: compact the mesh or split it, handles are 32 bits")]
+    #[error(
+        "more than {limit} {elements}: compact the mesh or split it, because handles have 32 bits"
+    )]
     TooMany {
         elements: &'static str,
         limit: usize,

@@ -24,7 +24,7 @@ pub enum PolygonError {
     #[error("face {face} names vertex {vertex} twice: remove the face, or split it there")]
     RepeatedVertex { face: FaceId, vertex: VertexId },
     /// More elements than a handle can name.
-    #[error("more than {limit} {elements}: split the mesh, handles are 32 bits")]
+    #[error("more than {limit} {elements}: split the mesh, because handles have 32 bits")]
     TooMany {
         elements: &'static str,
         limit: usize,
@@ -41,7 +41,7 @@ pub enum PolygonError {
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum BuildError {
     /// More elements than a handle can name.
-    #[error("more than {limit} {elements}: split the mesh, handles are 32 bits")]
+    #[error("more than {limit} {elements}: split the mesh, because handles have 32 bits")]
     TooMany {
         elements: &'static str,
         limit: usize,

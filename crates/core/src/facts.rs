@@ -44,7 +44,7 @@ pub struct Facts {
     pub non_manifold_vertices: usize,
     /// Edges with two faces that both run along it in the same direction.
     pub inconsistent_edges: usize,
-    /// Whether there is no inconsistent edge; `None` without faces.
+    /// Whether every edge with two faces is consistent; `None` without faces.
     pub consistently_oriented: Option<bool>,
     /// Whether flipping faces can make every edge with two faces consistent; `None` without faces.
     pub orientable: Option<bool>,

@@ -1,4 +1,4 @@
-//! Data that follows edits by itself: the trait, and what it receives after an edit.
+//! Data that follows edits automatically: the trait, and what it receives after an edit.
 
 use crate::edit_log::{Changes, EditRecord};
 use crate::handle::Handle;

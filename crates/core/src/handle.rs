@@ -11,7 +11,7 @@ use crate::row_id::RowId;
 
 /// A value that names an element of a structure: a row, a pair of vertices, or coordinates.
 ///
-/// The type of the handle also decides how data is stored by it ([`Handle::Map`]).
+/// The type of the handle also determines how data by handle is stored ([`Handle::Map`]).
 pub trait Handle: Copy + Eq + Ord + Hash + Debug + Send + Sync + 'static {
     /// Data by handle: a vector for rows, a hash map otherwise.
     type Map<T: Clone>: HandleMap<Self, T>;
@@ -19,7 +19,7 @@ pub trait Handle: Copy + Eq + Ord + Hash + Debug + Send + Sync + 'static {
 
 /// Data for each element of one kind, by handle.
 ///
-/// A handle reads the value that the map was filled with until its own value is written.
+/// Until a value is written for a handle, the map returns the value that it was filled with.
 pub trait HandleMap<H: Copy, T: Clone>: Index<H, Output = T> + IndexMut<H> + Clone {
     /// Builds a map that returns `value` for every handle; `rows` is the exclusive upper bound of
     /// handles that are rows.
@@ -101,6 +101,7 @@ impl<H, T> FromIterator<T> for RowMap<H, T> {
 
 /// Stores the value of each handle, as [`insert`](HandleMap::insert) does.
 impl<H: RowId, T: Clone> Extend<(H, T)> for RowMap<H, T> {
+    #[inline]
     fn extend<I: IntoIterator<Item = (H, T)>>(&mut self, values: I) {
         for (handle, value) in values {
             self.insert(handle, value);
@@ -109,6 +110,7 @@ impl<H: RowId, T: Clone> Extend<(H, T)> for RowMap<H, T> {
 }
 
 impl<H: RowId, T: Clone> HandleMap<H, T> for RowMap<H, T> {
+    #[inline]
     fn filled(rows: usize, value: T) -> Self {
         Self {
             values: vec![value; rows],
@@ -180,12 +182,14 @@ impl<H, T: Default> Default for HashHandleMap<H, T> {
 
 /// Stores the value of each handle, as [`insert`](HandleMap::insert) does.
 impl<H: Handle, T> Extend<(H, T)> for HashHandleMap<H, T> {
+    #[inline]
     fn extend<I: IntoIterator<Item = (H, T)>>(&mut self, values: I) {
         self.written.extend(values);
     }
 }
 
 impl<H: Handle, T: Clone> HandleMap<H, T> for HashHandleMap<H, T> {
+    #[inline]
     fn filled(_rows: usize, value: T) -> Self {
         Self {
             written: FxHashMap::default(),
@@ -193,14 +197,17 @@ impl<H: Handle, T: Clone> HandleMap<H, T> for HashHandleMap<H, T> {
         }
     }
 
+    #[inline]
     fn reserve(&mut self, more: usize) {
         self.written.reserve(more);
     }
 
+    #[inline]
     fn insert(&mut self, handle: H, value: T) {
         self.written.insert(handle, value);
     }
 
+    #[inline]
     fn remove(&mut self, handle: H) {
         self.written.remove(&handle);
     }
@@ -209,12 +216,14 @@ impl<H: Handle, T: Clone> HandleMap<H, T> for HashHandleMap<H, T> {
 impl<H: Handle, T> Index<H> for HashHandleMap<H, T> {
     type Output = T;
 
+    #[inline]
     fn index(&self, handle: H) -> &T {
         self.written.get(&handle).unwrap_or(&self.default)
     }
 }
 
 impl<H: Handle, T: Clone> IndexMut<H> for HashHandleMap<H, T> {
+    #[inline]
     fn index_mut(&mut self, handle: H) -> &mut T {
         self.written
             .entry(handle)

@@ -11,11 +11,11 @@ const NO_NUMBER: u32 = u32::MAX;
 
 /// Elements of one kind, numbered from 0 without gaps.
 ///
-/// Matrices and index buffers need such numbers. A handle is not always one: it may be coordinates,
-/// a pair of vertices, or a row in a table with deleted rows. [`MeshQuery::vertex_numbers`],
-/// [`edge_numbers`] and [`face_numbers`] number all elements in the order in which the mesh lists
-/// them. [`Numbers::new`] numbers some of them: for example only the free vertices of a system with
-/// a fixed boundary.
+/// Matrices and index buffers need such numbers. A handle is not always such a number: it may be
+/// coordinates, a pair of vertices, or a row in a table with deleted rows.
+/// [`MeshQuery::vertex_numbers`], [`edge_numbers`] and [`face_numbers`] number all elements in the
+/// order in which the mesh lists them. [`Numbers::new`] numbers some of them: for example only the
+/// free vertices of a system with a fixed boundary.
 ///
 /// The numbers are those of the mesh when they were built; edits do not change them. They take one
 /// map by handle and one list of handles.

@@ -36,7 +36,7 @@ pub type SideMap<M, T> = <<M as OrientedWalk>::Side as Handle>::Map<T>;
 /// - **No cache.** As in [`MeshQuery`], each result is computed from the stored tables alone.
 /// - **Handles.** A side is valid until the next edit; an [`EditLog`](crate::EditLog) does not report
 ///   changes of sides. If a side is out of range, or its face was deleted, every method panics or
-///   gives an element that does not exist either.
+///   returns an element that does not exist.
 ///
 /// # Complexity
 ///

@@ -27,9 +27,10 @@ impl TwinPairs {
     /// Pairs the sides of `faces`; O(corners + vertices).
     ///
     /// Sides are put into buckets by their lower end (a counting sort); within a bucket, a scratch
-    /// row for each higher end finds the partner. Returns `None` if two sides run along one edge in
-    /// the same direction, as is always so if an edge has three faces, or if there are too many
-    /// corners or edges; [`Capabilities::check`](crate::Capabilities::check) returns the reason.
+    /// row for each higher end finds the partner. Returns `None` if two sides run along one edge
+    /// in the same direction (always the case if an edge has three faces), or if there are too
+    /// many corners or edges; [`Capabilities::check`](crate::Capabilities::check) returns the
+    /// reason.
     ///
     /// Scratch: 8 bytes per corner and 8 bytes per vertex; [`with_rows`](Self::with_rows) needs
     /// less.

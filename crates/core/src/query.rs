@@ -233,8 +233,8 @@ pub trait MeshQuery {
     /// - Each edge runs against its face. If the faces of a loop disagree in orientation, the loop
     ///   has the direction of the edge that is first: the one whose start, and then whose end, comes
     ///   first in [`vertices`](Self::vertices).
-    /// - A closed loop starts with this edge, and the loops are sorted by it. Structures that list
-    ///   the vertices in one order thus return the same loops.
+    /// - A closed loop starts with this edge, and the loops are sorted by it. So structures that
+    ///   list the vertices in the same order return the same loops.
     ///
     /// O(corners) expected, on every structure whose FV and FE are local; plus O(n log n) for the n
     /// corners at boundary vertices.

@@ -33,8 +33,8 @@ impl<T, P: Probe> Table<T, P> {
 
 /// Returns the rows that meet the condition `is_hit` in a block of up to 64, as bits.
 ///
-/// Few blocks have such a row. So the first test is whether there is one at all; it has no branch
-/// and compiles to vector instructions. Only then each row is tested for its bit.
+/// Few blocks have such a row. So the whole block is tested first; this test has no branch and
+/// compiles to vector instructions. The rows are tested one by one only if the block has a hit.
 #[inline]
 pub fn hits_in<T>(block: &[T], is_hit: impl Fn(&T) -> bool) -> u64 {
     if let Ok(block) = <&[T; BLOCK]>::try_from(block)

@@ -58,7 +58,7 @@
 //! Around a vertex, each step needs the row that the step before it read. A step is a load and the
 //! computation of `prev`: a multiplication for `c % 3`, a comparison and a selection. It takes
 //! about ten cycles if the tables are in the nearest cache. This chain of dependent steps is the
-//! price of not storing `next`. It limits VV, VE, VF and EE if the vertices are visited in order;
+//! cost of not storing `next`. It limits VV, VE, VF and EE if the vertices are visited in order;
 //! the number of bytes does not. Smoothing took 18 ns per vertex on 2,562 vertices and 27 ns on
 //! 40,962, and moved 76 bytes per vertex (icospheres, one core of a shared AMD EPYC). In random
 //! order, the limit is the latency of the cache or memory at each step: 58 ns per vertex on 82,000

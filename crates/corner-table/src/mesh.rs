@@ -81,8 +81,8 @@ impl EdgeCorner {
 ///   and `vertex_holes` contain exactly these rows.
 ///
 /// I1 to I7 are about elements that are not deleted. I8 makes the test for an edge handle simple: a
-/// corner names an edge if and only if its opposite has a higher row or is `None`. A corner of a
-/// deleted triangle thus names no edge, and the test need not read `face_holes`.
+/// corner names an edge if and only if its opposite has a higher row or is `None`. So a corner of
+/// a deleted triangle names no edge, and the test need not read `face_holes`.
 ///
 /// # Memory
 ///

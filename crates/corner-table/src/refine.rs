@@ -2,8 +2,8 @@
 //!
 //! The split in four uses the middles of the edges. The children of triangle `t` are 4t + i, which
 //! keeps corner i of `t`, and 4t + 3 in the middle. Corner j of each lies towards corner j of `t`.
-//! For two corners a and b of `t`, the child corner 3a + b is thus the one towards b in the child
-//! of a. 12t + 9 + i is the corner of the middle triangle on the edge that corner i faces.
+//! For two corners a and b of `t`, the child corner 3a + b is therefore the one towards b in the
+//! child of a. 12t + 9 + i is the corner of the middle triangle on the edge that corner i faces.
 //!
 //! ```text
 //!             b             vertex(3a + a)      vertex(a)
@@ -183,8 +183,8 @@ impl Refine for CornerTable {
 
 impl CornerTable {
     /// Returns an error if two triangles have the same edges. Two triangles cannot share exactly
-    /// two edges, because their third edges would have the same ends. It is thus sufficient to look
-    /// across two sides of each triangle.
+    /// two edges, because their third edges would have the same ends. It is therefore sufficient
+    /// to look across two sides of each triangle.
     fn check_double_edges(&self) -> Result<(), RefineError> {
         let across = |o: Slot<CornerId>| o.get().map(CornerId::triangle);
         let has_double_edge =

@@ -61,11 +61,11 @@ use sixfold_core::{
 ///
 /// Edits ([`MeshEdit`](sixfold_core::MeshEdit)) rewrite corners and repair fans. A fan that shrinks
 /// stays in place and leaves blanks behind it. A fan that grows uses a blank behind it; if there is
-/// none, it moves to the end of the pool, with blanks for as many faces again. A fan that grows
-/// face by face thus moves O(log length) times, and the pool has at most a few times the places
-/// that the input and the edits have filled. [`compact`](sixfold_core::MeshEdit::compact) removes
-/// the blanks. Every edit except the last two is local. `n` is the length of a fan, `d` the degree
-/// of a face at the edited element.
+/// none, it moves to the end of the pool, with blanks for as many faces again. So a fan that grows
+/// face by face moves O(log length) times, and the pool has at most a few times the places that
+/// the input and the edits have filled. [`compact`](sixfold_core::MeshEdit::compact) removes the
+/// blanks. Every edit except the last two is local. `n` is the length of a fan, `d` the degree of
+/// a face at the edited element.
 ///
 /// | edit | time | writes |
 /// |---|---|---|

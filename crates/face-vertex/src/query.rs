@@ -104,7 +104,7 @@ impl<P: Probe, E: Editing> MeshQuery for FaceVertexMesh<E, P> {
 
     #[inline]
     fn contains_vertex(&self, v: VertexId) -> bool {
-        v.index() < self.vertex_rows() && !self.vertex_holes.has(v.index())
+        self.vertex_holes.contains(v, self.vertex_rows())
     }
 
     #[inline]
@@ -115,7 +115,7 @@ impl<P: Probe, E: Editing> MeshQuery for FaceVertexMesh<E, P> {
 
     #[inline]
     fn contains_face(&self, f: FaceId) -> bool {
-        f.index() < self.face_rows() && !self.face_holes.has(f.index())
+        self.face_holes.contains(f, self.face_rows())
     }
 
     #[inline]

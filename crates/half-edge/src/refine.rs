@@ -167,7 +167,8 @@ impl HalfEdgeMesh {
     }
 }
 
-/// The numbers of the corners. On a closed mesh, each is the row of its half-edge.
+/// The numbers of the corners. On a closed mesh, the number of a corner is the row of its
+/// half-edge.
 #[derive(Clone, Copy)]
 struct Corners<'a, const CLOSED: bool>(&'a Ranks);
 

@@ -11,8 +11,8 @@ use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 /// Every method is O(1) and reads one or two half-edges, except `prev_side` and `ccw_side`: `prev`
 /// is not stored, and they take O(degree). `next_side` and `twin_side` are one load each.
 ///
-/// A half-edge on a boundary loop is not a side. No method yields one: at a boundary `twin_side` is
-/// `None`, whereas [`twin`](HalfEdgeMesh::twin) returns the half-edge on the loop.
+/// A half-edge on a boundary loop is not a side. No method yields one: at a boundary `twin_side`
+/// is `None`, but [`twin`](HalfEdgeMesh::twin) returns the half-edge on the loop.
 impl<P: Probe, E: Editing> OrientedWalk for HalfEdgeMesh<E, P> {
     type Side = HalfEdgeId;
 

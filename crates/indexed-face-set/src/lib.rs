@@ -10,15 +10,15 @@
 //!
 //! # What limits the speed of a scan
 //!
-//! A scan reads 4 bytes per corner, once and in order. It compares them with the vertex it
-//! searches, many at a time and without a branch. In cache, the comparisons are the limit (0.08 ns
-//! per corner on 82,000 triangles, 50 GB/s); in larger meshes it is the memory bandwidth (0.16 ns
-//! per corner on 1.3 million triangles, 0.6 ms per query). Hits are few, and only they are examined
-//! further. A scan of a polygon soup moves three times as many bytes and compares three times as
-//! many words.
+//! A scan reads 4 bytes per corner, once and in order. It compares them with the vertex that it
+//! searches for, many at a time and without a branch. In cache, the comparisons are the limit
+//! (0.08 ns per corner on 82,000 triangles, 50 GB/s); in larger meshes it is the memory bandwidth
+//! (0.16 ns per corner on 1.3 million triangles, 0.6 ms per query). Hits are few, and only they
+//! are examined further. A scan of a polygon soup moves three times as many bytes and compares
+//! three times as many words.
 //!
 //! `edges` is limited by the scattered writes of its counting sort: 3.4 ns per corner in cache, 13
-//! beyond.
+//! ns in larger meshes.
 //!
 //! # Editing
 //!

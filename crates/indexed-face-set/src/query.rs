@@ -95,7 +95,7 @@ impl<P: Probe, E: Editing> MeshQuery for IndexedFaceSet<E, P> {
 
     #[inline]
     fn contains_vertex(&self, v: VertexId) -> bool {
-        v.index() < self.vertex_rows() && !self.vertex_holes.has(v.index())
+        self.vertex_holes.contains(v, self.vertex_rows())
     }
 
     #[inline]
@@ -106,7 +106,7 @@ impl<P: Probe, E: Editing> MeshQuery for IndexedFaceSet<E, P> {
 
     #[inline]
     fn contains_face(&self, f: FaceId) -> bool {
-        f.index() < self.face_rows() && !self.faces.holes.has(f.index())
+        self.faces.holes.contains(f, self.face_rows())
     }
 
     #[inline]

@@ -111,8 +111,8 @@ fn side_neighbours(faces: &FaceList) -> Vec<Neighbour> {
     neighbours
 }
 
-/// Collects the component of `seed`, and decides for each of its faces whether it is reversed if
-/// `seed` is not.
+/// Collects the component of `seed`, and determines for each of its faces whether it is reversed
+/// if `seed` is not.
 fn orient_component(
     seed: FaceId,
     faces: &FaceList,

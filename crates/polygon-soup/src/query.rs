@@ -101,7 +101,7 @@ impl<P: Probe, E: Editing> MeshQuery for PolygonSoup<E, P> {
 
     #[inline]
     fn contains_face(&self, f: FaceId) -> bool {
-        f.index() < self.face_rows() && !self.faces.holes.has(f.index())
+        self.faces.holes.contains(f, self.face_rows())
     }
 
     fn vertex_rows(&self) -> usize {

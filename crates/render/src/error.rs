@@ -52,7 +52,7 @@ pub enum MeshFault {
     #[error("vertex {vertex} has a coordinate that is not finite: correct it")]
     NotFinite { vertex: VertexId },
     /// All faces are in one point.
-    #[error("all faces lie in one point: there is nothing to see")]
+    #[error("all faces lie in one point: there is nothing to draw")]
     NoExtent,
     /// There are too many visible faces for an SVG.
     #[error("{faces} faces are visible, an SVG can have {MAX_SVG_FACES}: write a PNG")]

@@ -10,9 +10,9 @@
 //!               └ normals: for the lighting    ┘                └─ visible strokes ┴─ SVG
 //! ```
 //!
-//! A depth buffer with several samples per pixel decides which lines and surfaces are hidden, after
-//! Catmull (1974). Lines are tested along their middle, so that the faces at a thick line do not
-//! hide half of it. The same input gives the same bytes.
+//! A depth buffer with several samples per pixel determines which lines and surfaces are hidden,
+//! after Catmull (1974). Lines are tested along their middle, so that the faces at a thick line do
+//! not hide half of it. The same input gives the same bytes.
 
 mod depth_order;
 mod edges;

@@ -110,7 +110,7 @@ impl Surfaces {
 
     fn union(&mut self, a: u32, b: u32) {
         let [a, b] = [self.find(a), self.find(b)];
-        // The lowest corner represents the set, in whichever order sets are joined.
+        // The lowest corner represents the set, for any order in which sets are joined.
         self.0[a.max(b) as usize] = a.min(b);
     }
 }

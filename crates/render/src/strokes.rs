@@ -81,7 +81,7 @@ impl Strokes {
             stroke.opacity *= opacity;
         }
         for &(v, _) in render_mesh.creases.corners() {
-            // It may be a corner of no face, and then have any coordinates.
+            // The vertex may be a corner of no face; its coordinates are then arbitrary.
             let position = panel.position(v);
             if position.is_finite() && visibility.is_corner_visible(position) {
                 strokes.corners.push(Stroke {

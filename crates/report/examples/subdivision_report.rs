@@ -38,9 +38,9 @@ const MAX_RUN_NS: f64 = 4e8;
 const CONCLUSIONS: &str = "
 ## What it shows
 
-Gathering queries EF and VV at every point. A soup and an indexed face set have to search for these, so their time per
-face grows with the size of the mesh. Scattering avoids the searches, because it queries only relations that both
-store. The face set, which has little to build, is then the fastest of all that rebuild from polygons. Among the
+The gather method queries EF and VV at every point. A soup and an indexed face set have to search for these, so their
+time per face grows with the size of the mesh. Scattering avoids the searches, because it queries only relations that
+both store. The face set, which has little to build, is then the fastest of all that rebuild from polygons. Among the
 structures that store adjacency, only those with expensive walks become faster by scattering. Native steps avoid the
 rebuilding, and with it most of the time. Refining into the tables of the previous run also avoids the first touch of
 new memory.

@@ -93,7 +93,7 @@ pub(crate) fn page(collection: &Collection, command: &str) -> ReportPage {
 }
 
 /// Warning about interrupted results.
-const INTERRUPTED: &str = "Interrupted: some results rest only on the finished part; `sixfold study --resume` continues the report.";
+const INTERRUPTED: &str = "Interrupted: some results are from the finished part only; `sixfold study --resume` continues the report.";
 
 fn is_interrupted(collection: &Collection) -> bool {
     let mut studies = collection.studies.iter();
@@ -122,7 +122,7 @@ fn labs(labs: &Labs, command: &str) -> Vec<Section> {
     let mut sections = Vec::new();
     for (i, orders) in orders.iter().enumerate() {
         sections.push(Section {
-            title: format!("What the order of {} costs", orders.mesh.name),
+            title: format!("Effect of the order of {}", orders.mesh.name),
             facts: facts(&orders.mesh),
             sentences: orders.sentences.clone(),
             figures: orders::from_orders(

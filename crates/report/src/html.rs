@@ -53,7 +53,7 @@ impl ReportPage {
                         }
                     }
                     @if !self.missing.is_empty() {
-                        h2 { "Still to be done" }
+                        h2 { "Meshes not studied yet" }
                         ul { @for mesh in &self.missing { li { code { (mesh) } } } }
                     }
                     @for figure in &self.figures { (figure_section(figure, "h2", None)) }

@@ -28,7 +28,7 @@ impl ReportPage {
             text.push('\n');
         }
         if !self.missing.is_empty() {
-            text.push_str("## Still to be done\n\n");
+            text.push_str("## Meshes not studied yet\n\n");
             write_list(&mut text, &self.missing);
         }
         for figure in &self.figures {

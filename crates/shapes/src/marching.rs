@@ -223,8 +223,8 @@ impl<S: Solid> Sweep<'_, S> {
 
     /// Adds two triangles along the diagonal from the vertex with the lowest number.
     ///
-    /// The numbers decide, not the lengths. So the faces depend only on which lattice points are
-    /// inside, and the valences vary as they do in meshes from scanners.
+    /// The choice depends on the numbers, not on the lengths. So the faces depend only on which
+    /// lattice points are inside, and the valences vary as they do in meshes from scanners.
     fn add_quad(&mut self, [a, b, c, d]: [u32; 4]) {
         if a.min(c) < b.min(d) {
             self.builder.add_face([a, b, c]);

@@ -157,7 +157,7 @@ impl Node {
             Self::Torus {
                 centre, ring, tube, ..
             } => {
-                // The bounds of a ball are sufficient, whatever the direction of the axis.
+                // The bounds of a ball are sufficient for any direction of the axis.
                 let thickness = tube + level;
                 (thickness >= 0.0)
                     .then(|| Bounds::from_centre(*centre, [ring + thickness; 3]))
@@ -214,7 +214,7 @@ fn blob_bounds(blobs: &[Blob], sum: f64) -> Result<Option<Bounds>, ShapeError> {
     if sum <= 0.0 {
         return Err(ShapeError::Unbounded);
     }
-    // Where the blobs together reach `sum`, at least one of them reaches this share.
+    // At a point where the blobs together reach `sum`, at least one of them reaches this share.
     let share = sum / blobs.len() as f64;
     let bounds = blobs.iter().map(|blob| {
         let ratio = blob.strength / share;

@@ -242,7 +242,7 @@ fn spheres() {
             valences[..if f == 1 { 1 } else { 2 }],
             "{name}"
         );
-        // Every triangle looks away from the centre.
+        // Every triangle faces away from the centre.
         for (face, corners) in mesh.faces().iter() {
             let [a, b, c] = [0, 1, 2].map(|i| mesh.position(corners[i]));
             assert!((b - a).cross(c - a).dot(a) > 0.0, "{face} of {name}");

@@ -57,7 +57,7 @@ in two columns: their difference is the noise, and smaller differences count as 
 after the current sample and keeps the finished results. A second Ctrl-C stops at once, with exit
 code 130.
 
-Memory: --heap kept keeps freed pages in the process, so that no sample pays for fresh pages;
+Memory: --heap kept keeps freed pages in the process, so that no sample needs fresh pages;
 `first time` shows the time on fresh pages. --heap system leaves freed pages to the allocator of the
 platform: the times of operations that allocate then depend on what ran before. With --caches cold
 each sample is one run, after the caches were filled with other data. `compare` and `merge` refuse

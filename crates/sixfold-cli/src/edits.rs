@@ -65,8 +65,8 @@ fn legend() -> String {
             .to_owned(),
         "–: the structure does not support the edit.".to_owned(),
         format!(
-            "{} hold only oriented manifolds, and refuse an edit with another result; the other \
-             structures do not.",
+            "{} hold only oriented manifolds, and refuse an edit with any other result; the other \
+             structures have no such limit.",
             manifold.join(", ")
         ),
     ];

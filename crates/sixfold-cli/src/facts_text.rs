@@ -126,7 +126,7 @@ pub(crate) fn verdicts_text(mesh: &MeshReport, backends: &[BackendReport]) -> St
     if backends.iter().any(|backend| !backend.holds) {
         let changed = match mesh.changes.is_empty() {
             true => "",
-            false => "; f counts the remaining faces",
+            false => ", f0 the first remaining face",
         };
         lines.push(format!(
             "{:<13}(numbers start at 0: v0 is the first vertex of the file{changed})",

@@ -2,6 +2,8 @@
 
 use std::process::ExitCode;
 
+use sixfold_study::Backend;
+
 use crate::arguments::Inspect;
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
@@ -18,7 +20,7 @@ pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
         &[("--json", arguments.json.as_ref())],
     )?;
     let study_mesh = load::study_mesh(&arguments.mesh)?;
-    let inspection = sixfold_study::inspect(&study_mesh);
+    let inspection = sixfold_study::inspect(&study_mesh, &Backend::structures());
     let json = Output::open_if(arguments.json.as_ref())?;
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
     text.print_line(&facts_text(&inspection.mesh));

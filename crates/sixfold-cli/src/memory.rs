@@ -271,14 +271,13 @@ fn operation_sentences(audit: &Audit) -> Vec<String> {
     }
     sentences.push(
         "Allocated bytes are all bytes that one run of the operation requests from the allocator, \
-         including scratch that it frees. A block that grows counts by its growth. Native steps \
-         start with new tables."
+         including scratch that it frees. If a block grows, only its growth is added. Native \
+         steps start with new tables."
             .to_owned(),
     );
     sentences.push(
-        "The result of build is the structure, of ff_bfs the depth of each face, of catmull_clark_* \
-         and loop_* the structure of the refined mesh, and of the other operations the mesh after \
-         the edits."
+        "Results: build: the structure; ff_bfs: the depth of each face; catmull_clark_* and \
+         loop_*: the structure of the refined mesh; other operations: the mesh after the edits."
             .to_owned(),
     );
     if operations().any(|operation| operation.scans) {

@@ -14,7 +14,7 @@ const MISMATCH: u8 = 1;
 /// Prints a note if the program was built without optimisation.
 pub(crate) fn warn_of_debug_build() {
     if cfg!(debug_assertions) {
-        print_stderr("note: the times of a debug build mean nothing: build with --release");
+        print_stderr("note: the times of a debug build are not meaningful: build with --release");
     }
 }
 
@@ -26,8 +26,8 @@ pub(crate) fn command_line() -> String {
     shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
 }
 
-/// Prints the last messages of a command and returns its exit code. Results that differ are
-/// reported before errors of writing (`written`), and those before an interruption.
+/// Prints the last messages of a command and returns its exit code. The order of the messages is:
+/// results that differ, errors of writing (`written`), an interruption.
 pub(crate) fn exit_code(
     written: Result<(), Failure>,
     mismatches: usize,

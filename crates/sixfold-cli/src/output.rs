@@ -178,7 +178,8 @@ impl Output {
         match done {
             // The reader of standard output closed it early: that is not an error.
             Err(cause) if cause.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-            // The mesh is at fault, not the place: errors of the system have an error number.
+            // The mesh is the cause, not the place: an error of the system would have an error
+            // number.
             Err(cause)
                 if cause.kind() == io::ErrorKind::InvalidInput
                     && cause.raw_os_error().is_none() =>

@@ -121,7 +121,7 @@ impl StepBar {
 pub(crate) struct Spinner(Option<ProgressBar>);
 
 impl Spinner {
-    /// Shows a line that says `what` is being done.
+    /// Shows a line that describes the work: `what`.
     pub(crate) fn start(what: String) -> Self {
         if !io::stderr().is_terminal() {
             return Self(None);

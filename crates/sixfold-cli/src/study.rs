@@ -114,13 +114,11 @@ pub(crate) fn write_files(
 /// results.
 fn refusals(study_mesh: &StudyMesh, settings: &Settings) -> Result<Report, Failure> {
     let selected = settings.chosen_backends().map_err(Failure::usage)?;
-    let inspection = sixfold_study::inspect(study_mesh);
-    let mut backends = inspection.backends;
-    backends.retain(|backend| selected.iter().any(|other| other.name() == backend.name));
+    let inspection = sixfold_study::inspect(study_mesh, &selected);
     Ok(Report {
         schema: SCHEMA,
         mesh: inspection.mesh,
-        backends,
+        backends: inspection.backends,
         results: Vec::new(),
         refusals: Vec::new(),
         control: None,

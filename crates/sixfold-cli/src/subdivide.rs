@@ -133,7 +133,7 @@ fn options(arguments: &Subdivide) -> Result<Subdivision, Failure> {
     }
     if arguments.limit.is_some() && arguments.boundary == Some(Boundary::None) {
         return Err(Failure::unsupported(
-            "--limit needs the faces that --boundary none leaves out: leave one of the two options out",
+            "--limit needs the faces that --boundary none leaves out: remove one of the two options",
         ));
     }
     let defaults = Subdivision::new(scheme);

@@ -227,7 +227,7 @@ pub(crate) fn legend(why: &Why) -> String {
             "jumps",
             &format!(
                 "lines per element, in a sweep over all elements in order, that a prefetcher cannot \
-                 predict: neither they nor the {reach} lines on either side are among the last {} fetched",
+                 predict: none of the last {} fetched lines is within {reach} lines of them",
                 grouped(cache_lines as usize)
             ),
         ),
@@ -253,15 +253,15 @@ pub(crate) fn legend(why: &Why) -> String {
         ),
         (
             "bound by",
-            "bandwidth, if floor is at least half of the measured time; else latency, if waits is; else \
-             work: reading nearby data, comparing, branching",
+            "bandwidth, if floor is at least half of the measured time; else latency, if waits is at least \
+             half of it; else work: reading nearby data, comparing, branching",
         ),
     ];
     let counted = [("by table", "reads of a query in each table")];
     let listing = match why.memory.is_some() {
         true => {
             "Jumps, moved and measured include the iteration over the elements. If a structure has no \
-             table of edges, its preparation to list them is only in measured."
+             table of edges, the time to prepare the list of edges is included in measured only."
         }
         false => "Jumps and moved include the iteration over the elements.",
     };

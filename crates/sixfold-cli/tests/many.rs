@@ -339,7 +339,7 @@ fn an_interrupted_study_can_be_resumed() {
         "out",
     ];
     let child = sixfold.start(&arguments, 1);
-    // Once the first study is saved, the second is within its two seconds.
+    // When the first study is saved, the second one is running: it takes two seconds.
     let start = Instant::now();
     let kept = || {
         let studies = fs::read_dir(sixfold.folder().join("out/studies"));

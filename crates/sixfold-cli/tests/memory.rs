@@ -85,7 +85,7 @@ const BUILD_LIMITS: [(&str, f64); 6] = [
 const SUBDIVISION_LIMITS: [(&str, f64); 3] =
     [("_gather", 3.0), ("_scatter", 3.0), ("_native", 1.2)];
 
-/// Asserts that the figures do not exceed the level of their last reduction.
+/// Asserts that the figures do not exceed the values to which they were last reduced.
 #[test]
 fn operations_on_the_built_in_mesh_allocate_little_besides_their_result() {
     let run = run_ok(&Sixfold::new(), &["memory", "--json", "-"]);
@@ -136,7 +136,7 @@ fn a_corner_table_holds_a_triangulated_quad() {
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
     );
     let asked = ["memory", "quad.obj", "--backends", "corner-table"];
-    let run = assert_refused(&sixfold, &asked, 3, "none of the backends asked for");
+    let run = assert_refused(&sixfold, &asked, 3, "none of the selected backends can");
     assert!(run.stderr.contains("4 corners"), "{run:?}");
     let run = run_ok(&sixfold, &[&asked[..], &["--triangulate"]].concat());
     assert!(

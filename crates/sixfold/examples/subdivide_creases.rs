@@ -36,7 +36,7 @@ pub fn subdivide<M: Representation>(
         let mesh = M::from_polygons(&step.polygons)?;
         let creases = match level {
             0 => scheme.control_creases(&mesh, &step.polygons, &step.creases)?,
-            // A structure whose vertices are coordinates numbers them in an order of its own.
+            // A structure whose vertices are coordinates has its own order of vertices.
             _ => renumbered(&mesh, &step.polygons, &step.creases),
         };
         step = scheme.gather(&mesh, &creases, level)?;

@@ -66,7 +66,7 @@
 //!
 //! # Flip an edge
 //!
-//! Edits need an editable mesh. A refused edit changes nothing, and its error says why:
+//! Edits need an editable mesh. A refused edit changes nothing, and its error names the reason:
 //!
 //! ```
 //! use sixfold::prelude::*;
@@ -103,11 +103,12 @@
 //! | [`FaceVertexMesh`] | any polygons | 68 | collect the faces at vertices: normals, matrix assembly |
 //! | [`WingedEdgeMesh`] | oriented manifolds | 120 | work on edges themselves |
 //! | [`IndexedFaceSet`] | any polygons | 36 | store, convert, visit all faces; searches for neighbours |
-//! | [`PolygonSoup`] | any polygons, vertices by coordinates | 72 | pass faces on, as STL does; searches for neighbours |
+//! | [`PolygonSoup`] | any polygons, vertices by coordinates | 72 | transfer faces, as STL does; searches for neighbours |
 //!
-//! The bytes are those of large closed triangle meshes. If you do not know, use [`HalfEdgeMesh`]
-//! for manifolds and [`FaceVertexMesh`] for others. The command `sixfold pick` measures a workload
-//! on your mesh. [`structures!`] lists all structures, and [`visit`] selects one at run time.
+//! The bytes are those of large closed triangle meshes. If you do not know which one to choose,
+//! use [`HalfEdgeMesh`] for manifolds and [`FaceVertexMesh`] for others. The command
+//! `sixfold pick` measures a workload on your mesh. [`structures!`] lists all structures, and
+//! [`visit`] selects one at run time.
 //!
 //! # Require local queries
 //!
@@ -140,38 +141,28 @@
 //! # Walk in order
 //!
 //! Most queries yield sets. [`OrientedWalk`] steps from side to side in order, on four of the
-//! structures: along a face, around a vertex, or along the boundary as here.
+//! structures: along a face, around a vertex, or straight across quads as here.
 //!
 //! ```
 //! use sixfold::prelude::*;
 //!
-//! /// Returns the boundary loops, each as its vertices in the direction of the faces.
-//! fn boundary_loops<M: OrientedWalk>(mesh: &M) -> Vec<Vec<M::Vertex>> {
-//!     let mut visited = mesh.side_map(false);
-//!     let mut loops = Vec::new();
-//!     for start in mesh.sides().filter(|&s| mesh.twin_side(s).is_none()) {
-//!         let mut vertices = Vec::new();
-//!         let mut at = start;
-//!         while !visited[at] {
-//!             visited[at] = true;
-//!             vertices.push(mesh.side_origin(at));
-//!             // The next side along the face, then clockwise up to the boundary.
-//!             at = mesh.next_side(at);
-//!             while let Some(turned) = mesh.cw_side(at) {
-//!                 at = turned;
-//!             }
-//!         }
-//!         if !vertices.is_empty() {
-//!             loops.push(vertices);
-//!         }
+//! /// Returns the strip of quads that begins at the face of `start` and leaves each quad by the side
+//! /// opposite the one by which it entered, up to the boundary or back to `start`.
+//! fn quad_strip<M: OrientedWalk>(mesh: &M, start: M::Side) -> Vec<M::Face> {
+//!     let mut faces = Vec::new();
+//!     let mut at = Some(start);
+//!     while let Some(side) = at {
+//!         faces.push(mesh.side_face(side));
+//!         let opposite = mesh.next_side(mesh.next_side(side));
+//!         at = mesh.twin_side(opposite).filter(|&next| next != start);
 //!     }
-//!     loops
+//!     faces
 //! }
 //!
-//! let polygons = sixfold::shapes::grid_with_hole(4, 4)?;
-//! assert_eq!(boundary_loops(&HalfEdgeMesh::from_polygons(&polygons)?).len(), 2);
-//! assert_eq!(boundary_loops(&FaceVertexMesh::from_polygons(&polygons)?).len(), 2);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! let ring = HalfEdgeMesh::from_polygons(&sixfold::shapes::cube())?;
+//! let strip = quad_strip(&ring, ring.sides().next().expect("a cube has sides"));
+//! assert_eq!(strip.len(), 4);
+//! # Ok::<(), BuildError>(())
 //! ```
 //!
 //! # Features
@@ -181,7 +172,8 @@
 //! - `mint`: [`PolygonMesh::new`] takes points and vectors of the crate `mint`, and a [`Point`]
 //!   converts to them.
 
-// A list, and not `*`: `sixfold_core` also has what only authors of structures and measurements need.
+// The exports are a list instead of `*`, because `sixfold_core` also has items that only authors
+// of structures and measurements need.
 
 // Traits: queries, walks, edits, refinement; and what a structure can hold and costs.
 #[doc(inline)]

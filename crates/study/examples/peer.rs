@@ -187,8 +187,8 @@ struct Row {
 }
 
 impl Row {
-    /// Runs the operation once to warm up, then as often as the arguments say and the budget
-    /// allows.
+    /// Runs the operation once to warm up, then the number of times given in the arguments, or
+    /// until the budget is spent.
     fn measure(
         arguments: &Arguments,
         operation: &str,

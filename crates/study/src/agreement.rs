@@ -42,7 +42,8 @@ pub(crate) fn compare_checksums(
                 && other.outcome.is_some()
                 && is_reference(subjects, other.subject)
         });
-        // Full runs come first: a sample costs these backends little.
+        // Compare with a full run if there is one: its backend can also run the sample in little
+        // time.
         let mut others: Vec<&Entry> = others.collect();
         others.sort_by_key(|other| other.job.sample.is_some());
         let Some(other) = others.first() else {

@@ -25,7 +25,7 @@ pub struct Environment {
     pub commit: Option<String>,
     /// Version of the compiler.
     pub rustc: String,
-    /// Build profile: `release`.
+    /// Build profile: `release`, Rust's default; `dist`, with link-time optimisation; `debug`.
     pub profile: String,
     /// Optimisation level: `3`.
     pub opt_level: String,
@@ -142,8 +142,8 @@ impl Environment {
         phrases
     }
 
-    /// Returns the names of heap policy and cache state. Figures with different ones must not be
-    /// mixed.
+    /// Returns the names of the heap policy and of the cache state. Figures with different names
+    /// must not be mixed.
     pub fn memory_settings(&self) -> [&'static str; 2] {
         let heap = self
             .heap

@@ -39,13 +39,13 @@ impl StudyMesh {
     }
 }
 
-/// Checks for each backend whether it can hold the mesh, without building it; O(corners) expected
-/// per backend.
-pub fn inspect(study_mesh: &StudyMesh) -> Inspection {
+/// Checks for each of `backends` whether it can hold the mesh, without building it; O(corners)
+/// expected per backend.
+pub fn inspect(study_mesh: &StudyMesh, backends: &[Backend]) -> Inspection {
     let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
-    let backends = Backend::structures().into_iter().map(|backend| {
+    let backends = backends.iter().map(|backend| {
         let verdict = backend.info.check(&study_mesh.polygons);
-        unbuilt(&backend, &counts, verdict)
+        unbuilt(backend, &counts, verdict)
     });
     Inspection {
         schema: SCHEMA,

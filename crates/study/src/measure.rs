@@ -38,10 +38,10 @@ const REBUILDING_SHARE: f64 = 0.04;
 const LARGEST_GAP: usize = 64 << 10;
 /// Largest number of runs in one sample.
 pub(crate) const MAX_RUNS: f64 = 1e7;
-/// Runs longer than this fill the caches by themselves.
+/// Runs longer than this fill the caches without untimed runs.
 pub(crate) const LONG_RUN_NS: f64 = 10_000_000.0;
-/// The most untimed runs, and the most time for them in nanoseconds, that a structure larger than
-/// the second-level cache gets beyond those of a small one.
+/// Limits for the additional untimed runs of a structure larger than the second-level cache: their
+/// number, and their time in nanoseconds.
 const LARGE_WARM_UP_RUNS: u32 = 4;
 const LARGE_WARM_UP_NS: f64 = 20_000_000.0;
 

@@ -1,7 +1,7 @@
 //! Picks the fastest backend for a mesh and a workload, with intervals and reasons.
 //!
 //! Every backend that qualifies runs the mix of the workload, in its access order, in interleaved
-//! rounds as in a study. After the rounds each part of the mix is timed by itself, to explain the
+//! rounds as in a study. After the rounds each part of the mix is timed alone, to explain the
 //! result. If the mix does not change connectivity, tables of only the relations that it queries
 //! take part as one more backend.
 
@@ -9,6 +9,7 @@ mod backend;
 mod break_even;
 mod measurement;
 mod needs;
+mod plan;
 mod pooled;
 mod reasons;
 mod report;

@@ -7,9 +7,9 @@ use sixfold_workload::{ElementSample, Job, Run, exceeds_second_level};
 
 /// The number of rounds that the plan aims at.
 const ROUNDS: u32 = 20;
-/// The shortest sample. In shorter ones the resolution of the clock shows.
+/// The shortest sample. In a shorter sample the resolution of the clock would matter.
 pub(crate) const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
-/// The longest sample of several runs. Time is better spent on more samples.
+/// The longest sample of several runs. More samples are better than longer ones.
 const LONGEST_SAMPLE_NS: f64 = 2_000_000.0;
 /// An entry whose sample costs up to this many slots takes part in every third round. A slot is the
 /// time of one entry in one round, if all entries get the same.
@@ -19,10 +19,10 @@ const MEDIUM_COST_EVERY: u32 = 3;
 const HIGH_COST_EVERY: u32 = 6;
 /// The longest run in rounds, as a part of the time left, for an operation that was named.
 const LONGEST_IN_ROUNDS: f64 = 0.1;
-/// The part of the time left that is for backends that scan, if others do not. They are hundreds of
-/// times slower, which wide intervals show as well.
+/// The part of the time left that is for backends that scan, if others do not. They are hundreds
+/// of times slower, so wide intervals are enough to rank them.
 const SCANS_PART: f64 = 0.25;
-/// The smallest number of elements in a sample, whatever the budget is.
+/// The smallest number of elements in a sample, for any budget.
 pub(crate) const MIN_ELEMENTS: usize = 16;
 /// The longest single run outside the rounds, as a part of the time left, for an operation that
 /// cannot be sampled.
@@ -33,9 +33,9 @@ const LONGEST_UNNAMED: f64 = 0.02;
 const FIRST_PATCH: usize = 1024;
 
 impl Measurement<'_, '_> {
-    /// Runs everything once and plans samples that fit the budget: first what does not scan, then,
-    /// in the time left, what scans, or may do so on a skewed mesh. At the end, if there is time,
-    /// the operations that were only estimated are run once.
+    /// Runs everything once and plans samples that fit the budget: first for the operations that
+    /// do not scan; then, in the time left, for those that scan, or may scan on a skewed mesh. At
+    /// the end, if there is time, the operations that were only estimated are run once.
     pub(crate) fn warm_up(&mut self, entries: &mut [Entry], deadline: f64) {
         let scans: Vec<[bool; 3]> = entries.iter().map(|entry| self.scans(entry)).collect();
         let count = entries.len() as f64;
@@ -72,8 +72,9 @@ impl Measurement<'_, '_> {
         self.run_estimated(entries, deadline);
     }
 
-    /// Runs once, the shortest first, what was only estimated and fits into the time left. The
-    /// limit is lower for an operation that makes a mesh and was not named in the settings.
+    /// Runs each operation that was only estimated and fits into the time left, once, the shortest
+    /// first. The limit is lower for an operation that makes a mesh and was not named in the
+    /// settings.
     fn run_estimated(&mut self, entries: &mut [Entry], deadline: f64) {
         let budget = self.budget.as_nanos() as f64;
         let mut estimated: Vec<(f64, &mut Entry)> = entries
@@ -199,7 +200,7 @@ impl Measurement<'_, '_> {
             entry.estimate = Some(whole);
             return;
         }
-        // `cost` includes the kinds that are not sampled, so this size is rather too small.
+        // `cost` includes the kinds that are not sampled, so this size tends to be too small.
         let each = cost / size.min(all).max(1) as f64;
         let size = ((slot_ns / each) as usize).clamp(MIN_ELEMENTS, all.max(MIN_ELEMENTS));
         entry.job.sample = Some(ElementSample { scanned, size });
@@ -305,7 +306,7 @@ impl Measurement<'_, '_> {
 
     /// Runs the operation on larger and larger patches, and returns its time scaled to the whole
     /// mesh; `None` if the next patch would be the whole mesh. Patches fit the cache, so the
-    /// estimate is rather too low.
+    /// estimate tends to be too low.
     fn time_by_patches(&mut self, entry: &mut Entry, slot_ns: f64) -> Option<Time> {
         let all = self.population[ElementKind::Face.index()];
         let mut size = FIRST_PATCH;

@@ -45,7 +45,8 @@ pub struct Report {
     pub results: Vec<ResultRow>,
     /// The operations that a backend cannot do, in the same order.
     pub refusals: Vec<Refusal>,
-    /// The noise, as the difference of a backend from itself; `None` if nothing was measured twice.
+    /// The noise: the difference between two columns of one backend; `None` if nothing was
+    /// measured twice.
     pub control: Option<Control>,
     /// The main results, as sentences.
     #[serde(rename = "words")]

@@ -41,7 +41,7 @@ const GAP_STEP: usize = 4160;
 /// a third.
 const SHORTEST_LARGE_SAMPLE_NS: f64 = 1_000_000.0;
 
-/// The budget of which the detector may spend a part on waiting, in nanoseconds.
+/// The budget, in nanoseconds. The detector may use a part of it for waiting.
 const BUDGET_NS: f64 = 10e9;
 
 /// The result of one run.
@@ -110,7 +110,7 @@ impl<'a> BackendRunner<'a> {
         detector.take_sample(clock, sample, verdict).value
     }
 
-    /// Builds the structure again, on pages that the kernel chooses anew.
+    /// Builds the structure again, on new pages from the kernel.
     fn rebuild(&mut self) {
         if self.kept {
             pages::release_pages();

@@ -91,7 +91,7 @@ fn speed(backends: &[BackendReport], results: &[ResultRow]) -> Option<String> {
     Some(format!("Of {count} {operations}, {}.", parts.join(", ")))
 }
 
-/// Describes by how much a structure differs from itself.
+/// Describes the difference between the two columns of the backend that is measured twice.
 fn noise(control: &Control) -> Option<String> {
     let difference = |row: &&ControlRow| row.difference();
     let worst =
@@ -203,13 +203,19 @@ pub(crate) fn row(
 mod tests {
     use sixfold::shapes;
 
+    use sixfold_workload::Backend;
+
     use super::*;
     use crate::inspect::{StudyMesh, inspect};
 
     #[test]
     fn the_fastest_is_named_unless_tied() {
         let mesh = shapes::tetrahedron();
-        let backends = inspect(&StudyMesh::new("test", mesh.clone())).backends;
+        let backends = inspect(
+            &StudyMesh::new("test", mesh.clone()),
+            &Backend::structures(),
+        )
+        .backends;
         let (a, b) = (&backends[0].name, &backends[1].name);
         let mut results = vec![
             row(a, Operation::Build, 1.0, Standing::Best),
@@ -236,7 +242,11 @@ mod tests {
     fn methods_are_compared_if_they_differ_significantly() {
         use sixfold::subdivision::Method::{Gather, Native, Scatter};
         let mesh = shapes::tetrahedron();
-        let backends = inspect(&StudyMesh::new("test", mesh.clone())).backends;
+        let backends = inspect(
+            &StudyMesh::new("test", mesh.clone()),
+            &Backend::structures(),
+        )
+        .backends;
         let timed = |backend: &str, method, ratio, spread: f64| ResultRow {
             ci_low_ns: Some(100.0 * ratio / spread),
             ci_high_ns: Some(100.0 * ratio * spread),

@@ -215,7 +215,7 @@ mod tests {
             let [low, high] = Median::from_samples(samples)
                 .and_then(|m| m.interval)
                 .expect("many");
-            // If a rank is close to the quantile, chance decides between it and its neighbour.
+            // If a rank is close to the quantile, the random draws may give its neighbour instead.
             let out = tail_probability(n);
             let (below, above) = (at_most(low as usize - 1), at_most(low as usize));
             assert!(

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use sixfold::{Distribution, Facts, PolygonMesh, QueryCost, Relation, structure_infos};
+use sixfold::{Distribution, Facts, PolygonMesh, QueryCost, Relation};
 use sixfold_core::Counts;
 
 use crate::agreement::compare_checksums;
@@ -50,8 +50,8 @@ pub struct Settings {
     /// The operations; empty for all. A subdivision that takes a large part of the budget is run
     /// only if it is named here; otherwise its time is estimated.
     pub operations: Vec<Operation>,
-    /// Time limit for measuring. Each operation is run at least once, or on a small sample if the
-    /// whole may be long, even if that takes longer.
+    /// Time limit for measuring. Each operation is run at least once, or on a small sample if a
+    /// whole run may take long, even if this exceeds the limit.
     pub budget: Duration,
     /// Seed of the order in which elements are drawn for samples, and of the order of measurement.
     /// The size of samples depends on the clock.
@@ -85,8 +85,11 @@ impl Default for Settings {
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum StudyError {
     /// No backend has this name.
-    #[error("{}", unknown("backend", .name, &all_names()))]
-    UnknownBackend { name: String },
+    #[error("{}", unknown("backend", .name, .known))]
+    UnknownBackend {
+        name: String,
+        known: Vec<&'static str>,
+    },
     /// Two structures have the same name.
     #[error("two backends are called `{name}`: give each a name of its own")]
     RepeatedBackend { name: String },
@@ -100,13 +103,8 @@ pub enum StudyError {
     #[error("the mesh cannot be written for other programs to read: {cause}")]
     NoMeshFile { cause: String },
     /// None of the chosen backends can hold the mesh.
-    #[error("none of the backends asked for can hold the mesh ({}): {}", .refusals.len(), reasons(.refusals))]
+    #[error("none of the selected backends can hold the mesh ({}): {}", .refusals.len(), reasons(.refusals))]
     NoneHolds { refusals: Vec<(String, String)> },
-}
-
-fn all_names() -> Vec<&'static str> {
-    let infos = structure_infos().into_iter();
-    infos.map(|info| info.name).collect()
 }
 
 fn reasons(refusals: &[(String, String)]) -> String {
@@ -135,7 +133,10 @@ impl Settings {
         }
         let unknown = |name: &&String| all.iter().all(|backend| backend.name() != **name);
         if let Some(name) = self.backends.iter().find(unknown) {
-            return Err(StudyError::UnknownBackend { name: name.clone() });
+            return Err(StudyError::UnknownBackend {
+                name: name.clone(),
+                known: all.iter().map(Backend::name).collect(),
+            });
         }
         let requested = |backend: &Backend| {
             self.backends.is_empty() || self.backends.iter().any(|name| name == backend.name())

@@ -72,7 +72,7 @@ fn pages_not_kept(environment: &Environment) -> Option<String> {
             "Measured on the system's heap: {reason}. Times of operations that allocate include page faults and depend on what ran before: compare them only with results of --heap system."
         )),
         None if !heap.counts_faults => Some(
-            "This platform does not count page faults, so samples with page faults are not recognised. For operations that allocate, check the control.".into(),
+            "This platform does not count page faults, so samples with page faults are not recognised. For operations that allocate, check whether the two columns of the control differ.".into(),
         ),
         None => None,
     }

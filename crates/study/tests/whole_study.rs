@@ -33,7 +33,7 @@ fn scans_are_sampled_and_long_operations_are_estimated() {
         let estimated = row.estimated_ns.is_some();
         match row.operation {
             Operation::FfBfs if estimated => assert_eq!(row.agreement, Agreement::Unchecked),
-            // In this short time, an operation may be run on a single structure.
+            // In this short time, an operation may be run on only one structure.
             operation if operation.creates_mesh() => {
                 assert!(row.agreement != Agreement::Mismatch, "{context}: {row:?}");
             }

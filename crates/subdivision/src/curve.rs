@@ -152,7 +152,7 @@ pub(crate) fn min_points(ends: Ends) -> usize {
     }
 }
 
-/// Returns how many points a step makes fewer than twice the number before.
+/// Returns twice the number of points before a step, minus the number after it.
 fn cubic_loss(ends: Ends) -> usize {
     match ends {
         Ends::Closed => 0,

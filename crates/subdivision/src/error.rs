@@ -64,7 +64,9 @@ pub enum SubdivisionError {
 #[expect(missing_docs, reason = "the message explains each field")]
 pub enum CurveError {
     /// Too few points in one direction.
-    #[error("{given} points given, these ends need at least {least}: add points, or keep the ends")]
+    #[error(
+        "{given} points are too few, ends of this kind need at least {least}: add points, or keep the ends"
+    )]
     TooFewPoints { given: usize, least: usize },
     /// More points than a 32-bit handle can number.
     #[error(

@@ -50,9 +50,9 @@ pub enum LimitNormal {
     /// A crease passes through the vertex: one normal on each side. The first is that of the faces
     /// that follow counter-clockwise after the end of the crease with the lower number.
     TwoSides([Point; 2]),
-    /// No mask gives a normal. This is so at corners with several faces, next to a face that is not
-    /// a quad (Catmull–Clark), at inner vertices of valence 2, if the faces are not one oriented
-    /// fan, and if the neighbourhood has no area.
+    /// No mask gives a normal: at corners with several faces, next to a face that is not a quad
+    /// (Catmull–Clark), at inner vertices of valence 2, if the faces are not one oriented fan, and
+    /// if the neighbourhood has no area.
     Undefined,
 }
 

@@ -45,19 +45,21 @@ pub(crate) fn step<M: Refine, K: Mask>(
     let chunks = mesh.edge_chunks(numbers);
     let sharp = map_chunks(edge_points, &chunks, |chunk, range, points| {
         let mut by_topology = Vec::new();
-        let mut at = 0;
-        mesh.edges_of_chunk(numbers, chunk).for_each(|e| {
-            let (point, faces) = edge_point(mesh, mask, e, value);
-            points[at] = point;
+        let edges = mesh.edges_of_chunk(numbers, chunk);
+        // `fold` passes the place by value, so that it stays in registers.
+        edges.fold(range.zip(points), |mut places, e| {
+            let (number, point) = places.next().expect("a row for each edge");
+            let faces;
+            (*point, faces) = edge_point(mesh, mask, e, value);
             if K::APPROXIMATES && faces != 2 {
                 by_topology.push(SharpEdge {
-                    edge: range.start + at,
+                    edge: number,
                     ends: mesh.edge_vertices(e).map(|v| v.index() as u32),
                     sharpness: f32::INFINITY,
                     by_topology: true,
                 });
             }
-            at += 1;
+            places
         });
         by_topology
     });

@@ -107,17 +107,17 @@ impl<P: Probe, E: Editing> MeshQuery for WingedEdgeMesh<E, P> {
 
     #[inline]
     fn contains_vertex(&self, v: VertexId) -> bool {
-        v.index() < self.vertex_rows() && !self.vertex_holes.has(v.index())
+        self.vertex_holes.contains(v, self.vertex_rows())
     }
 
     #[inline]
     fn contains_edge(&self, e: EdgeId) -> bool {
-        e.index() < self.edge_rows() && !self.edge_holes.has(e.index())
+        self.edge_holes.contains(e, self.edge_rows())
     }
 
     #[inline]
     fn contains_face(&self, f: FaceId) -> bool {
-        f.index() < self.face_rows() && !self.face_holes.has(f.index())
+        self.face_holes.contains(f, self.face_rows())
     }
 
     fn vertex_rows(&self) -> usize {

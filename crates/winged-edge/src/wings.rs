@@ -70,7 +70,7 @@ impl Wings {
         [self.on(Side::LEFT), self.on(Side::RIGHT)]
     }
 
-    /// Links a blank side: one instruction; overwriting any value takes four.
+    /// Links a blank side. This takes one instruction; overwriting any other value takes four.
     #[inline(always)]
     pub(crate) fn link(&mut self, side: Side, wing: EdgeId) {
         debug_assert_eq!(self.on(side).row(), 0, "the side is already linked");

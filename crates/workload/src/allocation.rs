@@ -15,8 +15,8 @@ use crate::timed_structure::Job;
 /// The counter of an allocator that adds up all requests. The program that installs such an
 /// allocator implements it.
 pub trait AllocationCounter: Sync {
-    /// Returns the bytes requested since the program started. A block that grows counts by its
-    /// growth, and a freed block stays counted.
+    /// Returns the bytes requested since the program started. If a block grows, only its growth is
+    /// added; a freed block stays counted.
     fn allocated(&self) -> usize;
 }
 

@@ -2,7 +2,7 @@
 //! explains many measured times.
 //!
 //! Linux describes the caches in small files under `/sys`. On other platforms the list is empty,
-//! and reports say so instead of guessing.
+//! and reports state that the caches are unknown.
 
 use std::fs;
 use std::path::Path;

@@ -3,7 +3,7 @@
 //! An allocator returns large freed blocks to the kernel, or keeps them, depending on what ran
 //! before. When a returned page is used again, it costs a page fault and is cleared. This can take
 //! longer than the measured operation, so the policy is a part of the experiment. [`Policy::Kept`]
-//! keeps freed pages in the process, so that no sample pays for page faults after a warm-up.
+//! keeps freed pages in the process, so that no sample includes page faults after a warm-up.
 //! [`release_pages`] returns them on purpose, to measure the cost of a first run.
 //!
 //! `Kept` is implemented for the GNU C library with `mallopt`: no block is mapped separately, the
@@ -32,7 +32,7 @@ pub enum Policy {
     /// Freed pages stay in the process, and later allocations reuse them without page faults.
     #[default]
     Kept,
-    /// The allocator of the platform decides.
+    /// The allocator of the platform keeps or returns freed pages, depending on its own rules.
     System,
 }
 
@@ -166,8 +166,8 @@ const MAX_BLOCK_BYTES: usize = 1 << 20;
 
 /// Touches `bytes` in one block and the pages of all freed blocks, so that later allocations find
 /// their pages present. Pages that [`release_pages`] returned are taken from the kernel again.
-/// Useful only if pages are kept. O(`bytes` + bytes of freed blocks), plus one walk over the list of freed
-/// blocks for each MiB of them.
+/// Useful only if pages are kept. O(`bytes` + bytes of freed blocks), plus one walk over the list of
+/// freed blocks for each MiB of them.
 pub fn reserve(bytes: usize) {
     touch_free_pages(bytes, |_| {});
 }
@@ -221,8 +221,8 @@ fn untouched_block(bytes: usize) -> Option<Vec<u8>> {
     Some(block)
 }
 
-/// Returns the pages of all freed blocks to the kernel, so that the next allocations pay for new
-/// ones. Does nothing if the allocator does not support it.
+/// Returns the pages of all freed blocks to the kernel, so that the next allocations get new ones.
+/// Does nothing if the allocator does not support it.
 pub fn release_pages() {
     platform::release_pages();
 }
@@ -438,6 +438,20 @@ mod tests {
         }
         let error = "keep".parse::<Policy>().unwrap_err().to_string();
         assert!(error.contains("`keep`") && error.contains("`kept`"));
+    }
+
+    #[test]
+    fn every_page_of_a_block_is_touched_once_in_the_arranged_order() {
+        let mut touched = 0;
+        touch_free_pages(64 * MIN_PAGE_BYTES, |pages| {
+            touched = pages.len();
+            let mut starts: Vec<_> = pages.iter().map(|page| page.as_ptr()).collect();
+            starts.sort_unstable();
+            starts.dedup();
+            assert_eq!(starts.len(), touched, "no page twice");
+            pages.reverse();
+        });
+        assert!(touched >= 64, "{touched}");
     }
 
     #[test]

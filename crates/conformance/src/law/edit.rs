@@ -10,8 +10,8 @@ use sixfold_core::{
 use super::scripts::on_random_scripts;
 use crate::edit::{Action, ModelTest, Step};
 
-/// At least one step of each edit in this number must be accepted, because scripts of refused steps
-/// do not test much.
+/// At least one in this number of steps of each edit must be accepted, because scripts of refused
+/// steps do not test much.
 const MAX_STEPS_PER_ACCEPTED: usize = 12;
 
 /// Random scripts: after every step, mesh and model are equal, handles and records agree, and the

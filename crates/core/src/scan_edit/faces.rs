@@ -145,8 +145,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         }
         self.check_capacity(corners.len() - 1, 3 * corners.len())?;
         log.created_vertex(m);
-        // The corners of `f` stay in place until it is rewritten at the end, whatever is pushed
-        // before.
+        // The corners of `f` stay in place until it is rewritten at the end; pushing other faces
+        // before does not move them.
         let start = corners.start;
         let [first, second] =
             [start, start + 1].map(|corner| V::from_corner(*self.corners.read(corner)));

@@ -84,8 +84,8 @@ impl<P: Probe> CornerTable<Editable, P> {
         let beyond_last = *self.vertex.read(last.next().index());
         let (joins_last, joins_first) =
             (open && beyond_last == u, open && at_w == Some(first.next()));
-        // If the triangle does not fit, a boundary edge is run in this direction already, or an
-        // edge is full.
+        // If the triangle does not fit, a face already runs along an edge in this direction, or
+        // an edge has two faces.
         if let Some(at_u) = at_u {
             return Err(if open && at_u == first.next() {
                 self.repeated_side_error(v, u, at_u)

@@ -177,7 +177,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
     }
 
     /// Returns the corners of `f`, which exists, or an error if it is not a triangle.
-    #[inline]
+    // Always inlined: a call would return its large error type in memory.
+    #[inline(always)]
     pub(super) fn triangle(&self, f: FaceId) -> Result<[VertexId; 3], Refused> {
         let face = self.known_face(f);
         match *face {

@@ -36,7 +36,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use sixfold_core::{FaceId, MeshQuery, Slot};
 
-use super::{Corners, fill, for_each_edge_chunk, half};
+use super::{BLANK, Corners, fill, for_each_edge_chunk, half};
 use crate::HalfEdgeMesh;
 use crate::mesh::{Half, HalfEdgeId};
 
@@ -140,7 +140,8 @@ fn split<const CLOSED: bool>(
 ) {
     let edges = mesh.half_rows().as_chunks::<2>().0;
     for_each_edge_chunk(edges.len(), corners, 4, child, |chunk| {
-        // Copies, so that the compiler knows that writes to the tables do not change them.
+        // Local copies: writes to the tables cannot change them, so the compiler can keep them in
+        // registers.
         let (sizes, corners) = (sizes, *corners);
         let pairs = &edges[chunk.edges.start as usize..chunk.edges.end as usize];
         let along = chunk.along.as_chunks_mut::<4>().0;
@@ -154,15 +155,18 @@ fn split<const CLOSED: bool>(
             ]
         };
         if CLOSED {
-            let inner = chunk.inner.as_chunks_mut::<4>().0;
+            let inner = chunk.inner.as_chunks_mut::<2>().0.as_chunks_mut::<2>().0;
             let rows = pairs.iter().zip(along).zip(inner);
-            for (e, (([one, other], along), inner)) in chunk.edges.clone().zip(rows) {
-                let (h, t) = (2 * e, 2 * e + 1);
-                let ([a, b], [c, d]) = (children(h, one), children(t, other));
+            for (e, ((pair, along), inner)) in chunk.edges.clone().zip(rows) {
+                let mut cut = [[BLANK; 2]; 2];
+                // A loop, so that `inner_pair` is called in one place, and inlined there.
+                for side in 0..2 {
+                    let (h, record) = (2 * e + side as u32, &pair[side]);
+                    cut[side] = children(h, record);
+                    inner[side] = inner_pair(h, record, record.next.index() as u32);
+                }
+                let [[a, b], [c, d]] = cut;
                 *along = [a, d, c, b];
-                let [a, b] = inner_pair(h, one, one.next.index() as u32);
-                let [c, d] = inner_pair(t, other, other.next.index() as u32);
-                *inner = [a, b, c, d];
             }
             for (h, first) in (2 * chunk.edges.start..).zip(chunk.first.iter_mut()) {
                 *first = HalfEdgeId::new(2 * h);

@@ -98,7 +98,7 @@ fn figure(
         title: title.to_owned(),
         svg: render_svg(title, plots, layout),
         caption: format!(
-            "Time relative to the fastest of the row. Dark is fast; {} and more have one colour. Grey cells were not \
+            "Time relative to the fastest of the row. Dark is fast; all ratios from {} on have the same colour. Grey cells were not \
              measured, because they would take too long or cannot be done.",
             times(MAX_RATIO)
         ),

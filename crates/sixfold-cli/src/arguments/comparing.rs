@@ -16,11 +16,11 @@ pub(crate) const ORDERS_EXAMPLES: &str = "Examples:
   sixfold orders bunny.obj --operations vertex_vertices --backends half-edge,corner-table
   sixfold orders bunny.obj --budget 2m --json orders.json
 
-Orders: given, as in the file; shuffled, vertices and faces in random order; morton, along a
-space-filling curve; breadth-first, as a walk from face to face visits them. All pairs of a backend
-and an order are measured in the same interleaved rounds, as in `study`. First the four orders of
-each backend are compared, then the backends, each in its best order. One backend in the order
-`given` is measured in two columns: their difference is the noise.
+Orders: given (as in the file), shuffled (vertices and faces in random order), morton (along a
+space-filling curve), breadth-first (as a walk from face to face visits them). All pairs of a
+backend and an order are measured in the same interleaved rounds, as in `study`. First the four
+orders of each backend are compared, then the backends, each in its best order. One backend in the
+order `given` is measured in two columns: their difference is the noise.
 
 Exit codes: 0 success; 1 results differ between backends or orders (a fault in Sixfold); 2 wrong
 usage or unusable input; 3 none of the selected backends can hold the mesh, or too little memory;

@@ -14,8 +14,8 @@ const EXAMPLES: &str = "Examples:
 The same bytes are counted in three ways, which must agree to the byte. formula: computed from the
 counts of the mesh and the layout. tables: the size of the tables, including spare capacity.
 counted: bytes allocated after building, minus bytes allocated before. The peak is the maximum while
-building, without the polygons from which the structure is built. No figure includes what the
-allocator adds to each block, nor the few dozen bytes of the structure outside the heap.
+building, without the polygons from which the structure is built. The figures do not include the
+overhead of the allocator for each block, or the few dozen bytes of the structure outside the heap.
 
 A word is 4 bytes: an index or a coordinate. The literature counts words per vertex of a large
 closed triangle mesh, with 2 faces and 3 edges per vertex: 18 for a polygon soup, 9 for an indexed

@@ -13,8 +13,8 @@ const EXAMPLES: &str = "Examples:
 
 Several meshes are drawn in a row, all at one scale. Sharp edges and corners are red: those of the
 tags t crease and t corner in an OBJ file, and those of --creases, which may be given once per mesh,
-in the same order. A face is blue on the side from which it runs counter-clockwise; the other
-side is sand-coloured. A PNG is shaded per sample; an SVG has one colour per face.
+in the same order. A face is blue on the side from which its corners run counter-clockwise; the
+other side is sand-coloured. A PNG is shaded per sample; an SVG has one colour per face.
 
 Exit codes: 0 success; 2 wrong usage or unusable input; 3 too many faces for an SVG; 4 interrupted,
 nothing written.";

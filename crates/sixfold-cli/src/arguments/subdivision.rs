@@ -169,7 +169,8 @@ fn loop_weights(text: &str) -> Result<LoopWeights, String> {
     parse_name(&LoopWeights::ALL, LoopWeights::name, text)
 }
 
-/// Parses a number of levels. The limit exceeds the times that a 32-bit coordinate can be halved.
+/// Parses a number of levels. The limit is above the number of times that a 32-bit coordinate can
+/// be halved.
 fn levels(text: &str) -> Result<u32, String> {
     const MAX_LEVELS: u32 = 1000;
     match text.trim().parse() {

@@ -195,7 +195,7 @@ fn uncertain_figures(sizes: &[SizeReport], fits: &[Fit]) -> Vec<String> {
     if let Some(fewest) = measured.map(|r| r.samples).min().filter(|&n| n < 5) {
         let samples = if fewest == 1 { "sample" } else { "samples" };
         sentences.push(format!(
-            "Some figures rest on only {fewest} {samples}: use a longer --budget."
+            "Some figures are from only {fewest} {samples}: use a longer --budget."
         ));
     }
     let estimated: usize = fits.iter().map(|fit| fit.estimated).sum();

@@ -107,16 +107,16 @@ fn effects(comparison: &Comparison) -> Option<String> {
     let most = local().max_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
     let describe = |effect: &OrderEffect| match effect.matters {
         true => format!("{} ({})", times(effect.worst_to_best.ratio), effect.backend),
-        false => format!("less than the noise ({})", effect.backend),
+        false => format!("within the noise ({})", effect.backend),
     };
     let operation = comparison.operation;
     let orders = match local().count() {
         1 => format!(
-            "{operation}: the order changes the time by {}",
+            "{operation}: time of the worst order relative to the best: {}",
             describe(most)
         ),
         _ => format!(
-            "{operation}: the order changes the time by {} to {}",
+            "{operation}: time of the worst order relative to the best: {} to {}",
             describe(least),
             describe(most)
         ),
@@ -126,7 +126,7 @@ fn effects(comparison: &Comparison) -> Option<String> {
     };
     let between = match structures.matters {
         true => format!(
-            "the structure by {} ({} to {}, each in its best order)",
+            "of the slowest structure relative to the fastest: {} ({} to {}, each in its best order)",
             times(structures.slowest_to_fastest.ratio),
             structures.fastest,
             structures.slowest
@@ -134,11 +134,11 @@ fn effects(comparison: &Comparison) -> Option<String> {
         false => "the structures in their best orders do not differ beyond the noise".into(),
     };
     let larger = match comparison.larger? {
-        Larger::Order => "the order matters more",
-        Larger::Structure => "the structure matters more",
-        Larger::Depends => "which matters more depends on the structure",
+        Larger::Order => "The order matters more",
+        Larger::Structure => "The structure matters more",
+        Larger::Depends => "Which of them matters more depends on the structure",
     };
-    Some(format!("{orders}, {between}: {larger}."))
+    Some(format!("{orders}; {between}. {larger}."))
 }
 
 /// Describes the effect of the order on structures that scan: they read memory from end to end.
@@ -180,6 +180,6 @@ fn few_samples(rows: &[OrderRow]) -> Option<String> {
     let fewest = measured.map(|r| r.row.samples).min()?;
     (fewest < 5).then(|| {
         let samples = if fewest == 1 { "sample" } else { "samples" };
-        format!("Some figures rest on only {fewest} {samples}: use a longer --budget.")
+        format!("Some figures are from only {fewest} {samples}: use a longer --budget.")
     })
 }

@@ -26,7 +26,7 @@ pub(crate) struct PickBackend<'a> {
     pub(crate) builds: Vec<Time>,
     /// Ratios of building times: on fresh pages to directly afterwards on kept pages.
     pub(crate) first_builds: Vec<f64>,
-    /// By part: the times of one operation, timed by itself, in nanoseconds.
+    /// By part: the times of one operation, timed alone, in nanoseconds.
     pub(crate) parts: Vec<Vec<f64>>,
     /// By part: what its operations yielded on all elements, or the checksum of a pass; `None` if
     /// not all elements were queried.

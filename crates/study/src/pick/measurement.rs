@@ -6,12 +6,8 @@ use std::time::Duration;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use sixfold::subdivision::{Method, Scheme};
 use sixfold_core::Counts;
-use sixfold_workload::{
-    Action, Backend, Clock, EditPlaceError, ElementKind, ElementSample, Operation, Run, Schedule,
-    Series, Start, Time,
-};
+use sixfold_workload::{Clock, Operation, Schedule, Series, Start, Time};
 
 use crate::agreement::agree;
 use crate::disturbance::{DisturbanceDetector, Verdict, undisturbed};
@@ -19,6 +15,7 @@ use crate::heap::Memory;
 use crate::inspect::StudyMesh;
 use crate::pick::backend::{PassPlan, PickBackend};
 use crate::pick::break_even::break_even;
+use crate::pick::plan::SamplePlan;
 use crate::pick::report::{BreakEven, Excluded, PartCost, Ranked};
 use crate::pick::{PickError, PickSettings};
 use crate::ranking::{NO_DIFFERENCE, rank, ratio};
@@ -28,22 +25,12 @@ use crate::statistics::Median;
 const MAX_ROUNDS: u32 = 200;
 /// The smallest number of rounds for a result.
 const MIN_ROUNDS: u32 = 3;
-/// The shortest sample of the fastest backend. In shorter ones the resolution of the clock shows.
-const SHORTEST_SAMPLE_NS: f64 = 500_000.0;
-/// The longest sample of the slowest backend. Longer ones would leave too few rounds.
-const LONGEST_SAMPLE_NS: f64 = 20_000_000.0;
 /// Number of rounds in which building is timed; all rounds if the workload rebuilds.
 const BUILDS: usize = 9;
 /// Part of the budget after the rounds, for timing each part alone and for the first builds.
 const FOR_PARTS: f64 = 0.15;
 /// Part of the budget for building on fresh pages, at the end.
 const FOR_FIRST_BUILDS: f64 = 0.05;
-/// The largest number of copies in a sample. More do not improve it.
-const MAX_COPIES: usize = 10_000;
-/// Sizes of the patches, in faces, from which the time of a scanning pass is estimated.
-const PATCHES: [usize; 2] = [256, 1024];
-/// Number of operations in the first probe of a part.
-const FIRST_PROBE_OPERATIONS: u64 = 4;
 
 /// The measurement on one mesh: the mesh, the settings, the budget, the clock and the memory.
 pub(crate) struct PickMeasurement<'c> {
@@ -70,15 +57,6 @@ pub(crate) struct Outcome {
     pub(crate) operations: f64,
     /// The shortest timed sample, in nanoseconds.
     pub(crate) shortest_ns: Option<f64>,
-}
-
-/// How the element operations are divided into samples.
-#[derive(Clone, Copy, Debug)]
-struct SamplePlan {
-    /// Number of turns in a sample.
-    turns: u64,
-    /// Number of copies that a sample runs on, if there are edits.
-    copies: usize,
 }
 
 impl PickMeasurement<'_> {
@@ -151,189 +129,12 @@ impl PickMeasurement<'_> {
         Ok(self.outcome(&backends, excluded, shortest_ns))
     }
 
-    fn now(&self) -> f64 {
+    pub(crate) fn now(&self) -> f64 {
         self.clock.now().wall_ns
     }
 
     fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
-    }
-
-    /// Plans how many turns make a sample: enough for the clock on the fastest backend, not too
-    /// many on the slowest, and no more than there are places for edits.
-    fn plan_samples(&self, backends: &mut [PickBackend<'_>]) -> Result<SamplePlan, EditPlaceError> {
-        let nothing = SamplePlan {
-            turns: 0,
-            copies: 1,
-        };
-        if self.schedule.elements().next().is_none() {
-            return Ok(nothing);
-        }
-        let (mut least, mut most) = (f64::INFINITY, 1.0_f64);
-        for backend in backends.iter_mut().filter(|b| !b.scans()) {
-            backend.mixer.run(0, 1, 1, self.clock);
-            let ns = backend.mixer.run(1, 1, 1, self.clock).time.ns().max(1.0);
-            (least, most) = (least.min(ns), most.max(ns));
-        }
-        if !least.is_finite() {
-            return Ok(nothing); // all backends scan
-        }
-        let turns = (SHORTEST_SAMPLE_NS / least).ceil();
-        let turns = turns.min(LONGEST_SAMPLE_NS / most).max(1.0) as u64;
-        let room = self.schedule.edits().filter_map(|part| {
-            let places = backends.iter().map(|b| b.mixer.cycle_length(part)).min()?;
-            // More turns would need more places than there are.
-            let fits = |turns: &u64| self.schedule.operations_within(part, *turns) <= places;
-            (1..=turns).take_while(fits).last().or(Some(0))
-        });
-        let edits = self.schedule.edits().count();
-        match room.min() {
-            None => Ok(SamplePlan { turns, copies: 1 }),
-            Some(0) => Err(EditPlaceError::TooSmall { edits }),
-            Some(in_a_copy) => {
-                let copies = turns.div_ceil(in_a_copy) as usize;
-                Ok(SamplePlan {
-                    turns: in_a_copy.min(turns),
-                    copies: copies.clamp(1, MAX_COPIES),
-                })
-            }
-        }
-    }
-
-    /// Plans which operation each pass is on this backend, and how it is timed.
-    fn plan_passes(&self, backend: &mut PickBackend<'_>, slot_ns: f64) {
-        for part in self.schedule.passes() {
-            let operation = match self.schedule.parts[part].action {
-                Action::Pass(operation) => operation,
-                _ => self.subdivision(backend.structure.as_ref()),
-            };
-            let scans = backend.mixer.scans()[part];
-            let scans_kinds = |structure: Backend| operation.scans(&structure.info.costs);
-            let scanned = backend.structure.map_or([false; 3], scans_kinds);
-            let mut plan = PassPlan {
-                operation: Some(operation),
-                runs: 1,
-                ..PassPlan::default()
-            };
-            if scans || scanned.contains(&true) {
-                self.plan_search(backend, operation, scanned, slot_ns, &mut plan);
-            } else {
-                let grows = u32::from(operation.grows_tables());
-                let series = Series::once(self.clock).with_untimed(grows).with_result();
-                let run = backend.mixer.run_pass(operation, None, &series);
-                backend.results[part] = run.outcome.map(|outcome| outcome.checksum);
-                let ns = run.time.ns().max(1.0);
-                plan.runs = (SHORTEST_SAMPLE_NS / ns).ceil().clamp(1.0, 1000.0) as u32;
-            }
-            backend.passes[part] = plan;
-        }
-    }
-
-    /// Plans a pass that scans all faces for each element: on a sample of the elements, or, if it
-    /// cannot be sampled and is too long, as an estimate from patches of the mesh.
-    fn plan_search(
-        &self,
-        backend: &mut PickBackend<'_>,
-        operation: Operation,
-        scanned: [bool; 3],
-        slot_ns: f64,
-        plan: &mut PassPlan,
-    ) {
-        let mut run = |operation: Operation, sample: Option<ElementSample>| -> Run {
-            let grows = u32::from(operation.grows_tables());
-            let series = Series::once(self.clock).with_untimed(grows);
-            backend.mixer.run_pass(operation, sample, &series)
-        };
-        if operation.can_be_sampled() || operation == Operation::FfBfs {
-            // A walk over all faces is estimated by the relation that it queries.
-            let probed = match operation.relations(ElementKind::Face) {
-                &[relation] if !operation.can_be_sampled() => Operation::Relation(relation),
-                _ => operation,
-            };
-            let mut size = FIRST_PROBE_OPERATIONS as usize;
-            loop {
-                let sample = ElementSample { scanned, size };
-                let start = self.now();
-                let whole = run(probed, Some(sample)).time;
-                let elapsed_ns = self.now() - start;
-                if elapsed_ns * 4.0 > slot_ns / 4.0 || size >= self.counts.edges {
-                    plan.sample = Some(sample);
-                    plan.operation = Some(probed);
-                    if probed != operation {
-                        plan.estimate = Some(whole);
-                    }
-                    return;
-                }
-                size *= 4;
-            }
-        }
-        // The times of the two patches give the power of n with which the time grows.
-        let [small, large] = PATCHES.map(|size| {
-            let patch = ElementSample {
-                scanned: [false; 3],
-                size,
-            };
-            let size = size.min(self.counts.faces) as f64;
-            // `run_pass` scales the time of a patch to the whole mesh; this undoes it.
-            run(operation, Some(patch))
-                .time
-                .scaled(size / self.counts.faces as f64)
-        });
-        let power = (large.ns() / small.ns()).log(4.0).clamp(1.0, 2.0);
-        let growth = (self.counts.faces as f64 / PATCHES[1] as f64)
-            .max(1.0)
-            .powf(power);
-        let whole = large.scaled(growth);
-        if whole.ns() > slot_ns {
-            plan.estimate = Some(whole);
-        }
-    }
-
-    /// Returns one step of subdivision by the best method of a structure, or of tables if `None`.
-    fn subdivision(&self, structure: Option<&Backend>) -> Operation {
-        let triangles = self.study_mesh.polygons.first_polygon().is_none();
-        let scheme = match triangles {
-            true => Scheme::Loop,
-            false => Scheme::CatmullClark,
-        };
-        let method = structure.and_then(|s| s.info.support(scheme).default_method());
-        let method = method.unwrap_or(Method::Scatter);
-        match triangles {
-            true => Operation::Loop(method),
-            false => Operation::CatmullClark(method),
-        }
-    }
-
-    /// Plans how many operations of each part make a sample of that part, and records what they
-    /// yield on all elements.
-    fn plan_parts(&self, backend: &mut PickBackend<'_>, slot_ns: f64) {
-        let scans = backend.mixer.scans();
-        for part in self.schedule.elements() {
-            let cycle = backend.mixer.cycle_length(part).max(1);
-            let longest = if scans[part] {
-                slot_ns / 8.0
-            } else {
-                SHORTEST_SAMPLE_NS
-            };
-            let is_edit = matches!(self.schedule.parts[part].action, Action::Edit(_));
-            let mut operations = FIRST_PROBE_OPERATIONS.min(cycle);
-            loop {
-                let run = backend.mixer.run_part(part, 0, operations, self.clock);
-                let enough = run.time.ns() * 4.0 > longest;
-                if enough || (is_edit && operations >= cycle) || operations > 1 << 24 {
-                    break;
-                }
-                operations *= 4;
-                if is_edit {
-                    operations = operations.min(cycle);
-                }
-            }
-            backend.part_operations[part] = operations;
-            if !scans[part] && !is_edit {
-                let all = backend.mixer.run_part(part, 0, cycle, self.clock);
-                backend.results[part] = Some(all.yielded as f64);
-            }
-        }
     }
 
     /// Takes a sample of the whole mix.

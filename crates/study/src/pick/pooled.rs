@@ -149,7 +149,8 @@ fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
     rows.collect()
 }
 
-/// Returns the break-even of `ranked` over all meshes; never if it is never on one of them.
+/// Returns the break-even of `ranked` over all meshes; it has no number of operations if building
+/// never pays off on one of them.
 fn break_even_on_all(outcomes: &[Outcome], ranked: &Ranked) -> Option<BreakEven> {
     let rows: Option<Vec<&BreakEven>> = outcomes
         .iter()

@@ -111,7 +111,8 @@ fn dominant_part(report: &PickReport, best: &Ranked) -> Option<String> {
     ))
 }
 
-/// Describes the part of the mix in which the first slower backend loses most time.
+/// Describes the part of the mix in which the first backend that is slower than the fastest loses
+/// the most time.
 fn largest_loss(report: &PickReport, best: &Ranked) -> Option<String> {
     let next = report
         .ranking
@@ -181,7 +182,7 @@ fn one_use_with_building(report: &PickReport, best: &Ranked) -> Option<String> {
             name(best)
         ),
         false => format!(
-            "With building included, except for an indexed face set, one use of {count} {used} is fastest on {}: {cost} in total, compared with {} on {}.",
+            "With building included (an indexed face set exists already), one use of {count} {used} is fastest on {}: {cost} in total, compared with {} on {}.",
             name(least),
             duration(total(best)),
             name(best)

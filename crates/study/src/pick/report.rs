@@ -108,7 +108,7 @@ pub struct Ranked {
     pub sampled: bool,
     /// Whether the time of some part is an estimate, because a full run would exceed the budget.
     pub estimated: bool,
-    /// The cost of each part of the mix, timed by itself.
+    /// The cost of each part of the mix, timed alone.
     pub parts: Vec<PartCost>,
     /// The number of rounds in which it was measured.
     pub samples: usize,
@@ -129,8 +129,8 @@ pub struct PartCost {
     pub operation: Action,
     /// Its share of all operations, from 0 to 1.
     pub share: f64,
-    /// The time of one operation, timed by itself in the access order of the workload, in
-    /// nanoseconds; `None` if it was not measured.
+    /// The time of one operation, timed alone in the access order of the workload, in nanoseconds;
+    /// `None` if it was not measured.
     pub ns: Option<f64>,
 }
 

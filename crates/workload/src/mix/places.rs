@@ -8,8 +8,8 @@ use crate::workload::Action;
 
 /// Minimum number of vertices for each place. The rest of the mesh is left for queries.
 const VERTICES_PER_PLACE: usize = 60;
-/// Maximum number of places. More do not improve a sample, and structures that scan are slow at
-/// each.
+/// Maximum number of places. More places would not improve a sample, and a structure that scans
+/// takes long at each place.
 const MAX_PLACES: usize = 512;
 
 /// The reason why a mix with edits cannot be run on a mesh.

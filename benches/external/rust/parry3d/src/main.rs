@@ -7,7 +7,7 @@ use column::{Column, Input};
 use parry3d::math::Vector;
 use parry3d::shape::{TopoHalfEdge, TriMesh, TriMeshFlags};
 
-/// The twin of a half-edge at the boundary, which has no twin.
+/// Stands for the missing twin of a half-edge at the boundary.
 const NONE: u32 = u32::MAX;
 
 struct Parry {
