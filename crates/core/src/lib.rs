@@ -124,7 +124,7 @@ pub use editing::{
 };
 pub use face_spans::{FaceSpans, ScatteredFaces};
 pub use holes::Holes;
-pub use pairing::{SideRows, TwinPairs, pair_triangle_sides};
+pub use pairing::{LinkFaces, SideRows, TwinPairs, pair_triangle_sides};
 pub use ranks::Ranks;
 pub use refine::{
     CHUNK_ROWS, all_rows, check_split, chunk_starts, for_each_chunk, map_chunks, rows_of_chunk,
