@@ -25,7 +25,8 @@
 //!
 //! - [`Table`], [`Slot`], [`row_id!`] and [`RowId`]: rows, and handles that are rows.
 //! - [`Compact`] and [`Editable`], the two types that are [`Editing`]: type parameters of meshes
-//!   without and with deletion; [`Holes`]: the rows of deleted elements.
+//!   without and with deletion; [`Holes`]: the rows of deleted elements; [`NewRows`]: their
+//!   rows after the holes are closed.
 //! - [`FaceSpans`]: which corners belong to a face.
 //! - [`TwinPairs`]: pairs of sides, for building without hashing.
 //! - [`ScannedFaces`]: queries and edits of structures that find the faces at a vertex by a scan.
@@ -66,6 +67,7 @@ mod local_queries;
 mod measured;
 mod memory;
 mod mesh_with_data;
+mod new_rows;
 mod numbering;
 mod oriented_walk;
 mod pairing;
@@ -124,6 +126,7 @@ pub use editing::{
 };
 pub use face_spans::{FaceSpans, ScatteredFaces};
 pub use holes::Holes;
+pub use new_rows::NewRows;
 pub use pairing::{LinkFaces, SideRows, TwinPairs, pair_triangle_sides};
 pub use ranks::Ranks;
 pub use refine::{

@@ -2,8 +2,8 @@
 
 use sixfold_core::{
     BuildError, Counts, Editing, FaceId, FaceList, HoleSet, InvariantError, LinkFaces, Measured,
-    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
-    RowId, RowMap, SideRows, Slot, TwinPairs, VertexId, row,
+    MemoryFootprint, MeshQuery, MoveError, NewRows, Point, PolygonMesh, Probe, QueryCost,
+    Representation, RowId, RowMap, SideRows, Slot, TwinPairs, VertexId, row,
 };
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
@@ -44,23 +44,8 @@ impl<E: Editing> Representation for HalfEdgeMesh<E> {
     }
 
     fn to_polygons(&self) -> PolygonMesh {
-        // If there are holes, the rows after them get lower numbers.
-        let rows =
-            (!self.vertex_holes.is_empty()).then(|| self.vertex_holes.new_rows(self.vertex_rows()));
-        let mut faces = FaceList::with_capacity(self.half_edge_count());
-        for f in self.faces() {
-            let corners = self.face_vertices(f);
-            let pushed = match &rows {
-                None => faces.push(corners),
-                Some(rows) => faces.push(corners.map(|v| VertexId::new(rows[v.index()]))),
-            };
-            pushed.expect("no more corners than half-edges");
-        }
-        let positions = match rows {
-            None => self.positions().to_vec(),
-            Some(_) => self.vertices().map(|v| self.position(v)).collect(),
-        };
-        PolygonMesh::from_faces(positions, faces).expect("I7")
+        let rows = NewRows::from_holes(&self.vertex_holes, self.vertex_rows());
+        rows.polygons(self, self.positions(), self.half_edge_count())
     }
 
     fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {

@@ -2,7 +2,7 @@
 
 use sixfold_core::{
     Compact, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit, MeshQuery,
-    NoHoles, Pair, Point, Probe, QueryCost, Refusal, VertexId, row,
+    NewRows, NoHoles, Pair, Point, Probe, QueryCost, Refusal, VertexId, row,
 };
 
 use crate::mesh::IndexedFaceSet;
@@ -222,26 +222,16 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
     }
 
     fn compact_logged(&mut self, log: &mut impl EditLog<Self>) {
-        if !self.vertex_holes.is_empty() {
-            let new = self.vertex_holes.new_rows(self.positions.len());
-            let new = |v: VertexId| VertexId::new(new[v.index()]);
-            if uses_reports(log) {
-                for v in self.vertices().filter(|&v| new(v) != v) {
-                    log.renamed_vertex(v, new(v));
-                }
-                for e in self.edges() {
-                    let [a, b] = e.ends().map(new);
-                    if e != Pair::new(a, b) {
-                        log.renamed_edge(e, Pair::new(a, b));
-                    }
-                }
-            }
-            self.faces.compact(log);
+        let rows = NewRows::from_holes(&self.vertex_holes, self.positions.len());
+        if uses_reports(log) {
+            rows.for_each_renamed(self.vertices(), |old, new| log.renamed_vertex(old, new));
+            rows.for_each_renamed_pair(self.edges(), |old, new| log.renamed_edge(old, new));
+        }
+        self.faces.compact(log);
+        if !rows.is_unchanged() {
             for v in self.faces.corners.rows_mut() {
-                *v = new(*v);
+                *v = rows.new_handle(*v);
             }
-        } else {
-            self.faces.compact(log);
         }
         self.vertex_holes.compact_table(&mut self.positions);
         self.vertex_holes.clear();

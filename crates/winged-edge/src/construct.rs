@@ -2,9 +2,9 @@
 
 use sixfold_core::{
     BuildError, Counts, EDGE_HOLES, EdgeId, Editing, FACE_HOLES, FaceId, FaceList, HoleSet,
-    InvariantError, LinkFaces, Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh,
-    Probe, QueryCost, Representation, RowMap, Slot, Table, TwinPairs, Untraced, VERTEX_HOLES,
-    VertexId, row,
+    InvariantError, LinkFaces, Measured, MemoryFootprint, MeshQuery, MoveError, NewRows, Point,
+    PolygonMesh, Probe, QueryCost, Representation, RowMap, Slot, Table, TwinPairs, Untraced,
+    VERTEX_HOLES, VertexId, row,
 };
 
 use crate::edge::{Edge, Run};
@@ -45,24 +45,9 @@ impl<E: Editing> Representation for WingedEdgeMesh<E> {
         ))
     }
 
-    /// If there are holes, the rows after them get lower numbers.
     fn to_polygons(&self) -> PolygonMesh {
-        const EXPECTED: &str = "no more corners than sides of edges";
-        let mut faces = FaceList::with_capacity(2 * self.edge_count());
-        if self.vertex_holes.is_empty() {
-            for f in self.faces() {
-                faces.push(self.face_vertices(f)).expect(EXPECTED);
-            }
-            return PolygonMesh::from_faces(self.positions().to_vec(), faces).expect("I7");
-        }
-        let rows = self.vertex_holes.new_rows(self.positions.len());
-        for f in self.faces() {
-            let corners = self.face_vertices(f);
-            let corners = corners.map(|v| VertexId::new(rows[v.index()]));
-            faces.push(corners).expect(EXPECTED);
-        }
-        let positions = self.vertices().map(|v| self.positions()[v.index()]);
-        PolygonMesh::from_faces(positions.collect(), faces).expect("I7")
+        let rows = NewRows::from_holes(&self.vertex_holes, self.positions.len());
+        rows.polygons(self, self.positions(), 2 * self.edge_count())
     }
 
     fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
