@@ -27,6 +27,7 @@
 //! - [`Compact`] and [`Editable`], the two types that are [`Editing`]: type parameters of meshes
 //!   without and with deletion; [`Holes`]: the rows of deleted elements; [`NewRows`]: their
 //!   rows after the holes are closed.
+//! - [`check_rows`], [`check_corners`], [`check_cut`]: checks of edits.
 //! - [`FaceSpans`]: which corners belong to a face.
 //! - [`TwinPairs`]: pairs of sides, for building without hashing.
 //! - [`ScannedFaces`]: queries and edits of structures that find the faces at a vertex by a scan.
@@ -50,6 +51,7 @@ mod convert;
 mod creases;
 mod distinct;
 mod edit;
+mod edit_check;
 mod edit_error;
 mod edit_kind;
 mod edit_log;
@@ -120,6 +122,8 @@ pub use row_id::{EdgeId, FaceId, VertexId};
 
 // For authors of structures.
 pub use distinct::{Distinct, DistinctWalk, IteratorExt};
+pub use edit_check::{check_corners, check_cut, check_rows};
+pub use edit_log::uses_reports;
 pub use editing::{
     Compact, EDGE_HOLES, Editable, Editing, FACE_HOLES, HoleSet, NoHoles, NoScatteredFaces,
     VERTEX_HOLES,

@@ -31,7 +31,7 @@ mod split;
 
 use sixfold_core::{
     Compact, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit, NoHoles,
-    Point, Probe, QueryCost, Representation, RowId, Slot, VertexId, row,
+    Point, Probe, QueryCost, Representation, RowId, Slot, VertexId, check_rows, row,
 };
 
 use crate::EditableCornerTable;
@@ -277,14 +277,8 @@ impl<P: Probe> CornerTable<Editable, P> {
     /// Checks that handles can name this number of additional vertices and triangles.
     #[inline]
     fn check_room(&self, vertices: usize, triangles: usize) -> Result<(), Refusal> {
-        let (elements, limit) = if self.positions.len() + vertices > MAX_ROWS {
-            ("vertices", MAX_ROWS)
-        } else if self.vertex.len() + 3 * triangles > MAX_CORNERS {
-            ("corners", MAX_CORNERS)
-        } else {
-            return Ok(());
-        };
-        Err(EditError::TooMany { elements, limit })
+        check_rows("vertices", self.positions.len() + vertices, MAX_ROWS)?;
+        check_rows("corners", self.vertex.len() + 3 * triangles, MAX_CORNERS)
     }
 
     /// Returns whether `v`, which has a corner, is on a boundary. Relies on I5.

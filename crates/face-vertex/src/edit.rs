@@ -16,10 +16,10 @@ mod tests;
 
 use sixfold_core::{
     Compact, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MeshEdit, NoHoles, Pair, Point,
-    Probe, QueryCost, Refusal, ShortVec, VertexId, row,
+    Probe, QueryCost, Refusal, ShortVec, VertexId, check_corners, check_cut, row, uses_reports,
 };
 
-use self::corners::{corners_from, repeated_vertex, sides, third_corner};
+use self::corners::{corners_from, sides, third_corner};
 use crate::mesh::{BLANK_CORNER, FaceVertexMesh, Fan};
 
 type Edge = Pair<VertexId>;
@@ -74,16 +74,7 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
         corners: &[VertexId],
         log: &mut impl EditLog<Self>,
     ) -> Result<FaceId, Refusal<Self>> {
-        if corners.len() < 3 {
-            let corners = corners.len();
-            return Err(EditError::TooFewCorners { corners });
-        }
-        for &v in corners {
-            self.fan_of(v)?;
-        }
-        if let Some(vertex) = repeated_vertex(corners) {
-            return Err(EditError::RepeatedVertex { vertex });
-        }
+        check_corners(corners, |v| self.fan_of(v).and(Ok(())))?;
         self.check_room(0, 1, corners.len())?;
         if uses_reports(log) {
             let new = sides(corners).filter(|&e| !self.has_edge(e));
@@ -258,15 +249,7 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
         log: &mut impl EditLog<Self>,
     ) -> Result<Edge, Refusal<Self>> {
         let face = self.corners_of_face(f)?;
-        let [mut i, mut j] = [0; 2];
-        for (vertex, place) in ends.into_iter().zip([&mut i, &mut j]) {
-            let found = face.iter().position(|&v| v == vertex);
-            *place = found.ok_or(EditError::NotACorner { face: f, vertex })?;
-        }
-        let (i, j) = (i.min(j), i.max(j));
-        if j - i < 2 || j - i + 2 > face.len() {
-            return Err(EditError::AdjacentCorners { face: f, ends });
-        }
+        let [i, j] = check_cut(f, face, ends, |v, &corner| v == corner)?;
         let kept = ShortVec::from_iter(face[i..=j].iter().copied());
         let new = face[j..].iter().chain(&face[..=i]);
         let new = ShortVec::from_iter(new.copied());
@@ -413,11 +396,6 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
             log.removed_edge(e);
         }
     }
-}
-
-/// Returns whether `log` records events.
-fn uses_reports<P: Probe, L: EditLog<FaceVertexMesh<Editable, P>>>(_: &L) -> bool {
-    L::USES_REPORTS
 }
 
 /// Reports that `m` splits `e`: `e` is renamed to its lower half, and the upper half is new.

@@ -12,7 +12,7 @@ mod tests;
 
 use sixfold_core::{
     Compact, EdgeId, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit,
-    MeshQuery, NoHoles, Point, Probe, QueryCost, Slot, VertexId, row,
+    MeshQuery, NoHoles, Point, Probe, QueryCost, Slot, VertexId, check_rows, row,
 };
 
 use crate::EditableHalfEdgeMesh;
@@ -236,17 +236,9 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
     /// Checks that this number of rows can be added.
     #[inline]
     fn check_room(&self, vertices: usize, edges: usize, faces: usize) -> Result<(), Refusal> {
-        let too_many = |elements, limit| Err(EditError::TooMany { elements, limit });
-        if self.vertex_rows() + vertices > MAX_ROWS {
-            return too_many("vertices", MAX_ROWS);
-        }
-        if self.edge_rows() + edges > MAX_ROWS / 2 {
-            return too_many("edges", MAX_ROWS / 2);
-        }
-        if self.face_rows() + faces > MAX_ROWS {
-            return too_many("faces", MAX_ROWS);
-        }
-        Ok(())
+        check_rows("vertices", self.vertex_rows() + vertices, MAX_ROWS)?;
+        check_rows("edges", self.edge_rows() + edges, MAX_ROWS / 2)?;
+        check_rows("faces", self.face_rows() + faces, MAX_ROWS)
     }
 }
 

@@ -2,7 +2,8 @@
 
 use sixfold_core::{
     Compact, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit, MeshQuery,
-    NewRows, NoHoles, Pair, Point, Probe, QueryCost, Refusal, VertexId, row,
+    NewRows, NoHoles, Pair, Point, Probe, QueryCost, Refusal, VertexId, check_rows, row,
+    uses_reports,
 };
 
 use crate::mesh::IndexedFaceSet;
@@ -238,10 +239,6 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
     }
 }
 
-fn uses_reports<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
-    L::USES_REPORTS
-}
-
 impl<P: Probe> IndexedFaceSet<Editable, P> {
     fn check_vertex(&self, v: VertexId) -> Result<(), Refusal<Self>> {
         match self.has(v) {
@@ -252,12 +249,7 @@ impl<P: Probe> IndexedFaceSet<Editable, P> {
 
     /// Returns the handle of the next new vertex, or an error if there are no more handles.
     fn next_vertex(&self) -> Result<VertexId, Refusal<Self>> {
-        if self.positions.len() == MAX_ROWS {
-            return Err(EditError::TooMany {
-                elements: "vertices",
-                limit: MAX_ROWS,
-            });
-        }
+        check_rows("vertices", self.positions.len() + 1, MAX_ROWS)?;
         Ok(VertexId::new(row(self.positions.len())))
     }
 }

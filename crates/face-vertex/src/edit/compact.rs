@@ -1,8 +1,7 @@
 //! Compaction: removal of the deleted rows and of the blanks.
 
-use sixfold_core::{EditLog, Editable, FaceId, MeshQuery, NewRows, Probe, row};
+use sixfold_core::{EditLog, Editable, FaceId, MeshQuery, NewRows, Probe, row, uses_reports};
 
-use super::uses_reports;
 use crate::mesh::{FaceVertexMesh, Fan};
 
 impl<P: Probe> FaceVertexMesh<Editable, P> {

@@ -30,17 +30,3 @@ pub(super) fn third_corner(face: [VertexId; 3], e: Edge) -> (VertexId, VertexId)
     };
     (neighbours_in(&face, apex)[0], apex)
 }
-
-/// Returns a vertex that occurs twice.
-pub(super) fn repeated_vertex(corners: &[VertexId]) -> Option<VertexId> {
-    const FEW: usize = 16;
-    if corners.len() <= FEW {
-        let mut earlier = corners.iter().enumerate();
-        let twice = earlier.find(|&(i, v)| corners[..i].contains(v));
-        return twice.map(|(_, &v)| v);
-    }
-    let mut sorted = corners.to_vec();
-    sorted.sort_unstable();
-    let twice = sorted.windows(2).find(|pair| pair[0] == pair[1]);
-    twice.map(|pair| pair[0])
-}
