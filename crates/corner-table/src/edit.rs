@@ -126,15 +126,10 @@ impl<P: Probe> MeshEdit for CornerTable<Editable, P> {
 
     /// Reads `corner` once; O(vertices).
     fn remove_isolated_vertices_logged(&mut self, log: &mut impl EditLog<Self>) -> usize {
-        let before = self.vertex_holes.len();
-        for v in (0..row(self.corner.len())).map(VertexId::new) {
-            let isolated = self.corner.read(v.index()).get().is_none();
-            if isolated && !self.vertex_holes.has(v.index()) {
-                self.vertex_holes.insert(v.index());
-                log.removed_vertex(v);
-            }
-        }
-        self.vertex_holes.len() - before
+        let is_isolated = |v| *self.corner.read(v) == Slot::NONE;
+        let end = self.corner.len();
+        self.vertex_holes
+            .insert_unused(end, is_isolated, |v| log.removed_vertex(v))
     }
 
     /// Always returns an error: this edit makes polygons.

@@ -153,6 +153,8 @@ fn add_uniform<const DEGREE: usize>(corners: &[VertexId], mut add: impl FnMut(Fa
 
 #[cfg(test)]
 mod tests {
+    use sixfold_core::MeshQuery;
+
     use super::*;
     use crate::FaceVertexMesh;
 

@@ -107,15 +107,10 @@ impl<P: Probe> MeshEdit for HalfEdgeMesh<Editable, P> {
     }
 
     fn remove_isolated_vertices_logged(&mut self, log: &mut impl EditLog<Self>) -> usize {
-        let before = self.vertex_holes.len();
-        for v in (0..row(self.vertex_rows())).map(VertexId::new) {
-            let isolated = self.leaving.read(v.index()).get().is_none();
-            if isolated && !self.vertex_holes.has(v.index()) {
-                self.delete_vertex(v);
-                log.removed_vertex(v);
-            }
-        }
-        self.vertex_holes.len() - before
+        let is_isolated = |v| *self.leaving.read(v) == Slot::NONE;
+        let end = self.leaving.len();
+        self.vertex_holes
+            .insert_unused(end, is_isolated, |v| log.removed_vertex(v))
     }
 
     fn split_edge_logged(

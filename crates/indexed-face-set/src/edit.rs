@@ -1,35 +1,18 @@
 //! Edits: [`ScannedFaces`](sixfold_core::ScannedFaces) edits the faces, this file the vertices.
 
 use sixfold_core::{
-    Compact, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit, MeshQuery,
-    NewRows, NoHoles, Pair, Point, Probe, QueryCost, Refusal, VertexId, check_rows, row,
-    uses_reports,
+    Compact, Edit, EditError, EditLog, Editable, FaceId, MAX_ROWS, MeshEdit, MeshQuery, NewRows,
+    NoHoles, Pair, Point, Probe, QueryCost, Refusal, VertexId, check_rows, row, uses_reports,
 };
 
 use crate::mesh::IndexedFaceSet;
 
 impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
-        let constant = Some(QueryCost::Constant);
-        let local = Some(QueryCost::Local);
-        let scan = Some(QueryCost::Scan);
-        [
-            constant, // set_position
-            constant, // add_vertex
-            constant, // add_face
-            local,    // remove_face
-            scan,     // remove_vertex
-            scan,     // remove_isolated_vertices
-            scan,     // split_edge
-            scan,     // bisect_edge
-            local,    // poke_face
-            local,    // split_face
-            scan,     // dissolve_edge
-            scan,     // flip_edge
-            scan,     // collapse_edge
-            scan,     // split_vertex
-            scan,     // compact
-        ]
+        let mut costs = Edit::SCAN_COSTS;
+        costs[Edit::SetPosition as usize] = Some(QueryCost::Constant);
+        costs[Edit::AddVertex as usize] = Some(QueryCost::Constant);
+        costs
     };
 
     type Compact = IndexedFaceSet<Compact, P>;
@@ -113,14 +96,8 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
                 *used = true;
             }
         }
-        let before = self.vertex_count();
-        for v in (0..row(used.len())).map(VertexId::new) {
-            if !used[v.index()] && !self.vertex_holes.has(v.index()) {
-                self.vertex_holes.insert(v.index());
-                log.removed_vertex(v);
-            }
-        }
-        before - self.vertex_count()
+        self.vertex_holes
+            .insert_unused(used.len(), |v| !used[v], |v| log.removed_vertex(v))
     }
 
     /// One scan.
