@@ -20,7 +20,7 @@ use sixfold_core::{
 };
 
 use self::corners::{corners_from, sides, third_corner};
-use crate::mesh::{BLANK_CORNER, FaceVertexMesh, Fan};
+use crate::mesh::{BLANK_CORNER, FaceVertexMesh};
 
 type Edge = Pair<VertexId>;
 
@@ -362,34 +362,6 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
 }
 
 impl<P: Probe> FaceVertexMesh<Editable, P> {
-    /// Marks `f`, which is in no fan any more, as deleted.
-    fn delete_face(&mut self, f: FaceId) {
-        self.spans.blank(&mut self.corners, f, BLANK_CORNER);
-        self.face_holes.insert(f.index());
-    }
-
-    /// Marks `v`, which has no faces any more, as deleted.
-    fn delete_vertex(&mut self, v: VertexId) {
-        let fan = std::mem::replace(self.fans.write(v.index()), Fan::DELETED);
-        self.clear_places(fan.range());
-        self.vertex_holes.insert(v.index());
-    }
-
-    /// Replaces the corner `old` of `f` by `new`; the caller updates the fans.
-    #[inline]
-    fn replace_corner(&mut self, f: FaceId, old: VertexId, new: VertexId) {
-        let range = self.spans.range(f);
-        let at = match self.corners.read_range(range.clone()) {
-            // Without a branch, because its place is unpredictable.
-            &[_, b, c] => usize::from(b == old) + 2 * usize::from(c == old),
-            face => {
-                let at = face.iter().position(|&v| v == old);
-                at.expect("I3: a face in the fan of a vertex contains it")
-            }
-        };
-        *self.corners.write(range.start + at) = new;
-    }
-
     /// Reports each of `sides`, which were edges before, that is not an edge any more.
     fn report_removed(&self, sides: impl IntoIterator<Item = Edge>, log: &mut impl EditLog<Self>) {
         for e in sides.into_iter().filter(|&e| !self.has_edge(e)) {
