@@ -11,6 +11,29 @@ use crate::representation::QueryCost;
 pub type Refusal<M> =
     EditError<<M as MeshQuery>::Vertex, <M as MeshQuery>::Edge, <M as MeshQuery>::Face>;
 
+/// Declares edits in both forms: the short form, with the given documentation, and the form with a
+/// log. Every edit can be refused.
+macro_rules! edits {
+    ($(
+        $(#[$documentation:meta])*
+        fn $edit:ident, $logged:ident($($argument:ident: $kind:ty),+ $(,)?) -> $outcome:ty;
+    )+) => {$(
+        $(#[$documentation])*
+        #[inline]
+        fn $edit(&mut self, $($argument: $kind),+) -> $outcome {
+            self.$logged($($argument,)+ &mut ())
+        }
+
+        #[doc = concat!("Does [`", stringify!($edit), "`](Self::", stringify!($edit), "), and reports")]
+        /// all changes to `log`.
+        ///
+        /// # Errors
+        ///
+        #[doc = concat!("The same as for [`", stringify!($edit), "`](Self::", stringify!($edit), ").")]
+        fn $logged(&mut self, $($argument: $kind,)+ log: &mut impl EditLog<Self>) -> $outcome;
+    )+};
+}
+
 /// A structure whose mesh can be edited in place.
 ///
 /// # Contract
@@ -65,116 +88,50 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// Converts a compact mesh to one that can be edited; O(1). Handles stay the same.
     fn from_compact(compact: Self::Compact) -> Self;
 
-    /// Moves `v` to `to`; returns the handle of the vertex afterwards.
-    ///
-    /// # Errors
-    ///
-    /// [`EditError::Occupied`] if a vertex is its coordinates and another one is at `to`.
-    #[inline]
-    fn set_position(&mut self, v: Self::Vertex, to: Point) -> Result<Self::Vertex, Refusal<Self>> {
-        self.set_position_logged(v, to, &mut ())
+    edits! {
+        /// Moves `v` to `to`; returns the handle of the vertex afterwards.
+        ///
+        /// # Errors
+        ///
+        /// [`EditError::Occupied`] if a vertex is its coordinates and another one is at `to`.
+        fn set_position, set_position_logged(
+            v: Self::Vertex, to: Point,
+        ) -> Result<Self::Vertex, Refusal<Self>>;
+
+        /// Adds a vertex without a face.
+        ///
+        /// # Errors
+        ///
+        /// [`EditError::Unsupported`] if the structure cannot hold a vertex without a face.
+        fn add_vertex, add_vertex_logged(at: Point) -> Result<Self::Vertex, Refusal<Self>>;
+
+        /// Adds a face with these `corners`. They must be vertices already, unless a vertex is its
+        /// coordinates.
+        ///
+        /// # Errors
+        ///
+        /// Refuses fewer than three corners, a repeated corner, and a polygon if only triangles are
+        /// allowed. If only manifolds are allowed, also refuses a side that a face already runs
+        /// along in this direction, an edge that has two faces, and a corner whose faces would form
+        /// more than one fan.
+        fn add_face, add_face_logged(corners: &[Self::Vertex]) -> Result<Self::Face, Refusal<Self>>;
+
+        /// Removes `f`, and the edges that no other face has. Its corners stay, even if they are
+        /// isolated then; if a vertex is its coordinates, corners without a face are removed.
+        ///
+        /// # Errors
+        ///
+        /// [`EditError::SeveralFans`] if the faces left at a corner would form more than one fan.
+        fn remove_face, remove_face_logged(f: Self::Face) -> Result<(), Refusal<Self>>;
+
+        /// Removes `v` and its faces, as [`remove_face`](Self::remove_face) does, in one edit.
+        ///
+        /// # Errors
+        ///
+        /// [`EditError::SeveralFans`] if the faces left at another vertex would form more than one
+        /// fan.
+        fn remove_vertex, remove_vertex_logged(v: Self::Vertex) -> Result<(), Refusal<Self>>;
     }
-
-    /// Does [`set_position`](Self::set_position), and reports all changes to `log`.
-    ///
-    /// # Errors
-    ///
-    /// The same as for [`set_position`](Self::set_position).
-    fn set_position_logged(
-        &mut self,
-        v: Self::Vertex,
-        to: Point,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<Self::Vertex, Refusal<Self>>;
-
-    /// Adds a vertex without a face.
-    ///
-    /// # Errors
-    ///
-    /// [`EditError::Unsupported`] if the structure cannot hold a vertex without a face.
-    #[inline]
-    fn add_vertex(&mut self, at: Point) -> Result<Self::Vertex, Refusal<Self>> {
-        self.add_vertex_logged(at, &mut ())
-    }
-
-    /// Does [`add_vertex`](Self::add_vertex), and reports all changes to `log`.
-    ///
-    /// # Errors
-    ///
-    /// The same as for [`add_vertex`](Self::add_vertex).
-    fn add_vertex_logged(
-        &mut self,
-        at: Point,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<Self::Vertex, Refusal<Self>>;
-
-    /// Adds a face with these `corners`. They must be vertices already, unless a vertex is its
-    /// coordinates.
-    ///
-    /// # Errors
-    ///
-    /// Refuses fewer than three corners, a repeated corner, and a polygon if only triangles are
-    /// allowed. If only manifolds are allowed, also refuses a side that a face already runs along
-    /// in this direction, an edge that has two faces, and a corner whose faces would form more than
-    /// one fan.
-    #[inline]
-    fn add_face(&mut self, corners: &[Self::Vertex]) -> Result<Self::Face, Refusal<Self>> {
-        self.add_face_logged(corners, &mut ())
-    }
-
-    /// Does [`add_face`](Self::add_face), and reports all changes to `log`.
-    ///
-    /// # Errors
-    ///
-    /// The same as for [`add_face`](Self::add_face).
-    fn add_face_logged(
-        &mut self,
-        corners: &[Self::Vertex],
-        log: &mut impl EditLog<Self>,
-    ) -> Result<Self::Face, Refusal<Self>>;
-
-    /// Removes `f`, and the edges that no other face has. Its corners stay, even if they are
-    /// isolated then; if a vertex is its coordinates, corners without a face are removed.
-    ///
-    /// # Errors
-    ///
-    /// [`EditError::SeveralFans`] if the faces left at a corner would form more than one fan.
-    #[inline]
-    fn remove_face(&mut self, f: Self::Face) -> Result<(), Refusal<Self>> {
-        self.remove_face_logged(f, &mut ())
-    }
-
-    /// Does [`remove_face`](Self::remove_face), and reports all changes to `log`.
-    ///
-    /// # Errors
-    ///
-    /// The same as for [`remove_face`](Self::remove_face).
-    fn remove_face_logged(
-        &mut self,
-        f: Self::Face,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<(), Refusal<Self>>;
-
-    /// Removes `v` and its faces, as [`remove_face`](Self::remove_face) does, in one edit.
-    ///
-    /// # Errors
-    ///
-    /// [`EditError::SeveralFans`] if the faces left at another vertex would form more than one fan.
-    #[inline]
-    fn remove_vertex(&mut self, v: Self::Vertex) -> Result<(), Refusal<Self>> {
-        self.remove_vertex_logged(v, &mut ())
-    }
-
-    /// Does [`remove_vertex`](Self::remove_vertex), and reports all changes to `log`.
-    ///
-    /// # Errors
-    ///
-    /// The same as for [`remove_vertex`](Self::remove_vertex).
-    fn remove_vertex_logged(
-        &mut self,
-        v: Self::Vertex,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<(), Refusal<Self>>;
 
     /// Removes all vertices without a face; returns their number.
     #[inline]
@@ -186,258 +143,139 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// `log`.
     fn remove_isolated_vertices_logged(&mut self, log: &mut impl EditLog<Self>) -> usize;
 
-    /// Inserts a vertex at `at` into `e`, and so into each of its faces, whose degrees grow by one.
-    ///
-    /// # Errors
-    ///
-    /// [`EditError::Unsupported`] if only triangles are allowed; [`EditError::Occupied`] if a
-    /// vertex is its coordinates and another one is at `at`.
-    #[inline]
-    fn split_edge(&mut self, e: Self::Edge, at: Point) -> Result<Self::Vertex, Refusal<Self>> {
-        self.split_edge_logged(e, at, &mut ())
+    edits! {
+        /// Inserts a vertex at `at` into `e`, and so into each of its faces, whose degrees grow by
+        /// one.
+        ///
+        /// # Errors
+        ///
+        /// [`EditError::Unsupported`] if only triangles are allowed; [`EditError::Occupied`] if a
+        /// vertex is its coordinates and another one is at `at`.
+        fn split_edge, split_edge_logged(
+            e: Self::Edge, at: Point,
+        ) -> Result<Self::Vertex, Refusal<Self>>;
+
+        /// Inserts a vertex at `at` into `e` and cuts the triangles of `e` in two there: the edge
+        /// split of remeshing and of longest-edge bisection (Rivara 1984).
+        ///
+        /// ```text
+        ///      c            c
+        ///     ╱ ╲          ╱│╲
+        ///    a───b   →    a─m─b
+        ///     ╲ ╱          ╲│╱
+        ///      d            d
+        /// ```
+        ///
+        /// # Errors
+        ///
+        /// [`EditError::NotATriangle`] if a face of `e` is not a triangle; [`EditError::SameApex`]
+        /// if only manifold edges are allowed and both triangles have the same third corner;
+        /// [`EditError::Occupied`].
+        fn bisect_edge, bisect_edge_logged(
+            e: Self::Edge, at: Point,
+        ) -> Result<Self::Vertex, Refusal<Self>>;
+
+        /// Cuts `f` into one triangle per side, around a new vertex at `at`; one of the triangles
+        /// is `f`.
+        ///
+        /// # Errors
+        ///
+        /// [`EditError::Occupied`].
+        fn poke_face, poke_face_logged(
+            f: Self::Face, at: Point,
+        ) -> Result<Self::Vertex, Refusal<Self>>;
+
+        /// Cuts `f` in two by an edge between two of its corners; one of the parts is `f`.
+        ///
+        /// # Errors
+        ///
+        /// Refuses vertices that are not corners of `f`, or are equal or adjacent in `f`;
+        /// [`EditError::EdgeExists`] if only manifold edges are allowed and the two vertices have
+        /// an edge already; [`EditError::Unsupported`] if only triangles are allowed.
+        fn split_face, split_face_logged(
+            f: Self::Face, ends: [Self::Vertex; 2],
+        ) -> Result<Self::Edge, Refusal<Self>>;
+
+        /// Removes `e` and merges its two faces; returns the face that stays. Undoes
+        /// [`split_face`](Self::split_face).
+        ///
+        /// # Errors
+        ///
+        /// Refuses an edge that does not have exactly two faces, or whose faces run along it in the
+        /// same direction or share a vertex that is not an end of `e`; [`EditError::Unsupported`]
+        /// if only triangles are allowed.
+        fn dissolve_edge, dissolve_edge_logged(e: Self::Edge) -> Result<Self::Face, Refusal<Self>>;
+
+        /// Flips `e` within the quad of its two triangles; returns the handle of the edge
+        /// afterwards. Each face keeps its handle, and keeps the end of `e` at which its side along
+        /// `e` started.
+        ///
+        /// ```text
+        ///      c            c
+        ///     ╱ ╲          ╱│╲
+        ///    a───b   →    a │ b
+        ///     ╲ ╱          ╲│╱
+        ///      d            d
+        /// ```
+        ///
+        /// # Errors
+        ///
+        /// Refuses an edge that does not have exactly two faces, or whose faces run along it in the
+        /// same direction, a face that is not a triangle, two triangles with the same third corner,
+        /// and third corners that have an edge already; [`EditError::LowValence`] if an end has
+        /// just three edges and three faces.
+        fn flip_edge, flip_edge_logged(e: Self::Edge) -> Result<Self::Edge, Refusal<Self>>;
+
+        /// Merges the two ends of `e` into `keep`, at `to`; returns the handle of that vertex
+        /// afterwards. Triangles along `e` are removed, and other faces along `e` lose a corner.
+        /// Two edges of a removed triangle become one: the edge at `keep` stays.
+        ///
+        /// ```text
+        ///      c            c
+        ///     ╱ ╲           │
+        ///    k───g   →      k
+        ///     ╲ ╱           │
+        ///      d            d
+        /// ```
+        ///
+        /// # Errors
+        ///
+        /// Refuses a `keep` that is not an end of `e`, a face that has both ends but not as
+        /// adjacent corners, and a vertex that would lose its last face; [`EditError::Occupied`].
+        /// If only manifolds are allowed, also refuses violations of the link condition (Dey et al.
+        /// 1999): [`EditError::CommonNeighbour`], a vertex adjacent to both ends that is not the
+        /// third corner of a triangle along `e`; [`EditError::AcrossBoundary`], an inner edge
+        /// between two boundary vertices; [`EditError::Pillow`], two triangles that would have the
+        /// same corners.
+        fn collapse_edge, collapse_edge_logged(
+            e: Self::Edge, keep: Self::Vertex, to: Point,
+        ) -> Result<Self::Vertex, Refusal<Self>>;
+
+        /// Splits `v` in two, with a triangle on each side of the new edge; returns the new vertex.
+        /// The inverse of [`collapse_edge`](Self::collapse_edge) (Hoppe 1996).
+        ///
+        /// The new vertex gets the faces counter-clockwise around `v` from the edge to `right` to
+        /// the edge to `left`. Without `left`, the new edge is on the boundary, with its one
+        /// triangle on the right, and the new vertex gets the faces up to the boundary. Without
+        /// `right`, it gets those from the boundary to `left`.
+        ///
+        /// ```text
+        ///     left             left
+        ///    ╲ │ ╱           ╲ ╱ ╲ ╱
+        ///    ─ v ─     →     ─v───n─      faces (v, n, left) and (v, right, n) are new
+        ///    ╱ │ ╲           ╱ ╲ ╱ ╲
+        ///    right            right
+        /// ```
+        ///
+        /// # Errors
+        ///
+        /// Refuses a vertex whose faces are not one oriented fan, a `left` or `right` that is not
+        /// adjacent to `v`, equal or missing `left` and `right`, and only one of them if `v` is not
+        /// on a boundary; [`EditError::Occupied`].
+        fn split_vertex, split_vertex_logged(
+            v: Self::Vertex, left: Option<Self::Vertex>, right: Option<Self::Vertex>, at: Point,
+        ) -> Result<Self::Vertex, Refusal<Self>>;
     }
-
-    /// Does [`split_edge`](Self::split_edge), and reports all changes to `log`.
-    ///
-    /// # Errors
-    ///
-    /// The same as for [`split_edge`](Self::split_edge).
-    fn split_edge_logged(
-        &mut self,
-        e: Self::Edge,
-        at: Point,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<Self::Vertex, Refusal<Self>>;
-
-    /// Inserts a vertex at `at` into `e` and cuts the triangles of `e` in two there: the edge split
-    /// of remeshing and of longest-edge bisection (Rivara 1984).
-    ///
-    /// ```text
-    ///      c            c
-    ///     ╱ ╲          ╱│╲
-    ///    a───b   →    a─m─b
-    ///     ╲ ╱          ╲│╱
-    ///      d            d
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// [`EditError::NotATriangle`] if a face of `e` is not a triangle; [`EditError::SameApex`] if
-    /// only manifold edges are allowed and both triangles have the same third corner;
-    /// [`EditError::Occupied`].
-    #[inline]
-    fn bisect_edge(&mut self, e: Self::Edge, at: Point) -> Result<Self::Vertex, Refusal<Self>> {
-        self.bisect_edge_logged(e, at, &mut ())
-    }
-
-    /// Does [`bisect_edge`](Self::bisect_edge), and reports all changes to `log`.
-    ///
-    /// # Errors
-    ///
-    /// The same as for [`bisect_edge`](Self::bisect_edge).
-    fn bisect_edge_logged(
-        &mut self,
-        e: Self::Edge,
-        at: Point,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<Self::Vertex, Refusal<Self>>;
-
-    /// Cuts `f` into one triangle per side, around a new vertex at `at`; one of the triangles is
-    /// `f`.
-    ///
-    /// # Errors
-    ///
-    /// [`EditError::Occupied`].
-    #[inline]
-    fn poke_face(&mut self, f: Self::Face, at: Point) -> Result<Self::Vertex, Refusal<Self>> {
-        self.poke_face_logged(f, at, &mut ())
-    }
-
-    /// Does [`poke_face`](Self::poke_face), and reports all changes to `log`.
-    ///
-    /// # Errors
-    ///
-    /// The same as for [`poke_face`](Self::poke_face).
-    fn poke_face_logged(
-        &mut self,
-        f: Self::Face,
-        at: Point,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<Self::Vertex, Refusal<Self>>;
-
-    /// Cuts `f` in two by an edge between two of its corners; one of the parts is `f`.
-    ///
-    /// # Errors
-    ///
-    /// Refuses vertices that are not corners of `f`, or are equal or adjacent in `f`;
-    /// [`EditError::EdgeExists`] if only manifold edges are allowed and the two vertices have an
-    /// edge already; [`EditError::Unsupported`] if only triangles are allowed.
-    #[inline]
-    fn split_face(
-        &mut self,
-        f: Self::Face,
-        ends: [Self::Vertex; 2],
-    ) -> Result<Self::Edge, Refusal<Self>> {
-        self.split_face_logged(f, ends, &mut ())
-    }
-
-    /// Does [`split_face`](Self::split_face), and reports all changes to `log`.
-    ///
-    /// # Errors
-    ///
-    /// The same as for [`split_face`](Self::split_face).
-    fn split_face_logged(
-        &mut self,
-        f: Self::Face,
-        ends: [Self::Vertex; 2],
-        log: &mut impl EditLog<Self>,
-    ) -> Result<Self::Edge, Refusal<Self>>;
-
-    /// Removes `e` and merges its two faces; returns the face that stays. Undoes
-    /// [`split_face`](Self::split_face).
-    ///
-    /// # Errors
-    ///
-    /// Refuses an edge that does not have exactly two faces, or whose faces run along it in the
-    /// same direction or share a vertex that is not an end of `e`; [`EditError::Unsupported`] if
-    /// only triangles are allowed.
-    #[inline]
-    fn dissolve_edge(&mut self, e: Self::Edge) -> Result<Self::Face, Refusal<Self>> {
-        self.dissolve_edge_logged(e, &mut ())
-    }
-
-    /// Does [`dissolve_edge`](Self::dissolve_edge), and reports all changes to `log`.
-    ///
-    /// # Errors
-    ///
-    /// The same as for [`dissolve_edge`](Self::dissolve_edge).
-    fn dissolve_edge_logged(
-        &mut self,
-        e: Self::Edge,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<Self::Face, Refusal<Self>>;
-
-    /// Flips `e` within the quad of its two triangles; returns the handle of the edge afterwards.
-    /// Each face keeps its handle, and keeps the end of `e` at which its side along `e` started.
-    ///
-    /// ```text
-    ///      c            c
-    ///     ╱ ╲          ╱│╲
-    ///    a───b   →    a │ b
-    ///     ╲ ╱          ╲│╱
-    ///      d            d
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// Refuses an edge that does not have exactly two faces, or whose faces run along it in the
-    /// same direction, a face that is not a triangle, two triangles with the same third corner, and
-    /// third corners that have an edge already; [`EditError::LowValence`] if an end has just three
-    /// edges and three faces.
-    #[inline]
-    fn flip_edge(&mut self, e: Self::Edge) -> Result<Self::Edge, Refusal<Self>> {
-        self.flip_edge_logged(e, &mut ())
-    }
-
-    /// Does [`flip_edge`](Self::flip_edge), and reports all changes to `log`.
-    ///
-    /// # Errors
-    ///
-    /// The same as for [`flip_edge`](Self::flip_edge).
-    fn flip_edge_logged(
-        &mut self,
-        e: Self::Edge,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<Self::Edge, Refusal<Self>>;
-
-    /// Merges the two ends of `e` into `keep`, at `to`; returns the handle of that vertex
-    /// afterwards. Triangles along `e` are removed, and other faces along `e` lose a corner. Two
-    /// edges of a removed triangle become one: the edge at `keep` stays.
-    ///
-    /// ```text
-    ///      c            c
-    ///     ╱ ╲           │
-    ///    k───g   →      k
-    ///     ╲ ╱           │
-    ///      d            d
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// Refuses a `keep` that is not an end of `e`, a face that has both ends but not as adjacent
-    /// corners, and a vertex that would lose its last face; [`EditError::Occupied`]. If only
-    /// manifolds are allowed, also refuses violations of the link condition (Dey et al. 1999):
-    /// [`EditError::CommonNeighbour`], a vertex adjacent to both ends that is not the third corner
-    /// of a triangle along `e`; [`EditError::AcrossBoundary`], an inner edge between two boundary
-    /// vertices; [`EditError::Pillow`], two triangles that would have the same corners.
-    #[inline]
-    fn collapse_edge(
-        &mut self,
-        e: Self::Edge,
-        keep: Self::Vertex,
-        to: Point,
-    ) -> Result<Self::Vertex, Refusal<Self>> {
-        self.collapse_edge_logged(e, keep, to, &mut ())
-    }
-
-    /// Does [`collapse_edge`](Self::collapse_edge), and reports all changes to `log`.
-    ///
-    /// # Errors
-    ///
-    /// The same as for [`collapse_edge`](Self::collapse_edge).
-    fn collapse_edge_logged(
-        &mut self,
-        e: Self::Edge,
-        keep: Self::Vertex,
-        to: Point,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<Self::Vertex, Refusal<Self>>;
-
-    /// Splits `v` in two, with a triangle on each side of the new edge; returns the new vertex. The
-    /// inverse of [`collapse_edge`](Self::collapse_edge) (Hoppe 1996).
-    ///
-    /// The new vertex gets the faces counter-clockwise around `v` from the edge to `right` to the
-    /// edge to `left`. Without `left`, the new edge is on the boundary, with its one triangle on
-    /// the right, and the new vertex gets the faces up to the boundary. Without `right`, it gets
-    /// those from the boundary to `left`.
-    ///
-    /// ```text
-    ///     left             left
-    ///    ╲ │ ╱           ╲ ╱ ╲ ╱
-    ///    ─ v ─     →     ─v───n─      faces (v, n, left) and (v, right, n) are new
-    ///    ╱ │ ╲           ╱ ╲ ╱ ╲
-    ///    right            right
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// Refuses a vertex whose faces are not one oriented fan, a `left` or `right` that is not
-    /// adjacent to `v`, equal or missing `left` and `right`, and only one of them if `v` is not on
-    /// a boundary; [`EditError::Occupied`].
-    #[inline]
-    fn split_vertex(
-        &mut self,
-        v: Self::Vertex,
-        left: Option<Self::Vertex>,
-        right: Option<Self::Vertex>,
-        at: Point,
-    ) -> Result<Self::Vertex, Refusal<Self>> {
-        self.split_vertex_logged(v, left, right, at, &mut ())
-    }
-
-    /// Does [`split_vertex`](Self::split_vertex), and reports all changes to `log`.
-    ///
-    /// # Errors
-    ///
-    /// The same as for [`split_vertex`](Self::split_vertex).
-    fn split_vertex_logged(
-        &mut self,
-        v: Self::Vertex,
-        left: Option<Self::Vertex>,
-        right: Option<Self::Vertex>,
-        at: Point,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<Self::Vertex, Refusal<Self>>;
 
     /// Closes all holes; O(mesh). The remaining elements keep their order, in rows without gaps,
     /// and every changed handle is reported. A table that is less than half used frees its spare

@@ -65,6 +65,17 @@ impl Edit {
         costs
     };
 
+    /// The costs of the edits in a structure that searches all faces, if a log uses no reports: O(1)
+    /// for a new face, the face itself for an edit of one face, otherwise the whole mesh.
+    pub const SCAN_COSTS: [Option<QueryCost>; Self::ALL.len()] = {
+        let mut costs = [Some(QueryCost::Scan); Self::ALL.len()];
+        costs[Self::AddFace as usize] = Some(QueryCost::Constant);
+        costs[Self::RemoveFace as usize] = Some(QueryCost::Local);
+        costs[Self::PokeFace as usize] = Some(QueryCost::Local);
+        costs[Self::SplitFace as usize] = Some(QueryCost::Local);
+        costs
+    };
+
     /// Returns the name of the method: `flip_edge`.
     pub const fn name(self) -> &'static str {
         match self {

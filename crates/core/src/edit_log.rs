@@ -72,6 +72,11 @@ pub trait EditLog<M: MeshQuery> {
     fn renamed_face(&mut self, _old: M::Face, _new: M::Face) {}
 }
 
+/// Returns whether `log` uses the reports, for code that cannot name its type.
+pub const fn uses_reports<M: MeshQuery, L: EditLog<M>>(_log: &L) -> bool {
+    L::USES_REPORTS
+}
+
 /// A log that ignores all reports.
 impl<M: MeshQuery> EditLog<M> for () {
     const USES_REPORTS: bool = false;

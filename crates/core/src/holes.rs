@@ -62,6 +62,25 @@ impl<P: Probe> Holes<P> {
         self.count += 1;
     }
 
+    /// Makes every row below `end` a hole that `is_unused` and is not a hole yet. Calls `report` with
+    /// each of them, ascending, and returns their number; O(end).
+    pub fn insert_unused<H: RowId>(
+        &mut self,
+        end: usize,
+        is_unused: impl Fn(usize) -> bool,
+        mut report: impl FnMut(H),
+    ) -> usize {
+        let before = self.count;
+        for handle in (0..row(end)).map(H::from_row) {
+            let row = handle.row() as usize;
+            if is_unused(row) && !self.has(row) {
+                self.insert(row);
+                report(handle);
+            }
+        }
+        self.count - before
+    }
+
     /// Removes all holes and frees their memory, after compaction.
     pub fn clear(&mut self) {
         self.words.clear();
@@ -141,6 +160,7 @@ impl<P: Probe> Holes<P> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::row_id::VertexId;
 
     #[test]
     fn rows_skip_holes_at_all_positions() {
@@ -179,6 +199,18 @@ mod tests {
                 assert_eq!(table.rows(), expected);
             }
         }
+    }
+
+    #[test]
+    fn unused_rows_become_holes_once() {
+        let mut holes = Holes::new("holes");
+        holes.insert(2);
+        let mut inserted = Vec::new();
+        let count =
+            holes.insert_unused(6, |row| row % 2 == 0, |v: VertexId| inserted.push(v.row()));
+        assert_eq!(count, 2);
+        assert_eq!(inserted, [0, 4]);
+        assert_eq!(holes.rows(6).collect::<Vec<_>>(), [1, 3, 5]);
     }
 
     #[test]

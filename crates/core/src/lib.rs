@@ -25,7 +25,9 @@
 //!
 //! - [`Table`], [`Slot`], [`row_id!`] and [`RowId`]: rows, and handles that are rows.
 //! - [`Compact`] and [`Editable`], the two types that are [`Editing`]: type parameters of meshes
-//!   without and with deletion; [`Holes`]: the rows of deleted elements.
+//!   without and with deletion; [`Holes`]: the rows of deleted elements; [`NewRows`]: their
+//!   rows after the holes are closed.
+//! - [`check_rows`], [`check_corners`], [`check_cut`]: checks of edits.
 //! - [`FaceSpans`]: which corners belong to a face.
 //! - [`TwinPairs`]: pairs of sides, for building without hashing.
 //! - [`ScannedFaces`]: queries and edits of structures that find the faces at a vertex by a scan.
@@ -49,6 +51,7 @@ mod convert;
 mod creases;
 mod distinct;
 mod edit;
+mod edit_check;
 mod edit_error;
 mod edit_kind;
 mod edit_log;
@@ -66,6 +69,7 @@ mod local_queries;
 mod measured;
 mod memory;
 mod mesh_with_data;
+mod new_rows;
 mod numbering;
 mod oriented_walk;
 mod pairing;
@@ -118,13 +122,16 @@ pub use row_id::{EdgeId, FaceId, VertexId};
 
 // For authors of structures.
 pub use distinct::{Distinct, DistinctWalk, IteratorExt};
+pub use edit_check::{check_corners, check_cut, check_rows};
+pub use edit_log::uses_reports;
 pub use editing::{
     Compact, EDGE_HOLES, Editable, Editing, FACE_HOLES, HoleSet, NoHoles, NoScatteredFaces,
     VERTEX_HOLES,
 };
 pub use face_spans::{FaceSpans, ScatteredFaces};
 pub use holes::Holes;
-pub use pairing::{SideRows, TwinPairs, pair_triangle_sides};
+pub use new_rows::NewRows;
+pub use pairing::{LinkFaces, SideRows, TwinPairs, pair_triangle_sides};
 pub use ranks::Ranks;
 pub use refine::{
     CHUNK_ROWS, all_rows, check_split, chunk_starts, for_each_chunk, map_chunks, rows_of_chunk,

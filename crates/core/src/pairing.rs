@@ -1,7 +1,7 @@
 //! Twin pairs: the edges of an oriented manifold, found without hashing.
 
 use crate::face_list::FaceList;
-use crate::row_id::{RowId, VertexId};
+use crate::row_id::{FaceId, RowId, VertexId};
 use crate::sides::{Sides, bucket_starts, fill_buckets};
 
 /// The largest number of corners for [`TwinPairs`]: a corner and a direction share 32 bits.
@@ -93,6 +93,45 @@ impl TwinPairs {
             edge_count,
         })
     }
+
+    /// Links every face of `faces`, in order.
+    ///
+    /// If all faces have three corners, or all have four, the loop over the corners of a face is
+    /// unrolled: an implementation of [`LinkFaces`] that is inlined sees slices of known length.
+    // Always inlined: otherwise the loop loads the addresses of the tables for every corner.
+    #[inline(always)]
+    pub fn link_faces(&self, faces: &FaceList, tables: &mut impl LinkFaces) {
+        let halves = self.half_of_corner.as_slice();
+        match faces.uniform_degree() {
+            Some(3) => link_uniform::<3>(faces.corners(), halves, tables),
+            Some(4) => link_uniform::<4>(faces.corners(), halves, tables),
+            _ => {
+                for (f, corners) in faces.iter() {
+                    tables.link_face(f, corners, &halves[faces.range(f)]);
+                }
+            }
+        }
+    }
+}
+
+/// Links faces of one degree, which is known at compile time.
+#[inline]
+fn link_uniform<const DEGREE: usize>(
+    corners: &[VertexId],
+    halves: &[u32],
+    tables: &mut impl LinkFaces,
+) {
+    let corners = corners.as_chunks::<DEGREE>().0;
+    let halves = halves.as_chunks::<DEGREE>().0;
+    for (f, (corners, halves)) in (0..).zip(corners.iter().zip(halves)) {
+        tables.link_face(FaceId::new(f), corners, halves);
+    }
+}
+
+/// The tables of a structure during construction, to which faces are linked one by one.
+pub trait LinkFaces {
+    /// Links the face `f`. The half-edge `halves[i]` runs along it from `corners[i]`.
+    fn link_face(&mut self, f: FaceId, corners: &[VertexId], halves: &[u32]);
 }
 
 /// Places for the sorted sides of faces, one per corner.

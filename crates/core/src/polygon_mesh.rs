@@ -6,6 +6,7 @@ use crate::Point;
 use crate::distinct::IteratorExt;
 use crate::error::PolygonError;
 use crate::face_list::FaceList;
+use crate::handle::Handle;
 use crate::incidence::{EdgeUse, Incidence};
 use crate::measured::Counts;
 use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
@@ -277,8 +278,8 @@ fn check_face(face: FaceId, corners: &[VertexId], vertices: usize) -> Result<(),
     }
 }
 
-/// Returns a vertex that `corners` name twice.
-pub(crate) fn repeated(corners: &[VertexId]) -> Option<VertexId> {
+/// Returns the first of `corners` that repeats an earlier one.
+pub(crate) fn repeated<V: Handle>(corners: &[V]) -> Option<V> {
     if let &[a, b, c] = corners {
         return match (a == b || a == c, b == c) {
             (true, _) => Some(a),

@@ -12,8 +12,9 @@ mod edges;
 mod faces;
 mod split_vertex;
 
+use crate::edit_check::check_rows;
 use crate::edit_error::EditError;
-use crate::edit_log::EditLog;
+use crate::edit_log::{EditLog, uses_reports};
 use crate::editing::Editable;
 use crate::handle::Pair;
 use crate::probe::Probe;
@@ -28,11 +29,6 @@ type Refusal<V> = EditError<V, Pair<V>, FaceId>;
 pub trait ScannedMesh<V>: MeshQuery<Vertex = V, Edge = Pair<V>, Face = FaceId> {}
 
 impl<V, M: MeshQuery<Vertex = V, Edge = Pair<V>, Face = FaceId>> ScannedMesh<V> for M {}
-
-/// Returns whether the log uses what is reported to it.
-const fn uses_reports<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
-    L::USES_REPORTS
-}
 
 /// Steps that several edits share.
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
@@ -52,17 +48,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     /// Checks that handles can name this many more faces and corners. A face that grows moves, and
     /// takes new rows for all its corners.
     fn check_capacity(&self, faces: usize, corners: usize) -> Result<(), Refusal<V>> {
-        let full = |elements| EditError::TooMany {
-            elements,
-            limit: MAX_ROWS,
-        };
-        if self.spans.len() + faces > MAX_ROWS {
-            return Err(full("faces"));
-        }
-        if self.corners.len() + corners > MAX_ROWS {
-            return Err(full("corners"));
-        }
-        Ok(())
+        check_rows("faces", self.spans.len() + faces, MAX_ROWS)?;
+        check_rows("corners", self.corners.len() + corners, MAX_ROWS)
     }
 
     /// Returns whether a corner is at `v`; one scan.
@@ -137,18 +124,6 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         self.spans.compact(&mut self.corners, &self.holes);
         self.holes.clear();
     }
-}
-
-/// Returns an item that the list contains twice; O(n²) up to 16 items, otherwise O(n log n).
-fn repeated<T: Ord + Copy>(items: &[T]) -> Option<T> {
-    if items.len() <= 16 {
-        let mut later = items.iter().enumerate();
-        return later.find_map(|(i, item)| items[..i].contains(item).then_some(*item));
-    }
-    let mut sorted = items.to_vec();
-    sorted.sort_unstable();
-    let mut pairs = sorted.windows(2);
-    pairs.find(|pair| pair[0] == pair[1]).map(|pair| pair[0])
 }
 
 /// Returns the items sorted, each once.

@@ -2,7 +2,7 @@
 
 use sixfold_core::{
     BuildError, Counts, Editing, FACE_HOLES, FaceId, FaceList, FaceSpans, HoleSet, InvariantError,
-    Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost,
+    Measured, MemoryFootprint, MoveError, NewRows, Point, PolygonMesh, Probe, QueryCost,
     Representation, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap, row,
 };
 
@@ -41,34 +41,16 @@ impl<E: Editing> Representation for FaceVertexMesh<E> {
     }
 
     fn to_polygons(&self) -> PolygonMesh {
-        let faces = match &self.spans {
-            FaceSpans::Uniform { degree, .. }
-                if self.vertex_holes.is_empty() && self.face_holes.is_empty() =>
-            {
-                FaceList::uniform(*degree as usize, self.corners.rows().to_vec())
-            }
-            _ => {
-                let rows = (!self.vertex_holes.is_empty())
-                    .then(|| self.vertex_holes.new_rows(self.fans.len()));
-                let name = |v: VertexId| {
-                    rows.as_ref()
-                        .map_or(v, |rows| VertexId::new(rows[v.index()]))
-                };
-                let mut faces = FaceList::with_capacity(self.corners.len());
-                let pushed = self
-                    .faces()
-                    .try_for_each(|f| faces.push(self.face_vertices(f).map(name)));
-                pushed.map(|()| faces)
-            }
-        };
-        let positions = self.positions.rows();
-        let positions = if self.vertex_holes.is_empty() {
-            positions.to_vec()
-        } else {
-            self.vertices().map(|v| positions[v.index()]).collect()
-        };
-        let faces = faces.expect("I1 holds");
-        PolygonMesh::from_faces(positions, faces).expect("I1 holds")
+        let (positions, corners) = (self.positions.rows(), self.corners.rows());
+        if let FaceSpans::Uniform { degree, .. } = &self.spans
+            && self.vertex_holes.is_empty()
+            && self.face_holes.is_empty()
+        {
+            let faces = FaceList::uniform(*degree as usize, corners.to_vec()).expect("I1 holds");
+            return PolygonMesh::from_faces(positions.to_vec(), faces).expect("I1 holds");
+        }
+        let rows = NewRows::from_holes(&self.vertex_holes, positions.len());
+        rows.polygons(self, positions, corners.len())
     }
 
     fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
@@ -171,6 +153,8 @@ fn add_uniform<const DEGREE: usize>(corners: &[VertexId], mut add: impl FnMut(Fa
 
 #[cfg(test)]
 mod tests {
+    use sixfold_core::MeshQuery;
+
     use super::*;
     use crate::FaceVertexMesh;
 

@@ -16,11 +16,11 @@ mod tests;
 
 use sixfold_core::{
     Compact, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MeshEdit, NoHoles, Pair, Point,
-    Probe, QueryCost, Refusal, ShortVec, VertexId, row,
+    Probe, QueryCost, Refusal, ShortVec, VertexId, check_corners, check_cut, row, uses_reports,
 };
 
-use self::corners::{corners_from, repeated_vertex, sides, third_corner};
-use crate::mesh::{BLANK_CORNER, FaceVertexMesh, Fan};
+use self::corners::{corners_from, sides, third_corner};
+use crate::mesh::{BLANK_CORNER, FaceVertexMesh};
 
 type Edge = Pair<VertexId>;
 
@@ -74,16 +74,7 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
         corners: &[VertexId],
         log: &mut impl EditLog<Self>,
     ) -> Result<FaceId, Refusal<Self>> {
-        if corners.len() < 3 {
-            let corners = corners.len();
-            return Err(EditError::TooFewCorners { corners });
-        }
-        for &v in corners {
-            self.fan_of(v)?;
-        }
-        if let Some(vertex) = repeated_vertex(corners) {
-            return Err(EditError::RepeatedVertex { vertex });
-        }
+        check_corners(corners, |v| self.fan_of(v).and(Ok(())))?;
         self.check_room(0, 1, corners.len())?;
         if uses_reports(log) {
             let new = sides(corners).filter(|&e| !self.has_edge(e));
@@ -258,15 +249,7 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
         log: &mut impl EditLog<Self>,
     ) -> Result<Edge, Refusal<Self>> {
         let face = self.corners_of_face(f)?;
-        let [mut i, mut j] = [0; 2];
-        for (vertex, place) in ends.into_iter().zip([&mut i, &mut j]) {
-            let found = face.iter().position(|&v| v == vertex);
-            *place = found.ok_or(EditError::NotACorner { face: f, vertex })?;
-        }
-        let (i, j) = (i.min(j), i.max(j));
-        if j - i < 2 || j - i + 2 > face.len() {
-            return Err(EditError::AdjacentCorners { face: f, ends });
-        }
+        let [i, j] = check_cut(f, face, ends, |v, &corner| v == corner)?;
         let kept = ShortVec::from_iter(face[i..=j].iter().copied());
         let new = face[j..].iter().chain(&face[..=i]);
         let new = ShortVec::from_iter(new.copied());
@@ -379,45 +362,12 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
 }
 
 impl<P: Probe> FaceVertexMesh<Editable, P> {
-    /// Marks `f`, which is in no fan any more, as deleted.
-    fn delete_face(&mut self, f: FaceId) {
-        self.spans.blank(&mut self.corners, f, BLANK_CORNER);
-        self.face_holes.insert(f.index());
-    }
-
-    /// Marks `v`, which has no faces any more, as deleted.
-    fn delete_vertex(&mut self, v: VertexId) {
-        let fan = std::mem::replace(self.fans.write(v.index()), Fan::DELETED);
-        self.clear_places(fan.range());
-        self.vertex_holes.insert(v.index());
-    }
-
-    /// Replaces the corner `old` of `f` by `new`; the caller updates the fans.
-    #[inline]
-    fn replace_corner(&mut self, f: FaceId, old: VertexId, new: VertexId) {
-        let range = self.spans.range(f);
-        let at = match self.corners.read_range(range.clone()) {
-            // Without a branch, because its place is unpredictable.
-            &[_, b, c] => usize::from(b == old) + 2 * usize::from(c == old),
-            face => {
-                let at = face.iter().position(|&v| v == old);
-                at.expect("I3: a face in the fan of a vertex contains it")
-            }
-        };
-        *self.corners.write(range.start + at) = new;
-    }
-
     /// Reports each of `sides`, which were edges before, that is not an edge any more.
     fn report_removed(&self, sides: impl IntoIterator<Item = Edge>, log: &mut impl EditLog<Self>) {
         for e in sides.into_iter().filter(|&e| !self.has_edge(e)) {
             log.removed_edge(e);
         }
     }
-}
-
-/// Returns whether `log` records events.
-fn uses_reports<P: Probe, L: EditLog<FaceVertexMesh<Editable, P>>>(_: &L) -> bool {
-    L::USES_REPORTS
 }
 
 /// Reports that `m` splits `e`: `e` is renamed to its lower half, and the upper half is new.

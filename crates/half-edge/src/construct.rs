@@ -1,9 +1,9 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Counts, Editing, FaceId, FaceList, HoleSet, InvariantError, Measured,
-    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
-    RowId, RowMap, SideRows, Slot, TwinPairs, VertexId, row,
+    BuildError, Counts, Editing, FaceId, FaceList, HoleSet, InvariantError, LinkFaces, Measured,
+    MemoryFootprint, MeshQuery, MoveError, NewRows, Point, PolygonMesh, Probe, QueryCost,
+    Representation, RowId, RowMap, SideRows, Slot, TwinPairs, VertexId, row,
 };
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
@@ -44,23 +44,8 @@ impl<E: Editing> Representation for HalfEdgeMesh<E> {
     }
 
     fn to_polygons(&self) -> PolygonMesh {
-        // If there are holes, the rows after them get lower numbers.
-        let rows =
-            (!self.vertex_holes.is_empty()).then(|| self.vertex_holes.new_rows(self.vertex_rows()));
-        let mut faces = FaceList::with_capacity(self.half_edge_count());
-        for f in self.faces() {
-            let corners = self.face_vertices(f);
-            let pushed = match &rows {
-                None => faces.push(corners),
-                Some(rows) => faces.push(corners.map(|v| VertexId::new(rows[v.index()]))),
-            };
-            pushed.expect("no more corners than half-edges");
-        }
-        let positions = match rows {
-            None => self.positions().to_vec(),
-            Some(_) => self.vertices().map(|v| self.position(v)).collect(),
-        };
-        PolygonMesh::from_faces(positions, faces).expect("I7")
+        let rows = NewRows::from_holes(&self.vertex_holes, self.vertex_rows());
+        rows.polygons(self, self.positions(), self.half_edge_count())
     }
 
     fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
@@ -160,6 +145,22 @@ struct Builder {
     first: Vec<HalfEdgeId>,
 }
 
+impl LinkFaces for Builder {
+    #[inline(always)]
+    fn link_face(&mut self, f: FaceId, corners: &[VertexId], halves: &[u32]) {
+        self.first.push(HalfEdgeId::new(halves[0]));
+        for i in 0..corners.len() {
+            let next = if i + 1 == halves.len() { 0 } else { i + 1 };
+            self.halves[halves[i] as usize] = Half {
+                next: HalfEdgeId::new(halves[next]),
+                origin: corners[i],
+                face: Slot::some(f),
+            };
+            self.leaving[corners[i].index()] = Slot::some(HalfEdgeId::new(halves[i]));
+        }
+    }
+}
+
 impl Builder {
     /// Writes the half-edge of every corner over the rows of `halves`, whose faces are empty.
     /// Boundary half-edges keep an empty face.
@@ -176,43 +177,8 @@ impl Builder {
             builder.halves = Vec::new();
             builder.halves = vec![BLANK; half_count];
         }
-        let halves = pairs.half_of_corner.as_slice();
-        match faces.uniform_degree() {
-            Some(3) => builder.link_uniform::<3>(faces.corners(), halves),
-            Some(4) => builder.link_uniform::<4>(faces.corners(), halves),
-            _ => {
-                for (f, corners) in faces.iter() {
-                    builder.link_face(f, corners, &halves[faces.range(f)]);
-                }
-            }
-        }
+        pairs.link_faces(faces, &mut builder);
         builder
-    }
-
-    /// Links faces of one degree, which is known at compile time so that the loop is unrolled.
-    fn link_uniform<const DEGREE: usize>(&mut self, corners: &[VertexId], halves: &[u32]) {
-        let faces = corners
-            .as_chunks::<DEGREE>()
-            .0
-            .iter()
-            .zip(halves.as_chunks::<DEGREE>().0);
-        for (f, (corners, halves)) in (0..).zip(faces) {
-            self.link_face(FaceId::new(f), corners, halves);
-        }
-    }
-
-    #[inline(always)]
-    fn link_face(&mut self, face: FaceId, corners: &[VertexId], halves: &[u32]) {
-        self.first.push(HalfEdgeId::new(halves[0]));
-        for i in 0..corners.len() {
-            let next = if i + 1 == halves.len() { 0 } else { i + 1 };
-            self.halves[halves[i] as usize] = Half {
-                next: HalfEdgeId::new(halves[next]),
-                origin: corners[i],
-                face: Slot::some(face),
-            };
-            self.leaving[corners[i].index()] = Slot::some(HalfEdgeId::new(halves[i]));
-        }
     }
 
     /// Links the blank half-edges into loops. Returns false if two of them leave one vertex.

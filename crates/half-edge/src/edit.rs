@@ -12,7 +12,7 @@ mod tests;
 
 use sixfold_core::{
     Compact, EdgeId, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit,
-    MeshQuery, NoHoles, Point, Probe, QueryCost, Slot, VertexId, row,
+    MeshQuery, NoHoles, Point, Probe, QueryCost, Slot, VertexId, check_rows, row,
 };
 
 use crate::EditableHalfEdgeMesh;
@@ -107,15 +107,10 @@ impl<P: Probe> MeshEdit for HalfEdgeMesh<Editable, P> {
     }
 
     fn remove_isolated_vertices_logged(&mut self, log: &mut impl EditLog<Self>) -> usize {
-        let before = self.vertex_holes.len();
-        for v in (0..row(self.vertex_rows())).map(VertexId::new) {
-            let isolated = self.leaving.read(v.index()).get().is_none();
-            if isolated && !self.vertex_holes.has(v.index()) {
-                self.delete_vertex(v);
-                log.removed_vertex(v);
-            }
-        }
-        self.vertex_holes.len() - before
+        let is_isolated = |v| *self.leaving.read(v) == Slot::NONE;
+        let end = self.leaving.len();
+        self.vertex_holes
+            .insert_unused(end, is_isolated, |v| log.removed_vertex(v))
     }
 
     fn split_edge_logged(
@@ -236,17 +231,9 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
     /// Checks that this number of rows can be added.
     #[inline]
     fn check_room(&self, vertices: usize, edges: usize, faces: usize) -> Result<(), Refusal> {
-        let too_many = |elements, limit| Err(EditError::TooMany { elements, limit });
-        if self.vertex_rows() + vertices > MAX_ROWS {
-            return too_many("vertices", MAX_ROWS);
-        }
-        if self.edge_rows() + edges > MAX_ROWS / 2 {
-            return too_many("edges", MAX_ROWS / 2);
-        }
-        if self.face_rows() + faces > MAX_ROWS {
-            return too_many("faces", MAX_ROWS);
-        }
-        Ok(())
+        check_rows("vertices", self.vertex_rows() + vertices, MAX_ROWS)?;
+        check_rows("edges", self.edge_rows() + edges, MAX_ROWS / 2)?;
+        check_rows("faces", self.face_rows() + faces, MAX_ROWS)
     }
 }
 

@@ -2,8 +2,8 @@
 
 use sixfold_core::{
     BuildError, Counts, Editing, FaceId, FaceList, FaceSpans, HoleSet, InvariantError, Measured,
-    MemoryFootprint, MeshQuery, MoveError, Point, PolygonError, PolygonMesh, Probe, QueryCost,
-    Representation, ScannedFaces, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap,
+    MemoryFootprint, MoveError, NewRows, Point, PolygonMesh, Probe, QueryCost, Representation,
+    ScannedFaces, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap,
 };
 
 use crate::mesh::IndexedFaceSet;
@@ -36,17 +36,16 @@ impl<E: Editing> Representation for IndexedFaceSet<E> {
     }
 
     fn to_polygons(&self) -> PolygonMesh {
-        let positions = self.vertices().map(|v| self.positions()[v.index()]);
-        let faces = match self.spans() {
-            FaceSpans::Uniform { degree, .. }
-                if self.vertex_holes.is_empty() && self.faces.holes.is_empty() =>
-            {
-                FaceList::uniform(*degree as usize, self.corners().to_vec())
-            }
-            _ => self.faces_without_holes(),
-        };
-        let faces = faces.expect("I1: no more corners than in the tables");
-        PolygonMesh::from_faces(positions.collect(), faces).expect("I1 and I2")
+        let (positions, corners) = (self.positions(), self.corners());
+        if let FaceSpans::Uniform { degree, .. } = self.spans()
+            && self.vertex_holes.is_empty()
+            && self.faces.holes.is_empty()
+        {
+            let faces = FaceList::uniform(*degree as usize, corners.to_vec()).expect("I1");
+            return PolygonMesh::from_faces(positions.to_vec(), faces).expect("I1 and I2");
+        }
+        let rows = NewRows::from_holes(&self.vertex_holes, positions.len());
+        rows.polygons(self, positions, corners.len())
     }
 
     fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
@@ -85,22 +84,5 @@ impl<E: Editing> Measured for IndexedFaceSet<E> {
             vertex_holes: E::probed_holes(self.vertex_holes, probe.clone()),
             faces: self.faces.probed(probe),
         }
-    }
-}
-
-impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
-    /// Returns the faces, with consecutive vertex numbers.
-    fn faces_without_holes(&self) -> Result<FaceList, PolygonError> {
-        let mut faces = FaceList::with_capacity(self.corners().len());
-        let renumbered = !self.vertex_holes.is_empty();
-        let new = renumbered.then(|| self.vertex_holes.new_rows(self.positions.len()));
-        let number = |v: VertexId| match &new {
-            Some(new) => VertexId::new(new[v.index()]),
-            None => v,
-        };
-        for f in self.faces() {
-            faces.push(self.face_vertices(f).map(number))?;
-        }
-        Ok(faces)
     }
 }

@@ -1,34 +1,18 @@
 //! Edits: [`ScannedFaces`](sixfold_core::ScannedFaces) edits the faces, this file the vertices.
 
 use sixfold_core::{
-    Compact, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit, MeshQuery,
-    NoHoles, Pair, Point, Probe, QueryCost, Refusal, VertexId, row,
+    Compact, Edit, EditError, EditLog, Editable, FaceId, MAX_ROWS, MeshEdit, MeshQuery, NewRows,
+    NoHoles, Pair, Point, Probe, QueryCost, Refusal, VertexId, check_rows, row, uses_reports,
 };
 
 use crate::mesh::IndexedFaceSet;
 
 impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
-        let constant = Some(QueryCost::Constant);
-        let local = Some(QueryCost::Local);
-        let scan = Some(QueryCost::Scan);
-        [
-            constant, // set_position
-            constant, // add_vertex
-            constant, // add_face
-            local,    // remove_face
-            scan,     // remove_vertex
-            scan,     // remove_isolated_vertices
-            scan,     // split_edge
-            scan,     // bisect_edge
-            local,    // poke_face
-            local,    // split_face
-            scan,     // dissolve_edge
-            scan,     // flip_edge
-            scan,     // collapse_edge
-            scan,     // split_vertex
-            scan,     // compact
-        ]
+        let mut costs = Edit::SCAN_COSTS;
+        costs[Edit::SetPosition as usize] = Some(QueryCost::Constant);
+        costs[Edit::AddVertex as usize] = Some(QueryCost::Constant);
+        costs
     };
 
     type Compact = IndexedFaceSet<Compact, P>;
@@ -112,14 +96,8 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
                 *used = true;
             }
         }
-        let before = self.vertex_count();
-        for v in (0..row(used.len())).map(VertexId::new) {
-            if !used[v.index()] && !self.vertex_holes.has(v.index()) {
-                self.vertex_holes.insert(v.index());
-                log.removed_vertex(v);
-            }
-        }
-        before - self.vertex_count()
+        self.vertex_holes
+            .insert_unused(used.len(), |v| !used[v], |v| log.removed_vertex(v))
     }
 
     /// One scan.
@@ -222,34 +200,20 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
     }
 
     fn compact_logged(&mut self, log: &mut impl EditLog<Self>) {
-        if !self.vertex_holes.is_empty() {
-            let new = self.vertex_holes.new_rows(self.positions.len());
-            let new = |v: VertexId| VertexId::new(new[v.index()]);
-            if uses_reports(log) {
-                for v in self.vertices().filter(|&v| new(v) != v) {
-                    log.renamed_vertex(v, new(v));
-                }
-                for e in self.edges() {
-                    let [a, b] = e.ends().map(new);
-                    if e != Pair::new(a, b) {
-                        log.renamed_edge(e, Pair::new(a, b));
-                    }
-                }
-            }
-            self.faces.compact(log);
+        let rows = NewRows::from_holes(&self.vertex_holes, self.positions.len());
+        if uses_reports(log) {
+            rows.for_each_renamed(self.vertices(), |old, new| log.renamed_vertex(old, new));
+            rows.for_each_renamed_pair(self.edges(), |old, new| log.renamed_edge(old, new));
+        }
+        self.faces.compact(log);
+        if !rows.is_unchanged() {
             for v in self.faces.corners.rows_mut() {
-                *v = new(*v);
+                *v = rows.new_handle(*v);
             }
-        } else {
-            self.faces.compact(log);
         }
         self.vertex_holes.compact_table(&mut self.positions);
         self.vertex_holes.clear();
     }
-}
-
-fn uses_reports<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
-    L::USES_REPORTS
 }
 
 impl<P: Probe> IndexedFaceSet<Editable, P> {
@@ -262,12 +226,7 @@ impl<P: Probe> IndexedFaceSet<Editable, P> {
 
     /// Returns the handle of the next new vertex, or an error if there are no more handles.
     fn next_vertex(&self) -> Result<VertexId, Refusal<Self>> {
-        if self.positions.len() == MAX_ROWS {
-            return Err(EditError::TooMany {
-                elements: "vertices",
-                limit: MAX_ROWS,
-            });
-        }
+        check_rows("vertices", self.positions.len() + 1, MAX_ROWS)?;
         Ok(VertexId::new(row(self.positions.len())))
     }
 }

@@ -11,26 +11,13 @@ use crate::vertex::SoupVertex;
 
 impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
-        let constant = Some(QueryCost::Constant);
-        let local = Some(QueryCost::Local);
-        let scan = Some(QueryCost::Scan);
-        [
-            scan,     // set_position
-            None,     // add_vertex
-            constant, // add_face
-            local,    // remove_face
-            scan,     // remove_vertex
-            constant, // remove_isolated_vertices
-            scan,     // split_edge
-            scan,     // bisect_edge
-            scan,     // poke_face
-            local,    // split_face
-            scan,     // dissolve_edge
-            scan,     // flip_edge
-            scan,     // collapse_edge
-            scan,     // split_vertex
-            scan,     // compact
-        ]
+        let mut costs = Edit::SCAN_COSTS;
+        costs[Edit::AddVertex as usize] = None;
+        // No vertex is isolated.
+        costs[Edit::RemoveIsolatedVertices as usize] = Some(QueryCost::Constant);
+        // A scan checks that the position of the new vertex is free.
+        costs[Edit::PokeFace as usize] = Some(QueryCost::Scan);
+        costs
     };
 
     type Compact = PolygonSoup<Compact, P>;

@@ -2,9 +2,9 @@
 
 use sixfold_core::{
     BuildError, Counts, EDGE_HOLES, EdgeId, Editing, FACE_HOLES, FaceId, FaceList, HoleSet,
-    InvariantError, Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe,
-    QueryCost, Representation, RowMap, Slot, Table, TwinPairs, Untraced, VERTEX_HOLES, VertexId,
-    row,
+    InvariantError, LinkFaces, Measured, MemoryFootprint, MeshQuery, MoveError, NewRows, Point,
+    PolygonMesh, Probe, QueryCost, Representation, RowMap, Slot, Table, TwinPairs, Untraced,
+    VERTEX_HOLES, VertexId, row,
 };
 
 use crate::edge::{Edge, Run};
@@ -45,24 +45,9 @@ impl<E: Editing> Representation for WingedEdgeMesh<E> {
         ))
     }
 
-    /// If there are holes, the rows after them get lower numbers.
     fn to_polygons(&self) -> PolygonMesh {
-        const EXPECTED: &str = "no more corners than sides of edges";
-        let mut faces = FaceList::with_capacity(2 * self.edge_count());
-        if self.vertex_holes.is_empty() {
-            for f in self.faces() {
-                faces.push(self.face_vertices(f)).expect(EXPECTED);
-            }
-            return PolygonMesh::from_faces(self.positions().to_vec(), faces).expect("I7");
-        }
-        let rows = self.vertex_holes.new_rows(self.positions.len());
-        for f in self.faces() {
-            let corners = self.face_vertices(f);
-            let corners = corners.map(|v| VertexId::new(rows[v.index()]));
-            faces.push(corners).expect(EXPECTED);
-        }
-        let positions = self.vertices().map(|v| self.positions()[v.index()]);
-        PolygonMesh::from_faces(positions.collect(), faces).expect("I7")
+        let rows = NewRows::from_holes(&self.vertex_holes, self.positions.len());
+        rows.polygons(self, self.positions(), 2 * self.edge_count())
     }
 
     fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
@@ -153,42 +138,9 @@ struct Builder {
     sides: Vec<EdgeId>,
 }
 
-impl Builder {
-    /// Writes the side of every corner into its edge. Sides without a face stay blank, except for
-    /// their ends.
-    fn from_faces(vertices: usize, faces: &FaceList, pairs: &TwinPairs) -> Self {
-        let mut builder = Self {
-            spokes: vec![Slot::NONE; vertices],
-            edges: vec![Edge::BLANK; pairs.edge_count],
-            sides: Vec::with_capacity(faces.len()),
-        };
-        let halves = pairs.half_of_corner.as_slice();
-        match faces.uniform_degree() {
-            Some(3) => builder.link_uniform::<3>(faces.corners(), halves),
-            Some(4) => builder.link_uniform::<4>(faces.corners(), halves),
-            _ => {
-                for (f, corners) in faces.iter() {
-                    builder.link_face(f, corners, &halves[faces.range(f)]);
-                }
-            }
-        }
-        builder
-    }
-
-    /// Links faces of one degree, which is known at compile time so that the loop is unrolled.
-    fn link_uniform<const DEGREE: usize>(&mut self, corners: &[VertexId], halves: &[u32]) {
-        let faces = corners
-            .as_chunks::<DEGREE>()
-            .0
-            .iter()
-            .zip(halves.as_chunks::<DEGREE>().0);
-        for (f, (corners, halves)) in (0..).zip(faces) {
-            self.link_face(FaceId::new(f), corners, halves);
-        }
-    }
-
+impl LinkFaces for Builder {
     #[inline(always)]
-    fn link_face(&mut self, face: FaceId, corners: &[VertexId], halves: &[u32]) {
+    fn link_face(&mut self, f: FaceId, corners: &[VertexId], halves: &[u32]) {
         let edge_id = |half: u32| EdgeId::new(half >> 1);
         self.sides.push(edge_id(halves[0]));
         let last = corners.len() - 1;
@@ -202,11 +154,25 @@ impl Builder {
             let side = Side::right_if(halves[i] & 1 == 1);
             // The even half-edge of a pair runs from the lower end to the higher end.
             edge.ends = [here.min(then), here.max(then)];
-            edge.faces[side.index()] = Slot::some(face);
+            edge.faces[side.index()] = Slot::some(f);
             edge.next.link(side, edge_id(halves[next]));
             edge.prev.link(side, edge_id(halves[prev]));
             self.spokes[here.index()] = Slot::some(edge_id(halves[i]));
         }
+    }
+}
+
+impl Builder {
+    /// Writes the side of every corner into its edge. Sides without a face stay blank, except for
+    /// their ends.
+    fn from_faces(vertices: usize, faces: &FaceList, pairs: &TwinPairs) -> Self {
+        let mut builder = Self {
+            spokes: vec![Slot::NONE; vertices],
+            edges: vec![Edge::BLANK; pairs.edge_count],
+            sides: Vec::with_capacity(faces.len()),
+        };
+        pairs.link_faces(faces, &mut builder);
+        builder
     }
 
     /// Links the blank sides into loops. Returns false if two of them arrive at one vertex.

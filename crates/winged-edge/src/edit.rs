@@ -9,7 +9,7 @@
 
 use sixfold_core::{
     Compact, EdgeId, Edit, EditLog, Editable, FaceId, MeshEdit, NoHoles, Point, Probe, QueryCost,
-    Refusal, VertexId,
+    Refusal, Slot, VertexId,
 };
 
 use crate::mesh::WingedEdgeMesh;
@@ -101,7 +101,10 @@ impl<P: Probe> MeshEdit for WingedEdgeMesh<Editable, P> {
 
     /// O(vertices).
     fn remove_isolated_vertices_logged(&mut self, log: &mut impl EditLog<Self>) -> usize {
-        self.remove_isolated(log)
+        let is_isolated = |v| *self.spokes.read(v) == Slot::NONE;
+        let end = self.spokes.len();
+        self.vertex_holes
+            .insert_unused(end, is_isolated, |v| log.removed_vertex(v))
     }
 
     /// O(1). The old edge keeps its start; the new edge continues to the old end.

@@ -1,9 +1,9 @@
 //! Collapsing an edge, and moving a vertex in structures where a vertex is its coordinates.
 
-use super::{Refusal, ScannedMesh, sorted_once, uses_reports};
+use super::{Refusal, ScannedMesh, sorted_once};
 use crate::distinct::IteratorExt;
 use crate::edit_error::EditError;
-use crate::edit_log::EditLog;
+use crate::edit_log::{EditLog, uses_reports};
 use crate::editing::Editable;
 use crate::handle::Pair;
 use crate::probe::Probe;

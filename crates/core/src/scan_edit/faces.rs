@@ -1,8 +1,9 @@
 //! Edits of whole faces.
 
-use super::{Refusal, ScannedMesh, repeated, sorted_once, uses_reports};
+use super::{Refusal, ScannedMesh, sorted_once};
+use crate::edit_check::{check_corners, check_cut};
 use crate::edit_error::EditError;
-use crate::edit_log::EditLog;
+use crate::edit_log::{EditLog, uses_reports};
 use crate::editing::Editable;
 use crate::handle::Pair;
 use crate::probe::Probe;
@@ -22,13 +23,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         corners: &[V],
         log: &mut impl EditLog<M>,
     ) -> Result<FaceId, Refusal<V>> {
-        if corners.len() < 3 {
-            let corners = corners.len();
-            return Err(EditError::TooFewCorners { corners });
-        }
-        if let Some(vertex) = repeated(corners) {
-            return Err(EditError::RepeatedVertex { vertex });
-        }
+        check_corners(corners, |_| Ok(()))?;
         self.check_capacity(1, corners.len())?;
         if uses_reports(log) {
             let sides = Pair::sides(corners.len(), |i| corners[i]);
@@ -179,15 +174,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ) -> Result<Pair<V>, Refusal<V>> {
         self.check_face(f)?;
         let face: ShortVec<V::Corner> = self.face(f).iter().copied().collect();
-        let mut at = [0; 2];
-        for (at, vertex) in at.iter_mut().zip(ends) {
-            let found = face.iter().position(|corner| vertex.is_at(corner));
-            *at = found.ok_or(EditError::NotACorner { face: f, vertex })?;
-        }
-        let (i, j) = (at[0].min(at[1]), at[0].max(at[1]));
-        if j - i < 2 || j - i + 2 > face.len() {
-            return Err(EditError::AdjacentCorners { face: f, ends });
-        }
+        let [i, j] = check_cut(f, &face, ends, |v, corner| v.is_at(corner))?;
         self.check_capacity(1, face.len() + 2)?;
         let edge = Pair::new(ends[0], ends[1]);
         if uses_reports(log) && self.edge_faces(edge).next().is_none() {

@@ -1,6 +1,8 @@
 //! Compaction: removal of the deleted rows.
 
-use sixfold_core::{EditLog, Editable, FaceId, HoleSet, MeshQuery, Probe, RowId, Slot, VertexId};
+use sixfold_core::{
+    EditLog, Editable, FaceId, HoleSet, MeshQuery, Probe, RowId, Slot, VertexId, uses_reports,
+};
 
 use super::faced_by;
 use crate::mesh::{CornerId, CornerTable};
@@ -75,11 +77,6 @@ fn new_corner(c: CornerId, faces: &[u32]) -> CornerId {
 fn new_slot(c: Slot<CornerId>, faces: &[u32]) -> Slot<CornerId> {
     c.get()
         .map_or(Slot::NONE, |c| Slot::some(new_corner(c, faces)))
-}
-
-/// Returns whether the log records events.
-fn uses_reports<M: MeshQuery, L: EditLog<M>>(_: &L) -> bool {
-    L::USES_REPORTS
 }
 
 #[cfg(test)]

@@ -2,11 +2,12 @@
 
 use sixfold_core::{
     EditError, EditLog, Editable, FaceId, Lookup, Pair, Point, Probe, ShortVec, VertexId,
+    uses_reports,
 };
 
+use super::Edge;
 use super::corners::third_corner;
 use super::find::Refused;
-use super::{Edge, uses_reports};
 use crate::mesh::{BLANK_CORNER, FaceVertexMesh};
 
 impl<P: Probe> FaceVertexMesh<Editable, P> {

@@ -1,24 +1,8 @@
 //! Compaction: removal of the deleted rows and of the blanks.
 
-use sixfold_core::{EditLog, Editable, FaceId, HoleSet, Holes, MeshQuery, Pair, Probe, RowId, row};
+use sixfold_core::{EditLog, Editable, FaceId, MeshQuery, NewRows, Probe, row, uses_reports};
 
-use super::uses_reports;
 use crate::mesh::{FaceVertexMesh, Fan};
-
-/// The new rows of vertices or faces after compaction; `None` if there are no holes.
-struct NewRows(Option<Vec<u32>>);
-
-impl NewRows {
-    fn from_holes<P: Probe>(holes: &Holes<P>, end: usize) -> Self {
-        Self((!holes.is_empty()).then(|| holes.new_rows(end)))
-    }
-
-    #[inline]
-    fn new_handle<H: RowId>(&self, old: H) -> H {
-        let new = |rows: &Vec<u32>| H::from_row(rows[old.row() as usize]);
-        self.0.as_ref().map_or(old, new)
-    }
-}
 
 impl<P: Probe> FaceVertexMesh<Editable, P> {
     /// Implements [`compact`](sixfold_core::MeshEdit::compact).
@@ -29,7 +13,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
             self.report_new_rows(&vertices, &faces, log);
         }
         self.spans.compact(&mut self.corners, &self.face_holes);
-        if vertices.0.is_some() {
+        if !vertices.is_unchanged() {
             for v in self.corners.rows_mut() {
                 *v = vertices.new_handle(*v);
             }
@@ -58,19 +42,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
     }
 
     fn report_new_rows(&self, vertices: &NewRows, faces: &NewRows, log: &mut impl EditLog<Self>) {
-        if vertices.0.is_some() {
-            for v in self.vertices().filter(|&v| vertices.new_handle(v) != v) {
-                log.renamed_vertex(v, vertices.new_handle(v));
-            }
-            for e in self.edges() {
-                let [a, b] = e.ends().map(|v| vertices.new_handle(v));
-                if Pair::new(a, b) != e {
-                    log.renamed_edge(e, Pair::new(a, b));
-                }
-            }
-        }
-        for f in self.faces().filter(|&f| faces.new_handle(f) != f) {
-            log.renamed_face(f, faces.new_handle(f));
-        }
+        vertices.for_each_renamed(self.vertices(), |old, new| log.renamed_vertex(old, new));
+        vertices.for_each_renamed_pair(self.edges(), |old, new| log.renamed_edge(old, new));
+        faces.for_each_renamed(self.faces(), |old, new| log.renamed_face(old, new));
     }
 }

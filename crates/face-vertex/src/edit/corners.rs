@@ -1,9 +1,10 @@
-//! Functions on the corner list of a face.
+//! Functions on the corner list of a face, and changes of it that leave the fans to the caller.
 
-use sixfold_core::{Pair, VertexId};
+use sixfold_core::{Editable, FaceId, Pair, Probe, VertexId};
 
 use super::Edge;
 use crate::circulate::neighbours_in;
+use crate::mesh::{BLANK_CORNER, FaceVertexMesh};
 
 /// Returns the sides of a face.
 pub(super) fn sides(face: &[VertexId]) -> impl Iterator<Item = Edge> {
@@ -31,16 +32,25 @@ pub(super) fn third_corner(face: [VertexId; 3], e: Edge) -> (VertexId, VertexId)
     (neighbours_in(&face, apex)[0], apex)
 }
 
-/// Returns a vertex that occurs twice.
-pub(super) fn repeated_vertex(corners: &[VertexId]) -> Option<VertexId> {
-    const FEW: usize = 16;
-    if corners.len() <= FEW {
-        let mut earlier = corners.iter().enumerate();
-        let twice = earlier.find(|&(i, v)| corners[..i].contains(v));
-        return twice.map(|(_, &v)| v);
+impl<P: Probe> FaceVertexMesh<Editable, P> {
+    /// Marks `f`, which is in no fan any more, as deleted.
+    pub(super) fn delete_face(&mut self, f: FaceId) {
+        self.spans.blank(&mut self.corners, f, BLANK_CORNER);
+        self.face_holes.insert(f.index());
     }
-    let mut sorted = corners.to_vec();
-    sorted.sort_unstable();
-    let twice = sorted.windows(2).find(|pair| pair[0] == pair[1]);
-    twice.map(|pair| pair[0])
+
+    /// Replaces the corner `old` of `f` by `new`; the caller updates the fans.
+    #[inline]
+    pub(super) fn replace_corner(&mut self, f: FaceId, old: VertexId, new: VertexId) {
+        let range = self.spans.range(f);
+        let at = match self.corners.read_range(range.clone()) {
+            // Without a branch, because its place is unpredictable.
+            &[_, b, c] => usize::from(b == old) + 2 * usize::from(c == old),
+            face => {
+                let at = face.iter().position(|&v| v == old);
+                at.expect("I3: a face in the fan of a vertex contains it")
+            }
+        };
+        *self.corners.write(range.start + at) = new;
+    }
 }

@@ -168,4 +168,11 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         self.pool.extend(faces.iter().copied());
         v
     }
+
+    /// Marks `v`, which has no faces any more, as deleted.
+    pub(super) fn delete_vertex(&mut self, v: VertexId) {
+        let fan = std::mem::replace(self.fans.write(v.index()), Fan::DELETED);
+        self.clear_places(fan.range());
+        self.vertex_holes.insert(v.index());
+    }
 }

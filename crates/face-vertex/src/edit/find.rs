@@ -1,7 +1,7 @@
 //! Lookups before an edit changes anything: handles, faces at an edge, room for new elements.
 
 use sixfold_core::{
-    EditError, Editable, FaceId, IteratorExt, MAX_ROWS, Pair, Probe, ShortVec, VertexId,
+    EditError, Editable, FaceId, IteratorExt, MAX_ROWS, Pair, Probe, ShortVec, VertexId, check_rows,
 };
 
 use crate::circulate::{has_side_between, neighbours_in};
@@ -208,33 +208,13 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         faces: usize,
         corners: usize,
     ) -> Result<(), Refused> {
-        let is_full = self.fans.len() + vertices > MAX_ROWS
-            || self.spans.len() + faces > MAX_ROWS
-            || self.corners.len() + corners > MAX_ROWS
-            || self.pool.len() + corners > MAX_PLACES;
-        if is_full {
-            return Err(self.too_many(vertices, faces, corners));
-        }
-        Ok(())
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn too_many(&self, vertices: usize, faces: usize, corners: usize) -> Refused {
-        let limits = [
-            ("vertices", self.fans.len() + vertices, MAX_ROWS),
-            ("faces", self.spans.len() + faces, MAX_ROWS),
-            ("corners", self.corners.len() + corners, MAX_ROWS),
-            (
-                "places in the fan pool",
-                self.pool.len() + corners,
-                MAX_PLACES,
-            ),
-        ];
-        let (elements, _, limit) = limits
-            .into_iter()
-            .find(|&(_, number, limit)| number > limit)
-            .expect("one of them is too large");
-        EditError::TooMany { elements, limit }
+        check_rows("vertices", self.fans.len() + vertices, MAX_ROWS)?;
+        check_rows("faces", self.spans.len() + faces, MAX_ROWS)?;
+        check_rows("corners", self.corners.len() + corners, MAX_ROWS)?;
+        check_rows(
+            "places in the fan pool",
+            self.pool.len() + corners,
+            MAX_PLACES,
+        )
     }
 }

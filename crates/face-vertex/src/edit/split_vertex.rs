@@ -1,11 +1,10 @@
 //! Splitting a vertex, with a triangle on each side of the new edge.
 
 use sixfold_core::{
-    EditError, EditLog, Editable, FaceId, Pair, Point, Probe, ShortVec, VertexId, row,
+    EditError, EditLog, Editable, FaceId, Pair, Point, Probe, ShortVec, VertexId, row, uses_reports,
 };
 
 use super::find::Refused;
-use super::uses_reports;
 use crate::circulate::neighbours_in;
 use crate::mesh::FaceVertexMesh;
 

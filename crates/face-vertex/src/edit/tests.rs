@@ -1,7 +1,7 @@
 //! Tests beyond the conformance suite: the tables after an edit, their size, and panics.
 
 use crate::EditableFaceVertexMesh;
-use crate::mesh::BLANK_PLACE;
+use crate::mesh::{BLANK_PLACE, Fan};
 use sixfold_core::{EditRecord, FaceSpans, MeshQuery, PolygonMesh, Representation};
 
 use super::*;

@@ -1,6 +1,6 @@
 //! Compaction: closes the holes.
 
-use sixfold_core::{EditLog, Editable, FaceId, HoleSet, Holes, MeshQuery, Probe, RowId, VertexId};
+use sixfold_core::{EditLog, Editable, MeshQuery, NewRows, Probe, RowId};
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
@@ -21,23 +21,19 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
 
     /// Replaces every handle in the tables, and moves the half-edges, which have two rows per edge.
     fn rename_rows<L: EditLog<Self>>(&mut self, log: &mut L) {
-        let vertices = self.vertex_holes.new_rows(self.vertex_rows());
-        let edges = self.edge_holes.new_rows(self.edge_rows());
-        let faces = self.face_holes.new_rows(self.face_rows());
+        let vertices = NewRows::from_holes(&self.vertex_holes, self.vertex_rows());
+        let edges = NewRows::from_holes(&self.edge_holes, self.edge_rows());
+        let faces = NewRows::from_holes(&self.face_holes, self.face_rows());
         if L::USES_REPORTS {
-            report_new_rows(&self.vertex_holes, &vertices, |old, new| {
-                log.renamed_vertex(old, new);
-            });
-            report_new_rows(&self.edge_holes, &edges, |old, new| {
-                log.renamed_edge(old, new);
-            });
-            report_new_rows(&self.face_holes, &faces, |old, new| {
-                log.renamed_face(old, new);
-            });
+            vertices.for_each_renamed(self.vertices(), |old, new| log.renamed_vertex(old, new));
+            edges.for_each_renamed(self.edges(), |old, new| log.renamed_edge(old, new));
+            faces.for_each_renamed(self.faces(), |old, new| log.renamed_face(old, new));
         }
 
-        let half =
-            |h: HalfEdgeId| HalfEdgeId::new(edges[h.edge().index()] << 1 | (h.index() as u32 & 1));
+        let half = |h: HalfEdgeId| {
+            let edge = edges.new_handle(h.edge());
+            HalfEdgeId::new(edge.row() << 1 | (h.row() & 1))
+        };
         for leaving in self.leaving.rows_mut() {
             *leaving = leaving.get().map(half).into();
         }
@@ -50,25 +46,11 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         for from in self.edge_holes.rows(rows.len()) {
             rows[to] = rows[from as usize].map(|old| Half {
                 next: half(old.next),
-                origin: VertexId::new(vertices[old.origin.index()]),
-                face: old.face.get().map(|f| FaceId::new(faces[f.index()])).into(),
+                origin: vertices.new_handle(old.origin),
+                face: old.face.get().map(|f| faces.new_handle(f)).into(),
             });
             to += 1;
         }
         self.halves.truncate(2 * to);
-    }
-}
-
-/// Calls `report` with the old and the new handle of each row that moves.
-fn report_new_rows<H: RowId, P: Probe>(
-    holes: &Holes<P>,
-    new_rows: &[u32],
-    mut report: impl FnMut(H, H),
-) {
-    for old in holes.rows(new_rows.len()) {
-        let new = new_rows[old as usize];
-        if new != old {
-            report(H::from_row(old), H::from_row(new));
-        }
     }
 }

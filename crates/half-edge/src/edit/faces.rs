@@ -1,6 +1,6 @@
 //! Adding and removing faces.
 
-use sixfold_core::{EditError, EditLog, Editable, FaceId, IteratorExt, Probe, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, Editable, FaceId, Probe, Slot, VertexId, check_corners};
 
 use super::Refusal;
 use super::handle_set::HandleSet;
@@ -59,21 +59,8 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
 
     /// Checks a new face over `corners`; returns the number of edges that it adds.
     fn check_new_face(&self, corners: &[VertexId]) -> Result<usize, Refusal> {
+        check_corners(corners, |v| self.check_vertex(v))?;
         let degree = corners.len();
-        if degree < 3 {
-            return Err(EditError::TooFewCorners { corners: degree });
-        }
-        for &v in corners {
-            self.check_vertex(v)?;
-        }
-        for (&v, first) in corners
-            .iter()
-            .zip(corners.iter().distinct().map(Some).chain([None]))
-        {
-            if first != Some(&v) {
-                return Err(EditError::RepeatedVertex { vertex: v });
-            }
-        }
         let mut new_edges = 0;
         let mut filled_before = self
             .boundary_side(corners[degree - 1], corners[0])

@@ -1,8 +1,7 @@
 //! Adding faces.
 
 use sixfold_core::{
-    EditError, EditLog, Editable, FaceId, Lookup, MeshQuery, Probe, Refusal, ShortVec, Slot,
-    VertexId,
+    EditError, EditLog, Editable, FaceId, MeshQuery, Probe, Refusal, Slot, VertexId, check_corners,
 };
 
 use super::primitives::runs_of;
@@ -48,14 +47,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
 
     /// Checks a new face over `corners`; returns the number of edges that it adds.
     fn check_new_face(&self, corners: &[VertexId]) -> Result<usize, Refusal<Self>> {
-        if corners.len() < 3 {
-            let corners = corners.len();
-            return Err(EditError::TooFewCorners { corners });
-        }
-        corners.iter().try_for_each(|&v| self.check_vertex(v))?;
-        if let Some(vertex) = repeated_vertex(corners) {
-            return Err(EditError::RepeatedVertex { vertex });
-        }
+        check_corners(corners, |v| self.check_vertex(v))?;
         let mut new_edges = 0;
         let mut before_is_new = self.is_new([corners[corners.len() - 1], corners[0]])?;
         for (i, &v) in corners.iter().enumerate() {
@@ -138,17 +130,4 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
 struct NewSide {
     run: RunId,
     is_new: bool,
-}
-
-/// Returns a vertex that occurs twice, if there is one.
-fn repeated_vertex(corners: &[VertexId]) -> Option<VertexId> {
-    if corners.len() <= 16 {
-        let mut pairs = corners.iter().enumerate();
-        return pairs.find_map(|(i, v)| corners[..i].contains(v).then_some(*v));
-    }
-    let mut sorted = ShortVec::new();
-    corners.iter().for_each(|&v| sorted.push(v));
-    sorted.sort_for_lookup();
-    let twice = sorted.as_slice().windows(2).find(|pair| pair[0] == pair[1]);
-    twice.map(|pair| pair[0])
 }

@@ -1,8 +1,6 @@
 //! Compaction: closes the holes.
 
-use sixfold_core::{
-    EdgeId, EditLog, Editable, FaceId, HoleSet, Holes, Probe, RowId, Slot, VertexId,
-};
+use sixfold_core::{EdgeId, EditLog, Editable, FaceId, MeshQuery, NewRows, Probe, Slot, VertexId};
 
 use crate::mesh::WingedEdgeMesh;
 use crate::wings::Wings;
@@ -14,9 +12,9 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         let edges = NewRows::from_holes(&self.edge_holes, self.edges.len());
         let faces = NewRows::from_holes(&self.face_holes, self.sides.len());
         if L::USES_REPORTS {
-            vertices.report_new_rows(&self.vertex_holes, |old, new| log.renamed_vertex(old, new));
-            edges.report_new_rows(&self.edge_holes, |old, new| log.renamed_edge(old, new));
-            faces.report_new_rows(&self.face_holes, |old, new| log.renamed_face(old, new));
+            vertices.for_each_renamed(self.vertices(), |old, new| log.renamed_vertex(old, new));
+            edges.for_each_renamed(self.edges(), |old, new| log.renamed_edge(old, new));
+            faces.for_each_renamed(self.faces(), |old, new| log.renamed_face(old, new));
         }
         self.vertex_holes.compact_table(&mut self.positions);
         self.vertex_holes.compact_table(&mut self.spokes);
@@ -40,41 +38,5 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         self.vertex_holes.clear();
         self.edge_holes.clear();
         self.face_holes.clear();
-    }
-}
-
-/// The new row of each old row after the holes are closed.
-struct NewRows {
-    /// By old row; empty if there are no holes, because every row then stays.
-    rows: Vec<u32>,
-}
-
-impl NewRows {
-    fn from_holes<P: Probe>(holes: &Holes<P>, rows: usize) -> Self {
-        let rows = if holes.is_empty() {
-            Vec::new()
-        } else {
-            holes.new_rows(rows)
-        };
-        Self { rows }
-    }
-
-    #[inline(always)]
-    fn new_handle<H: RowId>(&self, old: H) -> H {
-        if self.rows.is_empty() {
-            old
-        } else {
-            H::from_row(self.rows[old.row() as usize])
-        }
-    }
-
-    /// Calls `report` with the old and the new handle of each row that moves.
-    fn report_new_rows<H: RowId, P: Probe>(&self, holes: &Holes<P>, mut report: impl FnMut(H, H)) {
-        for old in holes.handles(self.rows.len()) {
-            let new = self.new_handle(old);
-            if old != new {
-                report(old, new);
-            }
-        }
     }
 }

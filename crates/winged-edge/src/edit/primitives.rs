@@ -2,7 +2,7 @@
 
 use sixfold_core::{
     EdgeId, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, Point, Probe, Refusal, Slot,
-    VertexId, row,
+    VertexId, check_rows, row,
 };
 
 use crate::edge::{Edge, NO_EDGE, Run, RunId};
@@ -52,16 +52,9 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
     #[inline(always)]
     pub(super) fn check_room(&self, more: [usize; 3]) -> Result<(), Refusal<Self>> {
         let [vertices, edges, faces] = more;
-        for (elements, rows, limit) in [
-            ("vertices", self.positions.len() + vertices, MAX_ROWS),
-            ("edges", self.edges.len() + edges, MAX_EDGES),
-            ("faces", self.sides.len() + faces, MAX_ROWS),
-        ] {
-            if rows > limit {
-                return Err(EditError::TooMany { elements, limit });
-            }
-        }
-        Ok(())
+        check_rows("vertices", self.positions.len() + vertices, MAX_ROWS)?;
+        check_rows("edges", self.edges.len() + edges, MAX_EDGES)?;
+        check_rows("faces", self.sides.len() + faces, MAX_ROWS)
     }
 }
 

@@ -1,8 +1,7 @@
 //! Removing one face, all faces at a vertex, and isolated vertices.
 
 use sixfold_core::{
-    EditError, EditLog, Editable, FaceId, HoleSet, Lookup, Probe, Refusal, ShortVec, Slot,
-    VertexId, row,
+    EditError, EditLog, Editable, FaceId, Lookup, Probe, Refusal, ShortVec, Slot, VertexId,
 };
 
 use crate::edge::{Run, RunId};
@@ -112,17 +111,6 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         }
         self.delete_vertex(v, log);
         Ok(())
-    }
-
-    pub(super) fn remove_isolated(&mut self, log: &mut impl EditLog<Self>) -> usize {
-        let before = self.vertex_holes.len();
-        for v in 0..self.spokes.len() {
-            let isolated = *self.spokes.read(v) == Slot::NONE && !self.vertex_holes.has(v);
-            if isolated {
-                self.delete_vertex(VertexId::new(row(v)), log);
-            }
-        }
-        self.vertex_holes.len() - before
     }
 
     fn outline_run(&self, id: RunId, gone: &ShortVec<FaceId>) -> OutlineRun {

@@ -1,0 +1,148 @@
+//! The rows of elements after holes are closed.
+
+use crate::Point;
+use crate::editing::HoleSet;
+use crate::face_list::FaceList;
+use crate::handle::Pair;
+use crate::polygon_mesh::PolygonMesh;
+use crate::probe::Probe;
+use crate::query::MeshQuery;
+use crate::row_id::{RowId, VertexId};
+
+/// The row that each element gets when the holes of a table are closed: the number of rows before
+/// it that are not holes.
+///
+/// ```text
+/// old row   0 1 2 3 4 5 6 7
+/// hole          •     • •
+/// new row   0 1   2 3     4
+/// ```
+#[derive(Clone, Debug)]
+pub struct NewRows {
+    /// By old row; empty if there are no holes, because every row then stays.
+    rows: Vec<u32>,
+}
+
+impl NewRows {
+    /// Numbers the rows below `end` that are not holes; O(end), or O(1) if there are no holes.
+    pub fn from_holes<P: Probe>(holes: &impl HoleSet<P>, end: usize) -> Self {
+        let rows = if holes.is_empty() {
+            Vec::new()
+        } else {
+            holes.new_rows(end)
+        };
+        Self { rows }
+    }
+
+    /// Returns whether there are no holes, so that every row stays.
+    #[inline]
+    pub fn is_unchanged(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Returns the new handle of `old`, which is not a hole.
+    #[inline]
+    pub fn new_handle<H: RowId>(&self, old: H) -> H {
+        // One comparison for both: whether the row is in the list, and whether there is a list.
+        let new = self.rows.get(old.row() as usize);
+        new.map_or(old, |&new| H::from_row(new))
+    }
+
+    /// Calls `report` with the old and the new handle of each of `elements` whose row changes.
+    pub fn for_each_renamed<H: RowId>(
+        &self,
+        elements: impl Iterator<Item = H>,
+        report: impl FnMut(H, H),
+    ) {
+        if !self.is_unchanged() {
+            for_each_changed(elements, |old| self.new_handle(old), report);
+        }
+    }
+
+    /// Does the same for elements whose handles are pairs.
+    pub fn for_each_renamed_pair<H: RowId>(
+        &self,
+        elements: impl Iterator<Item = Pair<H>>,
+        report: impl FnMut(Pair<H>, Pair<H>),
+    ) {
+        if !self.is_unchanged() {
+            let new_pair = |old: Pair<H>| {
+                let [a, b] = old.ends().map(|end| self.new_handle(end));
+                Pair::new(a, b)
+            };
+            for_each_changed(elements, new_pair, report);
+        }
+    }
+
+    /// Returns the polygons of `mesh`, whose vertices get these rows. `positions` has the old rows;
+    /// `corners` is an estimate of the number of corners, for reserving memory.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the faces of `mesh` are not valid polygons, which its invariants exclude.
+    pub fn polygons<M: MeshQuery<Vertex = VertexId>>(
+        &self,
+        mesh: &M,
+        positions: &[Point],
+        corners: usize,
+    ) -> PolygonMesh {
+        const EXPECTED: &str = "the faces of a structure are valid polygons";
+        let mut faces = FaceList::with_capacity(corners);
+        for f in mesh.faces() {
+            let corners = mesh.face_vertices(f);
+            let pushed = if self.is_unchanged() {
+                faces.push(corners)
+            } else {
+                faces.push(corners.map(|v| self.new_handle(v)))
+            };
+            pushed.expect(EXPECTED);
+        }
+        let positions = if self.is_unchanged() {
+            positions.to_vec()
+        } else {
+            mesh.vertices().map(|v| positions[v.index()]).collect()
+        };
+        PolygonMesh::from_faces(positions, faces).expect(EXPECTED)
+    }
+}
+
+/// Calls `report` with each of `elements` that `new_handle` changes, and its new handle.
+fn for_each_changed<H: PartialEq + Copy>(
+    elements: impl Iterator<Item = H>,
+    new_handle: impl Fn(H) -> H,
+    mut report: impl FnMut(H, H),
+) {
+    for old in elements {
+        let new = new_handle(old);
+        if new != old {
+            report(old, new);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::holes::Holes;
+    use crate::row_id::FaceId;
+
+    #[test]
+    fn rows_after_holes_get_lower_numbers() {
+        let mut holes = Holes::new("holes");
+        let unchanged = NewRows::from_holes(&holes, 5);
+        assert!(unchanged.is_unchanged());
+        assert_eq!(unchanged.new_handle(FaceId::new(4)), FaceId::new(4));
+        [1, 3].into_iter().for_each(|row| holes.insert(row));
+        let rows = NewRows::from_holes(&holes, 5);
+        let mut renamed = Vec::new();
+        rows.for_each_renamed(holes.handles(5), |old: FaceId, new| {
+            renamed.push([old, new].map(|f| f.row()));
+        });
+        assert_eq!(renamed, [[2, 1], [4, 2]]);
+        let pair = |a, b| Pair::new(FaceId::new(a), FaceId::new(b));
+        let mut renamed = Vec::new();
+        let pairs = [pair(0, 2), pair(4, 2)].into_iter();
+        rows.for_each_renamed_pair(pairs, |_, new| renamed.push(new));
+        assert_eq!(renamed, [pair(0, 1), pair(1, 2)]);
+    }
+}
