@@ -7,7 +7,7 @@ use crate::face_spans::{FaceSpans, ScatteredFaces};
 use crate::holes::Holes;
 use crate::memory::TableBytes;
 use crate::probe::Probe;
-use crate::row_id::{RowId, row};
+use crate::row_id::{Handles, RowId};
 
 /// Whether elements of a mesh can be deleted: [`Editable`] if so, otherwise [`Compact`]. The trait
 /// is sealed: there are no other implementations.
@@ -173,7 +173,7 @@ impl<P: Probe> HoleSet<P> for NoHoles {
 
     #[inline]
     fn handles<H: RowId>(&self, end: usize) -> impl Iterator<Item = H> + Clone {
-        (0..row(end)).map(H::from_row)
+        Handles::below(end)
     }
 
     fn bytes(&self) -> Option<TableBytes> {

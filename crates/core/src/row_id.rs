@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::marker::PhantomData;
+use std::ops::Range;
 
 use crate::handle::Handle;
 
@@ -31,6 +32,51 @@ pub trait RowId: Handle {
 
     /// Returns the row number.
     fn row(self) -> u32;
+}
+
+/// The handles of consecutive rows.
+///
+/// Its `fold` is always inlined, other than that of `Map<Range<u32>, _>`. In a loop over all elements
+/// the compiler then keeps the addresses of tables in registers: some loops without link-time
+/// optimisation need up to 40 % fewer instructions.
+#[derive(Clone, Debug)]
+pub(crate) struct Handles<H> {
+    rows: Range<u32>,
+    handle: PhantomData<H>,
+}
+
+impl<H> Handles<H> {
+    /// Returns the handles of all rows below `end`.
+    #[inline]
+    pub(crate) fn below(end: usize) -> Self {
+        Self {
+            rows: 0..row(end),
+            handle: PhantomData,
+        }
+    }
+}
+
+impl<H: RowId> Iterator for Handles<H> {
+    type Item = H;
+
+    #[inline]
+    fn next(&mut self) -> Option<H> {
+        self.rows.next().map(H::from_row)
+    }
+
+    #[inline]
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.rows.size_hint()
+    }
+
+    #[inline(always)]
+    fn fold<B, F: FnMut(B, H) -> B>(self, init: B, mut visit: F) -> B {
+        let mut folded = init;
+        for row in self.rows {
+            folded = visit(folded, H::from_row(row));
+        }
+        folded
+    }
 }
 
 /// Defines a [`RowId`] newtype: `row_id!(/// docs… pub struct FaceId, "f");`

@@ -1,10 +1,8 @@
 //! The nine relations.
 
-use sixfold_core::{
-    Capabilities, Editing, FaceId, HoleSet, MeshQuery, Point, Probe, Slot, VertexId, row,
-};
+use sixfold_core::{Capabilities, Editing, FaceId, HoleSet, MeshQuery, Point, Probe, VertexId};
 
-use crate::circulate::{EdgeEdges, Neighbours, Spokes};
+use crate::circulate::{EdgeEdges, Edges, Neighbours, Spokes};
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
 
 impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
@@ -25,16 +23,7 @@ impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
     /// Lists every corner whose opposite is missing or has a higher row; reads `opposite` once.
     #[inline]
     fn edges(&self) -> impl Iterator<Item = EdgeCorner> {
-        // About every second corner is skipped, in an unpredictable order. A variant that first
-        // gathered the edges of 64 corners without a branch was slower.
-        let corners = (0..row(self.opposite.len())).map(CornerId::new);
-        corners.filter_map(|c| {
-            let across = *self.opposite.read(c.index());
-            let edge = edge_between(c, across);
-            // The corners of a deleted triangle are their own opposites.
-            let is_there = !E::CAN_DELETE || across != Slot::some(c);
-            (edge.corner() == c && is_there).then_some(edge)
-        })
+        Edges::new(self)
     }
 
     #[inline]

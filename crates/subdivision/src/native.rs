@@ -47,7 +47,7 @@ pub(crate) fn step<M: Refine, K: Mask>(
         let mut by_topology = Vec::new();
         let edges = mesh.edges_of_chunk(numbers, chunk);
         // `fold` passes the place by value, so that it stays in registers.
-        edges.fold(range.zip(points), |mut places, e| {
+        let mut rest = edges.fold(range.zip(points), |mut places, e| {
             let (number, point) = places.next().expect("a row for each edge");
             let faces;
             (*point, faces) = edge_point(mesh, mask, e, value);
@@ -61,6 +61,7 @@ pub(crate) fn step<M: Refine, K: Mask>(
             }
             places
         });
+        debug_assert!(rest.next().is_none(), "an edge for each row");
         by_topology
     });
     let mut level = SharpLevel {
