@@ -108,7 +108,7 @@ impl Step {
     fn edge(&self, model: &Model) -> Option<[usize; 2]> {
         let all: Vec<[usize; 2]> = model.edges().into_keys().collect();
         let [a, b] = pick(&all, self.pick(0))?;
-        Some(if self.pick(1) % 2 == 0 {
+        Some(if self.pick(1).is_multiple_of(2) {
             [a, b]
         } else {
             [b, a]
@@ -135,7 +135,7 @@ impl Step {
     fn collapse(&self, model: &Model, at: Point) -> Option<Action> {
         let ends = self.edge(model)?;
         let r = self.pick(2);
-        let to = if r % 4 == 0 {
+        let to = if r.is_multiple_of(4) {
             model.position(ends[r / 4 % 2])?
         } else {
             at

@@ -9,13 +9,13 @@ use crate::edit::{Action, ModelTest};
 /// Position of new vertices, far from all other vertices.
 const FAR: Point = Point::new(50.0, 60.0, 70.0);
 
-/// Executes an edit at an edge or a face, and then the edits that undo it. Returns whether the
-/// edits are accepted; if so, checks that the mesh is unchanged.
-type Undo<M, At> = fn(&ModelTest<M>, At) -> bool;
+/// Edits, and a function that executes them at an edge or a face together with those that undo
+/// them. It returns whether they are accepted; if so, it checks that the mesh is unchanged.
+type Undo<M, At> = (&'static [Edit], fn(&ModelTest<M>, At) -> bool);
 
 /// Edits that undo each other give the same mesh again.
 pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
-    let at_edges: [(&[Edit], Undo<M, [usize; 2]>); 4] = [
+    let at_edges: [Undo<M, [usize; 2]>; 4] = [
         (&[Edit::SplitEdge], |test, ends| {
             is_undone_by_collapse(test, Action::SplitEdge { ends, at: FAR }, ends[0])
         }),
@@ -25,7 +25,7 @@ pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
         (&[Edit::FlipEdge], is_flip_undone),
         (&[Edit::SplitVertex], is_collapse_undone),
     ];
-    let at_faces: [(&[Edit], Undo<M, usize>); 2] = [
+    let at_faces: [Undo<M, usize>; 2] = [
         (&[Edit::PokeFace], is_poke_undone),
         (&[Edit::SplitFace, Edit::DissolveEdge], is_face_split_undone),
     ];
