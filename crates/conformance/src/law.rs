@@ -13,6 +13,7 @@ mod cost;
 mod edit;
 mod edit_data;
 mod elements;
+mod inverse_edits;
 mod refine;
 mod relations;
 mod scripts;
@@ -21,10 +22,11 @@ mod walk;
 
 pub use corner_cases::corner_cases;
 pub use cost::{costs, memory};
-pub use edit::{edit_costs, edits, inverse_edits};
+pub use edit::{edit_costs, edits};
 pub use edit_data::{ElementNumbers, data_follows_edits, numbers_follow_edits};
 pub(crate) use elements::check_numbers;
 pub use elements::{elements, maps, missing_handles, names, numbers, positions};
+pub use inverse_edits::inverse_edits;
 pub use refine::{refine, refine_in_parallel};
 pub use relations::{
     boundary_loops, edge_edges, edge_faces, edge_vertices, face_edges, face_faces, face_vertices,

@@ -1,10 +1,13 @@
 //! The division of corners into faces, as structures store and edit it.
 
+mod edit;
+#[cfg(test)]
+mod tests;
+
 use std::ops::Range;
 
 use crate::clone_by_field;
-use crate::editing::{Compact, Editable, Editing, HoleSet};
-use crate::holes::Holes;
+use crate::editing::{Compact, Editable, Editing};
 use crate::memory::TableBytes;
 use crate::probe::{Probe, Untraced};
 use crate::row_id::{FaceId, Slot, row};
@@ -277,8 +280,6 @@ impl<P: Probe> From<FaceSpans<P>> for FaceSpans<P, Editable> {
     }
 }
 
-/// Edits. `corners` is the table that these spans divide. The caller checks beforehand that handles
-/// can name one more face or corner.
 impl<P: Probe> FaceSpans<P, Editable> {
     /// Converts to the spans of a mesh that has no holes; `None` if faces are scattered.
     pub fn into_compact(self) -> Option<FaceSpans<P>> {
@@ -288,282 +289,10 @@ impl<P: Probe> FaceSpans<P, Editable> {
             Self::Scattered(_) => None,
         }
     }
-
-    /// Adds a face at the end of the table; O(degree) amortised. The first face of another degree
-    /// adds a table of spans; O(corners), once.
-    pub fn push<T: Copy>(&mut self, corners: &mut Table<T, P>, face: &[T]) -> FaceId {
-        let id = FaceId::new(row(self.len()));
-        if let Self::Uniform { degree, faces } = self {
-            if *faces == 0 {
-                *degree = row(face.len());
-            }
-            if *degree as usize == face.len() {
-                *faces += 1;
-                corners.extend(face.iter().copied());
-                return id;
-            }
-            self.scatter(corners);
-        }
-        let start = corners.len();
-        corners.extend(face.iter().copied());
-        match self {
-            Self::Uniform { .. } => unreachable!("scattered above"),
-            Self::Mixed(offsets) => offsets.push(row(corners.len())),
-            Self::Scattered(ScatteredFaces { spans, owners }) => {
-                spans.push(Span {
-                    start: row(start),
-                    len: row(face.len()),
-                });
-                owners.extend(face.iter().map(|_| Slot::some(id)));
-            }
-        }
-        id
-    }
-
-    /// Replaces the corners of `f`; O(degree) amortised. The new corners are written in place
-    /// unless there are more of them; otherwise at the end of the table. The first change of a
-    /// degree adds a table of spans; O(corners), once.
-    pub fn rewrite<T: Copy>(&mut self, corners: &mut Table<T, P>, f: FaceId, face: &[T], blank: T) {
-        let old = self.range(f);
-        if face.len() != old.len() {
-            self.scatter(corners);
-        }
-        let range = if face.len() <= old.len() {
-            old.start..old.start + face.len()
-        } else {
-            corners.len()..corners.len() + face.len()
-        };
-        if let Self::Scattered(ScatteredFaces { spans, owners }) = self
-            && range != old
-        {
-            *spans.write(f.index()) = Span {
-                start: row(range.start),
-                len: row(range.len()),
-            };
-            for corner in old.filter(|corner| !range.contains(corner)) {
-                *owners.write(corner) = Slot::NONE;
-                *corners.write(corner) = blank;
-            }
-            owners.extend((owners.len()..range.end).map(|_| Slot::some(f)));
-        }
-        for (corner, &at) in range.zip(face) {
-            if corner < corners.len() {
-                *corners.write(corner) = at;
-            } else {
-                corners.push(at);
-            }
-        }
-    }
-
-    /// Makes the corners of a deleted face blank; O(degree).
-    pub fn blank<T: Copy>(&self, corners: &mut Table<T, P>, f: FaceId, blank: T) {
-        for corner in self.range(f) {
-            *corners.write(corner) = blank;
-        }
-    }
-
-    /// Closes the gaps of deleted faces in `corners`; O(corners), not observed. A table that is
-    /// less than half used frees its spare memory.
-    pub fn compact<T: Copy>(&mut self, corners: &mut Table<T, P>, holes: &Holes<P>) {
-        match self {
-            Self::Uniform { degree, faces } => {
-                let degree = *degree as usize;
-                let mut to = 0;
-                let rows = corners.rows_mut();
-                for f in holes.rows(*faces as usize) {
-                    let from = f as usize * degree;
-                    rows.copy_within(from..from + degree, to);
-                    to += degree;
-                }
-                *faces = row(*faces as usize - holes.len());
-                corners.truncate(to);
-                corners.shrink_if_half_empty();
-            }
-            Self::Mixed(_) if holes.is_empty() => {}
-            Self::Mixed(_) | Self::Scattered(_) => {
-                let mut list = Vec::with_capacity(corners.len());
-                let mut offsets = vec![0];
-                let mut degrees = [usize::MAX, 0];
-                for f in holes.handles(self.len()) {
-                    let range = self.range(f);
-                    degrees = [degrees[0].min(range.len()), degrees[1].max(range.len())];
-                    list.extend_from_slice(&corners.rows()[range]);
-                    offsets.push(row(list.len()));
-                }
-                let faces = row(offsets.len() - 1);
-                *self = if degrees[0] >= degrees[1] {
-                    let degree = if faces == 0 { 3 } else { row(degrees[1]) };
-                    Self::Uniform { degree, faces }
-                } else {
-                    Self::Mixed(corners.new_like("offsets", "face", offsets))
-                };
-                list.shrink_to_fit();
-                corners.replace(list);
-            }
-        }
-    }
-
-    /// Lets faces lie anywhere from now on; O(corners), or O(1) if they already do.
-    fn scatter<T>(&mut self, corners: &Table<T, P>) {
-        if let Self::Scattered(_) = self {
-            return;
-        }
-        let mut spans = Vec::with_capacity(self.len());
-        let mut owners = Vec::with_capacity(corners.len());
-        for f in (0..row(self.len())).map(FaceId::new) {
-            let range = self.range(f);
-            spans.push(Span {
-                start: row(range.start),
-                len: row(range.len()),
-            });
-            owners.extend(range.map(|_| Slot::some(f)));
-        }
-        *self = Self::Scattered(ScatteredFaces {
-            spans: corners.new_like("spans", "face", spans),
-            owners: corners.new_like("owners", "corner", owners),
-        });
-    }
 }
 
 #[cold]
 #[inline(never)]
 fn no_such_face(face: FaceId, faces: usize) -> ! {
     panic!("no face {face}: there are {faces}")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::face_list::FaceList;
-    use crate::row_id::VertexId;
-
-    fn list(degrees: &[u32]) -> FaceList {
-        let mut faces = FaceList::default();
-        for &degree in degrees {
-            faces.push((0..degree).map(VertexId::new)).expect("small");
-        }
-        faces
-    }
-
-    #[test]
-    #[should_panic(expected = "no face f2: there are 2")]
-    fn a_missing_face_panics_with_its_handle() {
-        list(&[3, 3]).spans().range(FaceId::new(2));
-    }
-
-    #[test]
-    #[should_panic(expected = "no face f2: there are 2")]
-    fn a_missing_face_panics_with_its_handle_if_degrees_are_mixed() {
-        list(&[3, 4]).spans().range(FaceId::new(2));
-    }
-
-    #[test]
-    fn around_returns_the_face_and_the_corners_before_and_after() {
-        for degrees in [&[3, 3, 3][..], &[4, 3, 5], &[3, 3, 4, 3, 6, 3]] {
-            let spans = list(degrees).spans();
-            let faces = (0..row(degrees.len())).map(FaceId::new);
-            for (face, corners) in faces.map(|f| (f, spans.range(f))) {
-                let (first, last) = (corners.start, corners.end - 1);
-                assert_eq!(spans.around(first), (face, [last, first, first + 1]));
-                assert_eq!(spans.around(last), (face, [last - 1, last, first]));
-                for corner in first + 1..last {
-                    let around = [corner - 1, corner, corner + 1];
-                    assert_eq!(spans.around(corner), (face, around));
-                    assert_eq!(spans.face_of(corner), face);
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn spans_must_divide_the_corners() {
-        assert_eq!(list(&[3, 4]).spans().check(7), Ok(()));
-        assert!(list(&[3, 4]).spans().check(8).is_err());
-        assert!(list(&[3, 4]).spans().check(6).is_err());
-        assert!(list(&[3, 3]).spans().check(5).is_err());
-        assert!(list(&[3, 2]).spans().check(5).is_err());
-    }
-
-    const BLANK: u32 = 99;
-
-    /// Returns the faces that are not holes, after checking that spans and corners agree.
-    fn faces(
-        spans: &FaceSpans<Untraced, Editable>,
-        corners: &Table<u32>,
-        holes: &Holes,
-    ) -> Vec<Vec<u32>> {
-        assert_eq!(spans.check(corners.len()), Ok(()));
-        let live = holes.handles(spans.len());
-        let live = live.map(|f| corners.rows()[spans.range(f)].to_vec());
-        live.collect()
-    }
-
-    #[test]
-    fn faces_are_added_rewritten_deleted_and_compacted() {
-        for degrees in [&[][..], &[3, 3, 3], &[4, 3, 5], &[4, 4]] {
-            let mut spans = FaceSpans::from(list(degrees).spans());
-            let all: Vec<Vec<u32>> = degrees.iter().map(|&d| (10..10 + d).collect()).collect();
-            let mut corners = Table::new("corners", "corner", all.concat());
-            let mut holes = Holes::new("face holes");
-            let mut expected = all.clone();
-            for new in [&[1, 2, 3][..], &[4, 5, 6], &[1, 2, 3, 4, 5], &[7, 8, 9]] {
-                let f = spans.push(&mut corners, new);
-                expected.push(new.to_vec());
-                assert_eq!(f.index() + 1, expected.len());
-                assert_eq!(faces(&spans, &corners, &holes), expected);
-            }
-            for (f, new) in [
-                (0, &[1, 2, 3][..]),
-                (1, &[1, 2, 3, 4, 5, 6, 7]),
-                (2, &[3, 2, 1]),
-                (1, &[5, 6, 7, 8]),
-                (1, &[1, 2, 3, 4, 5, 6, 7, 8, 9]),
-            ] {
-                spans.rewrite(&mut corners, FaceId::new(f), new, BLANK);
-                expected[f as usize] = new.to_vec();
-                assert_eq!(faces(&spans, &corners, &holes), expected);
-                for corner in (0..corners.len()).filter(|&c| corners.rows()[c] != BLANK) {
-                    let f = spans.face_of(corner);
-                    assert!(spans.range(f).contains(&corner));
-                }
-            }
-            for f in [1, 0, 3] {
-                spans.blank(&mut corners, FaceId::new(f), BLANK);
-                holes.insert(f as usize);
-            }
-            expected = [&expected[2..3], &expected[4..]].concat();
-            assert_eq!(faces(&spans, &corners, &holes), expected);
-            spans.compact(&mut corners, &holes);
-            holes.clear();
-            assert_eq!(faces(&spans, &corners, &holes), expected);
-            assert!(corners.rows().iter().all(|&c| c != BLANK));
-            assert!(!matches!(spans, FaceSpans::Scattered(_)));
-            let is_uniform = expected.iter().all(|f| f.len() == expected[0].len());
-            assert_eq!(matches!(spans, FaceSpans::Uniform { .. }), is_uniform);
-        }
-    }
-
-    #[test]
-    fn a_uniform_degree_stays_uniform() {
-        let mut spans = FaceSpans::from(list(&[3, 3, 3]).spans());
-        let mut corners = Table::new("corners", "corner", (0..9).collect());
-        let mut holes = Holes::new("face holes");
-        spans.rewrite(&mut corners, FaceId::new(1), &[7, 7, 7], BLANK);
-        spans.push(&mut corners, &[1, 2, 3]);
-        spans.blank(&mut corners, FaceId::new(0), BLANK);
-        holes.insert(0);
-        spans.compact(&mut corners, &holes);
-        holes.clear();
-        assert!(matches!(
-            spans,
-            FaceSpans::Uniform {
-                degree: 3,
-                faces: 3
-            }
-        ));
-        assert_eq!(
-            faces(&spans, &corners, &holes),
-            [[7, 7, 7], [6, 7, 8], [1, 2, 3]]
-        );
-    }
 }

@@ -39,19 +39,8 @@ const NONE_HOLDS: &str = "none of the selected backends can hold it";
 /// load, and continues with the rest.
 pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Failure> {
     let meshes = find_meshes(&arguments.meshes)?;
-    let outputs = [
-        ("--json", arguments.json.as_ref()),
-        ("--csv", arguments.csv.as_ref()),
-    ];
-    for path in meshes.iter().filter_map(|mesh| mesh.path.as_deref()) {
-        check_outputs(Some(path), &outputs)?;
-    }
     let single = meshes.len() == 1;
-    if arguments.csv.is_some() && !single {
-        return Err(Failure::usage(
-            "--csv is for one mesh: --report DIR writes the samples of all meshes to results.csv",
-        ));
-    }
+    check_files(arguments, &meshes)?;
     let selected_labs = labs::selected_labs(arguments.labs.as_ref(), single)?;
     let names = meshes.iter().map(|mesh| mesh.name.clone()).collect();
     let mut collection = Collection::new(names, shared_settings(arguments, settings));
@@ -67,76 +56,75 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         )?),
         None => None,
     };
-    let selected: Vec<&Mesh> = { meshes.iter().enumerate() }
-        .filter(|(i, _)| arguments.shard.is_none_or(|shard| shard.contains(*i)))
-        .map(|(_, mesh)| mesh)
-        .filter(|mesh| collection.missing.contains(&mesh.name))
-        .collect();
+    let selected = unfinished(&meshes, arguments.shard, &collection);
     warn_of_debug_build();
-    let data = [&arguments.json, &arguments.csv];
-    let on_stdout = data.into_iter().flatten().any(|path| is_stdout(path));
-    let mut text = TextOutput::new(!on_stdout);
-    let (count, resumed) = (selected.len(), selected.is_empty());
-    for (done, mesh) in selected.into_iter().enumerate() {
-        if stop.load(Ordering::Relaxed) {
-            break;
-        }
-        let position = format!("{} of {count}", done + 1);
-        let Some(result) = measure_mesh(mesh, arguments, settings, &position, &stop) else {
-            break; // interrupted during this mesh
-        };
-        if !single {
-            text.print_line(&progress_line(&position, mesh, &result));
-        }
-        let record = StudyRecord::new(mesh, &collection.settings, result);
-        if let Some(folder) = &folder {
-            // Between two studies, so that writing does not disturb the measurements.
-            folder.save_study(&record)?;
-        }
-        record.add_to(&mut collection);
-    }
+    let mut text = TextOutput::new(!uses_stdout(arguments));
+    let run = Run {
+        arguments,
+        settings,
+        single,
+        folder: folder.as_ref(),
+        stop: &stop,
+    };
+    run.study(&selected, &mut collection, &mut text)?;
     if let ([_], [mesh], Some(folder)) = (&collection.studies[..], &meshes[..], &folder) {
         let study_mesh = load_mesh(mesh, arguments)?;
         let runner = labs::LabRunner {
             study_mesh: &study_mesh,
             settings,
             folder,
-            resumed,
+            resumed: selected.is_empty(),
             stop: &stop,
         };
         collection.labs = runner.run(&selected_labs)?;
     }
     let interrupted = stop.load(Ordering::Relaxed);
-    let mut written;
-    match (&collection.studies[..], single) {
-        ([study], true) => {
-            crate::study::print(study, &mut text);
-            labs::print(&collection.labs, &mut text);
-            written = text
-                .finish()
-                .and(crate::study::write_files(study, json, csv));
-        }
-        _ => {
-            print(&collection, &mut text);
-            written = text.finish();
-            if let Some(output) = json {
-                written = written.and(output.finish(|writer| collection.write_json(writer)));
-            }
-        }
-    }
+    let mut written = print_and_write(&collection, single, text, json, csv);
     if let Some(folder) = &folder {
         written = written.and(folder.write_report(&collection, &command_line()));
     }
     if collection.studies.is_empty() && !interrupted && arguments.shard.is_none() {
         written?;
-        let mut kinds = collection.failures.iter().map(|failed| failed.kind);
-        return Err(match kinds.all(|kind| kind == FailureKind::NoneHolds) {
-            true => Failure::unsupported(format!("all meshes failed: {NONE_HOLDS}")),
-            false => Failure::usage("none of the meshes could be studied"),
-        });
+        return Err(none_studied(&collection.failures));
     }
     let mismatches = collection.labs.mismatches();
     studies_exit_code(written, &collection.studies, mismatches, interrupted)
+}
+
+/// Checks that no output overwrites a mesh, and that `--csv` is not used for several meshes.
+fn check_files(arguments: &Study, meshes: &[Mesh]) -> Result<(), Failure> {
+    let outputs = [
+        ("--json", arguments.json.as_ref()),
+        ("--csv", arguments.csv.as_ref()),
+    ];
+    for path in meshes.iter().filter_map(|mesh| mesh.path.as_deref()) {
+        check_outputs(Some(path), &outputs)?;
+    }
+    if arguments.csv.is_some() && meshes.len() != 1 {
+        return Err(Failure::usage(
+            "--csv is for one mesh: --report DIR writes the samples of all meshes to results.csv",
+        ));
+    }
+    Ok(())
+}
+
+/// Returns the meshes of the shard that have no results in `collection` yet.
+fn unfinished<'m>(
+    meshes: &'m [Mesh],
+    shard: Option<Shard>,
+    collection: &Collection,
+) -> Vec<&'m Mesh> {
+    { meshes.iter().enumerate() }
+        .filter(|(i, _)| shard.is_none_or(|shard| shard.contains(*i)))
+        .map(|(_, mesh)| mesh)
+        .filter(|mesh| collection.missing.contains(&mesh.name))
+        .collect()
+}
+
+/// Returns whether results are written to the standard output, so that no text is printed there.
+fn uses_stdout(arguments: &Study) -> bool {
+    let data = [&arguments.json, &arguments.csv];
+    data.into_iter().flatten().any(|path| is_stdout(path))
 }
 
 fn shared_settings(arguments: &Study, settings: &Settings) -> SharedSettings {
@@ -157,43 +145,79 @@ fn shared_settings(arguments: &Study, settings: &Settings) -> SharedSettings {
     }
 }
 
-/// Returns the study of one mesh or why it failed; `None` if interrupted.
-fn measure_mesh(
-    mesh: &Mesh,
-    arguments: &Study,
-    settings: &Settings,
-    position: &str,
-    stop: &AtomicBool,
-) -> Option<Result<Report, Failed>> {
-    let failed = |kind, reason| {
-        let mesh = mesh.name.clone();
-        Some(Err(Failed { mesh, reason, kind }))
-    };
-    let study_mesh = match (load_mesh(mesh, arguments), &mesh.path) {
-        (Ok(study_mesh), _) => study_mesh,
-        (Err(failure), None) => return failed(FailureKind::NotMeasured, failure.message),
-        (Err(failure), Some(path)) => {
-            let reason = without_path(&failure.message, path);
-            return failed(FailureKind::NotMeasured, reason);
+/// One run of the command, with the input that all studies share.
+struct Run<'a> {
+    arguments: &'a Study,
+    settings: &'a Settings,
+    /// Whether one mesh is studied: then no progress line is printed.
+    single: bool,
+    /// Each study is saved here as soon as it is finished.
+    folder: Option<&'a Folder>,
+    stop: &'a AtomicBool,
+}
+
+impl Run<'_> {
+    /// Studies `meshes` one after the other, until interrupted, and adds the results to
+    /// `collection`.
+    fn study(
+        &self,
+        meshes: &[&Mesh],
+        collection: &mut Collection,
+        text: &mut TextOutput,
+    ) -> Result<(), Failure> {
+        for (done, mesh) in meshes.iter().enumerate() {
+            if self.stop.load(Ordering::Relaxed) {
+                break;
+            }
+            let position = format!("{} of {}", done + 1, meshes.len());
+            let Some(result) = self.measure_mesh(mesh, &position) else {
+                break; // interrupted during this mesh
+            };
+            if !self.single {
+                text.print_line(&progress_line(&position, mesh, &result));
+            }
+            let record = StudyRecord::new(mesh, &collection.settings, result);
+            if let Some(folder) = self.folder {
+                // Between two studies, so that writing does not disturb the measurements.
+                folder.save_study(&record)?;
+            }
+            record.add_to(collection);
         }
-    };
-    let bar = Bar::new();
-    let report = sixfold_study::study(&study_mesh, settings, stop, &mut |at| {
-        let stage = format!("{position}, {}: {}", mesh.name, at.stage);
-        bar.show(sixfold_study::Progress {
-            stage: &stage,
-            ..at
+        Ok(())
+    }
+
+    /// Returns the study of one mesh or why it failed; `None` if interrupted.
+    fn measure_mesh(&self, mesh: &Mesh, position: &str) -> Option<Result<Report, Failed>> {
+        let failed = |kind, reason| {
+            let mesh = mesh.name.clone();
+            Some(Err(Failed { mesh, reason, kind }))
+        };
+        let study_mesh = match (load_mesh(mesh, self.arguments), &mesh.path) {
+            (Ok(study_mesh), _) => study_mesh,
+            (Err(failure), None) => return failed(FailureKind::NotMeasured, failure.message),
+            (Err(failure), Some(path)) => {
+                let reason = without_path(&failure.message, path);
+                return failed(FailureKind::NotMeasured, reason);
+            }
+        };
+        let bar = Bar::new();
+        let report = sixfold_study::study(&study_mesh, self.settings, self.stop, &mut |at| {
+            let stage = format!("{position}, {}: {}", mesh.name, at.stage);
+            bar.show(sixfold_study::Progress {
+                stage: &stage,
+                ..at
+            });
         });
-    });
-    bar.clear();
-    match report {
-        Ok(report) if report.interrupted => None,
-        Ok(mut report) => {
-            report.environment.command = Some(command_line());
-            Some(Ok(report))
+        bar.clear();
+        match report {
+            Ok(report) if report.interrupted => None,
+            Ok(mut report) => {
+                report.environment.command = Some(command_line());
+                Some(Ok(report))
+            }
+            Err(StudyError::NoneHolds { .. }) => failed(FailureKind::NoneHolds, NONE_HOLDS.into()),
+            Err(error) => failed(FailureKind::NotMeasured, error.to_string()),
         }
-        Err(StudyError::NoneHolds { .. }) => failed(FailureKind::NoneHolds, NONE_HOLDS.into()),
-        Err(error) => failed(FailureKind::NotMeasured, error.to_string()),
     }
 }
 
@@ -230,6 +254,29 @@ fn progress_line(position: &str, mesh: &Mesh, result: &Result<Report, Failed>) -
     }
 }
 
+/// Prints the results, and writes them to the files that are open.
+fn print_and_write(
+    collection: &Collection,
+    single: bool,
+    mut text: TextOutput,
+    json: Option<Output>,
+    csv: Option<Output>,
+) -> Result<(), Failure> {
+    if let ([study], true) = (&collection.studies[..], single) {
+        crate::study::print(study, &mut text);
+        labs::print(&collection.labs, &mut text);
+        return text
+            .finish()
+            .and(crate::study::write_files(study, json, csv));
+    }
+    print(collection, &mut text);
+    let mut written = text.finish();
+    if let Some(output) = json {
+        written = written.and(output.finish(|writer| collection.write_json(writer)));
+    }
+    written
+}
+
 /// Prints the results of all meshes together.
 fn print(collection: &Collection, text: &mut TextOutput) {
     let studied = counted(collection.studies.len(), "mesh", "meshes");
@@ -254,5 +301,14 @@ fn print(collection: &Collection, text: &mut TextOutput) {
     for failed in &collection.failures {
         let mesh = &failed.mesh;
         print_stderr(&format!("note: {mesh}: not studied, {}", failed.reason));
+    }
+}
+
+/// Returns the failure of a run in which no mesh could be studied.
+fn none_studied(failures: &[Failed]) -> Failure {
+    let mut kinds = failures.iter().map(|failed| failed.kind);
+    match kinds.all(|kind| kind == FailureKind::NoneHolds) {
+        true => Failure::unsupported(format!("all meshes failed: {NONE_HOLDS}")),
+        false => Failure::usage("none of the meshes could be studied"),
     }
 }

@@ -8,7 +8,7 @@
 //! Only FV and FE are queried, which no structure has to search for. The time is near-linear on all
 //! structures; edges and vertices whose handles are not rows are found in hash maps.
 
-use sixfold_core::{Creases, HandleMap, MeshQuery, Point};
+use sixfold_core::{Creases, HandleMap, MeshQuery, Point, VertexMap};
 
 use crate::SubdivisionError;
 use crate::crease::{SharpEdge, SharpLevel};
@@ -46,12 +46,7 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
     corners: usize,
 ) -> Result<Step, SubdivisionError> {
     let mut builder = StepBuilder::new(K::SPLIT, mesh, corners);
-    let mut numbers = mesh.vertex_map(0_u32);
-    numbers.reserve(builder.vertices());
-    mesh.vertices().for_each(|v| {
-        numbers[v] = builder.points.len() as u32;
-        builder.points.push(mesh.position(v));
-    });
+    let numbers = number_vertices(mesh, &mut builder);
     let vertices = builder.points.len();
     if builder.has_face_points() {
         builder
@@ -59,16 +54,66 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
             .resize(vertices + mesh.face_count(), Point::ZERO);
     }
     let first_edge = builder.points.len();
+    let FaceSums {
+        edges,
+        vertex_faces,
+    } = scatter_faces(mesh, mask, &numbers, &mut builder);
+    let (old, new) = builder.points.split_at_mut(vertices);
+    let edge_points = &mut new[first_edge - vertices..];
+    let sums = match K::APPROXIMATES {
+        true => neighbour_sums(&edges, old),
+        false => Vec::new(),
+    };
+    let level = place_edge_points(mask, &edges, old, edge_points, creases);
+    place_vertex_points(mask, &sums, &vertex_faces, old);
+    if level.is_empty() {
+        return builder.finish(Creases::default());
+    }
+    let old = positions_by_number(mesh);
+    let creases = level.place(old, &mut builder.points, first_edge, creasing);
+    builder.finish(creases)
+}
+
+/// Numbers the vertices in their order, and makes their positions the first points.
+#[inline(always)]
+fn number_vertices<M: MeshQuery>(mesh: &M, builder: &mut StepBuilder) -> VertexMap<M, u32> {
+    let mut numbers = mesh.vertex_map(0_u32);
+    numbers.reserve(builder.vertices());
+    mesh.vertices().for_each(|v| {
+        numbers[v] = builder.points.len() as u32;
+        builder.points.push(mesh.position(v));
+    });
+    numbers
+}
+
+/// What the pass over the faces collects, besides the sums in the edge points.
+struct FaceSums {
+    /// The edges, in the order in which they are found.
+    edges: Vec<EdgeSum>,
+    /// The sum of the face values at each vertex; empty if the scheme does not use it.
+    vertex_faces: Vec<Point>,
+}
+
+/// Adds the value of each face to its corners and sides, and splits the face. All points up to the
+/// face points exist already; this adds the edge points.
+#[inline(always)]
+fn scatter_faces<M: MeshQuery, K: Mask>(
+    mesh: &M,
+    mask: K,
+    numbers: &VertexMap<M, u32>,
+    builder: &mut StepBuilder,
+) -> FaceSums {
     let mut vertex_faces = Vec::new();
     if K::VERTICES_USE_FACES {
-        vertex_faces.resize(vertices, Point::ZERO);
+        vertex_faces.resize(builder.vertices(), Point::ZERO);
     }
     let mut edge_numbers = mesh.edge_map(UNNUMBERED);
     edge_numbers.reserve(builder.expected_edges());
     let mut edges: Vec<EdgeSum> = Vec::with_capacity(builder.expected_edges());
+    let first_edge = builder.points.len();
     // For one face: its vertices, and the edge points of the sides that start there.
     let (mut own, mut middles) = (Vec::new(), Vec::new());
-    let mut face_point = vertices;
+    let mut face_point = builder.vertices();
     mesh.faces().for_each(|f| {
         own.clear();
         middles.clear();
@@ -84,15 +129,8 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
             let number = &mut edge_numbers[e];
             if *number == UNNUMBERED {
                 *number = edges.len() as u32;
-                let next = if corner + 1 == own.len() {
-                    0
-                } else {
-                    corner + 1
-                };
-                edges.push(EdgeSum {
-                    ends: [own[corner], own[next]],
-                    count: 0,
-                });
+                let ends = side_ends(&own, corner);
+                edges.push(EdgeSum { ends, count: 0 });
                 builder.points.push(Point::ZERO);
             }
             let middle = first_edge + *number as usize;
@@ -112,19 +150,47 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
         }
         face_point += 1;
     });
-    let (old, edge_points) = builder.points.split_at_mut(first_edge);
-    let mut sums = Vec::new();
-    if K::APPROXIMATES {
-        sums.resize(vertices, VertexSum::default());
-        for edge in &edges {
-            let [a, b] = edge.ends.map(|v| v as usize);
-            for (v, far) in [(a, b), (b, a)] {
-                sums[v].neighbours += old[far];
-                sums[v].valence += 1;
-            }
+    FaceSums {
+        edges,
+        vertex_faces,
+    }
+}
+
+/// Returns the ends of the side of a face that starts at `corner`.
+#[inline(always)]
+fn side_ends(corners: &[u32], corner: usize) -> [u32; 2] {
+    let next = if corner + 1 == corners.len() {
+        0
+    } else {
+        corner + 1
+    };
+    [corners[corner], corners[next]]
+}
+
+/// Returns the sums over the edges of each vertex; `old` are the positions of the vertices.
+fn neighbour_sums(edges: &[EdgeSum], old: &[Point]) -> Vec<VertexSum> {
+    let mut sums = vec![VertexSum::default(); old.len()];
+    for edge in edges {
+        let [a, b] = edge.ends.map(|v| v as usize);
+        for (v, far) in [(a, b), (b, a)] {
+            sums[v].neighbours += old[far];
+            sums[v].valence += 1;
         }
     }
-    let crease_vertices = CreaseVertices::new(creases, vertices);
+    sums
+}
+
+/// Places the edge points, which store sums of face values, as if no edge were sharp. Returns the
+/// sharp elements.
+#[inline(always)]
+fn place_edge_points<K: Mask>(
+    mask: K,
+    edges: &[EdgeSum],
+    old: &[Point],
+    edge_points: &mut [Point],
+    creases: &Creases,
+) -> SharpLevel {
+    let crease_vertices = CreaseVertices::new(creases, old.len());
     let mut level = SharpLevel {
         edges: Vec::new(),
         corners: creases.corners().to_vec(),
@@ -146,6 +212,16 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
             });
         }
     }
+    level
+}
+
+/// Moves the vertices that have edges to their new positions, as if nothing were sharp there.
+fn place_vertex_points<K: Mask>(
+    mask: K,
+    sums: &[VertexSum],
+    vertex_faces: &[Point],
+    old: &mut [Point],
+) {
     for (v, sum) in sums.iter().enumerate().filter(|(_, sum)| sum.valence > 0) {
         let faces = match K::VERTICES_USE_FACES {
             true => vertex_faces[v],
@@ -153,10 +229,4 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
         };
         old[v] = mask.vertex(old[v], sum.valence as usize, sum.neighbours, faces);
     }
-    if level.is_empty() {
-        return builder.finish(Creases::default());
-    }
-    let old = positions_by_number(mesh);
-    let creases = level.place(old, &mut builder.points, first_edge, creasing);
-    builder.finish(creases)
 }

@@ -11,103 +11,121 @@ use sixfold_core::{IteratorExt, MeshQuery};
 ///
 /// Panics if an answer differs, if an item occurs twice, or if a count differs from the list.
 pub(crate) fn check_relations<M: MeshQuery>(mesh: &M, name: &str) {
-    let faces: Vec<M::Face> = mesh.faces().collect();
     let vertices: Vec<M::Vertex> = mesh.vertices().collect();
     let edges: Vec<M::Edge> = mesh.edges().collect();
+    let faces: Vec<M::Face> = mesh.faces().collect();
     let counts = [mesh.vertex_count(), mesh.edge_count(), mesh.face_count()];
     assert_eq!(
         counts,
         [vertices.len(), edges.len(), faces.len()],
         "{name}: counts (left) and lengths of the lists (right)"
     );
+    let expected = Expected::new(mesh, &edges, &faces, name);
+    for v in vertices {
+        expected.check_vertex(mesh, v);
+    }
+    for &ends in expected.edges.keys() {
+        expected.check_edge(mesh, ends);
+    }
+    for &f in expected.corners.keys() {
+        expected.check_face(mesh, f);
+    }
+}
 
-    let corners: BTreeMap<M::Face, Vec<M::Vertex>> = faces
-        .iter()
-        .map(|&f| (f, mesh.face_vertices(f).collect()))
-        .collect();
-    let edge_by_ends: BTreeMap<[M::Vertex; 2], M::Edge> = edges
-        .iter()
-        .map(|&e| {
-            let [a, b] = mesh.edge_vertices(e);
-            ([a.min(b), a.max(b)], e)
-        })
-        .collect();
-    assert_eq!(
-        edge_by_ends.len(),
-        edges.len(),
-        "{name}: two edges have the same ends"
-    );
+/// The relations between the elements of a mesh, computed from the corners of its faces. An edge is
+/// found by its ends, the lower one first.
+struct Expected<'a, M: MeshQuery> {
+    name: &'a str,
+    corners: BTreeMap<M::Face, Vec<M::Vertex>>,
+    edges: BTreeMap<[M::Vertex; 2], M::Edge>,
+    faces_along: BTreeMap<[M::Vertex; 2], Vec<M::Face>>,
+    faces_at: BTreeMap<M::Vertex, BTreeSet<M::Face>>,
+}
 
-    let mut sides: BTreeMap<[M::Vertex; 2], Vec<M::Face>> = BTreeMap::new();
-    let mut faces_at: BTreeMap<M::Vertex, BTreeSet<M::Face>> = BTreeMap::new();
-    for (&f, face) in &corners {
-        for (i, &a) in face.iter().enumerate() {
-            let b = face[(i + 1) % face.len()];
-            sides.entry([a.min(b), a.max(b)]).or_default().push(f);
-            faces_at.entry(a).or_default().insert(f);
+impl<'a, M: MeshQuery> Expected<'a, M> {
+    /// Computes the relations. Panics unless the edges are the sides of the faces, each once.
+    fn new(mesh: &M, edges: &[M::Edge], faces: &[M::Face], name: &'a str) -> Self {
+        let corners_of = |&f: &M::Face| (f, mesh.face_vertices(f).collect());
+        let corners: BTreeMap<_, Vec<_>> = faces.iter().map(corners_of).collect();
+        let ends_of = |&e: &M::Edge| (sorted(mesh.edge_vertices(e)), e);
+        let edge_by_ends: BTreeMap<_, _> = edges.iter().map(ends_of).collect();
+        assert_eq!(
+            edge_by_ends.len(),
+            edges.len(),
+            "{name}: two edges have the same ends"
+        );
+        let mut faces_along: BTreeMap<_, Vec<M::Face>> = BTreeMap::new();
+        let mut faces_at: BTreeMap<_, BTreeSet<M::Face>> = BTreeMap::new();
+        for (&f, face) in &corners {
+            for (ends, &v) in sides(face).zip(face) {
+                faces_along.entry(ends).or_default().push(f);
+                faces_at.entry(v).or_default().insert(f);
+            }
+        }
+        assert!(
+            edge_by_ends.keys().eq(faces_along.keys()),
+            "{name}: edges are {:?}, expected {:?}",
+            edge_by_ends.keys(),
+            faces_along.keys()
+        );
+        Self {
+            name,
+            corners,
+            edges: edge_by_ends,
+            faces_along,
+            faces_at,
         }
     }
-    let all: Vec<_> = sides.keys().copied().collect();
-    let listed: Vec<_> = edge_by_ends.keys().copied().collect();
-    assert_eq!(listed, all, "{name}: edges");
 
-    for &v in &vertices {
-        let ends = sides.keys().filter(|ends| ends.contains(&v));
-        let others = ends
-            .clone()
-            .map(|&[a, b]| if a == v { b } else { a })
-            .collect();
-        assert_same_items(name, "VV", v, mesh.vertex_vertices(v), others);
-        assert_same_items(
-            name,
-            "VE",
-            v,
-            mesh.vertex_edges(v),
-            ends.map(|e| edge_by_ends[e]).collect(),
-        );
-        let faces = faces_at.get(&v).cloned().unwrap_or_default();
-        assert_same_items(
-            name,
-            "VF",
-            v,
-            mesh.vertex_faces(v),
-            faces.into_iter().collect(),
-        );
+    /// Compares VV, VE and VF of `v`.
+    fn check_vertex(&self, mesh: &M, v: M::Vertex) {
+        let ends = self.edges.keys().filter(|ends| ends.contains(&v));
+        let others = ends.map(|&[a, b]| if a == v { b } else { a });
+        let edges = { self.edges.iter() }
+            .filter(|(ends, _)| ends.contains(&v))
+            .map(|(_, &e)| e);
+        let faces = self.faces_at.get(&v).into_iter().flatten().copied();
+        let name = self.name;
+        assert_same_items(name, "VV", v, mesh.vertex_vertices(v), others.collect());
+        assert_same_items(name, "VE", v, mesh.vertex_edges(v), edges.collect());
+        assert_same_items(name, "VF", v, mesh.vertex_faces(v), faces.collect());
     }
-    for (ends, &e) in &edge_by_ends {
-        assert_same_items(name, "EF", e, mesh.edge_faces(e), sides[ends].clone());
-        let neighbours = |other: &&[M::Vertex; 2]| {
-            *other != ends && (other.contains(&ends[0]) || other.contains(&ends[1]))
-        };
-        let neighbours = sides
-            .keys()
-            .filter(neighbours)
-            .map(|e| edge_by_ends[e])
-            .collect();
-        assert_same_items(name, "EE", e, mesh.edge_edges(e), neighbours);
-        assert_eq!(
-            mesh.edge_between(ends[0], ends[1]),
-            Some(e),
-            "{name}: edge_between"
-        );
+
+    /// Compares EF, EE and `edge_between` of the edge with these ends.
+    fn check_edge(&self, mesh: &M, [a, b]: [M::Vertex; 2]) {
+        let e = self.edges[&[a, b]];
+        let faces = self.faces_along[&[a, b]].clone();
+        let adjacent = { self.edges.iter() }
+            .filter(|(ends, _)| **ends != [a, b] && (ends.contains(&a) || ends.contains(&b)))
+            .map(|(_, &other)| other);
+        let name = self.name;
+        assert_same_items(name, "EF", e, mesh.edge_faces(e), faces);
+        assert_same_items(name, "EE", e, mesh.edge_edges(e), adjacent.collect());
+        assert_eq!(mesh.edge_between(a, b), Some(e), "{name}: edge_between");
     }
-    for (&f, face) in &corners {
-        let ends = (0..face.len()).map(|i| {
-            let (a, b) = (face[i], face[(i + 1) % face.len()]);
-            [a.min(b), a.max(b)]
-        });
-        let ends: Vec<_> = ends.collect();
-        assert_same_items(
-            name,
-            "FE",
-            f,
-            mesh.face_edges(f),
-            ends.iter().map(|e| edge_by_ends[e]).collect(),
-        );
-        let adjacent = ends.iter().flat_map(|e| sides[e].clone());
-        let adjacent = adjacent.filter(|&g| g != f).distinct().collect();
-        assert_same_items(name, "FF", f, mesh.face_faces(f), adjacent);
+
+    /// Compares FE and FF of `f`.
+    fn check_face(&self, mesh: &M, f: M::Face) {
+        let edges = sides(&self.corners[&f]).map(|ends| self.edges[&ends]);
+        let adjacent = sides(&self.corners[&f])
+            .flat_map(|ends| self.faces_along[&ends].clone())
+            .filter(|&g| g != f)
+            .distinct();
+        let name = self.name;
+        assert_same_items(name, "FE", f, mesh.face_edges(f), edges.collect());
+        assert_same_items(name, "FF", f, mesh.face_faces(f), adjacent.collect());
     }
+}
+
+/// Iterates over the ends of the sides of a face; side `i` starts at corner `i`.
+fn sides<V: Copy + Ord>(face: &[V]) -> impl Iterator<Item = [V; 2]> {
+    let after = face.iter().cycle().skip(1);
+    face.iter().zip(after).map(|(&a, &b)| sorted([a, b]))
+}
+
+fn sorted<V: Ord>(mut ends: [V; 2]) -> [V; 2] {
+    ends.sort_unstable();
+    ends
 }
 
 fn assert_same_items<A: Debug, H: Ord + Debug>(

@@ -43,21 +43,41 @@ impl Step {
     /// Returns the action of this step on `model`; `number` gives the position of a new vertex.
     /// `None` if `model` has no element for the action.
     pub fn action(&self, model: &Model, number: usize) -> Option<Action> {
-        let [p, q, r, s] = self.picks.map(usize::from);
-        let at = if s % 64 == 63 {
-            // Sometimes the position of an existing vertex.
-            model.position(pick(&model.vertices().collect::<Vec<_>>(), r)?)?
-        } else {
-            Point::new(1000.0 + number as f32, (p % 97) as f32, (q % 89) as f32)
-        };
-        let vertices: Vec<usize> = model.vertices().collect();
-        let faces: Vec<usize> = model.faces().map(|(f, _)| f).collect();
-        let edges = model.edges();
-        let ends: Vec<[usize; 2]> = edges.keys().copied().collect();
-        let edge = |p: usize| {
-            let [a, b] = pick(&ends, p)?;
-            Some(if q % 2 == 0 { [a, b] } else { [b, a] })
-        };
+        let at = self.new_position(model, number)?;
+        let vertex = || pick(&model.vertices().collect::<Vec<_>>(), self.pick(0));
+        let face = || pick(&all_faces(model), self.pick(0));
+        let ends = || self.edge(model);
+        Some(match self.edit_on(model) {
+            Edit::SetPosition => Action::SetPosition {
+                v: vertex()?,
+                to: at,
+            },
+            Edit::AddVertex => Action::AddVertex { at },
+            Edit::AddFace => Action::AddFace {
+                corners: self.new_face(model)?,
+            },
+            Edit::RemoveFace => Action::RemoveFace { f: face()? },
+            Edit::RemoveVertex => Action::RemoveVertex { v: vertex()? },
+            Edit::RemoveIsolatedVertices => Action::RemoveIsolatedVertices,
+            Edit::SplitEdge => Action::SplitEdge { ends: ends()?, at },
+            Edit::BisectEdge => Action::BisectEdge { ends: ends()?, at },
+            Edit::PokeFace => Action::PokeFace { f: face()?, at },
+            Edit::SplitFace => self.face_split(model)?,
+            Edit::DissolveEdge => Action::DissolveEdge { ends: ends()? },
+            Edit::FlipEdge => Action::FlipEdge { ends: ends()? },
+            Edit::CollapseEdge => self.collapse(model, at)?,
+            Edit::SplitVertex => self.vertex_split(model, vertex()?, at),
+            _ => Action::Compact,
+        })
+    }
+
+    /// Returns the number `i` of the four that select elements.
+    fn pick(&self, i: usize) -> usize {
+        self.picks[i].into()
+    }
+
+    /// Returns the edit of this step, or a collapse if it would add faces to a mesh that has many.
+    fn edit_on(&self, model: &Model) -> Edit {
         let grows = matches!(
             self.edit,
             Edit::SplitEdge
@@ -66,70 +86,75 @@ impl Step {
                 | Edit::SplitFace
                 | Edit::SplitVertex
         );
-        let edit = match self.edit {
-            _ if grows && faces.len() > MANY_FACES => Edit::CollapseEdge,
-            edit => edit,
+        if grows && model.faces().count() > MANY_FACES {
+            Edit::CollapseEdge
+        } else {
+            self.edit
+        }
+    }
+
+    /// Returns the position of a new vertex; sometimes that of an existing vertex.
+    fn new_position(&self, model: &Model, number: usize) -> Option<Point> {
+        let [p, q, r, s] = self.picks.map(usize::from);
+        if s % 64 == 63 {
+            let vertices: Vec<usize> = model.vertices().collect();
+            return model.position(pick(&vertices, r)?);
+        }
+        let x = 1000.0 + number as f32;
+        Some(Point::new(x, (p % 97) as f32, (q % 89) as f32))
+    }
+
+    /// Returns the ends of an edge, in any order.
+    fn edge(&self, model: &Model) -> Option<[usize; 2]> {
+        let all: Vec<[usize; 2]> = model.edges().into_keys().collect();
+        let [a, b] = pick(&all, self.pick(0))?;
+        Some(if self.pick(1).is_multiple_of(2) {
+            [a, b]
+        } else {
+            [b, a]
+        })
+    }
+
+    /// Returns the split of a face between two of its corners, of a polygon if there is one,
+    /// because a triangle cannot be split.
+    fn face_split(&self, model: &Model) -> Option<Action> {
+        let [p, q, r, _] = self.picks.map(usize::from);
+        let polygons = model.faces().filter(|(_, face)| face.len() > 3);
+        let polygons: Vec<usize> = polygons.map(|(f, _)| f).collect();
+        let f = pick(&polygons, p).or_else(|| pick(&all_faces(model), p))?;
+        let face = model.face(f)?;
+        let i = q % face.len();
+        let j = (i + 2 + r % 3) % face.len();
+        Some(Action::SplitFace {
+            f,
+            ends: [face[i], face[j]],
+        })
+    }
+
+    /// Returns the collapse of an edge to `at`, or sometimes to one of its ends.
+    fn collapse(&self, model: &Model, at: Point) -> Option<Action> {
+        let ends = self.edge(model)?;
+        let r = self.pick(2);
+        let to = if r.is_multiple_of(4) {
+            model.position(ends[r / 4 % 2])?
+        } else {
+            at
         };
-        let action = match edit {
-            Edit::SetPosition => Action::SetPosition {
-                v: pick(&vertices, p)?,
-                to: at,
-            },
-            Edit::AddVertex => Action::AddVertex { at },
-            Edit::AddFace => Action::AddFace {
-                corners: self.new_face(model)?,
-            },
-            Edit::RemoveFace => Action::RemoveFace {
-                f: pick(&faces, p)?,
-            },
-            Edit::RemoveVertex => Action::RemoveVertex {
-                v: pick(&vertices, p)?,
-            },
-            Edit::RemoveIsolatedVertices => Action::RemoveIsolatedVertices,
-            Edit::SplitEdge => Action::SplitEdge { ends: edge(p)?, at },
-            Edit::BisectEdge => Action::BisectEdge { ends: edge(p)?, at },
-            Edit::PokeFace => Action::PokeFace {
-                f: pick(&faces, p)?,
-                at,
-            },
-            Edit::SplitFace => {
-                // Polygons are preferred, because a triangle cannot be split.
-                let polygons = model.faces().filter(|(_, face)| face.len() > 3);
-                let polygons: Vec<usize> = polygons.map(|(f, _)| f).collect();
-                let f = pick(&polygons, p).or_else(|| pick(&faces, p))?;
-                let face = model.face(f)?;
-                let i = q % face.len();
-                let j = (i + 2 + r % 3) % face.len();
-                Action::SplitFace {
-                    f,
-                    ends: [face[i], face[j]],
-                }
-            }
-            Edit::DissolveEdge => Action::DissolveEdge { ends: edge(p)? },
-            Edit::FlipEdge => Action::FlipEdge { ends: edge(p)? },
-            Edit::CollapseEdge => {
-                let ends = edge(p)?;
-                let to = if r % 4 == 0 {
-                    model.position(ends[r / 4 % 2])?
-                } else {
-                    at
-                };
-                Action::CollapseEdge { ends, to }
-            }
-            Edit::SplitVertex => {
-                let v = pick(&vertices, p)?;
-                let around: Vec<usize> = model.neighbours(v).into_iter().collect();
-                let side = |p: usize| pick(&around, p);
-                let (left, right) = match s % 6 {
-                    0 => (None, side(q)),
-                    1 => (side(q), None),
-                    _ => (side(q), side(q + 1 + r % 5)),
-                };
-                Action::SplitVertex { v, left, right, at }
-            }
-            _ => Action::Compact,
+        Some(Action::CollapseEdge { ends, to })
+    }
+
+    /// Returns the split of `v` between two adjacent vertices, or sometimes from one to the
+    /// boundary.
+    fn vertex_split(&self, model: &Model, v: usize, at: Point) -> Action {
+        let [_, q, r, s] = self.picks.map(usize::from);
+        let around: Vec<usize> = model.neighbours(v).into_iter().collect();
+        let side = |p: usize| pick(&around, p);
+        let (left, right) = match s % 6 {
+            0 => (None, side(q)),
+            1 => (side(q), None),
+            _ => (side(q), side(q + 1 + r % 5)),
         };
-        Some(action)
+        Action::SplitVertex { v, left, right, at }
     }
 
     /// Returns corners of a new face that is often legal: any three vertices, a triangle at a
@@ -176,6 +201,11 @@ impl Step {
     }
 }
 
+fn all_faces(model: &Model) -> Vec<usize> {
+    model.faces().map(|(f, _)| f).collect()
+}
+
+/// Returns the item that `number` selects; `None` if there are no items.
 fn pick<T: Copy>(items: &[T], number: usize) -> Option<T> {
     items.get(number.checked_rem(items.len())?).copied()
 }

@@ -185,53 +185,28 @@ pub fn missing_handles<M: Representation>(polygons: &PolygonMesh) {
         edge: catch_panic(|| mesh.edge_map(0)[e]).is_err(),
         face: catch_panic(|| mesh.face_map(0)[f]).is_err(),
     };
-    let queries: [(&str, Missing, String); 9] = [
-        (
-            "vertex_vertices",
-            rows.for_vertex(),
-            items(|| mesh.vertex_vertices(v).count()),
-        ),
-        (
-            "vertex_edges",
-            rows.for_vertex(),
-            items(|| mesh.vertex_edges(v).count()),
-        ),
-        (
-            "vertex_faces",
-            rows.for_vertex(),
-            items(|| mesh.vertex_faces(v).count()),
-        ),
-        (
-            "one_ring",
-            rows.for_vertex(),
-            items(|| mesh.one_ring(v).map_or(0, Iterator::count)),
-        ),
-        (
-            "edge_edges",
-            rows.for_edge(),
-            items(|| mesh.edge_edges(e).count()),
-        ),
-        (
-            "edge_faces",
-            rows.for_edge(),
-            items(|| mesh.edge_faces(e).count()),
-        ),
-        (
-            "face_vertices",
-            rows.for_face(),
-            items(|| mesh.face_vertices(f).count()),
-        ),
-        (
-            "face_edges",
-            rows.for_face(),
-            items(|| mesh.face_edges(f).count()),
-        ),
-        (
-            "face_faces",
-            rows.for_face(),
-            items(|| mesh.face_faces(f).count()),
-        ),
-    ];
+    check_not_contained(&mesh, v, e, f);
+    for (missing, answers) in [
+        (rows.for_vertex(), &vertex_answers(&mesh, v)[..]),
+        (rows.for_edge(), &edge_answers(&mesh, e)),
+        (rows.for_face(), &face_answers(&mesh, f)),
+    ] {
+        for (query, answer) in answers {
+            missing.check(M::NAME, query, answer);
+        }
+    }
+    if rows.vertex {
+        let answer = items(|| mesh.position(v).to_array().len());
+        Missing::Panics.check(M::NAME, "position", &answer);
+    }
+    if rows.edge {
+        let answer = items(|| mesh.edge_vertices(e).len());
+        Missing::Panics.check(M::NAME, "edge_vertices", &answer);
+    }
+}
+
+/// Checks that `mesh` contains neither `v` nor `e` nor `f`.
+fn check_not_contained<M: Representation>(mesh: &M, v: M::Vertex, e: M::Edge, f: M::Face) {
     assert!(
         !mesh.contains_vertex(v),
         "{}: contains_vertex of {v:?}",
@@ -247,17 +222,37 @@ pub fn missing_handles<M: Representation>(polygons: &PolygonMesh) {
         "{}: contains_face of {f:?}",
         M::NAME
     );
-    for (query, missing, answer) in queries {
-        missing.check(M::NAME, query, &answer);
-    }
-    if rows.vertex {
-        let answer = items(|| mesh.position(v).to_array().len());
-        Missing::Panics.check(M::NAME, "position", &answer);
-    }
-    if rows.edge {
-        let answer = items(|| mesh.edge_vertices(e).len());
-        Missing::Panics.check(M::NAME, "edge_vertices", &answer);
-    }
+}
+
+/// A query and its answer.
+type Answer = (&'static str, String);
+
+/// Queries the relations of `v`.
+fn vertex_answers<M: Representation>(mesh: &M, v: M::Vertex) -> [Answer; 4] {
+    let one_ring = || mesh.one_ring(v).map_or(0, Iterator::count);
+    [
+        ("vertex_vertices", items(|| mesh.vertex_vertices(v).count())),
+        ("vertex_edges", items(|| mesh.vertex_edges(v).count())),
+        ("vertex_faces", items(|| mesh.vertex_faces(v).count())),
+        ("one_ring", items(one_ring)),
+    ]
+}
+
+/// Queries the relations of `e`, except its ends.
+fn edge_answers<M: Representation>(mesh: &M, e: M::Edge) -> [Answer; 2] {
+    [
+        ("edge_edges", items(|| mesh.edge_edges(e).count())),
+        ("edge_faces", items(|| mesh.edge_faces(e).count())),
+    ]
+}
+
+/// Queries the relations of `f`.
+fn face_answers<M: Representation>(mesh: &M, f: M::Face) -> [Answer; 3] {
+    [
+        ("face_vertices", items(|| mesh.face_vertices(f).count())),
+        ("face_edges", items(|| mesh.face_edges(f).count())),
+        ("face_faces", items(|| mesh.face_faces(f).count())),
+    ]
 }
 
 /// Whether the handles of each kind are rows; a map panics if it has no row for a handle.

@@ -22,50 +22,72 @@ pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Vec
 fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) -> Figure {
     let fits = report.fits.iter().filter(|fit| fit.operation == operation);
     let fits: Vec<&Fit> = fits.collect();
-    let names = fits.iter().map(|fit| fit.backend.as_str());
-    let mut table = Table::new(["faces"].into_iter().chain(names));
-    let mut plots = Vec::new();
-    for fit in &fits {
-        let (mut points, mut titles) = (Vec::new(), Vec::new());
-        for size in &report.sizes {
-            let Some((row, ns)) = find_row(size, fit).and_then(|row| Some((row, run_ns(row)?)))
-            else {
-                continue;
-            };
-            points.push((size.faces as f64, ns / 1e6));
-            let note = if row.median_ns.is_none() {
-                ", estimated"
-            } else {
-                ""
-            };
-            titles.push(format!(
-                "{}, {} faces: {}{note}",
-                fit.backend,
-                grouped(size.faces),
-                duration(ns)
-            ));
-        }
-        let colour = column_colour(&fit.backend);
-        let legend = match fit.all {
-            Some(slope) => format!("{}: {:.2}", fit.backend, slope.exponent),
-            None => fit.backend.clone(),
+    let plots: Vec<Plot> = { fits.iter() }
+        .flat_map(|fit| curve(&report.sizes, fit))
+        .collect();
+    let (name, per) = (operation.name(), per_unit(operation.unit()));
+    let title = format!("{name}: how its cost grows with the mesh");
+    let layout = base_layout(&plots, 860.0, 440.0)
+        .with_log_scale()
+        .with_x_label("faces")
+        .with_y_label("total time, ms");
+    Figure {
+        id: format!("{id}-{}", name.replace('_', "-")),
+        svg: render_svg(&title, plots, layout),
+        title,
+        caption: format!(
+            "Both axes are logarithmic, so a straight line is a power of the number of faces. The number after each name \
+             is its exponent: 1 means a constant time per element, 2 a scan of all faces per element. The table shows \
+             the time {per}, and the slopes for the sizes that fit into the last cache and for those that do not."
+        ),
+        table: times_and_slopes(&report.sizes, &fits),
+        command: command.into(),
+    }
+}
+
+/// Draws the times of one backend over the sizes: a line, and a mark with a title for each size.
+fn curve(sizes: &[SizeReport], fit: &Fit) -> [Plot; 2] {
+    let (mut points, mut titles) = (Vec::new(), Vec::new());
+    for size in sizes {
+        let Some((row, ns)) = find_row(size, fit).and_then(|row| Some((row, run_ns(row)?))) else {
+            continue;
         };
-        plots.push(Plot::Line(
-            LinePlot::new()
-                .with_data(points.clone())
-                .with_color(colour)
-                .with_stroke_width(2.0)
-                .with_legend(legend),
-        ));
-        plots.push(Plot::Scatter(
-            ScatterPlot::new()
-                .with_data(points)
-                .with_color(colour)
-                .with_size(4.0)
-                .with_tooltip_labels(titles),
+        points.push((size.faces as f64, ns / 1e6));
+        let note = if row.median_ns.is_none() {
+            ", estimated"
+        } else {
+            ""
+        };
+        titles.push(format!(
+            "{}, {} faces: {}{note}",
+            fit.backend,
+            grouped(size.faces),
+            duration(ns)
         ));
     }
-    for size in &report.sizes {
+    let colour = column_colour(&fit.backend);
+    let legend = match fit.all {
+        Some(slope) => format!("{}: {:.2}", fit.backend, slope.exponent),
+        None => fit.backend.clone(),
+    };
+    let line = LinePlot::new()
+        .with_data(points.clone())
+        .with_color(colour)
+        .with_stroke_width(2.0)
+        .with_legend(legend);
+    let marks = ScatterPlot::new()
+        .with_data(points)
+        .with_color(colour)
+        .with_size(4.0)
+        .with_tooltip_labels(titles);
+    [Plot::Line(line), Plot::Scatter(marks)]
+}
+
+/// Returns the table with a column for each backend: its time per element by size, then its slopes.
+fn times_and_slopes(sizes: &[SizeReport], fits: &[&Fit]) -> Table {
+    let names = fits.iter().map(|fit| fit.backend.as_str());
+    let mut table = Table::new(["faces"].into_iter().chain(names));
+    for size in sizes {
         let cell = |fit: &&Fit| {
             let each = find_row(size, fit)
                 .and_then(|row| Some(run_ns(row)? / row.elements?.max(1) as f64));
@@ -82,37 +104,24 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
         ("slope, beyond", |fit| fit.beyond),
     ];
     for (name, select) in slopes {
-        let cells = fits.iter().map(|fit| match select(fit) {
-            Some(Slope {
-                exponent,
-                standard_error: Some(error),
-                ..
-            }) => format!("{exponent:.2} ± {error:.2}"),
-            Some(slope) => format!("{:.2}", slope.exponent),
-            None => "–".into(),
-        });
-        let cells: Vec<String> = cells.collect();
+        let cells: Vec<String> = fits.iter().map(|fit| slope_cell(select(fit))).collect();
         if cells.iter().any(|cell| cell != "–") {
             table.row([vec![name.into()], cells].concat());
         }
     }
-    let (name, per) = (operation.name(), per_unit(operation.unit()));
-    let title = format!("{name}: how its cost grows with the mesh");
-    let layout = base_layout(&plots, 860.0, 440.0)
-        .with_log_scale()
-        .with_x_label("faces")
-        .with_y_label("total time, ms");
-    Figure {
-        id: format!("{id}-{}", name.replace('_', "-")),
-        svg: render_svg(&title, plots, layout),
-        title,
-        caption: format!(
-            "Both axes are logarithmic, so a straight line is a power of the number of faces. The number after each name \
-             is its exponent: 1 means a constant time per element, 2 a scan of all faces per element. The table shows \
-             the time {per}, and the slopes for the sizes that fit into the last cache and for those that do not."
-        ),
-        table,
-        command: command.into(),
+    table
+}
+
+/// Formats an exponent with its standard error, if it has one.
+fn slope_cell(slope: Option<Slope>) -> String {
+    match slope {
+        Some(Slope {
+            exponent,
+            standard_error: Some(error),
+            ..
+        }) => format!("{exponent:.2} ± {error:.2}"),
+        Some(slope) => format!("{:.2}", slope.exponent),
+        None => "–".into(),
     }
 }
 

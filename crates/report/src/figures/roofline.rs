@@ -10,74 +10,30 @@ use super::per_unit;
 use crate::colours::{TEXT_COLOUR, column_colour};
 use crate::figure::{Figure, Table, base_layout, render_svg};
 
+/// A row of the results with its times.
+type TimedRow<'a> = (&'a WhyRow, Timed);
+
 /// Draws all relations on all structures in one figure; `None` if nothing was measured.
 pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
     let buffers = why.memory.as_ref()?;
     let rows = why.rows.iter().filter_map(|row| Some((row, row.timed?)));
-    let rows: Vec<(&WhyRow, Timed)> = rows
+    let rows: Vec<TimedRow> = rows
         .filter(|(row, _)| row.reads.moved_bytes > 0.0)
         .collect();
+    if rows.is_empty() {
+        return None;
+    }
     let ends = rows.iter().map(|(row, _)| row.reads.moved_bytes);
     let [min_bytes, max_bytes] = ends
         .fold([f64::INFINITY, 0.0], |[min_bytes, max_bytes], bytes| {
             [f64::min(min_bytes, bytes), f64::max(max_bytes, bytes)]
         });
-    if rows.is_empty() {
-        return None;
-    }
-    let mut plots = Vec::new();
     // The fastest and the slowest buffer; all others are between them.
-    for buffer in [buffers.first(), buffers.last()].into_iter().flatten() {
-        plots.push(line(buffer, min_bytes, max_bytes));
-    }
-    for backend in &why.backends {
-        let (mut points, mut titles) = (Vec::new(), Vec::new());
-        for (row, timed) in rows.iter().filter(|(row, _)| row.backend == backend.name) {
-            points.push((row.reads.moved_bytes, timed.ns_per_element));
-            titles.push(format!(
-                "{}, {}: {:.1} bytes, {} {}: {}",
-                row.backend,
-                row.reads.relation,
-                row.reads.moved_bytes,
-                duration(timed.ns_per_element),
-                per_unit(&row.per),
-                timed.bound.name()
-            ));
-        }
-        if points.is_empty() {
-            continue;
-        }
-        plots.push(Plot::Scatter(
-            ScatterPlot::new()
-                .with_data(points)
-                .with_color(column_colour(&backend.name))
-                .with_size(5.0)
-                .with_legend(backend.name.clone())
-                .with_tooltip_labels(titles),
-        ));
-    }
-    let mut table = Table::new([
-        "",
-        "structure",
-        "bytes",
-        "jumps",
-        "time",
-        "to move the bytes",
-        "to wait",
-        "bound by",
-    ]);
-    for (row, timed) in &rows {
-        table.row(vec![
-            row.reads.relation.to_string(),
-            row.backend.clone(),
-            format!("{:.1}", row.reads.moved_bytes),
-            format!("{:.2}", row.reads.jumps),
-            duration(timed.ns_per_element),
-            duration(timed.floor_ns),
-            duration(timed.waits_ns),
-            timed.bound.name().into(),
-        ]);
-    }
+    let buffers = [buffers.first(), buffers.last()].into_iter().flatten();
+    let mut plots: Vec<Plot> = buffers
+        .map(|buffer| line(buffer, min_bytes, max_bytes))
+        .collect();
+    plots.extend({ why.backends.iter() }.filter_map(|backend| marks(&rows, &backend.name)));
     let title = format!("Time against the bytes that must move: {}", why.mesh.name);
     let layout = base_layout(&plots, 860.0, 520.0)
         .with_log_scale()
@@ -92,9 +48,64 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
              bandwidth. A mark above it waits for reads that cannot be predicted, or is busy computing; the table \
              shows which."
             .into(),
-        table,
+        table: table(&rows),
         command: command.into(),
     })
+}
+
+/// Draws a mark with a title for each relation on the structure `backend`, if it has rows.
+fn marks(rows: &[TimedRow], backend: &str) -> Option<Plot> {
+    let (mut points, mut titles) = (Vec::new(), Vec::new());
+    for (row, timed) in rows.iter().filter(|(row, _)| row.backend == backend) {
+        points.push((row.reads.moved_bytes, timed.ns_per_element));
+        titles.push(format!(
+            "{}, {}: {:.1} bytes, {} {}: {}",
+            row.backend,
+            row.reads.relation,
+            row.reads.moved_bytes,
+            duration(timed.ns_per_element),
+            per_unit(&row.per),
+            timed.bound.name()
+        ));
+    }
+    if points.is_empty() {
+        return None;
+    }
+    Some(Plot::Scatter(
+        ScatterPlot::new()
+            .with_data(points)
+            .with_color(column_colour(backend))
+            .with_size(5.0)
+            .with_legend(backend.to_owned())
+            .with_tooltip_labels(titles),
+    ))
+}
+
+/// Returns the table with one line for each mark.
+fn table(rows: &[TimedRow]) -> Table {
+    let mut table = Table::new([
+        "",
+        "structure",
+        "bytes",
+        "jumps",
+        "time",
+        "to move the bytes",
+        "to wait",
+        "bound by",
+    ]);
+    for (row, timed) in rows {
+        table.row(vec![
+            row.reads.relation.to_string(),
+            row.backend.clone(),
+            format!("{:.1}", row.reads.moved_bytes),
+            format!("{:.2}", row.reads.jumps),
+            duration(timed.ns_per_element),
+            duration(timed.floor_ns),
+            duration(timed.waits_ns),
+            timed.bound.name().into(),
+        ]);
+    }
+    table
 }
 
 /// Draws the time to read `min_bytes` to `max_bytes` bytes at the speed of `buffer`.

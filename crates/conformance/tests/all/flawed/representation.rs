@@ -1,0 +1,140 @@
+//! The flaws of construction, conversion, costs, memory and measuring.
+
+use std::marker::PhantomData;
+
+use sixfold_core::{
+    BuildError, Capabilities, Counts, FaceId, InvariantError, Measured, MemoryFootprint, MeshQuery,
+    MoveError, Point, PolygonMesh, Probe, QueryCost, Relation, Representation, VertexId, VertexMap,
+};
+
+use super::{Flaw, Flawed, Kind};
+use crate::face_and_edge_lists::FaceAndEdgeLists;
+
+impl<F: Flaw> Representation for Flawed<F> {
+    const NAME: &'static str = "flawed";
+
+    const COSTS: [QueryCost; 9] = match F::KIND {
+        Kind::AllConstant => [QueryCost::Constant; 9],
+        Kind::AllLocal => [QueryCost::Local; 9],
+        Kind::AllScan => [QueryCost::Scan; 9],
+        _ => FaceAndEdgeLists::COSTS,
+    };
+
+    fn cost(relation: Relation) -> QueryCost {
+        match F::KIND {
+            Kind::CostOfAnotherRelation => Self::COSTS[8 - relation as usize],
+            _ => Self::COSTS[relation as usize],
+        }
+    }
+
+    fn is_local() -> bool {
+        F::KIND == Kind::LocalByName || QueryCost::are_local(&Self::COSTS)
+    }
+
+    fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
+        match F::KIND {
+            Kind::AcceptsEverything => {}
+            Kind::RejectsIsolated => {
+                let strict = Capabilities {
+                    isolated_vertices: false,
+                    ..Capabilities::ALL
+                };
+                strict.check(polygons)?;
+            }
+            // Checks vertices before edges.
+            Kind::WrongError => {
+                let vertices = Capabilities {
+                    non_manifold_vertices: false,
+                    ..Capabilities::ALL
+                };
+                vertices.check(polygons)?;
+                Self::CAPABILITIES.check(polygons)?;
+            }
+            _ => Self::CAPABILITIES.check(polygons)?,
+        }
+        Ok(Self {
+            inner: FaceAndEdgeLists::from_polygons(polygons)?,
+            is_probed: false,
+            moves: 0,
+            flaw: PhantomData,
+        })
+    }
+
+    fn to_polygons(&self) -> PolygonMesh {
+        let polygons = self.inner.to_polygons();
+        if !self.is(Kind::FaceReversedOnExport) {
+            return polygons;
+        }
+        let mut faces: Vec<Vec<u32>> = Vec::new();
+        for (_, corners) in polygons.faces().iter() {
+            faces.push(corners.iter().map(|v| v.index() as u32).collect());
+        }
+        if let Some(face) = faces.last_mut() {
+            face.reverse();
+        }
+        PolygonMesh::new(polygons.positions().iter().copied(), faces)
+            .expect("the corners are the same")
+    }
+
+    fn vertex_handle(polygons: &PolygonMesh, v: VertexId) -> VertexId {
+        let last = polygons.vertex_count() as u32 - 1;
+        match F::KIND {
+            Kind::VertexNameOff => VertexId::new(last - v.index() as u32),
+            _ => v,
+        }
+    }
+
+    fn face_handle(polygons: &PolygonMesh, f: FaceId) -> FaceId {
+        let last = polygons.face_count() as u32 - 1;
+        match F::KIND {
+            Kind::FaceNameOff => FaceId::new(last - f.index() as u32),
+            _ => f,
+        }
+    }
+
+    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
+        self.moves += 1;
+        let mut positions = positions.clone();
+        if self.is(Kind::SecondMoveIgnored) && self.moves > 1 {
+            return Ok(());
+        }
+        if let Some(last) = self.inner.vertices().last()
+            && self.is(Kind::LastVertexNotMoved)
+        {
+            positions[last] = self.inner.position(last);
+        }
+        self.inner.set_positions(&positions)
+    }
+
+    fn memory(&self) -> MemoryFootprint {
+        let mut memory = self.inner.memory();
+        if self.is(Kind::MemoryTooLarge) {
+            memory.tables[0].bytes += memory.tables[0].bytes / 4;
+        }
+        memory
+    }
+
+    fn validate(&self) -> Result<(), InvariantError> {
+        if self.is(Kind::ValidateFails) {
+            return Err(InvariantError::new("I9", "always fails"));
+        }
+        self.inner.validate()
+    }
+}
+
+impl<F: Flaw> Measured for Flawed<F> {
+    type Probed<P: Probe> = Flawed<F, P>;
+
+    fn layout_bytes(counts: &Counts) -> usize {
+        FaceAndEdgeLists::layout_bytes(counts)
+    }
+
+    fn probed<P: Probe>(self, probe: P) -> Flawed<F, P> {
+        Flawed {
+            inner: self.inner.probed(probe),
+            is_probed: true,
+            moves: self.moves,
+            flaw: PhantomData,
+        }
+    }
+}
