@@ -271,7 +271,7 @@ fn invalid_input_is_refused_before_anything_is_written() {
         (
             &["t.obj", "--boundary", "none", "--limit", "y.obj"],
             3,
-            "leave one",
+            "remove one",
         ),
         (
             &["t.obj", "--method", "native", "--backend", "polygon-soup"],

@@ -114,18 +114,17 @@ fn scatter_faces<M: MeshQuery, K: Mask>(
     // For one face: its vertices, and the edge points of the sides that start there.
     let (mut own, mut middles) = (Vec::new(), Vec::new());
     let mut face_point = builder.vertices();
-    mesh.faces().for_each(|f| {
+    for f in mesh.faces() {
         own.clear();
         middles.clear();
         let mut sum = Point::ZERO;
-        mesh.face_vertices(f).for_each(|v| {
+        for v in mesh.face_vertices(f) {
             let number = numbers[v];
             sum += builder.points[number as usize];
             own.push(number);
-        });
+        }
         let value = mask.face(sum, own.len());
-        let mut corner = 0;
-        mesh.face_edges(f).for_each(|e| {
+        for (corner, e) in mesh.face_edges(f).enumerate() {
             let number = &mut edge_numbers[e];
             if *number == UNNUMBERED {
                 *number = edges.len() as u32;
@@ -137,8 +136,7 @@ fn scatter_faces<M: MeshQuery, K: Mask>(
             builder.points[middle] += value;
             edges[*number as usize].count += 1;
             middles.push(middle as u32);
-            corner += 1;
-        });
+        }
         if K::VERTICES_USE_FACES {
             for &v in &own {
                 vertex_faces[v as usize] += value;
@@ -149,7 +147,7 @@ fn scatter_faces<M: MeshQuery, K: Mask>(
             builder.points[face_point] = value;
         }
         face_point += 1;
-    });
+    }
     FaceSums {
         edges,
         vertex_faces,
