@@ -21,7 +21,7 @@ mod structure;
 mod walk;
 
 pub use corner_cases::corner_cases;
-pub use cost::{costs, memory};
+pub use cost::{costs, memory, oriented_walk_costs};
 pub use edit::{edit_costs, edits};
 pub use edit_data::{ElementNumbers, data_follows_edits, numbers_follow_edits};
 pub(crate) use elements::check_numbers;

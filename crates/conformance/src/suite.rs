@@ -88,7 +88,7 @@ macro_rules! edit_suite {
 /// Makes the tests of structures that step from side to side, with and without edits:
 /// `sixfold_conformance::walk_suite!(half_edge::HalfEdgeMesh, half_edge::EditableHalfEdgeMesh);`
 ///
-/// The second type may be left out.
+/// The second type may be left out. Then there is no test that the steps are local.
 #[macro_export]
 macro_rules! walk_suite {
     ($mesh:ty) => {
@@ -103,6 +103,11 @@ macro_rules! walk_suite {
         #[test]
         fn oriented_walk_after_edits() {
             $crate::law::oriented_walk_after_edits::<$editable>();
+        }
+
+        #[test]
+        fn oriented_walk_costs() {
+            $crate::law::oriented_walk_costs::<$mesh>();
         }
     };
 }

@@ -225,4 +225,21 @@ mod tests {
             "none f7"
         );
     }
+
+    #[test]
+    fn handles_are_the_same_by_next_and_by_fold() {
+        for end in 0..4 {
+            let mut rest = Handles::<FaceId>::below(end);
+            for start in 0..=end {
+                let expected: Vec<FaceId> = (start..end).map(|f| FaceId::new(f as u32)).collect();
+                assert_eq!(rest.size_hint(), (end - start, Some(end - start)));
+                let by_fold = rest.clone().fold(Vec::new(), |mut folded, f| {
+                    folded.push(f);
+                    folded
+                });
+                assert_eq!(by_fold, expected);
+                assert_eq!(rest.next(), expected.first().copied());
+            }
+        }
+    }
 }

@@ -8,14 +8,13 @@
 //!    b ───── v
 //! ```
 
-use sixfold_core::{Editing, Probe, Slot, VertexId};
+use sixfold_core::{Editing, Probe, Slot, VertexId, row};
 
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between, names_edge};
 
 /// The edges of a mesh, by ascending corner.
 ///
-/// About every second corner is skipped, in an unpredictable order. A variant that first gathered
-/// the edges of 64 corners without a branch was slower.
+/// About every second corner is skipped, in an unpredictable order.
 #[derive(Clone, Debug)]
 pub(crate) struct Edges<'a, P: Probe, E: Editing> {
     mesh: &'a CornerTable<E, P>,
@@ -28,13 +27,6 @@ impl<'a, P: Probe, E: Editing> Edges<'a, P, E> {
     pub(crate) fn new(mesh: &'a CornerTable<E, P>) -> Self {
         Self { mesh, at: 0 }
     }
-
-    /// Returns the edge that the corner of row `at` names, if it names one.
-    #[inline(always)]
-    fn edge_named_by(&self, at: usize) -> Option<EdgeCorner> {
-        let c = CornerId::new(at as u32);
-        names_edge(c, *self.mesh.opposite.read(at)).then(|| EdgeCorner::new(at as u32))
-    }
 }
 
 impl<P: Probe, E: Editing> Iterator for Edges<'_, P, E> {
@@ -43,24 +35,29 @@ impl<P: Probe, E: Editing> Iterator for Edges<'_, P, E> {
     #[inline]
     fn next(&mut self) -> Option<EdgeCorner> {
         while self.at < self.mesh.opposite.len() {
-            let named = self.edge_named_by(self.at);
+            let c = CornerId::new(self.at as u32);
+            let across = *self.mesh.opposite.read(self.at);
             self.at += 1;
-            if named.is_some() {
-                return named;
+            if names_edge(c, across) {
+                return Some(EdgeCorner::new(c.index() as u32));
             }
         }
         None
     }
 
     #[inline]
-    fn fold<B, F: FnMut(B, EdgeCorner) -> B>(self, init: B, mut visit: F) -> B {
-        let mut folded = init;
-        for at in self.at..self.mesh.opposite.len() {
-            if let Some(edge) = self.edge_named_by(at) {
-                folded = visit(folded, edge);
-            }
-        }
-        folded
+    fn fold<B, F: FnMut(B, EdgeCorner) -> B>(self, init: B, visit: F) -> B {
+        // The lower corner is chosen first, and compared with `c` afterwards. The compiler can then
+        // use the result without a branch, which it does not with `names_edge`: a count of boundary
+        // edges in random order takes 1.4 ns instead of 4 ns for each edge.
+        let corners = row(self.at)..row(self.mesh.opposite.len());
+        let edges = corners.map(CornerId::new).filter_map(|c| {
+            let across = *self.mesh.opposite.read(c.index());
+            let edge = edge_between(c, across);
+            let is_there = !E::CAN_DELETE || across != Slot::some(c);
+            (edge.corner() == c && is_there).then_some(edge)
+        });
+        edges.fold(init, visit)
     }
 }
 

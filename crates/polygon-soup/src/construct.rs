@@ -117,6 +117,7 @@ impl<E: Editing> Measured for PolygonSoup<E> {
 }
 
 /// Returns `point` with 0 instead of −0 (I2).
+#[inline]
 fn canonical(point: Point) -> Point {
     SoupVertex::at(point).position()
 }
@@ -130,20 +131,21 @@ fn has_isolated_vertex(polygons: &PolygonMesh) -> bool {
 }
 
 /// Returns whether two corners of a face are at the same position; expects canonical coordinates.
+#[inline]
 fn has_coincident_corners(face: &[Point]) -> bool {
     match *face {
         [a, b, c] => {
             let [a, b, c] = [a, b, c].map(SoupVertex::from_corner);
             a == b || b == c || c == a
         }
-        _ => {
-            face.iter()
-                .map(|&p| SoupVertex::from_corner(p))
-                .distinct()
-                .count()
-                < face.len()
-        }
+        _ => has_repeated_corners(face),
     }
+}
+
+/// Returns the same for a face of any degree.
+fn has_repeated_corners(face: &[Point]) -> bool {
+    let corners = face.iter().map(|&p| SoupVertex::from_corner(p));
+    corners.distinct().count() < face.len()
 }
 
 #[cfg(test)]

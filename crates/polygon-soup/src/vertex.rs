@@ -1,5 +1,6 @@
 //! The handle of a vertex that has no row.
 
+use std::cmp::Ordering;
 use std::fmt;
 use std::hash::{Hash, Hasher};
 
@@ -40,7 +41,7 @@ use sixfold_core::{Handle, HashHandleMap, Point, ScannedVertex};
 /// ```
 ///
 /// Building returns an error if two corners of one face have the same rounded position.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub struct SoupVertex([u32; 3]);
 
 impl SoupVertex {
@@ -98,6 +99,24 @@ impl ScannedVertex for SoupVertex {
     }
 }
 
+impl Ord for SoupVertex {
+    /// Compares the three words as one number: no branch, and no call of a comparison of slices.
+    #[inline]
+    fn cmp(&self, other: &Self) -> Ordering {
+        let number = |[x, y, z]: [u32; 3]| {
+            (u128::from(x) << 64) | u128::from(u64::from(y) << 32 | u64::from(z))
+        };
+        number(self.0).cmp(&number(other.0))
+    }
+}
+
+impl PartialOrd for SoupVertex {
+    #[inline]
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
 impl Hash for SoupVertex {
     /// Writes whole words: a slice of numbers would be hashed byte by byte, at twice the cost.
     #[inline]
@@ -150,5 +169,17 @@ mod tests {
         assert_eq!(minus.position().y.to_bits(), 0);
         assert_eq!(minus.to_string(), "(1, 0, 2.5)");
         assert_ne!(plus, SoupVertex::at(Point::new(1.0, 1e-45, 2.5)));
+    }
+
+    #[test]
+    fn the_order_is_that_of_the_words() {
+        let words = [0, 1, 0x8000_0000, BLANK];
+        let triples = words.map(|x| words.map(|y| words.map(|z| [x, y, z])));
+        let triples = triples.as_flattened().as_flattened();
+        for a in triples {
+            for b in triples {
+                assert_eq!(SoupVertex(*a).cmp(&SoupVertex(*b)), a.cmp(b), "{a:?} {b:?}");
+            }
+        }
     }
 }

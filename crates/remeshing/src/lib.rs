@@ -9,7 +9,11 @@
 //! Each operator is written once, with [`MeshEdit`] and the queries, and runs on every structure.
 //! On a structure that scans for neighbours, every step scans. All decisions depend on vertex
 //! numbers, which follow the order in which the faces list the vertices, and sums are computed in
-//! that order. So **every structure makes the same mesh, to the bit**, from the same manifold.
+//! that order. So **every structure makes the same mesh, to the bit**, from the same manifold. The
+//! order of its faces depends on the structure. So an operator that runs on the result of another
+//! one can make different meshes, unless all structures are first built from one [`PolygonMesh`].
+//!
+//! [`PolygonMesh`]: sixfold_core::PolygonMesh
 //!
 //! Only meshes of triangles are accepted. Boundaries keep their shape. Removed elements leave
 //! holes: see [`MeshEdit::compact`].

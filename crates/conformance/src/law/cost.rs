@@ -1,6 +1,10 @@
 //! Compares the reads and the memory of a structure with what it declares.
 
-use sixfold_core::{Counts, Measured, MeshQuery, PolygonMesh, QueryCost, Relation, Traced};
+use std::hint::black_box;
+
+use sixfold_core::{
+    Counts, Measured, MeshQuery, OrientedWalk, PolygonMesh, QueryCost, Relation, Traced,
+};
 
 use crate::gallery::double_cone;
 use crate::oracle::Oracle;
@@ -43,6 +47,90 @@ pub fn costs<M: Measured>() {
             M::NAME
         );
     }
+}
+
+/// The methods of [`OrientedWalk`], first those that need only the face of the side.
+const WALK_METHODS: [&str; 11] = [
+    "next_side",
+    "prev_side",
+    "side_origin",
+    "side_target",
+    "side_face",
+    "side_edge",
+    "twin_side",
+    "cw_side",
+    "ccw_side",
+    "edge_sides",
+    "outgoing_sides",
+];
+
+/// How many of [`WALK_METHODS`] need only the face of the side.
+const WITHIN_A_FACE: usize = 6;
+
+/// No step of a walk scans, and a step within a face does not depend on the valence of its corners,
+/// measured in table reads on the meshes of [`costs`].
+pub fn oriented_walk_costs<M>()
+where
+    M: Measured + OrientedWalk,
+    M::Probed<Traced>: OrientedWalk<Side = M::Side>,
+{
+    let [small, large] = [6, 18].map(|side| walk_reads::<M>(&torus(side)));
+    let [low, high] = [24, 240].map(|valence| walk_reads::<M>(&double_cone(valence)));
+    for (i, method) in WALK_METHODS.into_iter().enumerate() {
+        let (few, many) = (small[i], large[i]);
+        assert!(
+            2 * many <= 3 * few,
+            "{}: {method} scans; its maximum reads are {few} on 72 faces and {many} on 648",
+            M::NAME
+        );
+        let (few, many) = (low[i], high[i]);
+        assert!(
+            i >= WITHIN_A_FACE || many <= few,
+            "{}: {method} depends on the valence; its maximum reads are {few} at valence 24 and {many} at 240",
+            M::NAME
+        );
+    }
+}
+
+/// Counts the maximum reads of each of [`WALK_METHODS`].
+fn walk_reads<M>(polygons: &PolygonMesh) -> [usize; WALK_METHODS.len()]
+where
+    M: Measured + OrientedWalk,
+    M::Probed<Traced>: OrientedWalk<Side = M::Side>,
+{
+    let mesh = M::from_polygons(polygons);
+    let mesh = mesh.unwrap_or_else(|e| panic!("{} refuses a closed triangle mesh: {e}", M::NAME));
+    let probe = Traced::default();
+    let probed = mesh.clone().probed(probe.clone());
+    let mut maxima = [0; WALK_METHODS.len()];
+    let mut record = |method: usize| maxima[method] = probe.take().len().max(maxima[method]);
+    let steps: [&dyn Fn(M::Side); 9] = [
+        &|s| _ = black_box(probed.next_side(s)),
+        &|s| _ = black_box(probed.prev_side(s)),
+        &|s| _ = black_box(probed.side_origin(s)),
+        &|s| _ = black_box(probed.side_target(s)),
+        &|s| _ = black_box(probed.side_face(s)),
+        &|s| _ = black_box(probed.side_edge(s)),
+        &|s| _ = black_box(probed.twin_side(s)),
+        &|s| _ = black_box(probed.cw_side(s)),
+        &|s| _ = black_box(probed.ccw_side(s)),
+    ];
+    probe.take();
+    for s in sample(mesh.sides().collect()) {
+        for (method, step) in steps.iter().enumerate() {
+            step(s);
+            record(method);
+        }
+    }
+    for e in sample(mesh.edges().collect()) {
+        assert_eq!(probed.edge_sides(e).count(), 2, "{}: edge_sides", M::NAME);
+        record(steps.len());
+    }
+    for v in sample(mesh.vertices().collect()) {
+        black_box(probed.outgoing_sides(v).count());
+        record(steps.len() + 1);
+    }
+    maxima
 }
 
 /// `memory()` equals `layout_bytes` within 2 %, for uniform and for mixed degrees.

@@ -5,6 +5,7 @@ use std::panic::catch_unwind;
 
 use sixfold_conformance::{check_law, law};
 
+use crate::face_and_edge_lists::FaceAndEdgeLists;
 use crate::flawed::{Flaw, Flawed, Kind};
 
 /// `Kind => law, "words of the message"` makes a test: the law must fail for the structure with
@@ -133,6 +134,13 @@ detects! {
         CostOfAnotherRelation => costs, "cost of vertex_faces";
         MemoryTooLarge => memory, "layout_bytes is";
     }
+}
+
+/// The seventh structure searches all faces for those of an edge.
+#[test]
+fn a_walk_that_scans_is_found() {
+    let fault = fault(law::oriented_walk_costs::<FaceAndEdgeLists>);
+    assert!(fault.contains("twin_side scans"), "{fault}");
 }
 
 /// Returns the message of the law that fails.
