@@ -123,7 +123,7 @@ pub struct DistinctWalk<W, H: RowId> {
 
 impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> DistinctWalk<W, H> {
     /// Builds the iterator from a walk at its start.
-    #[inline]
+    #[inline(always)]
     pub fn new(walk: W) -> Self {
         Self {
             start: walk.clone(),
@@ -132,14 +132,6 @@ impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> DistinctWalk<W, H> {
             last: [Slot::NONE; 3],
             set: None,
         }
-    }
-
-    /// Returns the whole walk, if it has exactly three steps and has not begun.
-    #[inline]
-    fn as_three_steps(&self) -> Option<[Slot<H>; 3]> {
-        let mut walk = self.walk.clone();
-        let items = [walk.next()?, walk.next()?, walk.next()?];
-        (self.steps == 0 && walk.next().is_none()).then_some(items)
     }
 
     /// Returns whether `item`, found after `steps` steps, differs from all items found before.
@@ -158,6 +150,13 @@ impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> DistinctWalk<W, H> {
         self.last = [item, a, b];
         true
     }
+}
+
+/// Returns all items of `walk`, if there are exactly three.
+#[inline(always)]
+fn three_steps<T>(mut walk: impl Iterator<Item = T>) -> Option<[T; 3]> {
+    let items = [walk.next()?, walk.next()?, walk.next()?];
+    walk.next().is_none().then_some(items)
 }
 
 /// Returns whether `item` differs from all items in the first `steps` steps of `walk`.
@@ -194,13 +193,24 @@ impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> Iterator for DistinctWalk<W,
         }
     }
 
-    /// Folds all items at once, which for triangles needs three comparisons and no state. Always
-    /// inlined: if the walk is passed to a function in memory, it takes twice the time, depending
-    /// on the position of the stack.
+    /// Folds all items at once, which for triangles needs three comparisons and no state.
+    ///
+    /// All functions on this path are always inlined, and the fields are in variables: if the walk
+    /// is passed to a function in memory, it can take three times the time, depending on the
+    /// position of the stack.
     #[inline(always)]
     fn fold<B, F: FnMut(B, H) -> B>(self, init: B, mut f: F) -> B {
+        let Self {
+            start,
+            walk,
+            steps,
+            last,
+            set,
+        } = self;
         let mut folded = init;
-        if let Some([a, b, c]) = self.as_three_steps() {
+        if steps == 0
+            && let Some([a, b, c]) = three_steps(walk.clone())
+        {
             if let Some(item) = a.get() {
                 folded = f(folded, item);
             }
@@ -212,7 +222,14 @@ impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> Iterator for DistinctWalk<W,
             }
             return folded;
         }
-        fold_by_steps(self, folded, f)
+        let rest = Self {
+            start,
+            walk,
+            steps,
+            last,
+            set,
+        };
+        fold_by_steps(rest, folded, f)
     }
 }
 
