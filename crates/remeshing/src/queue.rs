@@ -1,12 +1,24 @@
 //! A queue of edges to collapse, the cheapest first, by rounded costs.
 
+use std::cmp::Reverse;
+
 /// An edge, by the numbers of its ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Entry {
     pub(crate) ends: [u32; 2],
     /// The sum of the versions of both ends when the entry was made. If the sum is different now,
     /// an end has changed.
     pub(crate) version: u32,
+}
+
+impl Entry {
+    /// Returns the ends and then the version as one number, so that a comparison needs no branch:
+    /// with branches, sorting can take as much time as all collapses.
+    #[inline]
+    fn order(&self) -> u128 {
+        let [a, b] = self.ends.map(u128::from);
+        a << 64 | b << 32 | u128::from(self.version)
+    }
 }
 
 /// The number of low bits of a cost, a non-negative f32, that are ignored. Three bits of the
@@ -68,7 +80,8 @@ impl Queue {
         self.lowest += buckets.take_while(|bucket| bucket.is_empty()).count();
         if let Some(bucket) = self.buckets.get_mut(self.lowest) {
             std::mem::swap(&mut self.round, bucket);
-            self.round.sort_unstable_by(|a, b| b.cmp(a));
+            self.round
+                .sort_unstable_by_key(|entry| Reverse(entry.order()));
         }
     }
 }
@@ -106,5 +119,24 @@ mod tests {
         queue.push(-0.0, entry(2, 6));
         assert_eq!(next(&mut queue), Some(2));
         assert_eq!(next(&mut queue), None);
+    }
+
+    #[test]
+    fn a_round_is_in_the_order_of_the_ends_and_versions() {
+        let values = [0, 1, 2, u32::MAX];
+        let mut expected = Vec::new();
+        for a in values {
+            for b in values {
+                expected.extend(values.map(|version| Entry {
+                    ends: [a, b],
+                    version,
+                }));
+            }
+        }
+        let mut queue = Queue::new();
+        for i in 0..expected.len() {
+            queue.push(1.0, expected[i * 27 % expected.len()]);
+        }
+        assert!(std::iter::from_fn(|| queue.pop()).eq(expected));
     }
 }
