@@ -329,10 +329,11 @@ impl<M: MeshEdit> Work<M> {
         if let Some(x) = minimizer {
             return Some(at(x));
         }
-        let placements = [middle, DVec3::ZERO, edge].map(at);
-        placements
-            .into_iter()
-            .min_by(|x, y| x.error.total_cmp(&y.error))
+        // Only the offset is chosen here: three copies of `sum` would be written and read again in
+        // pieces of other sizes, and processors wait for such reads.
+        let offsets = [middle, DVec3::ZERO, edge].map(|offset| (sum.value(offset), offset));
+        let least = offsets.into_iter().min_by(|x, y| x.0.total_cmp(&y.0));
+        least.map(|(_, offset)| at(offset))
     }
 
     /// Collapses the edge of `entry`, if it exists and the collapse is legal; returns the error of
