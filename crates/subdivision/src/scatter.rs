@@ -113,8 +113,7 @@ fn scatter_faces<M: MeshQuery, K: Mask>(
     let first_edge = builder.points.len();
     // For one face: its vertices, and the edge points of the sides that start there.
     let (mut own, mut middles) = (Vec::new(), Vec::new());
-    let mut face_point = builder.vertices();
-    for f in mesh.faces() {
+    for (face_point, f) in (builder.vertices()..).zip(mesh.faces()) {
         own.clear();
         middles.clear();
         let mut sum = Point::ZERO;
@@ -146,7 +145,6 @@ fn scatter_faces<M: MeshQuery, K: Mask>(
         if builder.has_face_points() {
             builder.points[face_point] = value;
         }
-        face_point += 1;
     }
     FaceSums {
         edges,
