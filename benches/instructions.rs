@@ -66,6 +66,8 @@ fn operation(mut run: Prepared) -> Prepared {
 library_benchmark_group!(name = operations, benchmarks = [operation]);
 
 main!(
-    config = LibraryBenchmarkConfig::default().tool(Callgrind::with_args(["--cache-sim=no"])),
+    config = LibraryBenchmarkConfig::default()
+        .pass_through_env("GLIBC_TUNABLES") // set by the script
+        .tool(Callgrind::with_args(["--cache-sim=no"])),
     library_benchmark_groups = operations
 );

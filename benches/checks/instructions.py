@@ -33,7 +33,7 @@ LINES = ROOT / "benches/instructions.txt"
 LIMIT = 1.005
 # The largest count and geometric mean with the profile `release`, relative to `dist`.
 LIMIT_TO_DIST, MEAN_LIMIT_TO_DIST = 1.10, 1.02
-PLAIN_FUNCTIONS = "glibc.cpu.hwcaps=-AVX_Fast_Unaligned_Load,-AVX2,-AVX512F,-AVX512VL,-ERMS,-FSRM"
+PLAIN_FUNCTIONS = "glibc.cpu.hwcaps=-AVX_Fast_Unaligned_Load,-AVX2,-AVX512F,-AVX512VL,-SSSE3,-ERMS,-FSRM"
 
 
 def counted(profile):

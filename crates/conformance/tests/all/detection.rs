@@ -136,11 +136,11 @@ detects! {
     }
 }
 
-/// The seventh structure searches all faces for those of an edge.
+/// The seventh structure searches all edges for the one of a side.
 #[test]
 fn a_walk_that_scans_is_found() {
     let fault = fault(law::oriented_walk_costs::<FaceAndEdgeLists>);
-    assert!(fault.contains("twin_side scans"), "{fault}");
+    assert!(fault.contains("side_edge scans"), "{fault}");
 }
 
 /// Returns the message of the law that fails.
