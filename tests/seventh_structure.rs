@@ -189,7 +189,10 @@ fn a_pick_excludes_a_seventh_structure_with_the_reason() {
         ),
     ] {
         let report = pick_with(lists(), &["half-edge"], workload, needs);
-        let excluded = { report.excluded.iter() }.find(|out| out.backend == lists().name());
+        let excluded = report
+            .excluded
+            .iter()
+            .find(|out| out.backend == lists().name());
         let reason = excluded.map(|out| out.reason.as_str());
         assert_eq!(reason, Some(expected), "{workload}");
     }

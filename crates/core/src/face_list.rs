@@ -153,17 +153,20 @@ fn check_corners(corners: usize) -> Result<(), PolygonError> {
     Ok(())
 }
 
+/// Builds a list of faces of these degrees, whose corners are numbered from 0 in each face.
+#[cfg(test)]
+pub(crate) fn faces_of_degrees(degrees: &[u32]) -> FaceList {
+    let mut faces = FaceList::default();
+    for &degree in degrees {
+        faces.push((0..degree).map(VertexId::new)).expect("small");
+    }
+    faces
+}
+
 #[cfg(test)]
 mod tests {
+    use super::faces_of_degrees as list;
     use super::*;
-
-    fn list(degrees: &[u32]) -> FaceList {
-        let mut faces = FaceList::default();
-        for &degree in degrees {
-            faces.push((0..degree).map(VertexId::new)).expect("small");
-        }
-        faces
-    }
 
     #[test]
     fn the_first_face_of_another_degree_adds_offsets() {

@@ -4,7 +4,7 @@ use crate::clone_by_field;
 use crate::editing::HoleSet;
 use crate::memory::TableBytes;
 use crate::probe::{Probe, Untraced};
-use crate::row_id::{RowId, row};
+use crate::row_id::{Handles, RowId, row};
 use crate::table::Table;
 
 /// The number of rows per word of bits.
@@ -71,7 +71,7 @@ impl<P: Probe> Holes<P> {
         mut report: impl FnMut(H),
     ) -> usize {
         let before = self.count;
-        for handle in (0..row(end)).map(H::from_row) {
+        for handle in Handles::<H>::below(end) {
             let row = handle.row() as usize;
             if is_unused(row) && !self.has(row) {
                 self.insert(row);

@@ -10,7 +10,7 @@
 
 use sixfold_core::{Editing, Probe, Slot, VertexId, row};
 
-use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between, names_edge};
+use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between, named_edge, names_edge};
 
 /// The edges of a mesh, by ascending corner.
 ///
@@ -47,15 +47,12 @@ impl<P: Probe, E: Editing> Iterator for Edges<'_, P, E> {
 
     #[inline]
     fn fold<B, F: FnMut(B, EdgeCorner) -> B>(self, init: B, visit: F) -> B {
-        // The lower corner is chosen first, and compared with `c` afterwards. The compiler can then
-        // use the result without a branch, which it does not with `names_edge`: a count of boundary
-        // edges in random order takes 1.4 ns instead of 4 ns for each edge.
         let corners = row(self.at)..row(self.mesh.opposite.len());
         let edges = corners.map(CornerId::new).filter_map(|c| {
             let across = *self.mesh.opposite.read(c.index());
-            let edge = edge_between(c, across);
+            // The corners of a deleted triangle are their own opposites.
             let is_there = !E::CAN_DELETE || across != Slot::some(c);
-            (edge.corner() == c && is_there).then_some(edge)
+            named_edge(c, across).filter(|_| is_there)
         });
         edges.fold(init, visit)
     }

@@ -12,7 +12,7 @@ use sixfold_core::{
 
 use self::sqrt3::Sqrt3;
 use crate::CornerTable;
-use crate::mesh::{CornerId, EdgeCorner, edge_between};
+use crate::mesh::{CornerId, EdgeCorner, edge_between, named_edge, names_edge};
 
 /// Number of corners in one chunk: whole triangles.
 const CHUNK_CORNERS: usize = 3 * CHUNK_ROWS;
@@ -78,10 +78,7 @@ impl Refine for CornerTable {
     fn edges_of_chunk(&self, _: &EdgeNumbers, chunk: usize) -> impl Iterator<Item = EdgeCorner> {
         let end = self.corner_count().min((chunk + 1) * CHUNK_CORNERS);
         let corners = (row(chunk * CHUNK_CORNERS)..row(end)).map(CornerId::new);
-        corners.filter_map(|c| {
-            let edge = self.edge(c);
-            (edge.corner() == c).then_some(edge)
-        })
+        corners.filter_map(|c| named_edge(c, *self.opposite.read(c.index())))
     }
 
     /// Returns the rank of the corner that names the edge; O(1).
@@ -170,11 +167,4 @@ impl CornerTable {
             None => Ok(()),
         }
     }
-}
-
-/// Returns whether `c`, with `across` opposite to it, is the corner that names the edge.
-#[inline(always)]
-fn names_edge(c: CornerId, across: Slot<CornerId>) -> bool {
-    // An empty slot is greater than every corner.
-    Slot::some(c) < across
 }

@@ -12,8 +12,7 @@ pub(crate) struct Entry {
 }
 
 impl Entry {
-    /// Returns the ends and then the version as one number, so that a comparison needs no branch:
-    /// with branches, sorting can take as much time as all collapses.
+    /// Returns the ends and then the version as one number, so that a comparison needs no branch.
     #[inline]
     fn order(&self) -> u128 {
         let [a, b] = self.ends.map(u128::from);

@@ -73,7 +73,10 @@ fn write_table(text: &mut String, table: &Table) {
         format!("| {} |\n", cells.join(" | "))
     };
     text.push_str(&line(&table.header));
-    let rules: Vec<&str> = { table.header.iter().enumerate() }
+    let rules: Vec<&str> = table
+        .header
+        .iter()
+        .enumerate()
         .map(|(i, _)| if i == 0 { "---" } else { "---:" })
         .collect();
     let _ = writeln!(text, "|{}|", rules.join("|"));

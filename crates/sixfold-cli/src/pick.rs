@@ -91,7 +91,10 @@ fn print(report: &PickReport, study_meshes: &[StudyMesh], text: &mut TextOutput)
         "operation",
         "operations",
     );
-    let mix: Vec<String> = { report.workload.mix.iter() }
+    let mix: Vec<String> = report
+        .workload
+        .mix
+        .iter()
         .map(|part| format!("{} {}", part.weight, part.action))
         .collect();
     let rebuilt = match report.workload.rebuilds {

@@ -245,7 +245,8 @@ fn coverage(reports: &[Report]) -> String {
             );
         }
     }
-    let noises: Vec<f64> = { reports.iter() }
+    let noises: Vec<f64> = reports
+        .iter()
         .filter_map(|report| Some(report.control.as_ref()?.typical))
         .collect();
     if !noises.is_empty() {

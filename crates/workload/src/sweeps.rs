@@ -6,8 +6,8 @@
 //!
 //! The loops over all elements must not depend on inlining, which differs between programs: a
 //! closure that changes captured variables keeps them in memory if it is not inlined, and then
-//! loads the addresses of all tables again for each element (up to 30 % more instructions). So they
-//! pass sums by value with `fold`, or store results with `for`.
+//! loads the addresses of all tables again for each element. So they pass sums by value with
+//! `fold`, or store results with `for`.
 //!
 //! Operations store their results in [`Outputs`], which are made once per structure. By definition
 //! of the operations, allocating outputs is outside the timing, but allocating the queue and the

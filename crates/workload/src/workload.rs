@@ -321,9 +321,7 @@ impl Workload {
     /// The shares add up to 1. They are equal if the mesh has no elements of the kinds in the
     /// weights.
     pub fn shares(&self, counts: &Counts) -> Vec<f64> {
-        let weights: Vec<f64> = { self.mix.iter() }
-            .map(|p| p.weight.value_on(counts))
-            .collect();
+        let weights: Vec<f64> = self.mix.iter().map(|p| p.weight.value_on(counts)).collect();
         let sum: f64 = weights.iter().sum();
         match sum > 0.0 {
             true => weights.iter().map(|weight| weight / sum).collect(),

@@ -94,7 +94,8 @@ fn all_structures_yield_the_same_along_a_route() {
             let mut backends = fixture.backends();
             assert!(backends.len() >= 6, "{}", backends.len());
             for turn in [0, 1, 17] {
-                let runs: Vec<_> = { backends.iter_mut() }
+                let runs: Vec<_> = backends
+                    .iter_mut()
                     .map(|backend| (backend.name(), counts(backend.run(turn, 2, 1, &clock))))
                     .collect();
                 let [operations, yielded, _] = runs[0].1;
@@ -116,7 +117,8 @@ fn all_structures_yield_the_same_on_all_elements_in_their_own_order() {
     let fixture = Fixture::new(&workload, shapes::mixed_grid(9, 7).expect("small"));
     let mut backends = fixture.backends();
     for part in fixture.schedule.elements() {
-        let runs: Vec<_> = { backends.iter_mut() }
+        let runs: Vec<_> = backends
+            .iter_mut()
             .map(|backend| {
                 let cycle = backend.cycle_length(part);
                 (
@@ -145,7 +147,8 @@ fn edits_are_accepted_repeatedly_at_the_places_that_all_accept() {
     let names: Vec<&str> = backends.iter().map(|backend| backend.name()).collect();
     assert_eq!(names.len(), 6, "{names:?}");
     for turn in [0, 1, 7, 7] {
-        let runs: Vec<_> = { backends.iter_mut() }
+        let runs: Vec<_> = backends
+            .iter_mut()
             .map(|backend| (backend.name(), counts(backend.run(turn, 4, 2, &clock))))
             .collect();
         let same = |(_, run): &(&str, [u64; 3])| *run == runs[0].1;
@@ -177,7 +180,8 @@ fn passes_over_tables_give_the_results_of_structures() {
         let Action::Pass(operation) = fixture.schedule.parts[part].action else {
             panic!("only passes");
         };
-        let outcomes: Vec<_> = { backends.iter_mut() }
+        let outcomes: Vec<_> = backends
+            .iter_mut()
             .map(|backend| {
                 backend.run_pass(operation, None, &Series::with_runs(2, &clock).with_result())
             })
@@ -223,7 +227,9 @@ fn every_built_in_runs() {
         let fixture = Fixture::new(&workload, torus);
         let mut backends = fixture.backends();
         assert!(backends.len() >= 6, "{name}");
-        let half_edge = { backends.iter_mut() }.find(|backend| backend.name() == "half-edge");
+        let half_edge = backends
+            .iter_mut()
+            .find(|backend| backend.name() == "half-edge");
         let half_edge = half_edge.expect("it holds tori");
         let run = half_edge.run(0, 1, 1, &clock);
         let on_elements = fixture.schedule.on_elements > 0.0;

@@ -81,7 +81,9 @@ impl<'a, M: MeshQuery> Expected<'a, M> {
     fn check_vertex(&self, mesh: &M, v: M::Vertex) {
         let ends = self.edges.keys().filter(|ends| ends.contains(&v));
         let others = ends.map(|&[a, b]| if a == v { b } else { a });
-        let edges = { self.edges.iter() }
+        let edges = self
+            .edges
+            .iter()
             .filter(|(ends, _)| ends.contains(&v))
             .map(|(_, &e)| e);
         let faces = self.faces_at.get(&v).into_iter().flatten().copied();
@@ -95,7 +97,9 @@ impl<'a, M: MeshQuery> Expected<'a, M> {
     fn check_edge(&self, mesh: &M, [a, b]: [M::Vertex; 2]) {
         let e = self.edges[&[a, b]];
         let faces = self.faces_along[&[a, b]].clone();
-        let adjacent = { self.edges.iter() }
+        let adjacent = self
+            .edges
+            .iter()
             .filter(|(ends, _)| **ends != [a, b] && (ends.contains(&a) || ends.contains(&b)))
             .map(|(_, &other)| other);
         let name = self.name;

@@ -30,7 +30,8 @@ pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
         (&[Edit::SplitFace, Edit::DissolveEdge], is_face_split_undone),
     ];
     let starts = inverse_starts();
-    let tests: Vec<_> = { starts.iter() }
+    let tests: Vec<_> = starts
+        .iter()
         .filter_map(ModelTest::<M>::from_polygons)
         .collect();
     for (edits, is_undone) in at_edges {

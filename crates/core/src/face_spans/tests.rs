@@ -1,16 +1,7 @@
 use super::*;
 use crate::editing::HoleSet;
-use crate::face_list::FaceList;
+use crate::face_list::faces_of_degrees as list;
 use crate::holes::Holes;
-use crate::row_id::VertexId;
-
-fn list(degrees: &[u32]) -> FaceList {
-    let mut faces = FaceList::default();
-    for &degree in degrees {
-        faces.push((0..degree).map(VertexId::new)).expect("small");
-    }
-    faces
-}
 
 #[test]
 #[should_panic(expected = "no face f2: there are 2")]

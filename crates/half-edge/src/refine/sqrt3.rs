@@ -103,7 +103,10 @@ impl<const CLOSED: bool, const TRISECT: bool> Sqrt3<'_, CLOSED, TRISECT> {
 
     /// Computes one leaving half-edge for each old vertex and for each face point.
     fn fill_leaving(self, mesh: &HalfEdgeMesh, child: &mut HalfEdgeMesh) {
-        let (old, points) = { child.leaving.rows_mut() }.split_at_mut(self.vertices as usize);
+        let (old, points) = child
+            .leaving
+            .rows_mut()
+            .split_at_mut(self.vertices as usize);
         let leaving = mesh.leaving_rows();
         fill(old, |v| {
             let spoke = |h: HalfEdgeId| {

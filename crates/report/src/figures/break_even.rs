@@ -47,7 +47,8 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         Some(_) => "never".into(),
         None => "–".into(),
     };
-    let lines: Vec<Line<'_>> = { lines.iter() }
+    let lines: Vec<Line<'_>> = lines
+        .iter()
         .map(|&(name, build, run)| Line {
             name,
             build,

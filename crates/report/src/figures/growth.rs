@@ -11,7 +11,8 @@ use crate::figure::{Figure, Table, base_layout, render_svg};
 
 /// Draws one figure for each operation.
 pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Vec<Figure> {
-    let operations: Vec<Operation> = { Operation::ALL.into_iter() }
+    let operations: Vec<Operation> = Operation::ALL
+        .into_iter()
         .filter(|&operation| report.fits.iter().any(|fit| fit.operation == operation))
         .collect();
     let figures =
@@ -22,7 +23,8 @@ pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Vec
 fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) -> Figure {
     let fits = report.fits.iter().filter(|fit| fit.operation == operation);
     let fits: Vec<&Fit> = fits.collect();
-    let plots: Vec<Plot> = { fits.iter() }
+    let plots: Vec<Plot> = fits
+        .iter()
         .flat_map(|fit| curve(&report.sizes, fit))
         .collect();
     let (name, per) = (operation.name(), per_unit(operation.unit()));

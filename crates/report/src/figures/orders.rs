@@ -11,7 +11,9 @@ use crate::figure::{Figure, MIN_BAR_LENGTH, Table, base_layout, ratio_ticks, ren
 
 /// Draws one figure for each operation.
 pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Vec<Figure> {
-    let figures = { report.comparisons.iter() }
+    let figures = report
+        .comparisons
+        .iter()
         .filter_map(|comparison| figure(report, comparison, id, command));
     figures.collect()
 }

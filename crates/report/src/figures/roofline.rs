@@ -33,7 +33,11 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
     let mut plots: Vec<Plot> = buffers
         .map(|buffer| line(buffer, min_bytes, max_bytes))
         .collect();
-    plots.extend({ why.backends.iter() }.filter_map(|backend| marks(&rows, &backend.name)));
+    plots.extend(
+        why.backends
+            .iter()
+            .filter_map(|backend| marks(&rows, &backend.name)),
+    );
     let title = format!("Time against the bytes that must move: {}", why.mesh.name);
     let layout = base_layout(&plots, 860.0, 520.0)
         .with_log_scale()

@@ -172,11 +172,11 @@ impl LabRunner<'_> {
 
 /// Prints the findings of the labs; the report has the rest.
 pub(super) fn print(labs: &Labs, text: &mut TextOutput) {
-    let orders = { labs.orders.iter() }.map(|orders| {
+    let orders = labs.orders.iter().map(|orders| {
         let title = format!("Effect of the order of {}", sanitize(&orders.mesh.name));
         (title, &orders.sentences)
     });
-    let growth = { labs.growth.iter() }.map(|growth| {
+    let growth = labs.growth.iter().map(|growth| {
         (
             format!("How costs grow: {}", growth.shape),
             &growth.sentences,

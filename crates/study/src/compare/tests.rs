@@ -76,7 +76,8 @@ fn a_known_change_is_found_and_nothing_else() {
     );
     let changes = compare(&before, &after, CompareSettings::default()).expect("one memory state");
     assert_eq!(changes.rows.len(), before.results.len());
-    let found: Vec<_> = { changes.changed() }
+    let found: Vec<_> = changes
+        .changed()
         .map(|row| (row.backend.as_str(), row.operation, row.verdict))
         .collect();
     assert_eq!(
@@ -135,7 +136,8 @@ fn a_slower_machine_is_one_factor_that_relative_removes() {
         },
     )
     .expect("one memory state");
-    let found: Vec<_> = { relative.changed() }
+    let found: Vec<_> = relative
+        .changed()
         .map(|row| (row.backend.as_str(), row.verdict))
         .collect();
     assert_eq!(found, [("half-edge", Verdict::Faster)]);

@@ -51,7 +51,8 @@ pub(crate) fn pooled(
     let shortest = outcomes.iter().filter_map(|o| o.shortest_ns);
     let shortest = shortest.min_by(f64::total_cmp);
     let timer = timer.with_shortest(shortest);
-    let mut disagreeing: Vec<String> = { outcomes.iter() }
+    let mut disagreeing: Vec<String> = outcomes
+        .iter()
         .flat_map(|o| o.disagreeing.clone())
         .collect();
     disagreeing.sort();

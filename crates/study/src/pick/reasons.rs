@@ -49,7 +49,8 @@ fn name(ranked: &Ranked) -> String {
 }
 
 fn fastest(report: &PickReport, best: &Ranked) -> String {
-    let tied: Vec<String> = { report.ranking[1..].iter() }
+    let tied: Vec<String> = report.ranking[1..]
+        .iter()
         .filter(|ranked| ranked.tied_with_best)
         .map(name)
         .collect();
@@ -168,7 +169,10 @@ fn one_use_with_building(report: &PickReport, best: &Ranked) -> Option<String> {
         };
         build + operations * ranked.ns_per_operation
     };
-    let least = { report.ranking.iter() }.min_by(|a, b| total(a).total_cmp(&total(b)))?;
+    let least = report
+        .ranking
+        .iter()
+        .min_by(|a, b| total(a).total_cmp(&total(b)))?;
     let count = grouped(operations.round() as usize);
     let used = if operations.round() == 1.0 {
         "operation"
