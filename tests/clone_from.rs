@@ -4,6 +4,7 @@
 
 use std::alloc::System;
 
+use libtest_mimic::{Arguments, Trial};
 use sixfold::{MeshEdit, PolygonMesh, Representation, for_each_editable, shapes};
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
 
@@ -44,6 +45,16 @@ fn edit<M: MeshEdit>(mesh: &mut M) {
 }
 
 fn main() {
-    let polygons = shapes::geodesic(6).expect("720 triangles");
-    for_each_editable!(M => { check_clone_from::<M>(&polygons); });
+    let test = || {
+        let polygons = shapes::geodesic(6).expect("720 triangles");
+        for_each_editable!(M => { check_clone_from::<M>(&polygons); });
+        Ok(())
+    };
+    // One thread, because other threads allocate too.
+    let arguments = Arguments {
+        test_threads: Some(1),
+        ..Arguments::from_args()
+    };
+    let tests = vec![Trial::test("clone_from_does_not_allocate", test)];
+    libtest_mimic::run(&arguments, tests).exit();
 }

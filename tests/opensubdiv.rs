@@ -14,7 +14,7 @@
 //! - Loop on two triangles with the same corners: the halves of their edges have the same ends, and
 //!   OpenSubdiv keeps them as two edges.
 //! - Normals on creases: OpenSubdiv uses the tangents of Biermann, Levin & Zorin (2000), which
-//!   belong to changed rules near creases. `tangent.rs` derives the tangents of the unchanged
+//!   belong to modified rules near creases. `tangent.rs` derives the tangents of the original
 //!   rules.
 
 #[path = "opensubdiv/cases.rs"]

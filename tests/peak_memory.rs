@@ -3,6 +3,7 @@
 //!
 //! This is a separate program, because its allocator counts every byte.
 
+use libtest_mimic::{Arguments, Trial};
 use peak_alloc::PeakAlloc;
 use sixfold::subdivision::{Scheme, Subdivision};
 use sixfold::{Creases, PolygonMesh, Refine, Representation, for_each_refinable, shapes};
@@ -30,7 +31,7 @@ fn peak_of_a_step<M: Refine>(scheme: Scheme, polygons: &PolygonMesh) -> Option<f
     Some((parent + peak) as f64 / (parent + child) as f64)
 }
 
-fn main() {
+fn a_native_step_needs_little_more_than_its_result() {
     let closed = shapes::geodesic(60).expect("72,000 triangles");
     let open = shapes::triangle_grid(150, 150).expect("45,000 triangles");
     let quads = shapes::torus(200, 200).expect("40,000 quads");
@@ -61,4 +62,18 @@ fn main() {
         }
     });
     assert!(steps >= 20, "only {steps} steps were checked");
+}
+
+fn main() {
+    let test = || {
+        a_native_step_needs_little_more_than_its_result();
+        Ok(())
+    };
+    // One thread, because other threads allocate too.
+    let arguments = Arguments {
+        test_threads: Some(1),
+        ..Arguments::from_args()
+    };
+    let name = "a_native_step_needs_little_more_than_its_result";
+    libtest_mimic::run(&arguments, vec![Trial::test(name, test)]).exit();
 }

@@ -46,8 +46,8 @@ impl<M: Representation> Subject<M> {
     }
 }
 
-/// Returns the mesh that `M` holds after it was built from `polygons`, which its capabilities
-/// include.
+/// Returns the mesh that `M` holds after it was built from `polygons`. The capabilities of `M` must
+/// include `polygons`.
 pub(crate) fn stored_mesh<M: Representation>(polygons: &PolygonMesh) -> PolygonMesh {
     if M::CAPABILITIES.coincident_vertices {
         return polygons.clone();

@@ -134,7 +134,7 @@ fn boundary_turns<M: MeshQuery + ?Sized>(mesh: &M, sides: &[Side<M::Vertex, M::E
     turns
 }
 
-/// What the walks along a boundary read.
+/// The data that the walks along a boundary read.
 struct Boundary<'m, M: MeshQuery + ?Sized> {
     mesh: &'m M,
     counts: EdgeMap<M, u8>,

@@ -23,35 +23,21 @@ pub struct Distinct<I: Iterator> {
     set: FxHashSet<I::Item>,
 }
 
-/// Adds [`distinct`](IteratorExt::distinct) to every iterator.
-pub trait IteratorExt: Iterator + Sized {
-    /// Returns the distinct items, each at its first occurrence.
-    ///
-    /// ```
-    /// use sixfold_core::IteratorExt;
-    /// assert!([3, 1, 3, 2, 1].into_iter().distinct().eq([3, 1, 2]));
-    /// ```
-    #[inline]
-    fn distinct(self) -> Distinct<Self>
-    where
-        Self::Item: Copy + Eq + Hash,
-    {
-        Distinct {
-            items: self,
-            array: None,
-            seen: 0,
-            set: FxHashSet::default(),
-        }
-    }
-}
-
-impl<I: Iterator> IteratorExt for I {}
-
 impl<I> Distinct<I>
 where
     I: Iterator,
     I::Item: Copy + Eq + Hash,
 {
+    #[inline]
+    pub(crate) fn new(items: I) -> Self {
+        Self {
+            items,
+            array: None,
+            seen: 0,
+            set: FxHashSet::default(),
+        }
+    }
+
     /// Records `item`; returns whether it is new.
     #[inline]
     fn insert(&mut self, item: I::Item) -> bool {
@@ -245,6 +231,7 @@ fn fold_by_steps<T, B>(items: impl Iterator<Item = T>, init: B, mut f: impl FnMu
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::iterator_ext::IteratorExt;
     use crate::row_id::FaceId;
 
     #[test]

@@ -64,11 +64,13 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
     #[error("both faces of edge {edge:?} run along it in the same direction: flip one first")]
     SameDirection { edge: E },
     /// Two triangles along an edge with the same third corner.
-    #[error("both triangles of edge {edge:?} have the same third corner {vertex:?}")]
+    #[error(
+        "both triangles of edge {edge:?} have the same third corner {vertex:?}: choose another edge"
+    )]
     SameApex { edge: E, vertex: V },
     /// An end of a flipped edge that would keep too few edges.
     #[error(
-        "vertex {vertex:?} has only three edges and three faces: the flip would leave it two edges"
+        "vertex {vertex:?} has only three edges and three faces: the flip would leave it only two edges"
     )]
     LowValence { vertex: V },
     /// A vertex that is not an end of the edge.

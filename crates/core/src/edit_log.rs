@@ -31,9 +31,9 @@ impl<M: MeshQuery> EditLog<M> for OldToNew<M> {
     }
 }
 
-/// A receiver of what an edit does to elements and their handles.
+/// A receiver of the changes that an edit makes to elements and their handles.
 ///
-/// An edit reports every change, and nothing else. Its result for the handles in use: first all
+/// An edit reports every change, and nothing else. Handles in use change in three steps: first all
 /// removed ones disappear, then all renamings happen at once (elements may exchange handles), then
 /// the created ones are added. The order of the calls within one edit is not specified. A refused
 /// edit reports nothing.

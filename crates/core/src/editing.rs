@@ -5,9 +5,10 @@ use std::fmt::Debug;
 
 use crate::face_spans::{FaceSpans, ScatteredFaces};
 use crate::holes::Holes;
+use crate::iterator_ext::IteratorExt;
 use crate::memory::TableBytes;
 use crate::probe::Probe;
-use crate::row_id::{Handles, RowId};
+use crate::row_id::{RowId, row};
 
 /// Whether elements of a mesh can be deleted: [`Editable`] if so, otherwise [`Compact`]. The trait
 /// is sealed: there are no other implementations.
@@ -173,7 +174,7 @@ impl<P: Probe> HoleSet<P> for NoHoles {
 
     #[inline]
     fn handles<H: RowId>(&self, end: usize) -> impl Iterator<Item = H> + Clone {
-        Handles::below(end)
+        (0..row(end)).map_inline(H::from_row)
     }
 
     fn bytes(&self) -> Option<TableBytes> {

@@ -7,6 +7,7 @@ use std::ops::{Index, IndexMut};
 
 use rustc_hash::FxHashMap;
 
+use crate::iterator_ext::IteratorExt;
 use crate::row_id::RowId;
 
 /// A value that names an element of a structure: a row, a pair of vertices, or coordinates.
@@ -254,7 +255,7 @@ impl<V: Handle> Pair<V> {
     /// ```
     #[inline]
     pub fn sides(degree: usize, corner: impl Fn(usize) -> V) -> impl Iterator<Item = Self> {
-        (0..degree).map(move |i| {
+        (0..degree).map_inline(move |i| {
             let next = if i + 1 == degree { 0 } else { i + 1 };
             Self::new(corner(i), corner(next))
         })

@@ -2,9 +2,10 @@
 
 use crate::clone_by_field;
 use crate::editing::HoleSet;
+use crate::iterator_ext::IteratorExt;
 use crate::memory::TableBytes;
 use crate::probe::{Probe, Untraced};
-use crate::row_id::{Handles, RowId, row};
+use crate::row_id::{RowId, row};
 use crate::table::Table;
 
 /// The number of rows per word of bits.
@@ -71,7 +72,7 @@ impl<P: Probe> Holes<P> {
         mut report: impl FnMut(H),
     ) -> usize {
         let before = self.count;
-        for handle in Handles::<H>::below(end) {
+        for handle in (0..row(end)).map(H::from_row) {
             let row = handle.row() as usize;
             if is_unused(row) && !self.has(row) {
                 self.insert(row);
@@ -115,7 +116,7 @@ impl<P: Probe> HoleSet<P> for Holes<P> {
 
     #[inline]
     fn handles<H: RowId>(&self, end: usize) -> impl Iterator<Item = H> + Clone {
-        self.rows(end).map(H::from_row)
+        self.rows(end).map_inline(H::from_row)
     }
 
     fn bytes(&self) -> Option<TableBytes> {

@@ -65,6 +65,7 @@ mod follow_edits;
 mod handle;
 mod holes;
 mod incidence;
+mod iterator_ext;
 mod local_queries;
 mod measured;
 mod memory;
@@ -121,7 +122,7 @@ pub use representation::{QueryCost, Relation, Representation};
 pub use row_id::{EdgeId, FaceId, VertexId};
 
 // For authors of structures.
-pub use distinct::{Distinct, DistinctWalk, IteratorExt};
+pub use distinct::{Distinct, DistinctWalk};
 pub use edit_check::{check_corners, check_cut, check_rows};
 pub use edit_log::uses_reports;
 pub use editing::{
@@ -130,6 +131,7 @@ pub use editing::{
 };
 pub use face_spans::{FaceSpans, ScatteredFaces};
 pub use holes::Holes;
+pub use iterator_ext::{IteratorExt, MapInline};
 pub use new_rows::NewRows;
 pub use pairing::{LinkFaces, SideRows, TwinPairs, pair_triangle_sides};
 pub use ranks::Ranks;

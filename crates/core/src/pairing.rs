@@ -60,9 +60,9 @@ impl TwinPairs {
         fill_buckets(faces, &mut ends, |at, a, b, corner| {
             rows.write(at, a.max(b), tag(a, b, corner));
         });
-        // By higher end: the last edge that ends there, and the directions found for it; 0 if there
-        // is no edge yet. Edges of earlier buckets have lower numbers, so they are recognised as
-        // old.
+        // By vertex: the last edge with this higher end, and the directions found for it; 0 if
+        // there is no edge yet. Edges of earlier buckets have lower numbers, so they are recognised
+        // as old.
         let mut last = vec![0_u32; vertices];
         let mut half_of_corner = vec![0_u32; corners];
         let (mut edges, mut conflict, mut start) = (0_u32, 0, 0);
@@ -190,7 +190,7 @@ pub fn pair_triangle_sides(
         highs[at] = a.max(b);
         tags[at] = tag(a, b, corner);
     });
-    // By higher end: 1 + the place of the first side of the last edge that ends there.
+    // By vertex: 1 + the place of the first side of the last edge with this higher end.
     let mut last = vec![0_u32; vertices];
     let (mut edges, mut conflict, mut start) = (0, false, 0);
     for end in ends {

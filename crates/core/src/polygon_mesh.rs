@@ -3,11 +3,11 @@
 use std::fmt;
 
 use crate::Point;
-use crate::distinct::IteratorExt;
 use crate::error::PolygonError;
 use crate::face_list::FaceList;
 use crate::handle::Handle;
 use crate::incidence::{EdgeUse, Incidence};
+use crate::iterator_ext::IteratorExt;
 use crate::measured::Counts;
 use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
 

@@ -133,7 +133,7 @@ impl Ranks {
     ///
     /// # Panics
     ///
-    /// Panics if there are `rank` or fewer members.
+    /// Panics if `rank` is not less than the number of members.
     pub fn select(&self, rank: usize) -> usize {
         assert!(rank < self.members, "no member {rank} of {}", self.members);
         if self.blocks.is_empty() {

@@ -2,7 +2,6 @@
 
 use std::fmt;
 use std::marker::PhantomData;
-use std::ops::Range;
 
 use crate::handle::Handle;
 
@@ -32,51 +31,6 @@ pub trait RowId: Handle {
 
     /// Returns the row number.
     fn row(self) -> u32;
-}
-
-/// The handles of consecutive rows.
-///
-/// Its `fold` is always inlined, other than that of `Map<Range<u32>, _>`. In a loop over all elements
-/// the compiler then keeps the addresses of tables in registers: some loops without link-time
-/// optimisation need up to 40 % fewer instructions.
-#[derive(Clone, Debug)]
-pub(crate) struct Handles<H> {
-    rows: Range<u32>,
-    handle: PhantomData<H>,
-}
-
-impl<H> Handles<H> {
-    /// Returns the handles of all rows below `end`.
-    #[inline]
-    pub(crate) fn below(end: usize) -> Self {
-        Self {
-            rows: 0..row(end),
-            handle: PhantomData,
-        }
-    }
-}
-
-impl<H: RowId> Iterator for Handles<H> {
-    type Item = H;
-
-    #[inline]
-    fn next(&mut self) -> Option<H> {
-        self.rows.next().map(H::from_row)
-    }
-
-    #[inline]
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        self.rows.size_hint()
-    }
-
-    #[inline(always)]
-    fn fold<B, F: FnMut(B, H) -> B>(self, init: B, mut visit: F) -> B {
-        let mut folded = init;
-        for row in self.rows {
-            folded = visit(folded, H::from_row(row));
-        }
-        folded
-    }
 }
 
 /// Defines a [`RowId`] newtype: `row_id!(/// docs… pub struct FaceId, "f");`
@@ -224,22 +178,5 @@ mod tests {
             format!("{:?} {}", Slot::<FaceId>::NONE, FaceId::new(7)),
             "none f7"
         );
-    }
-
-    #[test]
-    fn handles_are_the_same_by_next_and_by_fold() {
-        for end in 0..4 {
-            let mut rest = Handles::<FaceId>::below(end);
-            for start in 0..=end {
-                let expected: Vec<FaceId> = (start..end).map(|f| FaceId::new(f as u32)).collect();
-                assert_eq!(rest.size_hint(), (end - start, Some(end - start)));
-                let by_fold = rest.clone().fold(Vec::new(), |mut folded, f| {
-                    folded.push(f);
-                    folded
-                });
-                assert_eq!(by_fold, expected);
-                assert_eq!(rest.next(), expected.first().copied());
-            }
-        }
     }
 }

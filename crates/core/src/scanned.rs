@@ -4,10 +4,10 @@
 mod tests;
 
 use crate::clone_by_field;
-use crate::distinct::IteratorExt;
 use crate::editing::{Compact, Editable, Editing, FACE_HOLES, HoleSet, NoHoles};
 use crate::face_spans::FaceSpans;
 use crate::handle::{Handle, Pair};
+use crate::iterator_ext::IteratorExt;
 use crate::memory::TableBytes;
 use crate::probe::{Probe, Untraced};
 use crate::row_id::{FaceId, VertexId};
@@ -268,7 +268,8 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
     /// Returns the vertices of `f`, in order.
     #[inline]
     pub fn face_vertices(&self, f: FaceId) -> impl Iterator<Item = V> {
-        self.face(f).iter().map(|&corner| V::from_corner(corner))
+        let corners = self.face(f).iter();
+        corners.map_inline(|&corner| V::from_corner(corner))
     }
 
     /// Returns the sides of `f`, in order.
@@ -294,7 +295,7 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
         &self,
         set: SearchSet<V, V::Set>,
     ) -> impl Iterator<Item = Hit<V>> + use<'_, V, P, E> {
-        self.scan(set).map(|corner| {
+        self.scan(set).map_inline(|corner| {
             let (face, corners) = self.spans.around(corner);
             let [before, at, after] =
                 corners.map(|corner| V::from_corner(*self.corners.read(corner)));
@@ -318,7 +319,7 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
     #[inline]
     pub fn vertex_faces(&self, v: V) -> impl Iterator<Item = FaceId> {
         let corners = self.scan(SearchSet::One(v));
-        corners.map(|corner| self.spans.face_of(corner))
+        corners.map_inline(|corner| self.spans.face_of(corner))
     }
 
     /// EE; one scan. The result is collected, because only the end of the scan shows whether `e`

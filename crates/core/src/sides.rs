@@ -159,8 +159,8 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
     ) -> impl Iterator<Item = Pair<VertexId>> + use<P, E> {
         let higher_end = |a: VertexId, b: VertexId, _| a.max(b).index() as u32;
         let Buckets { entries, ends } = Buckets::new(vertices, &(self, corners, holes), higher_end);
-        // By higher end: the lower end of the last edge found there; at first the vertex itself,
-        // which is never its own lower end.
+        // By vertex: the lower end of the last edge with this higher end; at first the vertex
+        // itself, which is never its own lower end.
         let mut last_low: Vec<u32> = (0..row(vertices)).collect();
         let (mut low, mut at) = (0_u32, 0);
         std::iter::from_fn(move || {

@@ -298,15 +298,6 @@ impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
 }
 
 impl<P: Probe, E: Editing> EdgeEdges<'_, P, E> {
-    /// Returns the edge that the walk is at and the corner across it; `None` at the end of the
-    /// walk.
-    #[inline]
-    fn here(&self) -> Option<(EdgeCorner, Option<CornerId>)> {
-        let at = self.at.filter(|&at| Slot::some(at) != self.far)?;
-        let across = *self.mesh.opposite.read(at.index());
-        Some((edge_between(at, across), across.get()))
-    }
-
     /// Starts the next walk. Returns false if all walks are finished.
     #[inline]
     fn begin_next_walk(&mut self) -> bool {
@@ -333,12 +324,13 @@ impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
     #[inline]
     fn next(&mut self) -> Option<EdgeCorner> {
         loop {
-            if let Some((edge, across)) = self.here() {
-                self.at = across.map(|across| match self.direction {
+            if let Some(at) = before(self.at, self.far) {
+                let across = *self.mesh.opposite.read(at.index());
+                self.at = across.get().map(|across| match self.direction {
                     Direction::Counterclockwise => across.prev(),
                     Direction::Clockwise => across.next(),
                 });
-                return Some(edge);
+                return Some(edge_between(at, across));
             }
             if !self.begin_next_walk() {
                 return None;
@@ -348,28 +340,40 @@ impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
 
     #[inline]
     fn fold<B, F: FnMut(B, EdgeCorner) -> B>(mut self, init: B, mut f: F) -> B {
+        let opposite = &self.mesh.opposite;
         let mut folded = init;
         loop {
-            // Two loops, so that the inner steps do not test the direction.
+            // Two loops, so that the steps do not test the direction. They use variables and not
+            // fields, which would be read from memory at every step.
+            let (mut at, far) = (self.at, self.far);
             match self.direction {
                 Direction::Counterclockwise => {
-                    while let Some((edge, across)) = self.here() {
-                        folded = f(folded, edge);
-                        self.at = across.map(CornerId::prev);
+                    while let Some(c) = before(at, far) {
+                        let across = *opposite.read(c.index());
+                        folded = f(folded, edge_between(c, across));
+                        at = across.get().map(CornerId::prev);
                     }
                 }
                 Direction::Clockwise => {
-                    while let Some((edge, across)) = self.here() {
-                        folded = f(folded, edge);
-                        self.at = across.map(CornerId::next);
+                    while let Some(c) = before(at, far) {
+                        let across = *opposite.read(c.index());
+                        folded = f(folded, edge_between(c, across));
+                        at = across.get().map(CornerId::next);
                     }
                 }
             }
+            self.at = at;
             if !self.begin_next_walk() {
                 return folded;
             }
         }
     }
+}
+
+/// Returns the corner `at`, unless the walk ends there: at `far` or at a boundary.
+#[inline(always)]
+fn before(at: Option<CornerId>, far: Slot<CornerId>) -> Option<CornerId> {
+    at.filter(|&at| Slot::some(at) != far)
 }
 
 #[cfg(test)]

@@ -120,7 +120,7 @@ impl<E: Editing> Measured for CornerTable<E> {
     }
 }
 
-/// What building needs for every corner.
+/// The data that building needs for every corner.
 struct Links {
     /// The corner that faces the same edge from the other side.
     opposite: Vec<Slot<CornerId>>,

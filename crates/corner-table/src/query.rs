@@ -1,6 +1,8 @@
 //! The nine relations.
 
-use sixfold_core::{Capabilities, Editing, FaceId, HoleSet, MeshQuery, Point, Probe, VertexId};
+use sixfold_core::{
+    Capabilities, Editing, FaceId, HoleSet, IteratorExt, MeshQuery, Point, Probe, VertexId,
+};
 
 use crate::circulate::{EdgeEdges, Edges, Neighbours, Spokes};
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
@@ -69,7 +71,7 @@ impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
 
     #[inline]
     fn vertex_faces(&self, v: VertexId) -> impl Iterator<Item = FaceId> {
-        self.fan(v).map(|(after, _)| after.triangle())
+        self.fan(v).map_inline(|(after, _)| after.triangle())
     }
 
     #[inline]
@@ -85,7 +87,7 @@ impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
     #[inline]
     fn edge_faces(&self, e: EdgeCorner) -> impl Iterator<Item = FaceId> {
         let sides = [Some(e.corner()), self.across(e).get()];
-        sides.into_iter().flatten().map(CornerId::triangle)
+        sides.into_iter().flatten().map_inline(CornerId::triangle)
     }
 
     #[inline]
@@ -99,7 +101,7 @@ impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
         let [a, b, c] = self.opposites_of(f);
         [c, a, b]
             .into_iter()
-            .map(|(c, across)| edge_between(c, across))
+            .map_inline(|(c, across)| edge_between(c, across))
     }
 
     // Always inlined: a call would return the iterator in memory, which doubles the time.

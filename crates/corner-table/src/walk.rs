@@ -1,6 +1,8 @@
 //! The walk from side to side: a side is named by the corner where it starts.
 
-use sixfold_core::{Editing, FaceId, HandleMap, OrientedWalk, Probe, SideMap, VertexId};
+use sixfold_core::{
+    Editing, FaceId, HandleMap, IteratorExt, OrientedWalk, Probe, SideMap, VertexId,
+};
 
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, NO_VERTEX};
 
@@ -21,7 +23,7 @@ impl<P: Probe, E: Editing> OrientedWalk for CornerTable<E, P> {
     #[inline]
     fn edge_sides(&self, e: EdgeCorner) -> impl Iterator<Item = CornerId> {
         let facing = [Some(e.corner()), self.across(e).get()];
-        facing.into_iter().flatten().map(CornerId::next)
+        facing.into_iter().flatten().map_inline(CornerId::next)
     }
 
     /// Yields the sides counter-clockwise, starting at the boundary if `v` is on one.

@@ -24,8 +24,8 @@ pub struct EdgeNumbers {
     pub(crate) by_corner: Vec<u32>,
     /// The starts of the chunks, and the end of the last chunk.
     pub(crate) chunks: Vec<EdgeChunk>,
-    /// For each vertex: one more than the highest number of an edge that has it as its higher end.
-    /// Used only while edges are numbered.
+    /// By vertex: 1 + the highest number of an edge with this higher end. Used only while edges are
+    /// numbered.
     bounds: Vec<u32>,
 }
 

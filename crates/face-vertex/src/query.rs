@@ -1,7 +1,7 @@
 //! The nine relations.
 
 use sixfold_core::{
-    Capabilities, Editing, FaceId, HoleSet, MeshQuery, Pair, Point, Probe, VertexId,
+    Capabilities, Editing, FaceId, HoleSet, IteratorExt, MeshQuery, Pair, Point, Probe, VertexId,
 };
 
 use crate::mesh::{FaceVertexMesh, deleted_vertex};
@@ -51,18 +51,17 @@ impl<P: Probe, E: Editing> MeshQuery for FaceVertexMesh<E, P> {
 
     #[inline]
     fn vertex_vertices(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
-        self.ring(v).into_vertices()
+        self.ring(v, |other| other)
     }
 
     #[inline]
     fn vertex_edges(&self, v: VertexId) -> impl Iterator<Item = Pair<VertexId>> {
-        let ring = self.ring(v).into_vertices();
-        ring.map(move |other| Pair::new(v, other))
+        self.spokes(v)
     }
 
     #[inline]
     fn vertex_faces(&self, v: VertexId) -> impl Iterator<Item = FaceId> {
-        self.fan(v).iter().copied()
+        self.fan(v).iter().map_inline(|&f| f)
     }
 
     #[inline]
@@ -75,10 +74,8 @@ impl<P: Probe, E: Editing> MeshQuery for FaceVertexMesh<E, P> {
     #[inline]
     fn edge_edges(&self, e: Pair<VertexId>) -> impl Iterator<Item = Pair<VertexId>> {
         let [a, b] = e.ends();
-        let (at_a, at_b) = (self.ring(a), self.ring(b));
+        let (at_a, at_b) = (self.spokes(a), self.spokes(b));
         let is_edge = at_a.has(b);
-        let at_a = at_a.into_vertices().map(move |other| Pair::new(a, other));
-        let at_b = at_b.into_vertices().map(move |other| Pair::new(b, other));
         at_a.chain(at_b).filter(move |&edge| is_edge && edge != e)
     }
 
@@ -89,7 +86,7 @@ impl<P: Probe, E: Editing> MeshQuery for FaceVertexMesh<E, P> {
 
     #[inline]
     fn face_vertices(&self, f: FaceId) -> impl Iterator<Item = VertexId> {
-        self.face(f).iter().copied()
+        self.face(f).iter().map_inline(|&corner| corner)
     }
 
     #[inline]

@@ -4,8 +4,8 @@ use std::fmt;
 use std::ops::{Index, IndexMut, Range};
 
 use sixfold_core::{
-    Editing, FaceId, Handle, HandleMap, OrientedWalk, Pair, Probe, RowMap, SideMap, VertexId, row,
-    row_id,
+    Editing, FaceId, Handle, HandleMap, IteratorExt, OrientedWalk, Pair, Probe, RowMap, SideMap,
+    VertexId, row, row_id,
 };
 
 use crate::mesh::{BLANK_CORNER, FaceVertexMesh, deleted_face};
@@ -101,13 +101,14 @@ impl<P: Probe, E: Editing> OrientedWalk for FaceVertexMesh<E, P> {
 
     #[inline]
     fn face_sides(&self, f: FaceId) -> impl Iterator<Item = FaceSide> {
-        self.range_of(f).map(move |corner| FaceSide::new(f, corner))
+        self.range_of(f)
+            .map_inline(move |corner| FaceSide::new(f, corner))
     }
 
     #[inline]
     fn edge_sides(&self, e: Pair<VertexId>) -> impl Iterator<Item = FaceSide> {
         let [a, b] = e.ends();
-        self.faces_along(e).map(move |f| {
+        self.faces_along(e).map_inline(move |f| {
             let leaving = self.side_from(f, a);
             if self.side_target(leaving) == b {
                 leaving
@@ -120,7 +121,8 @@ impl<P: Probe, E: Editing> OrientedWalk for FaceVertexMesh<E, P> {
     /// Yields the sides in the order of the fan.
     #[inline]
     fn outgoing_sides(&self, v: VertexId) -> impl Iterator<Item = FaceSide> {
-        self.fan(v).iter().map(move |&f| self.side_from(f, v))
+        let fan = self.fan(v).iter();
+        fan.map_inline(move |&f| self.side_from(f, v))
     }
 
     #[inline]

@@ -1,9 +1,9 @@
 //! Half-edge mesh: every edge is two directed half-edges, each with a face on its left.
 //!
 //! Use it to walk around vertices and to change connectivity. It does not hold edges with three
-//! faces: building from them returns an error. Start at [`generic::HalfEdgeMesh`]; its numbered
-//! invariants define the tables. After Weiler (1985) and Mäntylä (1988); twin pairs after Campagna,
-//! Kobbelt & Seidel (1998).
+//! faces: building a mesh with such edges returns an error. Start at [`generic::HalfEdgeMesh`]; its
+//! numbered invariants define the tables. After Weiler (1985) and Mäntylä (1988); twin pairs after
+//! Campagna, Kobbelt & Seidel (1998).
 //!
 //! | holds | |
 //! |---|---|

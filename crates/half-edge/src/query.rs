@@ -1,7 +1,8 @@
 //! The nine relations.
 
 use sixfold_core::{
-    Capabilities, DistinctWalk, EdgeId, Editing, FaceId, HoleSet, MeshQuery, Point, Probe, VertexId,
+    Capabilities, DistinctWalk, EdgeId, Editing, FaceId, HoleSet, IteratorExt, MeshQuery, Point,
+    Probe, VertexId,
 };
 
 use crate::circulate::EdgeEdges;
@@ -52,12 +53,12 @@ impl<P: Probe, E: Editing> MeshQuery for HalfEdgeMesh<E, P> {
 
     #[inline]
     fn vertex_vertices(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
-        self.spokes(v).map(|(_, twin)| twin.origin)
+        self.spokes(v).map_inline(|(_, twin)| twin.origin)
     }
 
     #[inline]
     fn vertex_edges(&self, v: VertexId) -> impl Iterator<Item = EdgeId> {
-        self.spokes(v).map(|(h, _)| h.edge())
+        self.spokes(v).map_inline(|(h, _)| h.edge())
     }
 
     #[inline]
@@ -87,12 +88,12 @@ impl<P: Probe, E: Editing> MeshQuery for HalfEdgeMesh<E, P> {
 
     #[inline]
     fn face_vertices(&self, f: FaceId) -> impl Iterator<Item = VertexId> {
-        self.sides(f).map(|(_, half)| half.origin)
+        self.sides(f).map_inline(|(_, half)| half.origin)
     }
 
     #[inline]
     fn face_edges(&self, f: FaceId) -> impl Iterator<Item = EdgeId> {
-        self.sides(f).map(|(h, _)| h.edge())
+        self.sides(f).map_inline(|(h, _)| h.edge())
     }
 
     #[inline]

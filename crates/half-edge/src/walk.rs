@@ -1,7 +1,7 @@
 //! The walk from side to side: a side is a half-edge with a face.
 
 use sixfold_core::{
-    EdgeId, Editing, FaceId, HandleMap, OrientedWalk, Probe, SideMap, Slot, VertexId,
+    EdgeId, Editing, FaceId, HandleMap, IteratorExt, OrientedWalk, Probe, SideMap, Slot, VertexId,
 };
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
@@ -31,7 +31,7 @@ impl<P: Probe, E: Editing> OrientedWalk for HalfEdgeMesh<E, P> {
     #[inline]
     fn outgoing_sides(&self, v: VertexId) -> impl Iterator<Item = HalfEdgeId> {
         // Each face at v has one half-edge that arrives at v; the next one leaves v.
-        let arriving = self.spokes(v).map(|(_, twin)| twin);
+        let arriving = self.spokes(v).map_inline(|(_, twin)| twin);
         arriving.filter_map(|half| half.face.get().map(|_| half.next))
     }
 

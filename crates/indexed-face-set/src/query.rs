@@ -1,7 +1,7 @@
 //! The nine relations.
 
 use sixfold_core::{
-    Capabilities, Editing, FaceId, HoleSet, MeshQuery, Pair, Point, Probe, VertexId,
+    Capabilities, Editing, FaceId, HoleSet, IteratorExt, MeshQuery, Pair, Point, Probe, VertexId,
 };
 
 use crate::mesh::IndexedFaceSet;
@@ -55,7 +55,7 @@ impl<P: Probe, E: Editing> MeshQuery for IndexedFaceSet<E, P> {
     #[inline]
     fn vertex_edges(&self, v: VertexId) -> impl Iterator<Item = Pair<VertexId>> {
         self.vertex_vertices(v)
-            .map(move |other| Pair::new(v, other))
+            .map_inline(move |other| Pair::new(v, other))
     }
 
     #[inline]
@@ -80,7 +80,7 @@ impl<P: Probe, E: Editing> MeshQuery for IndexedFaceSet<E, P> {
 
     #[inline]
     fn face_vertices(&self, f: FaceId) -> impl Iterator<Item = VertexId> {
-        self.face(f).iter().copied()
+        self.face(f).iter().map_inline(|&corner| corner)
     }
 
     #[inline]

@@ -96,7 +96,7 @@ impl IgnoredKind {
     }
 }
 
-/// One kind of ignored statements, with their number; printed as
+/// A kind of ignored statement and how many there are; printed as
 /// `ignored 48612 texture coordinates (first at line 12)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {

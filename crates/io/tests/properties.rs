@@ -171,8 +171,8 @@ fn formatting() -> impl Strategy<Value = Formatting> {
     )
 }
 
-/// Writes `mesh` in the given formattings, with its faces after the first `vertices_first` vertices.
-/// Returns the text and the lines of the faces.
+/// Writes `mesh` in the given formattings: `vertices_first` vertices, then the faces, then the
+/// other vertices. Returns the text and the lines of the faces.
 fn format_mesh(
     mesh: &PolygonMesh,
     vertices_first: usize,

@@ -51,7 +51,7 @@ impl<P: Probe, E: Editing> MeshQuery for PolygonSoup<E, P> {
     #[inline]
     fn vertex_edges(&self, v: SoupVertex) -> impl Iterator<Item = Pair<SoupVertex>> {
         self.vertex_vertices(v)
-            .map(move |other| Pair::new(v, other))
+            .map_inline(move |other| Pair::new(v, other))
     }
 
     #[inline]

@@ -329,11 +329,16 @@ impl<M: MeshEdit> Work<M> {
         if let Some(x) = minimizer {
             return Some(at(x));
         }
-        // Only the offset is chosen here: three copies of `sum` would be written and read again in
-        // pieces of other sizes, and processors wait for such reads.
-        let offsets = [middle, DVec3::ZERO, edge].map(|offset| (sum.value(offset), offset));
-        let least = offsets.into_iter().min_by(|x, y| x.0.total_cmp(&y.0));
-        least.map(|(_, offset)| at(offset))
+        // Only the offset is chosen here: copies of `sum` would be written and read again in pieces
+        // of other sizes, and processors wait for such reads.
+        let mut best = (sum.value(middle), middle);
+        for offset in [DVec3::ZERO, edge] {
+            let error = sum.value(offset);
+            if error < best.0 {
+                best = (error, offset);
+            }
+        }
+        Some(at(best.1))
     }
 
     /// Collapses the edge of `entry`, if it exists and the collapse is legal; returns the error of
@@ -364,7 +369,7 @@ impl<M: MeshEdit> Work<M> {
             version: p.version.wrapping_add(1),
             fixed: p.fixed || q.fixed,
         };
-        // No number is used twice, so no entry with the removed end becomes current again.
+        // Numbers are not reused, so all entries with the removed end stay outdated.
         self.vertices[b as usize].version = q.version.wrapping_add(1);
         for v in mesh.vertex_vertices(kept) {
             self.push_edge(a, self.numbering.number(v));

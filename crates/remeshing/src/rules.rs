@@ -16,21 +16,25 @@ pub(crate) fn at<M: MeshEdit>(mesh: &M, v: M::Vertex) -> DVec3 {
 
 /// Returns whether no remaining triangle is turned over if both ends of an edge move to `to`.
 pub(crate) fn keeps_orientation<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], to: DVec3) -> bool {
-    [(a, b), (b, a)].into_iter().all(|(end, other)| {
+    for (end, other) in [(a, b), (b, a)] {
         let from = at(mesh, end);
-        mesh.vertex_faces(end).all(|f| {
+        for f in mesh.vertex_faces(end) {
             let [_, p, q] = corners_from(mesh, f, end);
             if p == other || q == other {
-                return true;
+                continue;
             }
-            let [p, q] = [p, q].map(|v| at(mesh, v));
+            let [p, q] = [at(mesh, p), at(mesh, q)];
             let before = (p - from).cross(q - from);
             let after = (p - to).cross(q - to);
             // A face without area has no orientation to keep.
-            before == DVec3::ZERO
-                || before.dot(after) > MIN_COSINE * before.length() * after.length()
-        })
-    })
+            let keeps = before == DVec3::ZERO
+                || before.dot(after) > MIN_COSINE * before.length() * after.length();
+            if !keeps {
+                return false;
+            }
+        }
+    }
+    true
 }
 
 /// Returns whether a collapse meets the link condition (Dey et al. 1999) in a mesh of triangles.

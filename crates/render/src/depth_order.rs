@@ -23,11 +23,11 @@ struct Layer {
 
 /// Returns the faces marked `visible`, from back to front; O(samples · log samples).
 ///
-/// Sorting by one depth per face is wrong for long faces next to short ones. Here, the surfaces at
-/// each pixel give rules for which face comes before which. The order follows these rules by the
-/// algorithm of Kahn (1962); among several candidates, the farthest comes first. Faces that
-/// intersect each other can have no valid order; then the farthest of the remaining faces comes
-/// next.
+/// Sorting by one depth per face is wrong for long faces next to short ones. Instead, faces are
+/// compared at each pixel that they share: the farther one must come first. The order follows these
+/// rules by the algorithm of Kahn (1962); among several candidates, the farthest comes first. Faces
+/// that intersect each other can have no valid order; then the farthest of the remaining faces
+/// comes next.
 pub(crate) fn back_to_front(mesh: &PolygonMesh, panel: &Panel, visible: &[bool]) -> Vec<FaceId> {
     let mut layers: Vec<Layer> = Vec::new();
     let mut rasteriser = Rasteriser::new(panel.width, panel.height);

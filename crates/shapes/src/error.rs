@@ -61,7 +61,7 @@ pub enum ShapeError {
     UnreachableFaceCount { faces: usize, nearest: usize },
 }
 
-/// Maximum number of corners of a shape: every structure can number this many (2³¹ − 1).
+/// Maximum number of corners of a shape (2³¹ − 1): every structure has handles for this many.
 pub(crate) const MAX_CORNERS: u64 = (1 << 31) - 1;
 
 /// Maximum number of cells along a side. `f32` represents all whole and half numbers up to twice

@@ -32,9 +32,9 @@ pub struct BackendRunner<'a> {
 /// How long an operation is run untimed before each sample.
 const UNTIMED_NS: f64 = 2_000_000.0;
 
-/// The number of different gaps in front of a structure that is built again, and the bytes from
-/// one gap to the next.
+/// The number of different sizes of the gap in front of a structure that is built again.
 const GAPS: usize = 16;
+/// The difference between one size of the gap and the next, in bytes.
 const GAP_STEP: usize = 4160;
 
 /// The shortest sample of a structure larger than the second-level cache: single runs vary by up to

@@ -46,7 +46,7 @@ mod tests {
     use super::*;
     use crate::{Method, Scheme, Subdivision, subdivide, subdivide_native};
 
-    /// Boundaries do not become curves here: corners stay, and so do all vertices.
+    /// Boundaries do not become curves here: no vertex moves, so the corners stay.
     #[test]
     fn a_square_keeps_its_corners() {
         let corners = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 1.0), Point::Y];

@@ -43,8 +43,8 @@ const UNNUMBERED: u32 = u32::MAX;
 
 impl Connectivity {
     /// Builds the tables of `mesh` for `scheme` with queries for the faces of each edge; edges have
-    /// the order of `edges()`. Queries FV, EV and EF: O(sum of the degrees of the faces of all
-    /// edges) plus their cost.
+    /// the order of `edges()`. Queries FV, EV and EF: O(sum, over all edges, of the degrees of
+    /// their faces) plus the cost of the queries.
     ///
     /// # Errors
     ///

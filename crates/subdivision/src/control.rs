@@ -238,8 +238,8 @@ mod tests {
         }
     }
 
-    /// Returns what the rules make sharp in a mesh without creases: edges by their ends, and
-    /// vertices.
+    /// Returns the elements that the rules make sharp in a mesh without creases: edges by their
+    /// ends, and vertices.
     fn sharp(points: u32, faces: &[&[u32]], boundary: Boundary) -> (Vec<[usize; 2]>, Vec<usize>) {
         let points: Vec<Point> = (0..points).map(|i| Point::splat(i as f32)).collect();
         let polygons = PolygonMesh::new(points, faces).expect("faces");

@@ -44,7 +44,7 @@ mod tests {
     use crate::Scheme;
     use crate::test_support::all_methods;
 
-    /// Boundaries do not become curves here: corners stay, and so do all vertices.
+    /// Boundaries do not become curves here: no vertex moves, so the corners stay.
     #[test]
     fn a_triangle_keeps_its_corners() {
         let corners = [Point::ZERO, Point::X, Point::Y];

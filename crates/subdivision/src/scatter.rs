@@ -86,7 +86,7 @@ fn number_vertices<M: MeshQuery>(mesh: &M, builder: &mut StepBuilder) -> VertexM
     numbers
 }
 
-/// What the pass over the faces collects, besides the sums in the edge points.
+/// The data that the pass over the faces collects, besides the sums in the edge points.
 struct FaceSums {
     /// The edges, in the order in which they are found.
     edges: Vec<EdgeSum>,

@@ -18,7 +18,7 @@ use crate::wings::{Side, Wings};
 pub struct Edge {
     /// The start and the end: the origin of the left run and of the right run.
     pub(crate) ends: [VertexId; 2],
-    /// The face on each side; empty outside a boundary.
+    /// The face on each side; empty on the outer side of a boundary edge.
     pub(crate) faces: [Slot<FaceId>; 2],
     /// The next edge along each side.
     pub(crate) next: Wings,
@@ -66,7 +66,7 @@ impl Edge {
         self.ends
     }
 
-    /// Returns the faces on the left and on the right; `None` outside a boundary.
+    /// Returns the faces on the left and on the right; `None` on the outer side of a boundary edge.
     #[inline]
     pub fn faces(&self) -> [Option<FaceId>; 2] {
         self.faces.map(Slot::get)

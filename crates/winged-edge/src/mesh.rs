@@ -110,13 +110,13 @@ impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
         self.edge(e).ends()[1]
     }
 
-    /// Returns the face on the left of `e`, or `None` outside a boundary.
+    /// Returns the face on the left of `e`, or `None` on the outer side of a boundary edge.
     #[inline]
     pub fn left(&self, e: EdgeId) -> Option<FaceId> {
         self.edge(e).faces()[0]
     }
 
-    /// Returns the face on the right of `e`, or `None` outside a boundary.
+    /// Returns the face on the right of `e`, or `None` on the outer side of a boundary edge.
     #[inline]
     pub fn right(&self, e: EdgeId) -> Option<FaceId> {
         self.edge(e).faces()[1]

@@ -1,8 +1,8 @@
 //! The nine relations.
 
 use sixfold_core::{
-    Capabilities, DistinctWalk, EdgeId, Editing, FaceId, HoleSet, MeshQuery, Point, Probe, Slot,
-    VertexId,
+    Capabilities, DistinctWalk, EdgeId, Editing, FaceId, HoleSet, IteratorExt, MeshQuery, Point,
+    Probe, Slot, VertexId,
 };
 
 use crate::circulate::EdgeEdges;
@@ -54,12 +54,12 @@ impl<P: Probe, E: Editing> MeshQuery for WingedEdgeMesh<E, P> {
     /// Counter-clockwise, starting on the boundary if `v` is on one.
     #[inline]
     fn vertex_vertices(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
-        self.runs_from(v).map(|(_, run)| run.target())
+        self.runs_from(v).map_inline(|(_, run)| run.target())
     }
 
     #[inline]
     fn vertex_edges(&self, v: VertexId) -> impl Iterator<Item = EdgeId> {
-        self.runs_from(v).map(|(e, _)| e)
+        self.runs_from(v).map_inline(|(e, _)| e)
     }
 
     #[inline]
@@ -85,17 +85,17 @@ impl<P: Probe, E: Editing> MeshQuery for WingedEdgeMesh<E, P> {
 
     #[inline]
     fn face_vertices(&self, f: FaceId) -> impl Iterator<Item = VertexId> {
-        self.runs_along(f).map(|(_, run)| run.origin())
+        self.runs_along(f).map_inline(|(_, run)| run.origin())
     }
 
     #[inline]
     fn face_edges(&self, f: FaceId) -> impl Iterator<Item = EdgeId> {
-        self.runs_along(f).map(|(e, _)| e)
+        self.runs_along(f).map_inline(|(e, _)| e)
     }
 
     #[inline]
     fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
-        DistinctWalk::new(self.runs_along(f).map(|(_, run)| run.across()))
+        DistinctWalk::new(self.runs_along(f).map_inline(|(_, run)| run.across()))
     }
 
     /// Walks around `a`.

@@ -394,8 +394,8 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         ]
     }
 
-    /// Returns the edge that `run`, which has a face, adds inside it, starting at the middle of
-    /// `e`.
+    /// Returns the edge that `run` adds inside its face; it starts at the middle of `e`. The run
+    /// must have a face.
     #[inline(always)]
     fn inner_edge(self, e: EdgeId, run: &SplitRun) -> Edge {
         let face = run.face.get().expect("a run with a face");
@@ -496,7 +496,7 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
     }
 }
 
-/// What an edge has on one of its sides: the face and two wings.
+/// The face and the two wings on one side of an edge.
 #[derive(Clone, Copy)]
 struct Links {
     face: Slot<FaceId>,

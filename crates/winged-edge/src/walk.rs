@@ -1,7 +1,8 @@
 //! The walk from side to side: a side is an edge along its left or its right.
 
 use sixfold_core::{
-    EdgeId, Editing, FaceId, HandleMap, OrientedWalk, Probe, RowId, SideMap, Slot, VertexId, row_id,
+    EdgeId, Editing, FaceId, HandleMap, IteratorExt, OrientedWalk, Probe, RowId, SideMap, Slot,
+    VertexId, row_id,
 };
 
 use crate::edge::Run;
@@ -47,7 +48,7 @@ impl<P: Probe, E: Editing> OrientedWalk for WingedEdgeMesh<E, P> {
     #[inline]
     fn face_sides(&self, f: FaceId) -> impl Iterator<Item = EdgeSide> {
         self.runs_along(f)
-            .map(|(e, run)| EdgeSide::from_edge(e, run.side()))
+            .map_inline(|(e, run)| EdgeSide::from_edge(e, run.side()))
     }
 
     #[inline]

@@ -67,7 +67,7 @@ struct Line {
     last_query: Counter,
     /// The bytes that this query has read, one bit for each byte.
     read: Counter,
-    /// The number of the last fetch that loaded it, from 1; 0 if it was never fetched.
+    /// The number of the last fetch that loaded it, counted from 1; 0 if it was never fetched.
     fetch: Counter,
 }
 

@@ -40,7 +40,8 @@ pub struct Run {
     pub time: Time,
     /// The result; `None` if it was not requested.
     pub outcome: Option<Outcome>,
-    /// The reason why this structure cannot do it on this mesh. The time has no meaning then.
+    /// The reason why this structure cannot run the operation on this mesh; `time` is then
+    /// meaningless.
     pub refusal: Option<String>,
 }
 
@@ -79,7 +80,7 @@ pub trait TimedBackend {
     /// Returns its name, as users write it.
     fn name(&self) -> &str;
     /// Returns whether it is an external program. Such a program runs only whole operations, and
-    /// the results of others are not checked against its results.
+    /// the results of other backends are not checked against its results.
     fn is_external(&self) -> bool {
         false
     }
@@ -376,8 +377,8 @@ impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
 ///
 /// After another backend was measured, runs that read the tables in another order need up to ten
 /// passes until the third-level cache holds them again: `edge_edges` on a winged-edge mesh of
-/// 200,000 faces then took 8 ms instead of 3 ms. After one sequential pass it takes 3 ms at once, as
-/// in a program that runs nothing else.
+/// 200,000 faces then took 8 ms instead of 3 ms. After one sequential pass, the first run already
+/// takes 3 ms, as in a program that runs nothing else.
 fn fill_caches<M: Representation>(mesh: &M, series: &Series<'_>) {
     if needs_filling(mesh, series) {
         let scans = M::cost(Relation::VertexFaces) == QueryCost::Scan;

@@ -235,8 +235,8 @@ impl Action {
         }
     }
 
-    /// Returns the kind of element that it works on; `None` for passes and for edits, which have
-    /// places.
+    /// Returns the kind of element that it works on. `None` for passes, which work on the whole
+    /// mesh, and for edits, which have their own places.
     pub const fn kind(self) -> Option<ElementKind> {
         match self {
             Self::Relation(relation) => Some(ElementKind::queried_by(relation)),

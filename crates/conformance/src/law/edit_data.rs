@@ -303,7 +303,7 @@ struct Parents<M: MeshQuery> {
     cut: Vec<(u32, Vec<M::Vertex>)>,
 }
 
-/// Updates the numbers by what an edit reports, one element after the other.
+/// Updates the numbers as an edit reports its changes, one element after the other.
 fn replay<H: Handle>(numbers: &mut BTreeMap<H, u32>, changes: &Changes<H>) {
     for (old, number) in std::mem::take(numbers) {
         if changes.removed.contains(&old) {

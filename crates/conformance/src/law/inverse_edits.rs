@@ -9,8 +9,8 @@ use crate::edit::{Action, ModelTest};
 /// Position of new vertices, far from all other vertices.
 const FAR: Point = Point::new(50.0, 60.0, 70.0);
 
-/// Edits, and a function that executes them at an edge or a face together with those that undo
-/// them. It returns whether they are accepted; if so, it checks that the mesh is unchanged.
+/// Edits, and a function that executes one of them at an edge or a face and then undoes it. The
+/// function returns whether both edits are accepted; if so, it checks that the mesh is unchanged.
 type Undo<M, At> = (&'static [Edit], fn(&ModelTest<M>, At) -> bool);
 
 /// Edits that undo each other give the same mesh again.

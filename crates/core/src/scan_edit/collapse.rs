@@ -1,11 +1,11 @@
 //! Collapsing an edge, and moving a vertex in structures where a vertex is its coordinates.
 
 use super::{Refusal, ScannedMesh, sorted_once};
-use crate::distinct::IteratorExt;
 use crate::edit_error::EditError;
 use crate::edit_log::{EditLog, uses_reports};
 use crate::editing::Editable;
 use crate::handle::Pair;
+use crate::iterator_ext::IteratorExt;
 use crate::probe::Probe;
 use crate::row_id::FaceId;
 use crate::scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};

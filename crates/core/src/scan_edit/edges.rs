@@ -1,11 +1,11 @@
 //! Edits of an edge and its faces.
 
 use super::{Refusal, ScannedMesh};
-use crate::distinct::IteratorExt;
 use crate::edit_error::EditError;
 use crate::edit_log::{EditLog, uses_reports};
 use crate::editing::Editable;
 use crate::handle::Pair;
+use crate::iterator_ext::IteratorExt;
 use crate::polygon_mesh::repeated;
 use crate::probe::Probe;
 use crate::row_id::FaceId;

@@ -61,8 +61,8 @@ impl<P: Probe> CornerTable<Editable, P> {
         Ok(turned)
     }
 
-    /// Returns whether C and D are adjacent. Walks around both at once, because the two walks are
-    /// independent, and the one that ends first decides. Returns `None` if one reaches a boundary.
+    /// Returns whether C and D are adjacent; `None` if a walk reaches a boundary. Walks around both
+    /// at once, so that neither walk waits for the other. The walk that ends first decides.
     #[inline]
     fn walk_around_both(
         &self,

@@ -35,13 +35,18 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         }
         let [low, high] = e.ends();
         let gone = if keep == low { high } else { low };
-        let removed = both
-            .iter()
-            .copied()
-            .filter(|&f| self.known_face(f).len() == 3);
-        let removed = ShortVec::from_iter(removed);
-        let moving = self.fan(gone).iter().copied();
-        let moving = ShortVec::from_iter(moving.filter(|f| !both.has(*f)));
+        // Pushed one by one: an extended list would be copied in memory.
+        let (mut removed, mut moving) = (ShortVec::new(), ShortVec::new());
+        for &f in &*both {
+            if self.known_face(f).len() == 3 {
+                removed.push(f);
+            }
+        }
+        for &f in self.fan(gone) {
+            if !both.has(f) {
+                moving.push(f);
+            }
+        }
         self.check_last_faces(e, keep, &moving, &removed)?;
         self.check_room(0, 0, moving.len() + self.corners_of_polygons(&both))?;
         let neighbours = if uses_reports(log) {
@@ -123,8 +128,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
 
     /// Returns the neighbours of `gone` except `keep`, each with whether it is adjacent to `keep`.
     fn other_neighbours(&self, gone: VertexId, keep: VertexId) -> Vec<(VertexId, bool)> {
-        let ring = self.ring(gone).into_vertices();
-        let others = ring.filter(|&v| v != keep);
+        let others = self.ring(gone, |v| v).filter(|&v| v != keep);
         others
             .map(|v| (v, self.has_edge(Pair::new(keep, v))))
             .collect()

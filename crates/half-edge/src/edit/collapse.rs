@@ -52,30 +52,64 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         to: Point,
         log: &mut impl EditLog<Self>,
     ) -> Result<VertexId, Refusal> {
-        let checked = self.check_collapse(e, keep)?;
-        self.collapse_checked(&checked, log);
+        let mut collapse = self.read_collapse(e, self.check_edge(e)?, keep);
+        self.check_collapse(e, keep, &mut collapse)?;
+        self.collapse_checked(&collapse, log);
         *self.positions.write(keep.index()) = to;
         Ok(keep)
     }
 
-    /// Checks the link condition (Dey et al. 1999), and that no face would contain `keep` twice.
+    /// Reads the edge `e`, of which `pair` are the half-edges, and its two faces.
     #[inline]
-    fn check_collapse(&self, e: EdgeId, keep: VertexId) -> Result<Collapse, Refusal> {
-        let pair = self.check_edge(e)?;
+    fn read_collapse(&self, e: EdgeId, pair: [Half; 2], keep: VertexId) -> Collapse {
         let side = usize::from(pair[0].origin == keep);
         let (into, back) = (pair[side], pair[side ^ 1]);
+        let h = self.halves_of(e)[side];
+        let end = |last| End {
+            valence: 1,
+            on_boundary: false,
+            last,
+            last_but_one: last,
+        };
+        Collapse {
+            h,
+            into,
+            back,
+            left: self.third_side(h, &into),
+            right: self.third_side(h.twin(), &back),
+            gone: end(h),
+            kept: end(h.twin()),
+        }
+    }
+
+    /// Checks the link condition (Dey et al. 1999), and that no face would contain `keep` twice.
+    /// Sets both ends of `collapse`.
+    ///
+    /// The result of the check is not returned: it would be copied in pieces of other sizes than it
+    /// was written in, and processors wait for such reads.
+    #[inline]
+    fn check_collapse(
+        &self,
+        e: EdgeId,
+        keep: VertexId,
+        collapse: &mut Collapse,
+    ) -> Result<(), Refusal> {
+        let Collapse {
+            h,
+            into,
+            back,
+            right,
+            ..
+        } = *collapse;
         if back.origin != keep {
             return Err(EditError::NotAnEnd {
                 edge: e,
                 vertex: keep,
             });
         }
-        let h = self.halves_of(e)[side];
-        let t = h.twin();
-        let left = self.third_side(h, &into);
-        let right = self.third_side(t, &back);
         // `keep` stands for a missing third corner: only the edge itself leads to `keep`.
-        let apexes = [left, right].map(|side| side.map_or(keep, |(_, third)| third.origin));
+        let apex = |side: Option<(HalfEdgeId, Half)>| side.map_or(keep, |(_, third)| third.origin);
+        let apexes = [apex(collapse.left), apex(right)];
         if apexes[0] == apexes[1] && apexes[0] != keep {
             let vertex = apexes[0];
             return Err(EditError::SameApex { edge: e, vertex });
@@ -83,7 +117,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
 
         let mut neighbours = HandleSet::new();
         let mut faces = HandleSet::new();
-        let gone = self.walk_end(h, &back, |arriving| {
+        self.walk_end(h, &back, &mut collapse.gone, |arriving| {
             if !apexes.contains(&arriving.origin) {
                 neighbours.push(arriving.origin);
             }
@@ -97,16 +131,16 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         })?;
         neighbours.sort();
         faces.sort();
-        let kept = match right {
+        match right {
             // No common neighbour is possible, so a walk around the kept end is not needed.
             Some((last, _)) if neighbours.is_empty() => {
                 let found = |f: &FaceId| self.sides(*f).any(|(_, half)| half.origin == keep);
                 if faces.iter().any(found) {
                     return Err(EditError::RepeatedVertex { vertex: keep });
                 }
-                self.end_without_walk(keep, into.next, last.twin())
+                collapse.kept = self.end_without_walk(keep, into.next, last.twin());
             }
-            _ => self.walk_end(t, &into, |arriving| {
+            _ => self.walk_end(h.twin(), &into, &mut collapse.kept, |arriving| {
                 if neighbours.contains(arriving.origin) {
                     let vertex = arriving.origin;
                     return Err(EditError::CommonNeighbour { edge: e, vertex });
@@ -116,51 +150,47 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
                     _ => Ok(()),
                 }
             })?,
-        };
-
-        let checked = Collapse {
-            h,
-            into,
-            back,
-            left,
-            right,
-            gone,
-            kept,
-        };
-        if checked.gone.on_boundary || checked.kept.on_boundary {
-            self.check_at_boundary(e, &checked)?;
-        } else if checked.valence_after() == 2 && self.only_triangles_remain(&checked) {
-            return Err(EditError::Pillow { edge: e });
         }
-        Ok(checked)
+        if collapse.gone.on_boundary || collapse.kept.on_boundary {
+            self.check_at_boundary(e, collapse)
+        } else if collapse.valence_after() == 2 && self.only_triangles_remain(collapse) {
+            Err(EditError::Pillow { edge: e })
+        } else {
+            Ok(())
+        }
     }
 
-    /// Walks clockwise around the origin of `h` once. `twin` is the record of the twin of `h`;
-    /// `visit` gets the record of every other half-edge that arrives at the origin.
+    /// Walks clockwise around the origin of `h` once, and updates `end`, which has `h` only. `twin`
+    /// is the record of the twin of `h`; `visit` gets the record of every other half-edge that
+    /// arrives at the origin.
     #[inline]
     fn walk_end(
         &self,
         h: HalfEdgeId,
         twin: &Half,
+        end: &mut End,
         mut visit: impl FnMut(&Half) -> Result<(), Refusal>,
-    ) -> Result<End, Refusal> {
-        let mut end = End {
-            valence: 1,
-            on_boundary: twin.face == Slot::NONE,
-            last: h,
-            last_but_one: h,
-        };
+    ) -> Result<(), Refusal> {
+        let mut valence = 1;
+        let mut on_boundary = twin.face == Slot::NONE;
+        let (mut last, mut last_but_one) = (h, h);
         let mut spoke = twin.next;
         while spoke != h {
             let arriving = self.record(spoke.twin());
             visit(&arriving)?;
-            end.valence += 1;
-            end.on_boundary |= arriving.face == Slot::NONE;
-            end.last_but_one = end.last;
-            end.last = spoke;
+            valence += 1;
+            on_boundary |= arriving.face == Slot::NONE;
+            last_but_one = last;
+            last = spoke;
             spoke = arriving.next;
         }
-        Ok(end)
+        *end = End {
+            valence,
+            on_boundary,
+            last,
+            last_but_one,
+        };
+        Ok(())
     }
 
     /// Returns the data of the end `v` without a walk around it. The spokes after and before the

@@ -154,7 +154,7 @@ fn remeshing_ends_when_converged_and_collapses_make_room() {
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&ball).expect("closed");
     let options = Remeshing {
         iterations: usize::MAX,
-        // Fewer than the mesh has, and more than the length needs.
+        // Fewer faces than the mesh has at first, and more than it has at this edge length.
         max_faces: 1000,
         ..Remeshing::with_edge_length(0.3)
     };

@@ -99,7 +99,7 @@ pub(crate) struct Triangulate {
     /// ears (for any simple polygon) or fan (for convex ones)
     #[arg(long, value_name = "NAME", default_value = "ears", value_parser = triangulation)]
     pub(crate) method: Triangulation,
-    /// Flip faces until they agree: majority (as most faces) or outward
+    /// Flip faces until they agree: majority (like most faces) or outward
     #[arg(long, value_name = "RULE", value_parser = facing)]
     pub(crate) orient: Option<Facing>,
 }

@@ -15,7 +15,7 @@ struct KnownBackend {
     operation_ns: f64,
     build_ns: f64,
     parts: usize,
-    /// What it yields per operation: 1, if it agrees with the others.
+    /// The result of one operation: 1 if it agrees with the others.
     yield_per_operation: u64,
 }
 

@@ -166,7 +166,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
     }
 }
 
-/// New rows, and holes. The caller checks the room before it adds rows.
+/// New rows and holes. The caller checks that there is room before it adds rows.
 impl<P: Probe> WingedEdgeMesh<Editable, P> {
     /// Adds a vertex without an edge.
     #[inline(always)]

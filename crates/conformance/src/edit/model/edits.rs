@@ -10,7 +10,7 @@ use crate::edit::action::Action;
 /// The edits return `None` if they are illegal by their own rules; the model may then be partly
 /// edited.
 impl Model {
-    /// Executes `action`, whatever the structure can hold.
+    /// Executes `action`, even if the structure could not hold the result.
     pub(super) fn apply(&mut self, action: &Action, rules: &Rules) -> Option<()> {
         match *action {
             Action::SetPosition { v, to } => self.set_position(v, to),
