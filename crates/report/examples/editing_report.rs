@@ -271,7 +271,8 @@ fn figure(path: &Path, samples: &Samples) -> std::io::Result<()> {
         title: edit.name().into(),
         x_label: "faces of the mesh".into(),
         y_label: "ns per edit".into(),
-        lines: { structure_infos().into_iter() }
+        lines: structure_infos()
+            .into_iter()
             .map(|backend| (backend.name, points(samples, (edit.name(), backend.name))))
             .collect(),
     };

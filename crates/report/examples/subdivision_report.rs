@@ -190,7 +190,8 @@ fn figure(path: &Path, samples: &Samples) -> std::io::Result<()> {
         title: format!("{scheme}, {way}"),
         x_label: "faces of the last level".into(),
         y_label: "ns per face".into(),
-        lines: { Backend::structures().into_iter() }
+        lines: Backend::structures()
+            .into_iter()
             .map(|backend| line(scheme, way, backend.name()))
             .collect(),
     };

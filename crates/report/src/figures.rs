@@ -85,7 +85,9 @@ pub(crate) fn page(collection: &Collection, command: &str) -> ReportPage {
             None => collection.studies.iter().enumerate().map(section).collect(),
         },
         labs,
-        failures: { collection.failures.iter() }
+        failures: collection
+            .failures
+            .iter()
             .map(|failed| (failed.mesh.clone(), failed.reason.clone()))
             .collect(),
         missing: collection.missing.clone(),

@@ -114,7 +114,9 @@ fn unfinished<'m>(
     shard: Option<Shard>,
     collection: &Collection,
 ) -> Vec<&'m Mesh> {
-    { meshes.iter().enumerate() }
+    meshes
+        .iter()
+        .enumerate()
         .filter(|(i, _)| shard.is_none_or(|shard| shard.contains(*i)))
         .map(|(_, mesh)| mesh)
         .filter(|mesh| collection.missing.contains(&mesh.name))

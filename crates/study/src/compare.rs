@@ -401,7 +401,10 @@ impl Changes {
                 winner.operation, winner.after, winner.before
             ));
         }
-        let others: Vec<String> = { self.rows.iter().filter(|row| row.other_checksum) }
+        let others: Vec<String> = self
+            .rows
+            .iter()
+            .filter(|row| row.other_checksum)
             .map(|row| format!("{} on {}", row.operation, row.backend))
             .collect();
         if !others.is_empty() {

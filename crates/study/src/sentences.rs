@@ -94,8 +94,10 @@ fn speed(backends: &[BackendReport], results: &[ResultRow]) -> Option<String> {
 /// Describes the difference between the two columns of the backend that is measured twice.
 fn noise(control: &Control) -> Option<String> {
     let difference = |row: &&ControlRow| row.difference();
-    let worst =
-        { control.operations.iter() }.max_by(|a, b| difference(a).total_cmp(&difference(b)))?;
+    let worst = control
+        .operations
+        .iter()
+        .max_by(|a, b| difference(a).total_cmp(&difference(b)))?;
     let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
     Some(format!(
         "Noise: {} was measured twice; its two columns typically differ by {}, at most by {} ({}). In each operation, backends that differ by no more than these columns are tied.",

@@ -451,7 +451,9 @@ fn raw(
         wall_ns: entry.samples.iter().map(|(_, time)| time.wall_ns).collect(),
         faults: entry.samples.iter().map(|(_, time)| time.faults).collect(),
         slowdowns: entry.slowdowns.clone(),
-        first_ns: { entry.first_times.iter() }
+        first_ns: entry
+            .first_times
+            .iter()
             .map(|[first, _]| first.ns())
             .collect(),
     });

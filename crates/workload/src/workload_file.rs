@@ -100,7 +100,8 @@ impl Workload {
 
         let access = match &parsed.access {
             None => Access::Sequential,
-            Some(word) => { Access::ALL.into_iter() }
+            Some(word) => Access::ALL
+                .into_iter()
                 .find(|access| access.name() == word.get_ref())
                 .ok_or_else(|| {
                     let allowed = Access::ALL.map(Access::name);

@@ -15,8 +15,9 @@ pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Vec
         .into_iter()
         .filter(|&operation| report.fits.iter().any(|fit| fit.operation == operation))
         .collect();
-    let figures =
-        { operations.into_iter() }.map(|operation| figure(report, operation, id, command));
+    let figures = operations
+        .into_iter()
+        .map(|operation| figure(report, operation, id, command));
     figures.collect()
 }
 

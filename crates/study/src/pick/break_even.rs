@@ -43,7 +43,9 @@ pub(crate) fn break_even(
             uses: pays.map(|pays| pays / operations),
         })
     };
-    { ranking.iter().filter(|ranked| ranked.backend != BASE) }
+    ranking
+        .iter()
+        .filter(|ranked| ranked.backend != BASE)
         .filter_map(row)
         .collect()
 }

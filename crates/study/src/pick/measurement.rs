@@ -190,12 +190,12 @@ impl PickMeasurement<'_> {
         (total, build)
     }
 
-    /// Runs all parts on elements in one loop. The preceding turns are run first, untimed, so that
-    /// the caches are in the same state as in a program.
+    /// Runs all parts on elements in one loop. The preceding turns are run first, untimed and for
+    /// as long, so that caches and branch predictors are in the same state as in a program.
     fn time_mix(&self, backend: &mut PickBackend<'_>, round: u32, plan: SamplePlan) -> Time {
         let SamplePlan { turns, copies } = plan;
         let at = u64::from(round) * turns;
-        backend.mixer.run(at, turns, 1, self.clock);
+        backend.mixer.run(at, turns, copies, self.clock);
         let run = backend.mixer.run(at + turns, turns, copies, self.clock);
         let operations = run.operations.max(1) as f64;
         run.time.scaled(self.schedule.on_elements / operations)

@@ -136,7 +136,9 @@ fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
             ci_high: known.then(|| ratio * half_width.exp()),
             tied_with_best: ratio <= noise || (known && ratio * (-half_width).exp() <= 1.0),
             build_ns: geometric(rows.iter().map(|r| r.build_ns)),
-            first_build_ns: { rows.iter().map(|r| r.first_build_ns) }
+            first_build_ns: rows
+                .iter()
+                .map(|r| r.first_build_ns)
                 .collect::<Option<Vec<f64>>>()
                 .map(|builds| geometric(builds.into_iter())),
             bytes,
